@@ -1,0 +1,86 @@
+# GNU make. Every target sets up what it needs; see `make help`.
+# Paths are relative throughout: the checkout's own path may hold spaces.
+
+CARGO ?= cargo
+PREFIX ?= $(HOME)/.local
+PYTHON := .venv/bin/python
+
+# The demo, the tests and `install` look into target/, wherever the user's other builds go.
+export CARGO_TARGET_DIR := $(CURDIR)/target
+# The Python environment holds what is needed; nothing from outside shall shadow it.
+unexport PYTHONPATH PYTHONHOME
+
+ifeq ($(shell uname -s),Darwin)
+  BUILT_LIBRARY := libbiela.dylib
+  LIBRARY_DIR := darwin64
+  LIBRARY := biela.dylib
+else
+  BUILT_LIBRARY := libbiela.so
+  LIBRARY_DIR := linux64
+  LIBRARY := biela.so
+endif
+
+BIN_DIR = $(DESTDIR)$(PREFIX)/bin
+LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
+SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
+
+.PHONY: help demo test lint build setup install uninstall refresh lock clean
+.NOTPARALLEL:
+
+help: ## show this list
+	@echo 'usage: make TARGET'
+	@echo
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' Makefile
+	@echo
+	@echo 'Set-up needs cargo, Python 3.10 or newer and a C compiler, and the network the first time.'
+	@echo 'BIELA_PYTHON=/path/to/python3 chooses the Python, CC the C compiler.'
+
+demo: build ## export, validate and run the example mechanisms
+	@$(PYTHON) demo/demo.py
+
+demo test: export BIELA_BIN := $(CURDIR)/target/release/biela
+test: setup ## run all tests: Rust, documentation, FMPy
+	@if $(CARGO) nextest --version >/dev/null 2>&1; then \
+	    echo '$(CARGO) nextest run --locked' && $(CARGO) nextest run --locked && \
+	    echo '$(CARGO) test --doc --locked' && $(CARGO) test --doc --locked; \
+	else \
+	    echo '$(CARGO) test --locked' && $(CARGO) test --locked; \
+	fi
+	$(CARGO) build --release --locked
+	$(PYTHON) -m pytest tests/fmpy
+
+lint: setup ## check formatting, lints and documentation
+	$(CARGO) fmt --check
+	$(CARGO) clippy --locked --all-targets -- -D warnings
+	RUSTDOCFLAGS=-Dwarnings $(CARGO) doc --no-deps --locked
+
+build: setup ## build the program and the library that goes into an FMU (release)
+	$(CARGO) build --release --locked
+
+setup: ## get what building and testing need, into this folder only
+	@bash scripts/setup.sh
+
+install: build ## install under PREFIX (default: ~/.local)
+	install -d "$(BIN_DIR)" "$(LIB_DIR)/$(LIBRARY_DIR)" "$(SHARE_DIR)/mechanisms"
+	install -m 755 target/release/biela "$(BIN_DIR)/biela"
+	install -m 755 target/release/$(BUILT_LIBRARY) "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
+	install -m 644 mechanisms/*.toml "$(SHARE_DIR)/mechanisms"
+
+uninstall: ## remove what `make install` put under PREFIX
+	rm -f "$(BIN_DIR)/biela" "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
+	for file in mechanisms/*.toml; do rm -f "$(SHARE_DIR)/$$file"; done
+	@rmdir "$(LIB_DIR)/$(LIBRARY_DIR)" "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
+
+refresh: build ## regenerate modelDescription/*.xml from mechanisms/*.toml
+	@set -e; for file in mechanisms/*.toml; do \
+	    name=$$(basename "$$file" .toml); \
+	    echo "modelDescription/$$name.xml"; \
+	    target/release/biela export "$$file" --model-description "modelDescription/$$name.xml"; \
+	done
+
+lock: setup ## renew tests/fmpy/requirements.txt from requirements.in
+	@bash scripts/lock.sh
+
+clean: ## remove what was built; `.venv` and set-up stay
+	$(CARGO) clean
+	rm -rf .pytest_cache

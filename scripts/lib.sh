@@ -1,0 +1,23 @@
+# Shared by the scripts in this folder, which source it from the project's root.
+# shellcheck shell=bash disable=SC2034
+
+VENV_PYTHON=.venv/bin/python
+LOCK=tests/fmpy/requirements.txt
+
+# Settings of the caller's that would send packages elsewhere than told, or let foreign ones in.
+# Mirrors, proxies and certificates (PIP_INDEX_URL and the like) stay in force.
+unset PYTHONPATH PYTHONHOME PIP_TARGET PIP_PREFIX PIP_ROOT PIP_PYTHON PIP_DRY_RUN
+export PIP_USER=0 PIP_REQUIRE_VIRTUALENV=0
+export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore PIP_NO_INPUT=1
+
+say() { printf 'set-up: %s\n' "$*"; }
+
+# fail WHAT [REMEDY]...
+fail() {
+    printf 'set-up failed: %s\n' "$1" >&2
+    shift
+    [ $# -eq 0 ] || printf '  %s\n' "$@" >&2
+    exit 1
+}
+
+has() { command -v "$1" >/dev/null 2>&1; }

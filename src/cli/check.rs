@@ -1,0 +1,172 @@
+//! `biela check`
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::error::Error;
+use super::input::Input;
+use super::run::print;
+use crate::kinematics::{Assembly, Element, Rates, Solver};
+use crate::mechanism::{CoordinateKind, DriverSource, Mechanism};
+
+/// Check a mechanism file: read it, count its constraints, assemble it.
+///
+/// Prints the bodies, joints and drivers with the equations that they stand for, the degrees of
+/// freedom, the assembled pose at the drivers' start values, and how well conditioned it is
+/// (reciprocal condition: 1 is best, 0 a singular position).
+#[derive(Args, Debug)]
+pub(super) struct Check {
+    /// The mechanism file.
+    file: PathBuf,
+}
+
+/// Below this the assembled pose is called nearly singular.
+const NEARLY_SINGULAR: f64 = 1e-6;
+
+impl Check {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let input = Input::read(&self.file)?;
+        let mechanism = &input.mechanism;
+        print(&describe_equations(mechanism))?;
+        let (mut solver, assembly) = input.assemble()?;
+        print(&describe_pose(&mut solver, assembly))?;
+        Ok(())
+    }
+}
+
+fn describe_equations(mechanism: &std::sync::Arc<Mechanism>) -> String {
+    let system = crate::kinematics::System::new(std::sync::Arc::clone(mechanism));
+    let rows_of = |element: Element| {
+        let equations = system.equations().iter();
+        equations.filter(|e| e.element == element).count()
+    };
+    let mut out = String::new();
+    let mut line = |label: &str, count: usize, names: Vec<String>| {
+        let _ = writeln!(out, "  {label:<20}{count:>4}    {}", names.join(", "));
+    };
+    let joints: Vec<usize> = (0..mechanism.joints.len())
+        .map(|joint| rows_of(Element::Joint(joint)))
+        .collect();
+    let held = mechanism.constraints.len();
+    let unknowns = system.unknowns();
+    line(
+        "bodies",
+        mechanism.bodies.len(),
+        mechanism.bodies.iter().map(|b| b.name.clone()).collect(),
+    );
+    line(
+        "unknowns",
+        unknowns,
+        vec!["x, y, phi of each body".to_owned()],
+    );
+    line(
+        "constraints",
+        joints.iter().sum::<usize>() + held,
+        mechanism
+            .joints
+            .iter()
+            .zip(&joints)
+            .map(|(joint, rows)| format!("{} ({rows})", joint.name))
+            .chain(
+                mechanism
+                    .constraints
+                    .iter()
+                    .map(|c| format!("{} (1)", c.name)),
+            )
+            .collect(),
+    );
+    line(
+        "drivers",
+        mechanism.drivers.len(),
+        mechanism
+            .drivers
+            .iter()
+            .map(|driver| match driver.source {
+                DriverSource::Input { .. } => format!("{} (input)", driver.name),
+                DriverSource::Motion(_) => format!("{} (prescribed motion)", driver.name),
+            })
+            .collect(),
+    );
+    let mut title = mechanism.name.clone();
+    if !mechanism.description.is_empty() {
+        let _ = write!(title, ": {}", mechanism.description);
+    }
+    format!("{title}\n\n{out}")
+}
+
+fn describe_pose(solver: &mut Solver, assembly: Assembly) -> String {
+    let mechanism = std::sync::Arc::clone(solver.mechanism());
+    let rcond = solver.rcond();
+    let mut out = String::new();
+    // The Jacobian with all drivers is regular, so the constraints alone have full rank.
+    let _ = writeln!(
+        out,
+        "  {:<20}{:>4}    all driven",
+        "degrees of freedom",
+        mechanism.drivers.len()
+    );
+    let _ = writeln!(out, "\nassembled at");
+    for (driver, value) in mechanism.drivers.iter().zip(&solver.pose().drivers) {
+        let _ = writeln!(
+            out,
+            "  {} = {}",
+            driver.name,
+            with_unit(driver.coordinate.kind, *value)
+        );
+    }
+    let width = (mechanism.bodies.iter())
+        .map(|body| body.name.len())
+        .max()
+        .unwrap_or(0);
+    let _ = writeln!(
+        out,
+        "\n  {:<width$}  {:>12}  {:>12}  {:>12}",
+        "body", "x [m]", "y [m]", "phi [deg]"
+    );
+    for (body, q) in mechanism.bodies.iter().zip(solver.pose().q.chunks_exact(3)) {
+        let _ = writeln!(
+            out,
+            "  {:<width$}  {:>12.6}  {:>12.6}  {:>12.6}",
+            body.name,
+            q[0] + 0.0,
+            q[1] + 0.0,
+            q[2].to_degrees() + 0.0
+        );
+    }
+    let still = Rates::new(solver.pose().q.len());
+    if !mechanism.measures.is_empty() {
+        out.push('\n');
+    }
+    for (index, measure) in mechanism.measures.iter().enumerate() {
+        let value = solver.measure(index, &still).value;
+        let _ = writeln!(
+            out,
+            "  {} = {}",
+            measure.name,
+            with_unit(measure.coordinate.kind, value)
+        );
+    }
+    let _ = writeln!(
+        out,
+        "\n  residual {:.1e}, reciprocal condition {rcond:.2e}, largest move from the estimates \
+         {:.2}",
+        solver.residual(),
+        assembly.distance
+    );
+    if rcond < NEARLY_SINGULAR {
+        let _ = writeln!(
+            out,
+            "  this is nearly a singular position: small changes of a driver have large effects"
+        );
+    }
+    out
+}
+
+fn with_unit(kind: CoordinateKind, value: f64) -> String {
+    match kind {
+        CoordinateKind::Angle => format!("{:.6} deg", value.to_degrees() + 0.0),
+        _ => format!("{:.6} m", value + 0.0),
+    }
+}

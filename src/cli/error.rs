@@ -1,0 +1,70 @@
+//! Why a command failed, and its exit status.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::builder::styling::{AnsiColor, Style};
+
+use crate::fmi::PackageError;
+use crate::kinematics;
+
+/// As the renderer of file errors has it.
+const ERROR: Style = AnsiColor::BrightRed.on_default().bold();
+
+/// A command that could not do its work.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Error {
+    /// The mechanism file has errors, which have been shown.
+    #[error("the mechanism file has errors")]
+    Diagnosed,
+    /// The mechanism cannot be moved or put together.
+    #[error("{file}: {error}")]
+    Mechanism {
+        file: String,
+        error: kinematics::Error,
+    },
+    /// A run met a dead point.
+    #[error("{0}")]
+    DeadPoint(String),
+    /// The command's arguments make no sense.
+    #[error("{0}")]
+    Usage(String),
+    /// A file cannot be read.
+    #[error("cannot read `{}`: {source}", path.display())]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    /// A file cannot be written.
+    #[error("cannot write `{}`: {source}", path.display())]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    /// The FMU cannot be put together.
+    #[error(transparent)]
+    Package(#[from] PackageError),
+}
+
+impl Error {
+    pub(super) fn show(&self) {
+        match self {
+            Self::Diagnosed => {}
+            Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => {}
+            _ => anstream::eprintln!("{ERROR}error{ERROR:#}: {self}"),
+        }
+    }
+
+    pub(super) fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Diagnosed | Self::Mechanism { .. } | Self::DeadPoint(_) => ExitCode::from(1),
+            // Whoever closed the pipe had enough.
+            Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => {
+                ExitCode::SUCCESS
+            }
+            Self::Usage(_) | Self::Read { .. } | Self::Write { .. } | Self::Package(_) => {
+                ExitCode::from(2)
+            }
+        }
+    }
+}

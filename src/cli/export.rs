@@ -1,0 +1,141 @@
+//! `biela export`
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::error::Error;
+use super::input::Input;
+use super::runtime;
+use crate::fmi::{model_description, write_fmu};
+
+/// Export a mechanism as an FMI 2.0 co-simulation FMU.
+///
+/// The FMU's inputs are the drivers without a prescribed motion, its parameters those of the
+/// file, its outputs position, velocity and acceleration of all bodies. The mechanism is
+/// assembled first; one that does not close is not exported.
+///
+/// The same file gives the same bytes. Only if the environment variable SOURCE_DATE_EPOCH gives
+/// a time (seconds since 1970) does the model description say when it was generated.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: biela export four_bar.toml -o four_bar.fmu")]
+pub(super) struct Export {
+    /// The mechanism file.
+    file: PathBuf,
+    /// The FMU to write [default: the mechanism's name with .fmu in the current folder].
+    #[arg(short, long, value_name = "FMU")]
+    output: Option<PathBuf>,
+    /// Write only the FMU's modelDescription.xml to this file.
+    #[arg(long, value_name = "XML", conflicts_with = "output")]
+    model_description: Option<PathBuf>,
+    /// Folder of runtime libraries, one subfolder a platform: linux64/biela.so, win64/biela.dll
+    /// [default: those installed with this program].
+    #[arg(long, value_name = "FOLDER")]
+    runtime: Option<PathBuf>,
+}
+
+impl Export {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let generated = generation_time()?;
+        let input = Input::read(&self.file)?;
+        let (solver, _) = input.assemble()?;
+        let mechanism = &input.mechanism;
+        if let Some(path) = self.model_description {
+            let xml = model_description::write(mechanism, solver.structure(), generated.as_deref());
+            return write(&path, &xml);
+        }
+        let libraries = runtime::find(self.runtime.as_deref())?;
+        let path = self
+            .output
+            .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", mechanism.name)));
+        let mut archive = Cursor::new(Vec::new());
+        write_fmu(
+            &mut archive,
+            &input.source,
+            mechanism,
+            solver.structure(),
+            &libraries,
+            generated.as_deref(),
+        )?;
+        write(&path, archive.get_ref())?;
+        let platforms: Vec<_> = libraries.iter().map(|l| l.platform.name).collect();
+        eprintln!("wrote {} ({})", path.display(), platforms.join(", "));
+        Ok(())
+    }
+}
+
+fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
+    std::fs::write(path, content).map_err(|source| Error::Write {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// The time that `SOURCE_DATE_EPOCH` gives, as the schema's `dateTime`.
+fn generation_time() -> Result<Option<String>, Error> {
+    let Some(value) = std::env::var_os("SOURCE_DATE_EPOCH") else {
+        return Ok(None);
+    };
+    value
+        .to_str()
+        .and_then(|text| text.parse::<u64>().ok())
+        // The last second of the year 9999.
+        .filter(|seconds| *seconds <= 253_402_300_799)
+        .map(|seconds| Some(date_time(seconds)))
+        .ok_or_else(|| {
+            Error::Usage(format!(
+                "SOURCE_DATE_EPOCH is `{}`; expected seconds since 1970",
+                value.display()
+            ))
+        })
+}
+
+/// `2026-11-21T03:46:00Z` from seconds since 1970.
+fn date_time(seconds: u64) -> String {
+    let (mut days, second) = (seconds / 86_400, seconds % 86_400);
+    let leap = |year: u64| {
+        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
+    };
+    let mut year = 1970;
+    while days >= 365 + u64::from(leap(year)) {
+        days -= 365 + u64::from(leap(year));
+        year += 1;
+    }
+    let february = 28 + u64::from(leap(year));
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    format!(
+        "{year:04}-{month:02}-{:02}T{:02}:{:02}:{:02}Z",
+        days + 1,
+        second / 3600,
+        second / 60 % 60,
+        second % 60
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::date_time;
+
+    // The pairs come from `date -u -d @SECONDS`.
+    #[test]
+    fn dates() {
+        for (seconds, expected) in [
+            (0, "1970-01-01T00:00:00Z"),
+            (951_782_400, "2000-02-29T00:00:00Z"),
+            (951_868_799, "2000-02-29T23:59:59Z"),
+            (1_704_067_199, "2023-12-31T23:59:59Z"),
+            (4_107_542_400, "2100-03-01T00:00:00Z"),
+            (253_402_300_799, "9999-12-31T23:59:59Z"),
+        ] {
+            assert_eq!(date_time(seconds), expected);
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Reading a mechanism file and showing what is wrong with it.
+
+use std::io::IsTerminal;
+use std::path::Path as FilePath;
+use std::sync::Arc;
+
+use super::error::Error;
+use super::render::render;
+use crate::kinematics::{Path, Solver};
+use crate::mechanism::{Diagnostic, Mechanism, Source};
+
+/// A mechanism file that was read without errors.
+#[derive(Debug)]
+pub(super) struct Input {
+    pub(super) source: Source,
+    pub(super) mechanism: Arc<Mechanism>,
+}
+
+impl Input {
+    /// Reads a file; errors and warnings are shown on stderr.
+    pub(super) fn read(path: &FilePath) -> Result<Self, Error> {
+        let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let source = Source::new(path.display().to_string(), text);
+        match Mechanism::parse(&source) {
+            Ok((mechanism, warnings)) => {
+                show(&source, &warnings);
+                Ok(Self {
+                    source,
+                    mechanism: Arc::new(mechanism),
+                })
+            }
+            Err(diagnostics) => {
+                show(&source, &diagnostics);
+                Err(Error::Diagnosed)
+            }
+        }
+    }
+
+    /// An error of the kinematics about this file.
+    pub(super) fn error(&self, error: crate::kinematics::Error) -> Error {
+        Error::Mechanism {
+            file: self.source.name().to_owned(),
+            error,
+        }
+    }
+
+    /// A solver at the file's own assembled pose, and how it got there.
+    pub(super) fn assemble(&self) -> Result<(Solver, crate::kinematics::Assembly), Error> {
+        let mut solver =
+            Solver::new(Arc::clone(&self.mechanism)).map_err(|error| self.error(error))?;
+        let assembly = solver
+            .assemble(&Path::new(&self.mechanism))
+            .map_err(|error| self.error(error))?;
+        Ok((solver, assembly))
+    }
+}
+
+fn show(source: &Source, diagnostics: &[Diagnostic]) {
+    if !diagnostics.is_empty() {
+        let styled = std::io::stderr().is_terminal();
+        anstream::eprintln!("{}\n", render(source, diagnostics, styled));
+    }
+}

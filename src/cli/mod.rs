@@ -1,0 +1,67 @@
+//! The command line: one file a command.
+//!
+//! Results go to stdout, messages to stderr. The exit status is 0, or 1 for a mechanism that is
+//! not right, or 2 for a command that is not.
+
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a command prints"
+)]
+
+mod check;
+mod error;
+mod export;
+mod input;
+pub mod render;
+mod run;
+mod runtime;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Planar mechanisms as text files: check them, run them, export them as FMUs.
+///
+/// A mechanism file says which bodies there are, which joints hold them together and which
+/// drivers move them. biela computes position, velocity and acceleration of every body, exact to
+/// rounding, and exports the mechanism as an FMI 2.0 co-simulation FMU whose inputs are the
+/// drivers and whose outputs are the motion of all bodies.
+#[derive(Debug, Parser)]
+#[command(name = "biela", version, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Check(check::Check),
+    Run(run::Run),
+    Export(export::Export),
+}
+
+/// Runs the program with these arguments, the first being its own name.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // clap prints help to stdout and complaints to stderr; a closed pipe is no news.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let outcome = match arguments.command {
+        Command::Check(command) => command.run(),
+        Command::Run(command) => command.run(),
+        Command::Export(command) => command.run(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            error.show();
+            error.exit_code()
+        }
+    }
+}

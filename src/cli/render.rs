@@ -1,0 +1,65 @@
+//! Diagnostics as people read them: the line itself, what is wrong in it underlined, and help.
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+
+use crate::mechanism::{Diagnostic, Severity, Source, Span};
+
+/// Renders the diagnostics one after the other, each with the lines that it concerns, with a
+/// blank line between them; `styled` adds colours for a terminal.
+#[must_use]
+pub fn render(source: &Source, diagnostics: &[Diagnostic], styled: bool) -> String {
+    let renderer = if styled {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    let rendered: Vec<String> = diagnostics
+        .iter()
+        .map(|diagnostic| renderer.render(&[group(source, diagnostic)]))
+        .collect();
+    rendered.join("\n\n")
+}
+
+fn group<'a>(source: &'a Source, diagnostic: &'a Diagnostic) -> Group<'a> {
+    let level = match diagnostic.severity {
+        Severity::Warning => Level::WARNING,
+        Severity::Error => Level::ERROR,
+    };
+    let title = level
+        .primary_title(diagnostic.message.as_str())
+        .id(diagnostic.code);
+    let mut group = if diagnostic.labels.is_empty() {
+        Group::with_title(title)
+    } else {
+        title.element(snippet(source, diagnostic))
+    };
+    if let Some(help) = &diagnostic.help {
+        group = group.element(Level::HELP.message(help.as_str()));
+    }
+    group
+}
+
+fn snippet<'a>(
+    source: &'a Source,
+    diagnostic: &'a Diagnostic,
+) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
+    let kinds =
+        std::iter::once(AnnotationKind::Primary).chain(std::iter::repeat(AnnotationKind::Context));
+    let annotations = diagnostic.labels.iter().zip(kinds).map(|(label, kind)| {
+        let annotation = kind.span(within(source, &label.span));
+        if label.text.is_empty() {
+            annotation
+        } else {
+            annotation.label(label.text.as_str())
+        }
+    });
+    Snippet::source(source.text())
+        .path(source.name())
+        .annotations(annotations)
+}
+
+/// A span on characters of the text, which one may not be that comes from elsewhere.
+fn within(source: &Source, span: &Span) -> Span {
+    let start = source.boundary(span.start);
+    start..source.boundary(span.end).max(start)
+}

@@ -1,0 +1,77 @@
+//! Where the runtime libraries are that go into an FMU.
+
+use std::path::{Path, PathBuf};
+
+use super::error::Error;
+use crate::fmi::{Platform, RuntimeLibrary};
+
+/// The runtime libraries to pack: those in `folder` if one is given, else those beside this
+/// program.
+///
+/// A folder of libraries has one subfolder a platform, as an FMU's `binaries/` has:
+/// `linux64/biela.so`, `win64/biela.dll`. Beside the program they are found where `make install`
+/// puts them (`../lib/biela`) or where cargo builds them.
+pub(super) fn find(folder: Option<&Path>) -> Result<Vec<RuntimeLibrary>, Error> {
+    let found = match folder {
+        Some(folder) => in_folder(folder),
+        None => {
+            let program = std::env::current_exe().map_err(|source| Error::Read {
+                path: PathBuf::from("the running program"),
+                source,
+            })?;
+            beside(&program)
+        }
+    };
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    let help = match folder {
+        Some(folder) => format!(
+            "`{}` has no runtime library; expected for example `linux64/biela.so` in it",
+            folder.display()
+        ),
+        None => "no runtime library was found beside this program: run `make install`, or name \
+                 their folder with --runtime"
+            .to_owned(),
+    };
+    Err(Error::Usage(help))
+}
+
+fn in_folder(folder: &Path) -> Vec<RuntimeLibrary> {
+    Platform::ALL
+        .into_iter()
+        .map(|platform| RuntimeLibrary {
+            platform,
+            path: folder
+                .join(platform.name)
+                .join(format!("biela.{}", platform.extension)),
+        })
+        .filter(|library| library.path.is_file())
+        .collect()
+}
+
+fn beside(program: &Path) -> Vec<RuntimeLibrary> {
+    let Some(folder) = program.parent() else {
+        return Vec::new();
+    };
+    let installed = in_folder(&folder.join("../lib/biela"));
+    if !installed.is_empty() {
+        return installed;
+    }
+    let Some(platform) = Platform::current() else {
+        return Vec::new();
+    };
+    let name = format!(
+        "{}biela{}",
+        std::env::consts::DLL_PREFIX,
+        std::env::consts::DLL_SUFFIX
+    );
+    // Cargo builds the library in `deps`, together with the program, and copies it one folder
+    // up only when asked for it: the copy may be older.
+    [folder.join("deps").join(&name), folder.join(&name)]
+        .into_iter()
+        .find(|path| path.is_file())
+        .map(|path| RuntimeLibrary { platform, path })
+        .into_iter()
+        .collect()
+}

@@ -1,0 +1,285 @@
+//! Setting and getting variables.
+
+use super::{Error, Freshness, Instance, check_finite};
+use crate::fmi::inputs::{Extrapolation, RateSource};
+use crate::fmi::state::{Call, State};
+use crate::fmi::variables::{Causality, Kind, Order, Quantity, Variability, Variable};
+
+impl Instance {
+    /// `fmi2SetReal`. Either all values are taken or none.
+    ///
+    /// # Errors
+    ///
+    /// A variable is unknown, no Real, or not to be set now; a value is not finite or outside
+    /// `min` and `max`.
+    pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
+        self.allow(Call::SetReal)?;
+        for (&value_reference, &value) in value_references.iter().zip(values) {
+            let variable = self.settable(value_reference, "Real")?;
+            check_value(variable, value)?;
+        }
+        for (&value_reference, &value) in value_references.iter().zip(values) {
+            match self.variables.list()[value_reference as usize].quantity {
+                Quantity::Input(driver, order) => self.inputs[driver.index()].set(order, value),
+                Quantity::Parameter(parameter) => {
+                    self.settings.parameters[parameter.index()] = value;
+                }
+                _ => unreachable!("`settable` passes inputs and parameters only"),
+            }
+        }
+        if !value_references.is_empty() {
+            self.mechanism
+                .derive_parameters(&mut self.settings.parameters);
+            self.freshness = Freshness::Stale;
+        }
+        Ok(())
+    }
+
+    /// `fmi2SetInteger`: the choices `rates` and `extrapolation`.
+    ///
+    /// # Errors
+    ///
+    /// A variable is unknown, no Integer or Enumeration, or not to be set now; a value is no
+    /// item of its enumeration.
+    pub fn set_integer(&mut self, value_references: &[u32], values: &[i32]) -> Result<(), Error> {
+        self.allow(Call::SetInteger)?;
+        for (&value_reference, &value) in value_references.iter().zip(values) {
+            let variable = self.settable(value_reference, "Integer or Enumeration")?;
+            if let Kind::Enumeration(enumeration) = variable.kind
+                && !(1..=enumeration.items.len()).contains(&(value as usize))
+            {
+                return Err(Error::Item {
+                    name: variable.name.clone(),
+                    value,
+                    count: enumeration.items.len(),
+                });
+            }
+        }
+        for (&value_reference, &value) in value_references.iter().zip(values) {
+            let item = value as usize - 1;
+            match self.variables.list()[value_reference as usize].quantity {
+                Quantity::RateSource => self.settings.rates = RateSource::ALL[item],
+                Quantity::Extrapolation => self.settings.extrapolation = Extrapolation::ALL[item],
+                _ => unreachable!("`settable` passes the two choices only"),
+            }
+            self.freshness = Freshness::Stale;
+        }
+        Ok(())
+    }
+
+    /// `fmi2SetBoolean` and `fmi2SetString`: there are no such variables, so that only an empty
+    /// list is right. The same holds for getting them.
+    ///
+    /// # Errors
+    ///
+    /// There is any value reference.
+    pub fn no_variables(
+        &self,
+        call: Call,
+        expected: &'static str,
+        value_references: &[u32],
+    ) -> Result<(), Error> {
+        self.allow(call)?;
+        match value_references {
+            [] => Ok(()),
+            [first, ..] => {
+                let variable = self.variable(*first)?;
+                Err(Error::Type {
+                    name: variable.name.clone(),
+                    actual: type_name(variable),
+                    expected,
+                })
+            }
+        }
+    }
+
+    /// `fmi2SetRealInputDerivatives`: derivatives of inputs for the next step.
+    ///
+    /// # Errors
+    ///
+    /// A variable is no input, an order is not 1 or 2, or a value is not finite; none is taken
+    /// then.
+    pub fn set_real_input_derivatives(
+        &mut self,
+        value_references: &[u32],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Result<(), Error> {
+        self.allow(Call::SetRealInputDerivatives)?;
+        let entries = || value_references.iter().zip(orders).zip(values);
+        for ((&value_reference, &order), &value) in entries() {
+            let variable = self.variable(value_reference)?;
+            if variable.causality != Causality::Input {
+                return Err(Error::NotSettable {
+                    name: variable.name.clone(),
+                    why: "no input, and only inputs have input derivatives",
+                });
+            }
+            if !(1..=2).contains(&order) {
+                return Err(Error::DerivativeOrder {
+                    name: variable.name.clone(),
+                    order,
+                });
+            }
+            check_finite(&variable.name, value)?;
+        }
+        for ((&value_reference, &order), &value) in entries() {
+            let quantity = self.variables.list()[value_reference as usize].quantity;
+            if let Quantity::Input(driver, input) = quantity {
+                self.inputs[driver.index()].set_derivative(input, order as usize, value);
+            }
+        }
+        if !value_references.is_empty() {
+            self.freshness = Freshness::Stale;
+        }
+        Ok(())
+    }
+
+    /// `fmi2GetReal`. Computes what is asked for and not known yet.
+    ///
+    /// # Errors
+    ///
+    /// A variable is unknown or no Real; or there is no pose, or no rates, for the values set.
+    /// `values` is without meaning then.
+    pub fn get_real(&mut self, value_references: &[u32], values: &mut [f64]) -> Result<(), Error> {
+        self.allow(Call::GetReal)?;
+        for (&value_reference, value) in value_references.iter().zip(values) {
+            let variable = self.variable(value_reference)?;
+            if !matches!(variable.kind, Kind::Real { .. }) {
+                return Err(Error::Type {
+                    name: variable.name.clone(),
+                    actual: type_name(variable),
+                    expected: "Real",
+                });
+            }
+            *value = self.real(variable.quantity)?;
+        }
+        Ok(())
+    }
+
+    /// `fmi2GetInteger`: counts of the last step, and the choices.
+    ///
+    /// # Errors
+    ///
+    /// A variable is unknown or neither Integer nor Enumeration; or there is no pose.
+    pub fn get_integer(
+        &mut self,
+        value_references: &[u32],
+        values: &mut [i32],
+    ) -> Result<(), Error> {
+        self.allow(Call::GetInteger)?;
+        for (&value_reference, value) in value_references.iter().zip(values) {
+            let variable = self.variable(value_reference)?;
+            let quantity = variable.quantity;
+            *value = match quantity {
+                Quantity::RateSource => self.settings.rates as i32,
+                Quantity::Extrapolation => self.settings.extrapolation as i32,
+                Quantity::Iterations | Quantity::Substeps => {
+                    self.refresh_pose()?;
+                    let count = if quantity == Quantity::Iterations {
+                        self.progress.iterations
+                    } else {
+                        self.progress.substeps
+                    };
+                    i32::try_from(count).unwrap_or(i32::MAX)
+                }
+                _ => {
+                    return Err(Error::Type {
+                        name: variable.name.clone(),
+                        actual: type_name(variable),
+                        expected: "Integer or Enumeration",
+                    });
+                }
+            };
+        }
+        Ok(())
+    }
+
+    fn variable(&self, value_reference: u32) -> Result<&Variable, Error> {
+        self.variables
+            .get(value_reference)
+            .ok_or(Error::ValueReference {
+                value_reference,
+                last: self.variables.list().len() - 1,
+            })
+    }
+
+    /// The variable, if it has this type and can be set in the present state.
+    fn settable(&self, value_reference: u32, expected: &'static str) -> Result<&Variable, Error> {
+        let variable = self.variable(value_reference)?;
+        let is_real = matches!(variable.kind, Kind::Real { .. });
+        if is_real != (expected == "Real") {
+            return Err(Error::Type {
+                name: variable.name.clone(),
+                actual: type_name(variable),
+                expected,
+            });
+        }
+        let why = match variable.causality {
+            Causality::Input => return Ok(variable),
+            Causality::Parameter
+                if variable.variability == Variability::Tunable
+                    || self.state != State::StepComplete =>
+            {
+                return Ok(variable);
+            }
+            Causality::Parameter => "a fixed parameter, and initialization has ended",
+            Causality::CalculatedParameter => "a parameter derived from others",
+            Causality::Output => "an output",
+            Causality::Local => "about the solver",
+            Causality::Independent => "the time",
+        };
+        Err(Error::NotSettable {
+            name: variable.name.clone(),
+            why,
+        })
+    }
+
+    /// The value of a Real variable.
+    fn real(&mut self, quantity: Quantity) -> Result<f64, Error> {
+        match quantity {
+            Quantity::Input(driver, order) => return Ok(self.inputs[driver.index()].get(order)),
+            Quantity::Parameter(parameter) => {
+                return Ok(self.settings.parameters[parameter.index()]);
+            }
+            Quantity::Time => return Ok(self.time),
+            Quantity::Body(_, _, order)
+            | Quantity::Marker(_, _, order)
+            | Quantity::Measure(_, order)
+            | Quantity::Motion(_, order)
+                if order > Order::Position =>
+            {
+                self.refresh_rates()?;
+            }
+            _ => self.refresh_pose()?,
+        }
+        Ok(match quantity {
+            Quantity::Residual => self.solver.residual(),
+            Quantity::Rcond => self.solver.rcond(),
+            output => output.read(&self.solver, &self.rates, &self.driver_rates),
+        })
+    }
+}
+
+fn check_value(variable: &Variable, value: f64) -> Result<(), Error> {
+    check_finite(&variable.name, value)?;
+    if let Kind::Real { min, max, .. } = variable.kind
+        && (min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max))
+    {
+        return Err(Error::Range {
+            name: variable.name.clone(),
+            value,
+            min,
+            max,
+        });
+    }
+    Ok(())
+}
+
+fn type_name(variable: &Variable) -> &'static str {
+    match variable.kind {
+        Kind::Real { .. } => "a Real",
+        Kind::Integer => "an Integer",
+        Kind::Enumeration(_) => "an Enumeration",
+    }
+}

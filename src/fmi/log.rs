@@ -1,0 +1,125 @@
+//! Messages to the host, by category.
+
+use super::Status;
+
+/// A log category, declared in the model description.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Category {
+    /// Every message.
+    All,
+    /// Messages that accompany `fmi2Warning`.
+    Warning,
+    /// Messages that accompany `fmi2Discard`.
+    Discard,
+    /// Messages that accompany `fmi2Error`.
+    Error,
+    /// Messages that accompany `fmi2Fatal`.
+    Fatal,
+    /// What happens: initialized, reset, terminated.
+    Events,
+    /// What the solver did in each step.
+    Solver,
+}
+
+impl Category {
+    /// All categories with their descriptions, in the order of the model description.
+    pub const ALL: [(Self, &'static str); 7] = [
+        (Self::All, "every message"),
+        (Self::Warning, "what calls for attention; always logged"),
+        (Self::Discard, "steps that could not be taken"),
+        (
+            Self::Error,
+            "calls that were refused or failed; always logged",
+        ),
+        (Self::Fatal, "defects of biela; always logged"),
+        (Self::Events, "initialization, reset and termination"),
+        (Self::Solver, "iterations and sub-steps of each step"),
+    ];
+
+    /// Its name in the model description and in the logger callback.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::All => "logAll",
+            Self::Warning => "logStatusWarning",
+            Self::Discard => "logStatusDiscard",
+            Self::Error => "logStatusError",
+            Self::Fatal => "logStatusFatal",
+            Self::Events => "logEvents",
+            Self::Solver => "logSolver",
+        }
+    }
+
+    fn by_name(name: &str) -> Option<Self> {
+        let mut all = Self::ALL.into_iter().map(|(category, _)| category);
+        all.find(|category| category.name() == name)
+    }
+
+    /// Whether messages go to the host whatever its settings.
+    fn always(self) -> bool {
+        matches!(self, Self::Warning | Self::Error | Self::Fatal)
+    }
+
+    fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
+/// Where messages end up: the host's logger callback.
+pub trait Sink {
+    /// Takes one message.
+    fn write(&self, status: Status, category: Category, message: &str);
+}
+
+/// Decides which messages reach the host.
+pub(super) struct Logger {
+    sink: Box<dyn Sink + Send>,
+    enabled: u8,
+}
+
+impl std::fmt::Debug for Logger {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Logger")
+            .field("enabled", &self.enabled)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Logger {
+    pub(super) fn new(sink: Box<dyn Sink + Send>, logging_on: bool) -> Self {
+        let enabled = if logging_on { Category::All.bit() } else { 0 };
+        Self { sink, enabled }
+    }
+
+    /// Whether a message of this category would go out: lets callers skip making one.
+    pub(super) fn wants(&self, category: Category) -> bool {
+        category.always() || self.enabled & (category.bit() | Category::All.bit()) != 0
+    }
+
+    pub(super) fn write(&self, status: Status, category: Category, message: &str) {
+        if self.wants(category) {
+            self.sink.write(status, category, message);
+        }
+    }
+
+    /// Switches categories on or off; none named means all.
+    ///
+    /// # Errors
+    ///
+    /// The first name that is no category; nothing is changed then.
+    pub(super) fn switch<'a>(&mut self, on: bool, categories: &[&'a str]) -> Result<(), &'a str> {
+        let mut bits = 0;
+        for name in categories {
+            bits |= Category::by_name(name).ok_or(*name)?.bit();
+        }
+        if categories.is_empty() {
+            bits = u8::MAX;
+        }
+        if on {
+            self.enabled |= bits;
+        } else {
+            self.enabled &= !bits;
+        }
+        Ok(())
+    }
+}

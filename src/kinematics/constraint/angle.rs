@@ -1,0 +1,42 @@
+//! The angle between two markers.
+
+use super::{Configuration, Constraint, Dimension, Gradient, Incidence};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// c = theta_j − theta_i, counting turns.
+#[derive(Clone, Copy, Debug)]
+pub struct Angle {
+    /// Marker i.
+    pub from: MarkerId,
+    /// Marker j.
+    pub to: MarkerId,
+}
+
+impl Constraint for Angle {
+    fn dimension(&self) -> Dimension {
+        Dimension::Angle
+    }
+
+    fn label(&self) -> &'static str {
+        "angle"
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        at.marker(self.to).theta - at.marker(self.from).theta
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        row.add_direction(at.marker(self.to), 1.0);
+        row.add_direction(at.marker(self.from), -1.0);
+    }
+
+    /// Zero: the angle is linear in q.
+    fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
+        0.0
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        incidence.direction(mechanism, self.from);
+        incidence.direction(mechanism, self.to);
+    }
+}

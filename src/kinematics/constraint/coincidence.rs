@@ -1,0 +1,64 @@
+//! One of the two equations that hold two points together.
+
+use nalgebra::Vector2;
+
+use super::{Axis, Configuration, Constraint, Dimension, Gradient, Incidence, centripetal};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// c = the x or y component of P_j − P_i in ground axes.
+///
+/// Where both components are held at zero it does not matter on whose axes they are measured;
+/// in ground axes the coefficients of x and y are ±1.
+#[derive(Clone, Copy, Debug)]
+pub struct Coincidence {
+    /// Marker i.
+    pub from: MarkerId,
+    /// Marker j.
+    pub to: MarkerId,
+    /// Which component.
+    pub axis: Axis,
+}
+
+impl Coincidence {
+    fn direction(&self) -> Vector2<f64> {
+        match self.axis {
+            Axis::X => Vector2::x(),
+            Axis::Y => Vector2::y(),
+        }
+    }
+}
+
+impl Constraint for Coincidence {
+    fn dimension(&self) -> Dimension {
+        Dimension::Length
+    }
+
+    fn label(&self) -> &'static str {
+        match self.axis {
+            Axis::X => "x",
+            Axis::Y => "y",
+        }
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        let d = at.marker(self.to).point - at.marker(self.from).point;
+        self.direction().dot(&d)
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        row.add_point(at.marker(self.to), self.direction());
+        row.add_point(at.marker(self.from), -self.direction());
+    }
+
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let (i, j) = (at.marker(self.from), at.marker(self.to));
+        self.direction()
+            .dot(&(centripetal(j, q_dot) - centripetal(i, q_dot)))
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        let components = [self.axis == Axis::X, self.axis == Axis::Y];
+        incidence.point(mechanism, self.from, components);
+        incidence.point(mechanism, self.to, components);
+    }
+}

@@ -1,0 +1,73 @@
+//! The distance between two points.
+
+use nalgebra::Vector2;
+
+use super::{
+    Configuration, Constraint, Dimension, Gradient, Incidence, centripetal, point_velocity,
+};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// c = ‖P_j − P_i‖.
+///
+/// Not smooth where the points coincide; there the gradient is taken along the x-axis, so that
+/// an assembly that starts from coinciding points has a direction to leave in.
+#[derive(Clone, Copy, Debug)]
+pub struct Distance {
+    /// Marker i.
+    pub from: MarkerId,
+    /// Marker j.
+    pub to: MarkerId,
+}
+
+impl Distance {
+    /// The vector from i to j, its length and its direction.
+    fn span(&self, at: &Configuration) -> (f64, Vector2<f64>) {
+        let d = at.marker(self.to).point - at.marker(self.from).point;
+        let length = d.norm();
+        if length > 0.0 {
+            (length, d / length)
+        } else {
+            (0.0, Vector2::x())
+        }
+    }
+}
+
+impl Constraint for Distance {
+    fn dimension(&self) -> Dimension {
+        Dimension::Length
+    }
+
+    fn label(&self) -> &'static str {
+        "distance"
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        self.span(at).0
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        let (_, e) = self.span(at);
+        row.add_point(at.marker(self.to), e);
+        row.add_point(at.marker(self.from), -e);
+    }
+
+    /// (|ḋ|² − (e · ḋ)²) / ‖d‖ + e · d̈, where e = d / ‖d‖.
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let (i, j) = (at.marker(self.from), at.marker(self.to));
+        let (length, e) = self.span(at);
+        let d_dot = point_velocity(j, q_dot) - point_velocity(i, q_dot);
+        let d_ddot = centripetal(j, q_dot) - centripetal(i, q_dot);
+        // The part of ḋ across e, squared without cancellation.
+        let across = e.perp(&d_dot);
+        across * across / length + e.dot(&d_ddot)
+    }
+
+    fn admits(&self, value: f64) -> bool {
+        value > 0.0
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        incidence.point(mechanism, self.from, [true, true]);
+        incidence.point(mechanism, self.to, [true, true]);
+    }
+}

@@ -1,0 +1,238 @@
+//! The trait that every scalar relation between bodies implements, one kind a file.
+//!
+//! A relation c(q) supplies its value, its gradient row (a row of the Jacobian, Ec. 3.6.4), the
+//! quadratic term of its second derivative in time (the right-hand side of Ec. 3.6.11) and the
+//! unknowns it contains. It knows nothing of what it is held at: the equation of a constraint is
+//! c(q) − constant = 0, that of a driver c(q) − u(t) = 0.
+//!
+//! A new kind is a new file here with its `impl Constraint`; the tests at the end of this file
+//! check it once it is listed in `samples`.
+
+mod angle;
+mod coincidence;
+mod distance;
+mod projection;
+
+use nalgebra::Vector2;
+
+pub use angle::Angle;
+pub use coincidence::Coincidence;
+pub use distance::Distance;
+pub use projection::Projection;
+
+use super::configuration::{Configuration, MarkerPose, perp};
+use crate::mechanism::{
+    BodyId, Coordinate, CoordinateKind, Expression, MarkerId, Mechanism, ParameterId,
+};
+
+/// What a scalar measures: decides its unit and how its residual is scaled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Metres.
+    Length,
+    /// Radians.
+    Angle,
+}
+
+/// One of the two axes of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The x-axis, u.
+    X,
+    /// The y-axis, n.
+    Y,
+}
+
+/// A scalar relation c(q) between bodies.
+pub trait Constraint: std::fmt::Debug + Send + Sync {
+    /// What the value measures.
+    fn dimension(&self) -> Dimension;
+
+    /// A short name of the relation for messages: `angle`, `x`, `distance`, …
+    fn label(&self) -> &'static str;
+
+    /// c(q) \[m or rad\].
+    fn value(&self, at: &Configuration) -> f64;
+
+    /// Adds ∂c/∂q, a row of the Jacobian (Ec. 3.6.4), to `row`.
+    fn gradient(&self, at: &Configuration, row: &mut Gradient);
+
+    /// q̇ᵀ (∂²c/∂q²) q̇: what remains of c̈ where q̈ = 0 (Ec. 3.6.11 has it with the opposite
+    /// sign). `q_dot` is `3 * bodies` long.
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
+
+    /// Whether c can be held at this value; a distance cannot at zero or below.
+    fn admits(&self, value: f64) -> bool {
+        let _ = value;
+        true
+    }
+
+    /// Notes the unknowns and parameters that c contains. What is zero whatever the parameters
+    /// is left out.
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence);
+}
+
+/// The relation that a coordinate of the mechanism file measures.
+#[must_use]
+pub fn of_coordinate(coordinate: &Coordinate) -> Box<dyn Constraint> {
+    let Coordinate {
+        kind,
+        from,
+        to,
+        axes,
+    } = *coordinate;
+    match kind {
+        CoordinateKind::Angle => Box::new(Angle { from, to }),
+        CoordinateKind::X => Box::new(Projection {
+            from,
+            to,
+            axes,
+            axis: Axis::X,
+        }),
+        CoordinateKind::Y => Box::new(Projection {
+            from,
+            to,
+            axes,
+            axis: Axis::Y,
+        }),
+        CoordinateKind::Distance => Box::new(Distance { from, to }),
+    }
+}
+
+/// A row of the Jacobian: the few bodies it touches, without allocation.
+///
+/// Three markers, and so three bodies, take part in a relation at most.
+#[derive(Clone, Debug, Default)]
+pub struct Gradient {
+    len: usize,
+    parts: [(usize, [f64; 3]); 3],
+}
+
+impl Gradient {
+    /// An empty row.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Makes the row empty again.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Adds the gradient of `direction · P`, P being the marker's point and `direction` fixed.
+    pub fn add_point(&mut self, marker: &MarkerPose, direction: Vector2<f64>) {
+        if let Some(part) = self.part(marker.body) {
+            part[0] += direction.x;
+            part[1] += direction.y;
+            part[2] += direction.dot(&perp(marker.arm));
+        }
+    }
+
+    /// Adds the gradient of `factor * theta`, theta being the marker's direction.
+    pub fn add_direction(&mut self, marker: &MarkerPose, factor: f64) {
+        if let Some(part) = self.part(marker.body) {
+            part[2] += factor;
+        }
+    }
+
+    /// The entries as pairs of an index in q and a value, body by body.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.parts[..self.len]
+            .iter()
+            .flat_map(|(body, part)| (0..3).map(move |k| (3 * body + k, part[k])))
+    }
+
+    /// The product of the row with a vector over q.
+    #[must_use]
+    pub fn dot(&self, vector: &[f64]) -> f64 {
+        self.entries().map(|(k, value)| value * vector[k]).sum()
+    }
+
+    fn part(&mut self, body: Option<BodyId>) -> Option<&mut [f64; 3]> {
+        let body = body?.index();
+        let known = self.parts[..self.len].iter().position(|(b, _)| *b == body);
+        let index = known.unwrap_or_else(|| {
+            self.parts[self.len] = (body, [0.0; 3]);
+            self.len += 1;
+            self.len - 1
+        });
+        Some(&mut self.parts[index].1)
+    }
+}
+
+/// Velocity of a marker's point: ṙ + omega perp(A s).
+#[must_use]
+pub fn point_velocity(marker: &MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
+    marker.body.map_or_else(Vector2::zeros, |body| {
+        let k = 3 * body.index();
+        Vector2::new(q_dot[k], q_dot[k + 1]) + q_dot[k + 2] * perp(marker.arm)
+    })
+}
+
+/// Acceleration of a marker's point: r̈ + alpha perp(A s) − omega² A s.
+#[must_use]
+pub fn point_acceleration(marker: &MarkerPose, q_dot: &[f64], q_ddot: &[f64]) -> Vector2<f64> {
+    point_velocity(marker, q_ddot) + centripetal(marker, q_dot)
+}
+
+/// What remains of the point's acceleration where q̈ = 0: −omega² A s.
+fn centripetal(marker: &MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
+    let omega = angular_velocity(marker, q_dot);
+    -omega * omega * marker.arm
+}
+
+fn angular_velocity(marker: &MarkerPose, q_dot: &[f64]) -> f64 {
+    marker.body.map_or(0.0, |body| q_dot[3 * body.index() + 2])
+}
+
+/// The unknowns and parameters in a relation, found without numbers.
+#[derive(Clone, Debug, Default)]
+pub struct Incidence {
+    /// Indices in q; one may come twice.
+    pub unknowns: Vec<usize>,
+    /// Parameters, as the expressions name them; one may come twice.
+    pub parameters: Vec<ParameterId>,
+}
+
+impl Incidence {
+    /// Notes what an expression uses.
+    pub fn expression(&mut self, expression: &Expression) {
+        self.parameters.extend(expression.parameters());
+    }
+
+    /// Notes what the x (first) and y (second) components of a marker's point contain, as far as
+    /// `components` asks for them.
+    pub fn point(&mut self, mechanism: &Mechanism, marker: MarkerId, components: [bool; 2]) {
+        let marker = &mechanism.markers[marker.index()];
+        let at_origin = marker.position.iter().all(|s| s.literal() == Some(0.0));
+        match marker.body {
+            Some(body) => {
+                let k = 3 * body.index();
+                self.unknowns
+                    .extend((0..2).filter(|&c| components[c]).map(|c| k + c));
+                if !at_origin {
+                    self.unknowns.push(k + 2);
+                    marker.position.iter().for_each(|s| self.expression(s));
+                }
+            }
+            None => marker
+                .position
+                .iter()
+                .zip(components)
+                .filter(|(_, asked)| *asked)
+                .for_each(|(s, _)| self.expression(s)),
+        }
+    }
+
+    /// Notes what a marker's direction contains.
+    pub fn direction(&mut self, mechanism: &Mechanism, marker: MarkerId) {
+        let marker = &mechanism.markers[marker.index()];
+        self.unknowns
+            .extend(marker.body.map(|body| 3 * body.index() + 2));
+        self.expression(&marker.angle);
+    }
+}
+
+#[cfg(test)]
+mod tests;

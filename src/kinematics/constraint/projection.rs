@@ -1,0 +1,98 @@
+//! The position of one marker on the axes of another.
+
+use nalgebra::Vector2;
+
+use super::{
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, angular_velocity, centripetal,
+    perp, point_velocity,
+};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// c = e · (P_j − P_i), e being the x- or y-axis of marker k.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection {
+    /// Marker i.
+    pub from: MarkerId,
+    /// Marker j.
+    pub to: MarkerId,
+    /// Marker k, whose axes these are.
+    pub axes: MarkerId,
+    /// Which axis of marker k.
+    pub axis: Axis,
+}
+
+impl Projection {
+    fn direction(&self, at: &Configuration) -> Vector2<f64> {
+        self.choose(at.marker(self.axes).axis)
+    }
+
+    /// The axis in question, given the x-axis.
+    fn choose(&self, u: Vector2<f64>) -> Vector2<f64> {
+        match self.axis {
+            Axis::X => u,
+            Axis::Y => perp(u),
+        }
+    }
+}
+
+impl Constraint for Projection {
+    fn dimension(&self) -> Dimension {
+        Dimension::Length
+    }
+
+    fn label(&self) -> &'static str {
+        match self.axis {
+            Axis::X => "x",
+            Axis::Y => "y",
+        }
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        let d = at.marker(self.to).point - at.marker(self.from).point;
+        self.direction(at).dot(&d)
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        let (i, j, k) = (
+            at.marker(self.from),
+            at.marker(self.to),
+            at.marker(self.axes),
+        );
+        let e = self.direction(at);
+        row.add_point(j, e);
+        row.add_point(i, -e);
+        row.add_direction(k, perp(e).dot(&(j.point - i.point)));
+    }
+
+    /// ë · d + 2 ė · ḋ + e · d̈, where ė = omega_k perp(e) and, for q̈ = 0, ë = −omega_k² e.
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let (i, j, k) = (
+            at.marker(self.from),
+            at.marker(self.to),
+            at.marker(self.axes),
+        );
+        let e = self.direction(at);
+        let omega = angular_velocity(k, q_dot);
+        let d = j.point - i.point;
+        let d_dot = point_velocity(j, q_dot) - point_velocity(i, q_dot);
+        let d_ddot = centripetal(j, q_dot) - centripetal(i, q_dot);
+        -omega * omega * e.dot(&d) + 2.0 * omega * perp(e).dot(&d_dot) + e.dot(&d_ddot)
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        let k = &mechanism.markers[self.axes.index()];
+        let components = match (k.body, k.angle.literal()) {
+            // On ground with a literal angle the axis has a fixed direction, which often runs
+            // along x or y; an angle such as 90*deg is a right angle up to its rounding.
+            (None, Some(angle)) => {
+                let e = self.choose(Vector2::new(angle.cos(), angle.sin()));
+                let rounding = f64::EPSILON * angle.abs().max(1.0);
+                [e.x.abs() > rounding, e.y.abs() > rounding]
+            }
+            _ => [true, true],
+        };
+        incidence.direction(mechanism, self.axes);
+        incidence.point(mechanism, self.from, components);
+        incidence.point(mechanism, self.to, components);
+    }
+}

@@ -1,0 +1,173 @@
+//! Every relation against differences of itself.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::mechanism::Source;
+
+/// Three bodies and ground with markers in general position, one of them at its body's origin.
+const BODIES: &str = r#"
+format = 1
+name = "sample"
+[ground.markers]
+G = [0.3, -0.2, 0.4]
+H = [0, 0]
+[bodies.a]
+markers = { A = [0.2, 0.1, 0.3], O = [0, 0] }
+[bodies.b]
+markers = { B = [-0.15, 0.25, -0.7] }
+[bodies.c]
+markers = { C = [0.05, -0.3, 1.1] }
+"#;
+
+/// Every kind of relation between bodies, with ground on either side, and with axes on a third
+/// body. A new kind belongs here.
+fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
+    let id = |path: &str| {
+        let ids = (0..mechanism.markers.len()).map(MarkerId);
+        ids.into_iter()
+            .find(|id| mechanism.marker_path(*id) == path)
+            .expect("the marker is in the sample")
+    };
+    let mut samples: Vec<Box<dyn Constraint>> = Vec::new();
+    for (from, to, axes) in [
+        ("a.A", "b.B", "a.A"),
+        ("a.A", "b.B", "b.B"),
+        ("a.A", "b.B", "c.C"),
+        ("a.O", "b.B", "ground.G"),
+        ("a.A", "b.B", "ground.H"),
+        ("ground.G", "c.C", "ground.G"),
+        ("c.C", "ground.G", "c.C"),
+        ("ground.H", "a.O", "ground.H"),
+    ] {
+        let (from, to, axes) = (id(from), id(to), id(axes));
+        for kind in [
+            CoordinateKind::Angle,
+            CoordinateKind::X,
+            CoordinateKind::Y,
+            CoordinateKind::Distance,
+        ] {
+            samples.push(of_coordinate(&Coordinate {
+                kind,
+                from,
+                to,
+                axes,
+            }));
+        }
+        for axis in [Axis::X, Axis::Y] {
+            samples.push(Box::new(Coincidence { from, to, axis }));
+        }
+    }
+    samples
+}
+
+fn mechanism() -> Mechanism {
+    Mechanism::parse(&Source::new("sample.toml", BODIES))
+        .expect("the sample is right")
+        .0
+}
+
+/// A pose and a velocity. Bodies lie at least 0.4 m apart and from ground, so that no distance
+/// comes near zero, where it is not smooth: markers are up to 0.31 m from the origins.
+fn pose_and_velocity() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
+    let body = |x: f64| (x..x + 0.6, -0.3..0.3, -7.0..7.0);
+    let pose = (body(1.5), body(3.5), body(5.5));
+    (pose, prop::collection::vec(-1.0..1.0, 9)).prop_map(|((a, b, c), velocity)| {
+        let pose = [a, b, c].iter().flat_map(|q| [q.0, q.1, q.2]).collect();
+        (pose, velocity)
+    })
+}
+
+fn moved(q: &[f64], direction: &[f64], s: f64) -> Vec<f64> {
+    q.iter().zip(direction).map(|(q, d)| q + s * d).collect()
+}
+
+/// Derivative of `f` at 0 by the central difference of fourth order. With h = 1e-3 its truncation
+/// error h⁴ f⁽⁵⁾/30 and its rounding error eps f/h both stay below some 1e-12 for the functions
+/// here, whose derivatives are of the order of one (|q̇| ≤ 1, lengths up to 7 m).
+fn derivative(f: impl Fn(f64) -> f64) -> f64 {
+    const H: f64 = 1e-3;
+    (8.0 * (f(H) - f(-H)) - (f(2.0 * H) - f(-2.0 * H))) / (12.0 * H)
+}
+
+const DIFFERENCE: f64 = 1e-10;
+
+proptest! {
+    #[test]
+    fn gradient_and_quadratic_term_agree_with_differences((q, q_dot) in pose_and_velocity()) {
+        let mechanism = mechanism();
+        let mut at = Configuration::new(&mechanism);
+        at.set_parameters(&mechanism, &[]).unwrap();
+        for constraint in samples(&mechanism) {
+            let along = |at: &mut Configuration, s: f64| {
+                at.set_pose(&mechanism, &moved(&q, &q_dot, s));
+                let mut row = Gradient::new();
+                constraint.gradient(at, &mut row);
+                (constraint.value(at), row.dot(&q_dot), constraint.quadratic(at, &q_dot))
+            };
+            let at = std::cell::RefCell::new(&mut at);
+            let (_, rate, quadratic) = along(&mut at.borrow_mut(), 0.0);
+            let difference = derivative(|s| along(&mut at.borrow_mut(), s).0);
+            prop_assert!((rate - difference).abs() < DIFFERENCE, "{constraint:?}: {rate} {difference}");
+            let difference = derivative(|s| along(&mut at.borrow_mut(), s).1);
+            prop_assert!(
+                (quadratic - difference).abs() < 10.0 * DIFFERENCE,
+                "{constraint:?}: {quadratic} {difference}"
+            );
+        }
+    }
+
+    #[test]
+    fn incidence_is_where_the_gradient_is_not_zero((q, _) in pose_and_velocity()) {
+        let mechanism = mechanism();
+        let mut at = Configuration::new(&mechanism);
+        at.set_parameters(&mechanism, &[]).unwrap();
+        at.set_pose(&mechanism, &q);
+        for constraint in samples(&mechanism) {
+            let mut row = Gradient::new();
+            constraint.gradient(&at, &mut row);
+            let mut touched: Vec<_> = row
+                .entries()
+                .filter(|(_, value)| value.abs() > 1e-12)
+                .map(|(column, _)| column)
+                .collect();
+            touched.sort_unstable();
+            let mut incidence = Incidence::default();
+            constraint.incidence(&mechanism, &mut incidence);
+            incidence.unknowns.sort_unstable();
+            incidence.unknowns.dedup();
+            prop_assert_eq!(incidence.unknowns, touched, "{:?}", constraint);
+        }
+    }
+}
+
+#[test]
+fn coinciding_points_have_a_distance_gradient_to_leave_by() {
+    let mechanism = mechanism();
+    let mut at = Configuration::new(&mechanism);
+    at.set_parameters(&mechanism, &[]).unwrap();
+    at.set_pose(&mechanism, &[0.0; 9]);
+    // ground.H is the second marker, a.O the fourth; both are at the origin.
+    let distance = Distance {
+        from: MarkerId(1),
+        to: MarkerId(3),
+    };
+    let mut row = Gradient::new();
+    distance.gradient(&at, &mut row);
+    assert_eq!(
+        row.entries().collect::<Vec<_>>(),
+        [(0, 1.0), (1, 0.0), (2, 0.0)]
+    );
+}
+
+#[test]
+fn a_distance_is_positive() {
+    let distance = Distance {
+        from: MarkerId(0),
+        to: MarkerId(1),
+    };
+    assert!(distance.admits(f64::MIN_POSITIVE));
+    assert!(!distance.admits(0.0));
+    assert!(!distance.admits(-1.0));
+    assert!(!distance.admits(f64::NAN));
+}

@@ -1,0 +1,37 @@
+//! What an equation belongs to, for messages.
+
+use crate::mechanism::{DriverId, Mechanism};
+
+/// The joint, bare constraint or driver that an equation comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Element {
+    /// Index into [`Mechanism::joints`].
+    Joint(usize),
+    /// Index into [`Mechanism::constraints`].
+    Constraint(usize),
+    /// A driver.
+    Driver(DriverId),
+}
+
+impl Element {
+    /// The name in the mechanism file.
+    #[must_use]
+    pub fn name(self, mechanism: &Mechanism) -> &str {
+        match self {
+            Self::Joint(index) => &mechanism.joints[index].name,
+            Self::Constraint(index) => &mechanism.constraints[index].name,
+            Self::Driver(driver) => &mechanism.drivers[driver.index()].name,
+        }
+    }
+
+    /// Kind and name: ``joint `B` ``.
+    #[must_use]
+    pub fn describe(self, mechanism: &Mechanism) -> String {
+        let kind = match self {
+            Self::Joint(_) => "joint",
+            Self::Constraint(_) => "constraint",
+            Self::Driver(_) => "driver",
+        };
+        format!("{kind} `{}`", self.name(mechanism))
+    }
+}

@@ -1,0 +1,114 @@
+//! What can go wrong in the kinematics.
+
+use std::fmt;
+
+/// A call of the kinematics that could not do its work.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Too few or too many equations, or equations that meet the wrong unknowns.
+    #[error("{}", structure_message(*.equations, *.unknowns, .loose, .excess))]
+    Structure {
+        /// Number of constraint and driver equations.
+        equations: usize,
+        /// Number of generalized coordinates.
+        unknowns: usize,
+        /// Names of the bodies with a coordinate that nothing determines.
+        loose: Vec<String>,
+        /// Descriptions of the joints, constraints and drivers among which some are too many.
+        excess: Vec<String>,
+    },
+    /// An expression has no finite value for the parameter values in force.
+    #[error("{what} has no finite value with these parameter values")]
+    NotFinite {
+        /// What the expression is for.
+        what: String,
+    },
+    /// A distance is to be held at a value that no distance can have.
+    #[error("{what} would hold a distance at {value} m; a distance must be positive")]
+    NotPositive {
+        /// The joint, constraint or driver.
+        what: String,
+        /// The value \[m\].
+        value: f64,
+    },
+    /// No pose was found that satisfies all equations.
+    #[error("the mechanism does not close: {}", open_message(.open))]
+    NotAssembled {
+        /// What stays open in the nearest pose found.
+        open: Vec<OpenJoint>,
+    },
+    /// The equations can be satisfied, but the Jacobian is singular there.
+    #[error(
+        "the mechanism is in a singular position (a dead point or change point, or redundant \
+         constraints): the Jacobian has a reciprocal condition of {rcond:.1e}"
+    )]
+    Singular {
+        /// Scaled reciprocal condition of the Jacobian.
+        rcond: f64,
+    },
+}
+
+/// A joint, constraint or driver that cannot be satisfied together with the rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenJoint {
+    /// Kind and name.
+    pub element: String,
+    /// The gap between its points \[m\], zero if it asks for none.
+    pub gap: f64,
+    /// The error of its angle \[rad\], zero if it asks for none.
+    pub angle: f64,
+}
+
+impl fmt::Display for OpenJoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} stays open by ", self.element)?;
+        match (self.gap > 0.0, self.angle > 0.0) {
+            (true, true) => write!(f, "{} and {}", millimetres(self.gap), degrees(self.angle)),
+            (false, true) => f.write_str(&degrees(self.angle)),
+            _ => f.write_str(&millimetres(self.gap)),
+        }
+    }
+}
+
+/// A length to four digits, for messages.
+fn millimetres(length: f64) -> String {
+    format!("{} mm", four_digits(length * 1e3))
+}
+
+/// An angle to four digits, for messages.
+fn degrees(angle: f64) -> String {
+    format!("{} deg", four_digits(angle.to_degrees()))
+}
+
+fn four_digits(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        let decimals = 3 - value.abs().max(1e-3).log10().floor() as i32;
+        format!("{value:.*}", decimals.max(0) as usize)
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+fn open_message(open: &[OpenJoint]) -> String {
+    let parts: Vec<_> = open.iter().map(OpenJoint::to_string).collect();
+    parts.join(", ")
+}
+
+fn structure_message(
+    equations: usize,
+    unknowns: usize,
+    loose: &[String],
+    excess: &[String],
+) -> String {
+    let mut message = format!(
+        "the joints, constraints and drivers give {equations} equations for {unknowns} unknowns"
+    );
+    if !loose.is_empty() {
+        message += &format!("; not fully driven: {}", loose.join(", "));
+    }
+    if !excess.is_empty() {
+        message += &format!("; too many among: {}", excess.join(", "));
+    }
+    message
+}

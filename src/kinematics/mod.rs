@@ -1,0 +1,41 @@
+//! Kinematics: the constraint equations of a mechanism and their solution.
+//!
+//! The formulation is Haug's with Cartesian generalized coordinates, q = \[x, y, phi\] for each
+//! moving body. With the kinematic constraints and the drivers as one system Phi(q, t) = 0
+//! (Ec. 3.6.3):
+//!
+//! | | | |
+//! |---|---|---|
+//! | position | Phi_q Δq = −Phi | Newton–Raphson, Ec. 3.6.7 and 3.6.8 |
+//! | velocity | Phi_q q̇ = −Phi_t = ν | Ec. 3.6.10 |
+//! | acceleration | Phi_q q̈ = −(Phi_q q̇)_q q̇ − 2 Phi_qt q̇ − Phi_tt = γ | Ec. 3.6.11 |
+//! | assembly | min (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi, r growing | Ec. 3.6.9 |
+//!
+//! [`System`] has the equations and their rows, [`Solver`] a mechanism at one pose, which it can
+//! [assemble](Solver::assemble), [move along a path](Solver::follow) and give
+//! [rates](Solver::solve_rates) to. Neither knows of FMI.
+
+mod assembly;
+mod configuration;
+pub mod constraint;
+mod element;
+mod error;
+mod factor;
+mod newton;
+mod path;
+mod rates;
+mod solver;
+mod stepping;
+mod structure;
+mod system;
+
+pub use assembly::{Assembly, Start};
+pub use configuration::{Configuration, MarkerPose};
+pub use element::Element;
+pub use error::{Error, OpenJoint};
+pub use path::{Curve, Path};
+pub use rates::Rates;
+pub use solver::{Pose, Solver};
+pub use stepping::{Blocked, Progress};
+pub use structure::{Dependencies, Structure};
+pub use system::{Equation, System, Target, Targets};

@@ -1,0 +1,285 @@
+//! A mechanism at one pose, with the work space to move it.
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+
+use super::configuration::Configuration;
+use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration, point_velocity};
+use super::factor::DenseLu;
+use super::rates::Rates;
+use super::structure::Structure;
+use super::system::{System, Targets};
+use super::{Error, Path};
+use crate::mechanism::{DriverId, Jet, MarkerId, Mechanism};
+
+/// Everything that decides where a mechanism is and how it goes on from there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    /// Time \[s\].
+    pub time: f64,
+    /// All parameters, derived ones included \[SI\].
+    pub parameters: Vec<f64>,
+    /// The values u of all drivers \[m or rad\].
+    pub drivers: Vec<f64>,
+    /// Generalized coordinates, \[m, m, rad\] for each body.
+    pub q: Vec<f64>,
+    /// Whole turns of the angle rows, one a row of the system.
+    pub turns: Vec<i32>,
+}
+
+impl Pose {
+    fn copy_from(&mut self, other: &Self) {
+        self.time = other.time;
+        self.parameters.copy_from_slice(&other.parameters);
+        self.drivers.copy_from_slice(&other.drivers);
+        self.q.copy_from_slice(&other.q);
+        self.turns.copy_from_slice(&other.turns);
+    }
+}
+
+/// Solves position, velocity and acceleration of one mechanism.
+///
+/// A solver always stands at a pose. [`assemble`](Self::assemble) finds the first one,
+/// [`follow`](Self::follow) moves it continuously, [`restore`](Self::restore) puts it back to a
+/// saved one. All storage is made in [`new`](Self::new).
+///
+/// ```
+/// use biela::kinematics::{Path, Solver};
+/// use biela::mechanism::{Mechanism, Source};
+///
+/// let text = include_str!("../../mechanisms/four_bar.toml");
+/// let (mechanism, _) = Mechanism::parse(&Source::new("four_bar.toml", text)).unwrap();
+/// let mut solver = Solver::new(mechanism.into()).unwrap();
+/// let path = Path::new(solver.mechanism());
+/// solver.assemble(&path).unwrap();
+/// let rocker = solver.mechanism().body_id("rocker").unwrap();
+/// let phi = solver.pose().q[3 * rocker.index() + 2];
+/// assert!((phi.to_degrees() - 117.63).abs() < 0.01);
+/// ```
+#[derive(Debug)]
+pub struct Solver {
+    pub(super) system: System,
+    structure: Structure,
+    measures: Vec<Box<dyn Constraint>>,
+    pub(super) pose: Pose,
+    pub(super) at: Configuration,
+    pub(super) targets: Targets,
+    /// Whether `at` and `targets` are those of the pose's parameters.
+    parameters_taken: bool,
+    pub(super) lu: DenseLu,
+    /// Whether `lu` holds the factors of the Jacobian at `pose`.
+    pub(super) factorised: bool,
+    /// Phi at the pose last evaluated, scaled, and its rounding error.
+    pub(super) residual: DVector<f64>,
+    pub(super) rounding: Vec<f64>,
+    /// Newton's correction.
+    pub(super) correction: DVector<f64>,
+    /// Tangent and curvature along a path.
+    pub(super) tangent: Rates,
+    /// The pose that a sub-step starts from.
+    pub(super) origin: Pose,
+    /// Parameters and drivers along a path.
+    pub(super) path_parameters: Vec<Jet>,
+    pub(super) path_drivers: Vec<Jet>,
+}
+
+impl Solver {
+    /// Writes down the equations, analyses their structure and makes all storage.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Structure`] if the drivers do not match the degrees of freedom.
+    pub fn new(mechanism: Arc<Mechanism>) -> Result<Self, Error> {
+        let at = Configuration::new(&mechanism);
+        let path = Path::new(&mechanism);
+        let system = System::new(Arc::clone(&mechanism));
+        let structure = Structure::new(&system)?;
+        let order = system.unknowns();
+        let drivers = mechanism.drivers.len();
+        let pose = Pose {
+            time: path.start,
+            parameters: path.from,
+            drivers: vec![0.0; drivers],
+            q: vec![0.0; order],
+            turns: vec![0; order],
+        };
+        let measures = mechanism.measures.iter();
+        Ok(Self {
+            structure,
+            measures: measures
+                .map(|measure| of_coordinate(&measure.coordinate))
+                .collect(),
+            targets: system.targets(),
+            parameters_taken: false,
+            origin: pose.clone(),
+            path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
+            path_drivers: vec![Jet::constant(0.0); drivers],
+            pose,
+            at,
+            lu: DenseLu::new(order),
+            factorised: false,
+            residual: DVector::zeros(order),
+            rounding: vec![0.0; order],
+            correction: DVector::zeros(order),
+            tangent: Rates::new(order),
+            system,
+        })
+    }
+
+    /// The mechanism.
+    #[must_use]
+    pub fn mechanism(&self) -> &Arc<Mechanism> {
+        self.system.mechanism()
+    }
+
+    /// Its equations.
+    #[must_use]
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// Which equations determine which unknowns.
+    #[must_use]
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// Where the mechanism is.
+    #[must_use]
+    pub fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// Puts the mechanism back to a pose that this solver, or one of the same mechanism, was at.
+    /// Allocates nothing.
+    ///
+    /// # Panics
+    ///
+    /// If the pose belongs to another mechanism.
+    pub fn restore(&mut self, pose: &Pose) {
+        self.parameters_taken &= self.pose.parameters == pose.parameters;
+        self.pose.copy_from(pose);
+        if !self.parameters_taken {
+            self.take_over_parameters()
+                .expect("the parameters of a pose were valid when it was solved");
+        }
+        self.targets.turns.copy_from_slice(&self.pose.turns);
+        self.evaluate();
+    }
+
+    /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates
+    /// nothing.
+    pub fn save(&self, pose: &mut Pose) {
+        pose.copy_from(&self.pose);
+    }
+
+    /// Largest scaled residual of Phi at the present pose: metres over the mechanism's
+    /// characteristic length, radians.
+    #[must_use]
+    pub fn residual(&self) -> f64 {
+        self.residual.amax()
+    }
+
+    /// Scaled reciprocal condition of the Jacobian at the present pose: 1 is best, 0 singular.
+    pub fn rcond(&mut self) -> f64 {
+        if self.refresh().is_ok() {
+            self.lu.rcond()
+        } else {
+            0.0
+        }
+    }
+
+    /// Rates of q at the present pose for given rates of the drivers (`first` and `second` of
+    /// each [`Jet`]; `value` is not read), by Ec. 3.6.10 and 3.6.11. Allocates nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where the pose is singular and no rates exist.
+    pub fn solve_rates(
+        &mut self,
+        driver: impl Fn(DriverId) -> Jet,
+        rates: &mut Rates,
+    ) -> Result<(), Error> {
+        self.refresh()?;
+        rates.solve(&self.system, &self.at, &self.lu, driver);
+        if rates.is_finite() {
+            Ok(())
+        } else {
+            Err(Error::Singular { rcond: 0.0 })
+        }
+    }
+
+    /// Value, rate and acceleration of a measure of the mechanism at the present pose. Allocates
+    /// nothing.
+    #[must_use]
+    pub fn measure(&self, index: usize, rates: &Rates) -> Jet {
+        let measure = &self.measures[index];
+        let mut gradient = Gradient::new();
+        measure.gradient(&self.at, &mut gradient);
+        let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
+        Jet {
+            value: measure.value(&self.at),
+            first: gradient.dot(q_dot),
+            second: gradient.dot(q_ddot) + measure.quadratic(&self.at, q_dot),
+        }
+    }
+
+    /// Point, velocity and acceleration of a marker: the x component, then the y component.
+    #[must_use]
+    pub fn marker(&self, marker: MarkerId, rates: &Rates) -> [Jet; 2] {
+        let marker = self.at.marker(marker);
+        let velocity = point_velocity(marker, rates.velocity());
+        let acceleration = point_acceleration(marker, rates.velocity(), rates.acceleration());
+        [0, 1].map(|component| Jet {
+            value: marker.point[component],
+            first: velocity[component],
+            second: acceleration[component],
+        })
+    }
+
+    /// Recomputes all that depends on the parameters of the pose alone.
+    pub(super) fn take_over_parameters(&mut self) -> Result<(), Error> {
+        self.parameters_taken = false;
+        let mechanism = self.system.mechanism();
+        self.at.set_parameters(mechanism, &self.pose.parameters)?;
+        self.system
+            .set_parameters(&self.pose.parameters, &mut self.targets)?;
+        self.parameters_taken = true;
+        Ok(())
+    }
+
+    /// Evaluates Phi and Phi_q at the pose and puts Phi_q, not yet factorised, into `lu`.
+    pub(super) fn evaluate(&mut self) {
+        self.at.set_pose(self.system.mechanism(), &self.pose.q);
+        self.factorised = false;
+        self.lu.clear();
+        let lu = &mut self.lu;
+        self.system.evaluate(
+            &self.at,
+            &self.pose.q,
+            &self.targets,
+            &self.pose.drivers,
+            self.residual.as_mut_slice(),
+            &mut self.rounding,
+            |row, column, value| lu.add(row, column, value),
+        );
+    }
+
+    /// Makes sure that `lu` holds the factors of the Jacobian at the pose.
+    pub(super) fn refresh(&mut self) -> Result<(), Error> {
+        if !self.factorised {
+            self.evaluate();
+            self.factorise()?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn factorise(&mut self) -> Result<(), Error> {
+        self.lu
+            .factorise()
+            .map_err(|_| Error::Singular { rcond: 0.0 })?;
+        self.factorised = true;
+        Ok(())
+    }
+}

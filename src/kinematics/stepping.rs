@@ -1,0 +1,200 @@
+//! Following a path from one pose to the next without changing the assembly mode.
+//!
+//! The mechanism is carried along the path in sub-steps. Each starts from the tangent and
+//! curvature of the motion, ends with Newton–Raphson, and is halved unless it shows that it
+//! stayed on its motion: Newton contracts, the correction is small, and the determinant of the
+//! Jacobian keeps its sign, as it must while no singular position is crossed.
+
+use super::newton::Outcome;
+use super::path::Path;
+use super::solver::Solver;
+use super::system::System;
+use crate::mechanism::Jet;
+
+/// What following a path took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Newton corrections, failed sub-steps included.
+    pub iterations: u32,
+    /// Sub-steps, failed ones included; one for an ordinary step.
+    pub substeps: u32,
+}
+
+/// The path could not be followed to its end: a dead point is in the way, or values for which
+/// the mechanism does not exist.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocked {
+    /// How far the mechanism came, from 0 to 1. It stands there.
+    pub s: f64,
+    /// What it took.
+    pub progress: Progress,
+}
+
+/// The largest turn of a body in one sub-step \[rad\]. A four-bar's sub-steps can be proved safe
+/// up to 0.66–1.13 rad, depending on the pose.
+const LARGEST_TURN: f64 = 0.5;
+/// The largest correction of a prediction, in radians and characteristic lengths.
+const LARGEST_CORRECTION: f64 = 0.1;
+/// Newton has to shrink its corrections at least by this factor from one to the next.
+const CONTRACTION: f64 = 0.25;
+/// Newton converges quadratically from a good prediction; one that needs more is halved.
+const MAX_ITERATIONS: u32 = 8;
+/// A sub-step of this part of the path that still fails means that the path is blocked.
+const SMALLEST_SUBSTEP: f64 = 1e-12;
+
+impl Solver {
+    /// Moves the mechanism along `path`, at whose start it must stand. Allocates nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] if the end cannot be reached on the continuous motion. The mechanism then
+    /// stands at the last pose reached on the way, which is a valid one.
+    pub fn follow(&mut self, path: &Path) -> Result<Progress, Blocked> {
+        let mut progress = Progress::default();
+        let mut s = 0.0;
+        let mut substep: f64 = 1.0;
+        if self.refresh().is_err() || self.set_path(path, 0.0).is_err() {
+            return Err(Blocked { s, progress });
+        }
+        let orientation = self.lu.determinant_is_negative();
+        while s < 1.0 {
+            self.predict();
+            substep = substep.min(LARGEST_TURN / self.turn_along_path());
+            let start = s;
+            loop {
+                let next = if start + substep < 1.0 {
+                    start + substep
+                } else {
+                    1.0
+                };
+                progress.substeps = progress.substeps.saturating_add(1);
+                let reached =
+                    self.try_substep(path, next, next - start, orientation, &mut progress);
+                if reached {
+                    s = next;
+                    break;
+                }
+                substep = 0.5 * (next - start);
+                if substep < SMALLEST_SUBSTEP {
+                    self.stand_at(path, start);
+                    return Err(Blocked { s: start, progress });
+                }
+                self.pose.q.copy_from_slice(&self.origin.q);
+            }
+            // Twice the sub-step that was possible here.
+            substep = 2.0 * (s - start);
+        }
+        Ok(progress)
+    }
+
+    /// Computes tangent and curvature of the motion along the path where the mechanism stands,
+    /// and remembers the pose.
+    fn predict(&mut self) {
+        let drivers = &self.path_drivers;
+        self.tangent
+            .solve(&self.system, &self.at, &self.lu, |driver| {
+                drivers[driver.index()]
+            });
+        self.origin.q.copy_from_slice(&self.pose.q);
+    }
+
+    /// The fastest turn of a body along the tangent, in radians for the whole path.
+    fn turn_along_path(&self) -> f64 {
+        let turns = self.tangent.velocity().iter().skip(2).step_by(3);
+        turns.fold(0.0, |fastest: f64, turn| fastest.max(turn.abs()))
+    }
+
+    /// Goes from the remembered pose over `h` to s; true if that kept to the motion.
+    fn try_substep(
+        &mut self,
+        path: &Path,
+        s: f64,
+        h: f64,
+        orientation: bool,
+        progress: &mut Progress,
+    ) -> bool {
+        let (first, second) = (self.tangent.velocity(), self.tangent.acceleration());
+        for (k, q) in self.pose.q.iter_mut().enumerate() {
+            *q += h * (first[k] + 0.5 * h * second[k]);
+        }
+        if self.set_path(path, s).is_err() {
+            return false;
+        }
+        let Outcome {
+            converged,
+            iterations,
+            contraction,
+        } = self.correct(MAX_ITERATIONS);
+        progress.iterations = progress.iterations.saturating_add(iterations);
+        converged
+            && contraction <= CONTRACTION
+            && self.lu.determinant_is_negative() == orientation
+            && self.largest_correction(h) <= LARGEST_CORRECTION
+    }
+
+    /// How far the corrected pose is from the predicted one, scaled.
+    fn largest_correction(&self, h: f64) -> f64 {
+        let (first, second) = (self.tangent.velocity(), self.tangent.acceleration());
+        let size = self.at.size();
+        (0..self.pose.q.len()).fold(0.0, |worst: f64, k| {
+            let predicted = self.origin.q[k] + h * (first[k] + 0.5 * h * second[k]);
+            worst.max((self.pose.q[k] - predicted).abs() / System::column_scale(k, size))
+        })
+    }
+
+    /// Takes time, parameters and drivers from the path at s, leaving q as it is.
+    pub(super) fn set_path(&mut self, path: &Path, s: f64) -> Result<(), super::Error> {
+        let Self {
+            system,
+            pose,
+            path_parameters,
+            path_drivers,
+            ..
+        } = self;
+        let mechanism = system.mechanism();
+        pose.time = path.time(s);
+        let moves = path.moves_parameters();
+        if moves {
+            path.parameters(mechanism, s, path_parameters);
+            for (value, jet) in pose.parameters.iter_mut().zip(path_parameters.iter()) {
+                *value = jet.value;
+            }
+            path.drivers(mechanism, s, &|p| path_parameters[p.index()], path_drivers);
+        } else {
+            let parameters = &pose.parameters;
+            let constant = |p: crate::mechanism::ParameterId| Jet::constant(parameters[p.index()]);
+            path.drivers(mechanism, s, &constant, path_drivers);
+        }
+        for (value, jet) in pose.drivers.iter_mut().zip(path_drivers.iter()) {
+            *value = jet.value;
+        }
+        if moves {
+            self.take_over_parameters()?;
+        }
+        self.system.check_drivers(&self.pose.drivers)
+    }
+
+    /// The drivers' values at the end of a path.
+    pub fn drivers_at_end(&mut self, path: &Path) -> Vec<f64> {
+        let mechanism = self.system.mechanism();
+        let parameters = &path.to;
+        path.drivers(
+            mechanism,
+            1.0,
+            &|p| Jet::constant(parameters[p.index()]),
+            &mut self.path_drivers,
+        );
+        self.path_drivers
+            .iter()
+            .map(|driver| driver.value)
+            .collect()
+    }
+
+    /// Returns to the remembered pose, which was reached at s.
+    fn stand_at(&mut self, path: &Path, s: f64) {
+        self.pose.q.copy_from_slice(&self.origin.q);
+        self.set_path(path, s)
+            .expect("the path was valid where the mechanism has been");
+        self.evaluate();
+    }
+}

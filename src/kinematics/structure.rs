@@ -1,0 +1,370 @@
+//! Which equation determines which unknown, found without numbers.
+//!
+//! A maximum matching pairs equations with unknowns; what stays unmatched names the
+//! under- and over-determined parts (Dulmage–Mendelsohn). With all matched, the strongly
+//! connected components of the paired graph are the blocks that must be solved together, in
+//! block lower triangular order.
+
+use std::collections::{BTreeSet, VecDeque};
+
+use petgraph::algo::kosaraju_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+
+use super::constraint::Incidence;
+use super::system::{System, Target};
+use super::{Element, Error, constraint};
+use crate::mechanism::{Coordinate, DriverId, Expression, MarkerId, Mechanism, ParameterId};
+
+/// The block lower triangular structure of a system.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    blocks: Vec<Block>,
+    /// Block of each unknown.
+    block_of: Vec<usize>,
+}
+
+/// Equations and unknowns that have to be solved together.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Rows of Phi, as many as unknowns.
+    pub rows: Vec<usize>,
+    /// Indices in q, `rows[k]` matched with `columns[k]`.
+    pub columns: Vec<usize>,
+    /// What the unknowns depend on, through this block and those before it.
+    pub dependencies: Dependencies,
+}
+
+/// What a quantity depends on, structurally exact.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Dependencies {
+    /// Drivers, inputs and prescribed motions alike.
+    pub drivers: BTreeSet<DriverId>,
+    /// Parameters that can be set: derived ones are replaced by what they are derived from.
+    pub parameters: BTreeSet<ParameterId>,
+}
+
+impl Dependencies {
+    /// Adds what another quantity depends on.
+    pub fn extend(&mut self, other: &Self) {
+        self.drivers.extend(&other.drivers);
+        self.parameters.extend(&other.parameters);
+    }
+
+    /// Adds what an expression of the mechanism uses.
+    pub fn add_expression(&mut self, mechanism: &Mechanism, expression: &Expression) {
+        for parameter in expression.parameters() {
+            self.add_parameter(mechanism, parameter);
+        }
+    }
+
+    /// Adds a parameter, or what it is derived from.
+    pub fn add_parameter(&mut self, mechanism: &Mechanism, parameter: ParameterId) {
+        let definition = &mechanism.parameters[parameter.index()];
+        if definition.derived {
+            // Derivations have no cycles; the reader refuses them.
+            self.add_expression(mechanism, &definition.expression);
+        } else {
+            self.parameters.insert(parameter);
+        }
+    }
+}
+
+impl Structure {
+    /// Analyses a system.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Structure`] unless each equation can be paired with an unknown of its own and
+    /// none is left over.
+    pub fn new(system: &System) -> Result<Self, Error> {
+        let incidences: Vec<Incidence> = system
+            .equations()
+            .iter()
+            .map(|equation| {
+                let mut incidence = Incidence::default();
+                equation
+                    .constraint
+                    .incidence(system.mechanism(), &mut incidence);
+                incidence.unknowns.sort_unstable();
+                incidence.unknowns.dedup();
+                incidence
+            })
+            .collect();
+        let matching = Matching::new(&incidences, system.unknowns());
+        if !matching.is_perfect() {
+            return Err(matching.problem(system, &incidences));
+        }
+        let mut structure = Self {
+            blocks: Vec::new(),
+            block_of: vec![usize::MAX; system.unknowns()],
+        };
+        for rows in matching.components(&incidences) {
+            let dependencies = structure.dependencies_of(system, &incidences, &rows);
+            let columns: Vec<_> = rows
+                .iter()
+                .map(|&row| matching.column_of[row].expect("the matching is perfect"))
+                .collect();
+            for &column in &columns {
+                structure.block_of[column] = structure.blocks.len();
+            }
+            structure.blocks.push(Block {
+                rows,
+                columns,
+                dependencies,
+            });
+        }
+        Ok(structure)
+    }
+
+    /// The blocks, each after those it depends on.
+    #[must_use]
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// What the unknown q\[column\] depends on.
+    #[must_use]
+    pub fn dependencies(&self, column: usize) -> &Dependencies {
+        &self.blocks[self.block_of[column]].dependencies
+    }
+
+    /// What a coordinate depends on.
+    #[must_use]
+    pub fn coordinate_dependencies(
+        &self,
+        mechanism: &Mechanism,
+        coordinate: &Coordinate,
+    ) -> Dependencies {
+        let mut incidence = Incidence::default();
+        constraint::of_coordinate(coordinate).incidence(mechanism, &mut incidence);
+        self.through(mechanism, &incidence)
+    }
+
+    /// What the global x (component 0) or y (1) of a marker depends on.
+    #[must_use]
+    pub fn point_dependencies(
+        &self,
+        mechanism: &Mechanism,
+        marker: MarkerId,
+        component: usize,
+    ) -> Dependencies {
+        let mut incidence = Incidence::default();
+        incidence.point(mechanism, marker, [component == 0, component == 1]);
+        self.through(mechanism, &incidence)
+    }
+
+    /// What a function of these unknowns and parameters depends on.
+    fn through(&self, mechanism: &Mechanism, incidence: &Incidence) -> Dependencies {
+        let mut dependencies = Dependencies::default();
+        for &parameter in &incidence.parameters {
+            dependencies.add_parameter(mechanism, parameter);
+        }
+        for &unknown in &incidence.unknowns {
+            dependencies.extend(self.dependencies(unknown));
+        }
+        dependencies
+    }
+
+    /// Dependencies of the unknowns that `rows` determine; the blocks before are known.
+    fn dependencies_of(
+        &self,
+        system: &System,
+        incidences: &[Incidence],
+        rows: &[usize],
+    ) -> Dependencies {
+        let mechanism = system.mechanism();
+        let mut dependencies = Dependencies::default();
+        let mut upstream = BTreeSet::new();
+        for &row in rows {
+            match &system.equations()[row].target {
+                Target::Constant(expression) => {
+                    dependencies.add_expression(mechanism, expression);
+                }
+                Target::Driver(driver) => {
+                    dependencies.drivers.insert(*driver);
+                    if let Some(motion) = mechanism.drivers[driver.index()].motion() {
+                        dependencies.add_expression(mechanism, motion);
+                    }
+                }
+            }
+            for &parameter in &incidences[row].parameters {
+                dependencies.add_parameter(mechanism, parameter);
+            }
+            upstream.extend(incidences[row].unknowns.iter().map(|&u| self.block_of[u]));
+        }
+        for block in upstream {
+            if let Some(block) = self.blocks.get(block) {
+                dependencies.extend(&block.dependencies);
+            }
+        }
+        dependencies
+    }
+}
+
+/// A maximum matching of equations with unknowns.
+struct Matching {
+    column_of: Vec<Option<usize>>,
+    row_of: Vec<Option<usize>>,
+}
+
+impl Matching {
+    /// Augments row by row along alternating paths, breadth first.
+    fn new(incidences: &[Incidence], unknowns: usize) -> Self {
+        let mut matching = Self {
+            column_of: vec![None; incidences.len()],
+            row_of: vec![None; unknowns],
+        };
+        let mut reached_from = vec![None; unknowns];
+        for row in 0..incidences.len() {
+            // Most rows find a free unknown at once.
+            let free = incidences[row]
+                .unknowns
+                .iter()
+                .copied()
+                .find(|&column| matching.row_of[column].is_none());
+            if let Some(column) = free {
+                matching.pair(row, column);
+            } else {
+                matching.augment(incidences, row, &mut reached_from);
+            }
+        }
+        matching
+    }
+
+    fn pair(&mut self, row: usize, column: usize) {
+        self.column_of[row] = Some(column);
+        self.row_of[column] = Some(row);
+    }
+
+    fn augment(
+        &mut self,
+        incidences: &[Incidence],
+        start: usize,
+        reached_from: &mut [Option<usize>],
+    ) {
+        let mut queue = VecDeque::from([start]);
+        let mut reached = Vec::new();
+        let mut end = None;
+        'search: while let Some(row) = queue.pop_front() {
+            for &column in &incidences[row].unknowns {
+                if reached_from[column].is_some() {
+                    continue;
+                }
+                reached_from[column] = Some(row);
+                reached.push(column);
+                match self.row_of[column] {
+                    Some(next) => queue.push_back(next),
+                    None => {
+                        end = Some(column);
+                        break 'search;
+                    }
+                }
+            }
+        }
+        while let Some(column) = end {
+            let row = reached_from[column].expect("the path was walked forward");
+            let previous = self.column_of[row];
+            self.pair(row, column);
+            end = if row == start { None } else { previous };
+        }
+        for column in reached {
+            reached_from[column] = None;
+        }
+    }
+
+    fn is_perfect(&self) -> bool {
+        self.column_of.iter().all(Option::is_some) && self.row_of.iter().all(Option::is_some)
+    }
+
+    /// Strongly connected components of the rows, in an order in which each comes after those
+    /// whose unknowns it uses.
+    fn components(&self, incidences: &[Incidence]) -> Vec<Vec<usize>> {
+        let mut graph =
+            DiGraph::<(), (), usize>::with_capacity(incidences.len(), 3 * incidences.len());
+        for _ in incidences {
+            graph.add_node(());
+        }
+        for (row, incidence) in incidences.iter().enumerate() {
+            for &column in &incidence.unknowns {
+                let owner = self.row_of[column].expect("the matching is perfect");
+                if owner != row {
+                    graph.add_edge(NodeIndex::new(row), NodeIndex::new(owner), ());
+                }
+            }
+        }
+        // Kosaraju's order has a component after all those its edges lead to, and, unlike
+        // petgraph's Tarjan, needs no recursion as deep as a chain is long.
+        kosaraju_scc(&graph)
+            .into_iter()
+            .map(|component| {
+                let mut rows: Vec<_> = component.into_iter().map(NodeIndex::index).collect();
+                rows.sort_unstable();
+                rows
+            })
+            .collect()
+    }
+
+    /// Names the under-determined part (unknowns that alternating paths reach from an unmatched
+    /// unknown) and the over-determined one (rows reached from an unmatched row).
+    fn problem(&self, system: &System, incidences: &[Incidence]) -> Error {
+        let mechanism = system.mechanism();
+        let mut rows_with = vec![Vec::new(); system.unknowns()];
+        for (row, incidence) in incidences.iter().enumerate() {
+            for &column in &incidence.unknowns {
+                rows_with[column].push(row);
+            }
+        }
+        let loose = reach(
+            unmatched(&self.row_of),
+            |column| rows_with[column].clone(),
+            |row| self.column_of[row],
+        );
+        let excess = reach(
+            unmatched(&self.column_of),
+            |row| incidences[row].unknowns.clone(),
+            |column| self.row_of[column],
+        );
+        let bodies: BTreeSet<_> = loose.into_iter().map(|column| column / 3).collect();
+        let elements: BTreeSet<Element> = excess
+            .into_iter()
+            .map(|row| system.equations()[row].element)
+            .collect();
+        Error::Structure {
+            equations: incidences.len(),
+            unknowns: system.unknowns(),
+            loose: bodies
+                .into_iter()
+                .map(|body| format!("body `{}`", mechanism.bodies[body].name))
+                .collect(),
+            excess: elements
+                .into_iter()
+                .map(|element| element.describe(mechanism))
+                .collect(),
+        }
+    }
+}
+
+fn unmatched(partner: &[Option<usize>]) -> Vec<usize> {
+    (0..partner.len())
+        .filter(|&k| partner[k].is_none())
+        .collect()
+}
+
+/// All nodes of one side that alternating paths reach from `start`: any edge across, a matched
+/// one back.
+fn reach(
+    start: Vec<usize>,
+    across: impl Fn(usize) -> Vec<usize>,
+    back: impl Fn(usize) -> Option<usize>,
+) -> BTreeSet<usize> {
+    let mut seen: BTreeSet<_> = start.iter().copied().collect();
+    let mut queue = start;
+    while let Some(node) = queue.pop() {
+        for next in across(node).into_iter().filter_map(&back) {
+            if seen.insert(next) {
+                queue.push(next);
+            }
+        }
+    }
+    seen
+}

@@ -1,0 +1,313 @@
+//! The mechanism as a system of equations Phi(q, t) = 0 (Ec. 3.6.3).
+//!
+//! This is one side of the seam to the linear algebra: here are the equations, their rows and
+//! their scales, and nothing about how a linear system is solved.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use super::configuration::Configuration;
+use super::constraint::{self, Axis, Coincidence, Constraint, Dimension, Gradient};
+use super::{Element, Error};
+use crate::mechanism::{
+    Coordinate, CoordinateKind, DriverId, Expression, Joint, JointKind, MarkerId, Mechanism,
+};
+
+/// What c(q) is held at.
+#[derive(Clone, Debug)]
+pub enum Target {
+    /// A number that depends on parameters only.
+    Constant(Expression),
+    /// The value of a driver.
+    Driver(DriverId),
+}
+
+/// One row of Phi: c(q) − target = 0.
+#[derive(Debug)]
+pub struct Equation {
+    /// The joint, constraint or driver that it belongs to.
+    pub element: Element,
+    /// c(q).
+    pub constraint: Box<dyn Constraint>,
+    /// What it is held at.
+    pub target: Target,
+}
+
+/// The equations of a mechanism: kinematic constraints (Ec. 3.6.1), then drivers (Ec. 3.6.2).
+#[derive(Debug)]
+pub struct System {
+    mechanism: Arc<Mechanism>,
+    equations: Vec<Equation>,
+}
+
+/// The right-hand sides in force: what each c(q) is held at.
+#[derive(Clone, Debug)]
+pub struct Targets {
+    /// Values of the constants, zero for drivers.
+    constants: Vec<f64>,
+    /// Whole turns by which an angle row differs from its constant.
+    pub turns: Vec<i32>,
+}
+
+impl System {
+    /// Writes down the equations of a mechanism.
+    #[must_use]
+    pub fn new(mechanism: Arc<Mechanism>) -> Self {
+        let mut equations = Vec::new();
+        for (index, joint) in mechanism.joints.iter().enumerate() {
+            for (constraint, target) in joint_relations(joint) {
+                equations.push(Equation {
+                    element: Element::Joint(index),
+                    constraint,
+                    target: Target::Constant(target),
+                });
+            }
+        }
+        for (index, held) in mechanism.constraints.iter().enumerate() {
+            equations.push(Equation {
+                element: Element::Constraint(index),
+                constraint: constraint::of_coordinate(&held.coordinate),
+                target: Target::Constant(held.value.clone()),
+            });
+        }
+        for (index, driver) in mechanism.drivers.iter().enumerate() {
+            equations.push(Equation {
+                element: Element::Driver(DriverId(index)),
+                constraint: constraint::of_coordinate(&driver.coordinate),
+                target: Target::Driver(DriverId(index)),
+            });
+        }
+        Self {
+            mechanism,
+            equations,
+        }
+    }
+
+    /// The mechanism these are the equations of.
+    #[must_use]
+    pub fn mechanism(&self) -> &Arc<Mechanism> {
+        &self.mechanism
+    }
+
+    /// The rows of Phi.
+    #[must_use]
+    pub fn equations(&self) -> &[Equation] {
+        &self.equations
+    }
+
+    /// The number of generalized coordinates, three a body.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        3 * self.mechanism.bodies.len()
+    }
+
+    /// Targets of which [`set_parameters`](Self::set_parameters) has still to give the values.
+    #[must_use]
+    pub fn targets(&self) -> Targets {
+        Targets {
+            constants: vec![0.0; self.equations.len()],
+            turns: vec![0; self.equations.len()],
+        }
+    }
+
+    /// Takes over the constants for these parameter values. Allocates nothing unless it fails.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] where an expression leaves its domain, [`Error::NotPositive`] where a
+    /// distance is held at a value that is not positive.
+    pub fn set_parameters(&self, parameters: &[f64], targets: &mut Targets) -> Result<(), Error> {
+        for (equation, constant) in self.equations.iter().zip(&mut targets.constants) {
+            let Target::Constant(expression) = &equation.target else {
+                continue;
+            };
+            *constant = expression.evaluate(&|p| parameters[p.index()], 0.0);
+            if !constant.is_finite() {
+                return Err(Error::NotFinite {
+                    what: equation.element.describe(&self.mechanism),
+                });
+            }
+            if !equation.constraint.admits(*constant) {
+                return Err(Error::NotPositive {
+                    what: equation.element.describe(&self.mechanism),
+                    value: *constant,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether every driver's value is one that its coordinate can take.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] or [`Error::NotPositive`], naming the driver.
+    pub fn check_drivers(&self, drivers: &[f64]) -> Result<(), Error> {
+        for equation in &self.equations {
+            if let Target::Driver(driver) = equation.target {
+                let value = drivers[driver.index()];
+                let what = || equation.element.describe(&self.mechanism);
+                if !value.is_finite() {
+                    return Err(Error::NotFinite { what: what() });
+                }
+                if !equation.constraint.admits(value) {
+                    return Err(Error::NotPositive {
+                        what: what(),
+                        value,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Fixes the whole turns of each angle row that is not a driver: the ones nearest the present
+    /// configuration.
+    pub fn fix_turns(&self, at: &Configuration, targets: &mut Targets) {
+        for (row, equation) in self.equations.iter().enumerate() {
+            if let (Target::Constant(_), Dimension::Angle) =
+                (&equation.target, equation.constraint.dimension())
+            {
+                let excess = equation.constraint.value(at) - targets.constants[row];
+                // A saturating cast: nobody turns two thousand million times before assembly.
+                targets.turns[row] = (excess / TAU).round() as i32;
+            }
+        }
+    }
+
+    /// What row `row` is held at, `drivers` being the values u of all drivers.
+    #[must_use]
+    pub fn target(&self, row: usize, targets: &Targets, drivers: &[f64]) -> f64 {
+        match self.equations[row].target {
+            Target::Constant(_) => targets.constants[row] + TAU * f64::from(targets.turns[row]),
+            Target::Driver(driver) => drivers[driver.index()],
+        }
+    }
+
+    /// Evaluates Phi and its Jacobian, scaled so that metres and radians compare: rows in
+    /// metres are divided by the mechanism's size, columns multiplied by
+    /// [`column_scale`](Self::column_scale).
+    ///
+    /// `residual[row]` becomes Phi_row; `rounding[row]` an estimate of the rounding error that
+    /// this value carries anyhow; `entry(row, column, value)` is called for each entry of the
+    /// Jacobian (Ec. 3.6.4). `q` is the pose that `at` was made from.
+    pub fn evaluate(
+        &self,
+        at: &Configuration,
+        q: &[f64],
+        targets: &Targets,
+        drivers: &[f64],
+        residual: &mut [f64],
+        rounding: &mut [f64],
+        mut entry: impl FnMut(usize, usize, f64),
+    ) {
+        let size = at.size();
+        let mut gradient = Gradient::new();
+        for (row, equation) in self.equations.iter().enumerate() {
+            let row_scale = equation.row_scale(at);
+            let target = self.target(row, targets, drivers);
+            residual[row] = (equation.constraint.value(at) - target) * row_scale;
+            // To first order each coordinate's own rounding moves the value by gradient times
+            // q eps; the sines and products inside add some eps of the size.
+            let mut magnitude = target.abs() * row_scale + 1.0;
+            gradient.clear();
+            equation.constraint.gradient(at, &mut gradient);
+            for (column, value) in gradient.entries() {
+                magnitude += (value * q[column]).abs() * row_scale;
+                entry(
+                    row,
+                    column,
+                    value * row_scale * Self::column_scale(column, size),
+                );
+            }
+            rounding[row] = magnitude * f64::EPSILON;
+        }
+    }
+
+    /// Writes nu, the right-hand side of the velocity equation (Ec. 3.6.10), scaled as Phi:
+    /// `first(driver)`, the driver's first derivative, in its row and zero elsewhere.
+    pub fn velocity_side(
+        &self,
+        at: &Configuration,
+        first: impl Fn(DriverId) -> f64,
+        nu: &mut [f64],
+    ) {
+        for (equation, nu) in self.equations.iter().zip(nu) {
+            *nu = match equation.target {
+                Target::Constant(_) => 0.0,
+                Target::Driver(driver) => first(driver) * equation.row_scale(at),
+            };
+        }
+    }
+
+    /// Writes gamma, the right-hand side of the acceleration equation (Ec. 3.6.11), scaled as
+    /// Phi: `second(driver)`, the driver's second derivative, in its row, minus the quadratic
+    /// term of each row. Phi_qt is zero, as drivers and coordinates are in separate terms.
+    pub fn acceleration_side(
+        &self,
+        at: &Configuration,
+        q_dot: &[f64],
+        second: impl Fn(DriverId) -> f64,
+        gamma: &mut [f64],
+    ) {
+        for (equation, gamma) in self.equations.iter().zip(gamma) {
+            let u_ddot = match equation.target {
+                Target::Constant(_) => 0.0,
+                Target::Driver(driver) => second(driver),
+            };
+            *gamma = (u_ddot - equation.constraint.quadratic(at, q_dot)) * equation.row_scale(at);
+        }
+    }
+
+    /// The unknown in metres or radians that a scaled unknown of one stands for.
+    #[must_use]
+    pub fn column_scale(column: usize, size: f64) -> f64 {
+        if column % 3 == 2 { 1.0 } else { size }
+    }
+}
+
+impl Equation {
+    /// A row in metres is divided by the mechanism's size, one in radians is left as it is.
+    fn row_scale(&self, at: &Configuration) -> f64 {
+        match self.constraint.dimension() {
+            Dimension::Length => 1.0 / at.size(),
+            Dimension::Angle => 1.0,
+        }
+    }
+}
+
+/// The relations that a joint stands for, and what they are held at.
+fn joint_relations(joint: &Joint) -> Vec<(Box<dyn Constraint>, Expression)> {
+    let (from, to) = (joint.from, joint.to);
+    let zero = || Expression::constant(0.0);
+    let along = |kind| coordinate(kind, from, to);
+    let coincide = |axis| -> (Box<dyn Constraint>, Expression) {
+        (Box::new(Coincidence { from, to, axis }), zero())
+    };
+    match &joint.kind {
+        JointKind::Revolute => vec![coincide(Axis::X), coincide(Axis::Y)],
+        JointKind::Translational => vec![
+            (along(CoordinateKind::Y), zero()),
+            (along(CoordinateKind::Angle), zero()),
+        ],
+        JointKind::Slot => vec![(along(CoordinateKind::Y), zero())],
+        JointKind::Link { length } => vec![(along(CoordinateKind::Distance), length.clone())],
+        JointKind::RevoluteTranslational { offset } => {
+            vec![(along(CoordinateKind::Y), offset.clone())]
+        }
+        JointKind::Weld => vec![
+            coincide(Axis::X),
+            coincide(Axis::Y),
+            (along(CoordinateKind::Angle), zero()),
+        ],
+    }
+}
+
+fn coordinate(kind: CoordinateKind, from: MarkerId, to: MarkerId) -> Box<dyn Constraint> {
+    constraint::of_coordinate(&Coordinate {
+        kind,
+        from,
+        to,
+        axes: from,
+    })
+}

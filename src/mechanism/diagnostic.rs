@@ -1,0 +1,168 @@
+//! What is wrong with a mechanism file, as data.
+
+use super::{Source, Span};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// The mechanism can be used; it is probably not what was meant.
+    Warning,
+    /// The file does not describe a mechanism.
+    Error,
+}
+
+impl Severity {
+    /// `warning` or `error`.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// Something wrong in a mechanism file: where, and what would be right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// Which kind of problem, in kebab case: `unknown-body`.
+    pub code: &'static str,
+    /// What is wrong: lower case, no full stop, names in back quotes.
+    pub message: String,
+    /// The places concerned, the primary one first; none if the problem has no place.
+    pub labels: Vec<Label>,
+    /// What would be right, if that can be told.
+    pub help: Option<String>,
+}
+
+/// A place in the file with a word on its part in the problem.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// Where.
+    pub span: Span,
+    /// What is to be seen there; may be empty.
+    pub text: String,
+}
+
+impl Diagnostic {
+    /// An error without place or help yet.
+    pub fn error(code: &'static str, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            code,
+            message: message.into(),
+            labels: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// A warning without place or help yet.
+    pub fn warning(code: &'static str, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(code, message)
+        }
+    }
+
+    /// Adds a place; the first one added is the primary one.
+    #[must_use]
+    pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.labels.push(Label {
+            span,
+            text: text.into(),
+        });
+        self
+    }
+
+    /// Says what would be right.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<Option<String>>) -> Self {
+        self.help = help.into();
+        self
+    }
+
+    /// The problem on one line, `file:line:column: error: message; help`, for a log.
+    #[must_use]
+    pub fn one_line(&self, source: &Source) -> String {
+        let mut line = source.name().to_owned();
+        if let Some(label) = self.labels.first() {
+            let position = source.position(label.span.start);
+            line += &format!(":{}:{}", position.line, position.column);
+        }
+        line += &format!(": {}: {}", self.severity.as_str(), self.message);
+        if let Some(help) = &self.help {
+            line += &format!("; {help}");
+        }
+        line
+    }
+}
+
+/// Defines the codes and lists them, so that a test can ask for an example of each.
+macro_rules! codes {
+    ($($name:ident = $code:literal,)*) => {
+        /// The codes, each a kind of problem.
+        pub(super) mod code {
+            $(pub(in crate::mechanism) const $name: &str = $code;)*
+        }
+
+        impl Diagnostic {
+            /// Every code that a diagnostic can carry.
+            pub const CODES: &'static [&'static str] = &[$(code::$name,)*];
+        }
+    };
+}
+
+codes! {
+    BAD_EXPRESSION = "bad-expression",
+    DRIVER_SOURCE = "driver-source",
+    DUPLICATE_KEY = "duplicate-key",
+    DUPLICATE_NAME = "duplicate-name",
+    DUPLICATE_OUTPUT = "duplicate-output",
+    FLOATING_BODY = "floating-body",
+    ILLEGAL_NAME = "illegal-name",
+    ILLEGAL_TEXT = "illegal-text",
+    ILLEGAL_VALUE = "illegal-value",
+    MISSING_KEY = "missing-key",
+    MISSING_MASS = "missing-mass",
+    NO_BODIES = "no-bodies",
+    NOT_FINITE = "not-finite",
+    NOT_TUNABLE = "not-tunable",
+    OUT_OF_RANGE = "out-of-range",
+    PARAMETER_CYCLE = "parameter-cycle",
+    RESERVED_NAME = "reserved-name",
+    SAME_BODY = "same-body",
+    SYNTAX = "syntax",
+    TOO_MANY_PROBLEMS = "too-many-problems",
+    UNKNOWN_BODY = "unknown-body",
+    UNKNOWN_COORDINATE = "unknown-coordinate",
+    UNKNOWN_FORMAT = "unknown-format",
+    UNKNOWN_JOINT_TYPE = "unknown-joint-type",
+    UNKNOWN_KEY = "unknown-key",
+    UNKNOWN_MARKER = "unknown-marker",
+    UNKNOWN_UNIT = "unknown-unit",
+    UNUSED_PARAMETER = "unused-parameter",
+    WRONG_DISPLAY_UNIT = "wrong-display-unit",
+    WRONG_TYPE = "wrong-type",
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_line_names_the_primary_place_and_the_help() {
+        let source = Source::new("a.toml", "x = 1\ny = 2\n");
+        let bare = Diagnostic::warning("code", "something is odd");
+        assert_eq!(bare.one_line(&source), "a.toml: warning: something is odd");
+        let full = Diagnostic::error("code", "no body `cranck`")
+            .label(10..11, "here")
+            .label(0..1, "there")
+            .help("did you mean `crank`?".to_owned());
+        assert_eq!(
+            full.one_line(&source),
+            "a.toml:2:5: error: no body `cranck`; did you mean `crank`?"
+        );
+    }
+}

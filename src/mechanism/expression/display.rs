@@ -1,0 +1,85 @@
+//! An expression as text.
+
+use std::fmt;
+
+use super::function::Function;
+use super::{Expression, Operation};
+use crate::mechanism::ParameterId;
+
+/// How tightly the outermost operator of a text binds; an operand that binds less tightly than
+/// its place demands goes into parentheses.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Binding {
+    Sum,
+    Product,
+    Sign,
+    Power,
+    Atom,
+}
+
+impl Expression {
+    /// The expression as text in its own language, with as few parentheses as it takes.
+    ///
+    /// Parsed again, the text gives an equal expression.
+    pub fn display<'a>(
+        &'a self,
+        parameter_name: impl Fn(ParameterId) -> &'a str,
+    ) -> impl fmt::Display {
+        let mut texts: Vec<(String, Binding)> = Vec::new();
+        for operation in &self.program {
+            let last = texts.len() - operation.arity();
+            let operands = texts.split_off(last);
+            texts.push(join(*operation, operands, &parameter_name));
+        }
+        texts
+            .pop()
+            .map(|(text, _)| text)
+            .expect("a program leaves one operand")
+    }
+}
+
+/// The text of an operation on the texts of its operands.
+fn join<'a>(
+    operation: Operation,
+    operands: Vec<(String, Binding)>,
+    parameter_name: &impl Fn(ParameterId) -> &'a str,
+) -> (String, Binding) {
+    let mut operands = operands.into_iter();
+    let mut operand = |least: Binding| {
+        let (text, binding) = operands.next().expect("as many as the operation takes");
+        if binding < least {
+            format!("({text})")
+        } else {
+            text
+        }
+    };
+    use Binding::{Atom, Power, Product, Sign, Sum};
+    let mut infix = |left: Binding, symbol: &str, right: Binding| {
+        // Appended to the left operand: a long sum is written in linear time.
+        let mut text = operand(left);
+        text.push_str(symbol);
+        text.push_str(&operand(right));
+        text
+    };
+    match operation {
+        Operation::Add => (infix(Sum, " + ", Product), Sum),
+        Operation::Subtract => (infix(Sum, " - ", Product), Sum),
+        Operation::Multiply => (infix(Product, "*", Sign), Product),
+        Operation::Divide => (infix(Product, "/", Sign), Product),
+        Operation::Power => (infix(Atom, "^", Sign), Power),
+        Operation::Negate => (format!("-{}", operand(Sign)), Sign),
+        Operation::Number(value) if value.is_sign_negative() => (format!("{value:?}"), Sign),
+        Operation::Number(value) => (format!("{value:?}"), Atom),
+        Operation::Parameter(id) => (parameter_name(id).to_owned(), Atom),
+        Operation::Time => ("t".to_owned(), Atom),
+        Operation::Unary(function) => {
+            let name = Function::Unary(function).name();
+            (format!("{name}({})", operand(Sum)), Atom)
+        }
+        Operation::Binary(function) => {
+            let name = Function::Binary(function).name();
+            let first = operand(Sum);
+            (format!("{name}({first}, {})", operand(Sum)), Atom)
+        }
+    }
+}

@@ -1,0 +1,410 @@
+//! From text to expression: a Pratt parser that says where an error is.
+
+use super::function::{FUNCTIONS, Function};
+use super::token::{Token, TokenKind, scan};
+use super::{CONSTANTS, Expression, MAX_STACK, Operation, run};
+use crate::mechanism::names::{self, NameTable, quoted};
+use crate::mechanism::{ParameterId, Span};
+
+/// Depth of the parser's own recursion: parentheses, signs, powers and operators within one
+/// another.
+const MAX_DEPTH: usize = 128;
+
+/// What is wrong with the text of an expression.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct ExpressionError {
+    /// What is wrong.
+    pub message: String,
+    /// Where, in bytes of the text.
+    pub span: Span,
+    /// What would be right, if that can be told.
+    pub help: Option<String>,
+}
+
+impl ExpressionError {
+    pub(super) fn new(span: Span, message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            span,
+            help: None,
+        }
+    }
+
+    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// The names that an expression may use.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::mechanism) struct Scope<'a> {
+    /// The parameters.
+    pub(in crate::mechanism) parameters: &'a NameTable<'a, ParameterId>,
+    /// Whether the expression may use `t`.
+    pub(in crate::mechanism) time_allowed: bool,
+}
+
+impl Expression {
+    /// Parses `text` with the names in `scope`.
+    ///
+    /// # Errors
+    ///
+    /// The first thing wrong: syntax, an unknown name, nesting too deep, or a constant part that
+    /// is not a finite number.
+    pub(in crate::mechanism) fn parse(
+        text: &str,
+        scope: Scope<'_>,
+    ) -> Result<Self, ExpressionError> {
+        let mut parser = Parser::new(text, scope)?;
+        if parser.token.kind == TokenKind::End {
+            return Err(
+                ExpressionError::new(0..text.len(), "the expression is empty")
+                    .help("write a number or a formula over the parameters"),
+            );
+        }
+        parser.parse_operators(0)?;
+        parser.expect_end()?;
+        Ok(Self::new(parser.program))
+    }
+}
+
+/// How an infix operator binds: it takes a left operand that binds at least as tightly as `left`,
+/// and a right one of at least `right`.
+struct Infix {
+    left: u8,
+    right: u8,
+    operation: Operation,
+}
+
+/// A sign binds tighter than a product and looser than a power.
+const SIGN: u8 = 5;
+
+fn infix(kind: TokenKind<'_>) -> Option<Infix> {
+    let TokenKind::Symbol(symbol) = kind else {
+        return None;
+    };
+    let (left, right, operation) = match symbol {
+        b'+' => (1, 2, Operation::Add),
+        b'-' => (1, 2, Operation::Subtract),
+        b'*' => (3, 4, Operation::Multiply),
+        b'/' => (3, 4, Operation::Divide),
+        b'^' => (8, 7, Operation::Power),
+        _ => return None,
+    };
+    Some(Infix {
+        left,
+        right,
+        operation,
+    })
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    scope: Scope<'a>,
+    /// The next token, not yet taken.
+    token: Token<'a>,
+    /// The last token taken.
+    previous: Option<Token<'a>>,
+    program: Vec<Operation>,
+    /// Operands waiting where the program now ends.
+    height: usize,
+    depth: usize,
+}
+
+impl<'a> Parser<'a> {
+    fn new(text: &'a str, scope: Scope<'a>) -> Result<Self, ExpressionError> {
+        Ok(Self {
+            text,
+            scope,
+            token: scan(text, 0)?,
+            previous: None,
+            program: Vec::new(),
+            height: 0,
+            depth: 0,
+        })
+    }
+
+    /// Takes the next token.
+    fn advance(&mut self) -> Result<Token<'a>, ExpressionError> {
+        let taken = self.token;
+        self.previous = Some(taken);
+        self.token = scan(self.text, taken.end)?;
+        Ok(taken)
+    }
+
+    /// Parses an operand and all operators after it that bind at least as tightly as `least`;
+    /// returns what that spans.
+    fn parse_operators(&mut self, least: u8) -> Result<Span, ExpressionError> {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            return Err(self.nested_too_deeply());
+        }
+        let mut span = self.parse_operand()?;
+        while let Some(infix) = infix(self.token.kind).filter(|infix| infix.left >= least) {
+            self.advance()?;
+            span.end = self.parse_operators(infix.right)?.end;
+            self.emit(infix.operation, &span)?;
+        }
+        self.depth -= 1;
+        Ok(span)
+    }
+
+    fn parse_operand(&mut self) -> Result<Span, ExpressionError> {
+        let token = self.token;
+        match token.kind {
+            TokenKind::Number(value) => {
+                self.advance()?;
+                self.emit(Operation::Number(value), &token.span())?;
+                Ok(token.span())
+            }
+            TokenKind::Name(name) => {
+                self.advance()?;
+                self.parse_name(name, token.span())
+            }
+            TokenKind::Symbol(b'(') => {
+                self.advance()?;
+                self.parse_operators(0)?;
+                let close = self.expect_close(&token)?;
+                Ok(token.start..close.end)
+            }
+            TokenKind::Symbol(sign @ (b'+' | b'-')) => {
+                self.advance()?;
+                let span = token.start..self.parse_operators(SIGN)?.end;
+                if sign == b'-' {
+                    self.emit(Operation::Negate, &span)?;
+                }
+                Ok(span)
+            }
+            TokenKind::Symbol(_) | TokenKind::End => Err(self.missing_operand()),
+        }
+    }
+
+    /// A constant, a parameter, time, or a function with its arguments.
+    fn parse_name(&mut self, name: &str, span: Span) -> Result<Span, ExpressionError> {
+        let called = self.token.kind == TokenKind::Symbol(b'(');
+        let constant = CONSTANTS.iter().find(|(constant, _)| *constant == name);
+        let operation = if let Some(function) = Function::by_name(name) {
+            if called {
+                return self.parse_call(function, span);
+            }
+            return Err(
+                ExpressionError::new(span, format!("`{name}` is a function"))
+                    .help(format!("write `{name}(…)`")),
+            );
+        } else if let Some((_, value)) = constant {
+            Operation::Number(*value)
+        } else if name == "t" {
+            if !self.scope.time_allowed {
+                return Err(ExpressionError::new(
+                    span,
+                    "only a `motion` may use time `t`",
+                ));
+            }
+            Operation::Time
+        } else if let Some(id) = self.scope.parameters.get(name) {
+            Operation::Parameter(id)
+        } else {
+            return Err(self.unknown_name(name, span, called));
+        };
+        if called {
+            return Err(
+                ExpressionError::new(span, format!("{} is not a function", quoted(name)))
+                    .help(format!("multiplication is written out: `{name}*(…)`")),
+            );
+        }
+        self.emit(operation, &span)?;
+        Ok(span)
+    }
+
+    fn parse_call(&mut self, function: Function, name: Span) -> Result<Span, ExpressionError> {
+        let open = self.advance()?;
+        let (operation, least, variadic) = match function {
+            Function::Unary(function) => (Operation::Unary(function), 1, false),
+            Function::Binary(function) => (Operation::Binary(function), 2, function.is_variadic()),
+        };
+        let mut count = 0;
+        if self.token.kind != TokenKind::Symbol(b')') {
+            loop {
+                self.parse_operators(0)?;
+                count += 1;
+                if variadic && count >= 2 {
+                    self.emit(operation, &(name.start..self.token.start))?;
+                }
+                if self.token.kind != TokenKind::Symbol(b',') {
+                    break;
+                }
+                self.advance()?;
+            }
+        }
+        let span = name.start..self.expect_close(&open)?.end;
+        if count < least || (count > least && !variadic) {
+            let wanted = match (least, variadic) {
+                (1, _) => "1 argument",
+                (_, false) => "2 arguments",
+                (_, true) => "2 arguments or more",
+            };
+            return Err(ExpressionError::new(
+                span,
+                format!("`{}` takes {wanted}, found {count}", function.name()),
+            ));
+        }
+        if !variadic {
+            self.emit(operation, &span)?;
+        }
+        Ok(span)
+    }
+
+    /// Appends an operation, the last one of what `span` covers, and computes it at once where
+    /// its operands are constant.
+    fn emit(&mut self, operation: Operation, span: &Span) -> Result<(), ExpressionError> {
+        let arity = operation.arity();
+        let operands = self.program.len() - arity;
+        let constant = self.program[operands..]
+            .iter()
+            .all(|operand| matches!(operand, Operation::Number(_)));
+        self.program.push(operation);
+        self.height = self.height - arity + 1;
+        if self.height > MAX_STACK {
+            return Err(self.nested_too_deeply());
+        }
+        if arity > 0 && constant {
+            let value = run(&self.program[operands..], &|_| f64::NAN, f64::NAN);
+            if !value.is_finite() {
+                let text = quoted(&self.text[span.clone()]);
+                return Err(ExpressionError::new(
+                    span.clone(),
+                    format!("{text} is not a finite number"),
+                ));
+            }
+            self.program.truncate(operands);
+            self.program.push(Operation::Number(value));
+        }
+        Ok(())
+    }
+
+    fn expect_end(&self) -> Result<(), ExpressionError> {
+        match self.token.kind {
+            TokenKind::End => Ok(()),
+            TokenKind::Symbol(b')') => Err(ExpressionError::new(
+                self.token.span(),
+                "this parenthesis closes none",
+            )),
+            _ => Err(self.missing_operator()),
+        }
+    }
+
+    fn expect_close(&mut self, open: &Token<'_>) -> Result<Token<'a>, ExpressionError> {
+        match self.token.kind {
+            TokenKind::Symbol(b')') => self.advance(),
+            TokenKind::End => Err(ExpressionError::new(
+                open.span(),
+                "this parenthesis is not closed",
+            )),
+            _ => Err(self.missing_operator()),
+        }
+    }
+
+    /// The error for a token that cannot follow a complete operand.
+    fn missing_operator(&self) -> ExpressionError {
+        let found = &self.text[self.token.span()];
+        let error = ExpressionError::new(
+            self.token.span(),
+            format!("expected an operator, found {}", quoted(found)),
+        );
+        if !self.token.starts_operand() {
+            return error.help("the decimal mark is a point");
+        }
+        let left = match self.previous {
+            Some(token) if token.kind != TokenKind::Symbol(b')') => &self.text[token.span()],
+            _ => "(…)",
+        };
+        let right = if found == "(" { "(…)" } else { found };
+        if left.len() + right.len() > 40 {
+            return error.help("multiplication is written out");
+        }
+        if let Some(help) = self.unit_help(right) {
+            return error.help(help);
+        }
+        error.help(format!("multiplication is written out: `{left}*{right}`"))
+    }
+
+    /// The error for a token where an operand is due.
+    fn missing_operand(&self) -> ExpressionError {
+        let error = match (self.token.kind, self.previous) {
+            (TokenKind::End, Some(previous)) => {
+                let text = &self.text[previous.span()];
+                ExpressionError::new(
+                    previous.span(),
+                    format!("expected an operand after `{text}`"),
+                )
+            }
+            _ => {
+                let text = &self.text[self.token.span()];
+                ExpressionError::new(
+                    self.token.span(),
+                    format!("expected an operand, found {}", quoted(text)),
+                )
+            }
+        };
+        let twice = |previous: Token<'_>| {
+            previous.kind == TokenKind::Symbol(b'*') && previous.end == self.token.start
+        };
+        if self.token.kind == TokenKind::Symbol(b'*') && self.previous.is_some_and(twice) {
+            return error.help("a power is written `x^2`");
+        }
+        error
+    }
+
+    fn unknown_name(&self, name: &str, span: Span, called: bool) -> ExpressionError {
+        if called {
+            let error = ExpressionError::new(span, format!("no function {}", quoted(name)));
+            return match function_help(name) {
+                Some(help) => error.help(help),
+                None => error,
+            };
+        }
+        let error = ExpressionError::new(span, format!("no parameter {}", quoted(name)));
+        let constants = CONSTANTS.map(|(constant, _)| constant);
+        let help = self
+            .unit_help(name)
+            .or_else(|| self.scope.parameters.help(name, &constants));
+        match help {
+            Some(help) => error.help(help),
+            None => error,
+        }
+    }
+
+    /// Help for a unit's symbol where it has no place.
+    fn unit_help(&self, name: &str) -> Option<String> {
+        let is_unit = ["m", "rad", "s", "kg", "N"].contains(&name);
+        (is_unit && self.scope.parameters.get(name).is_none())
+            .then(|| format!("numbers are in SI units: leave out `{name}`"))
+    }
+
+    fn nested_too_deeply(&self) -> ExpressionError {
+        ExpressionError::new(
+            self.token.span(),
+            "the expression is nested too deeply here",
+        )
+        .help("give a part of it a name: a parameter of its own")
+    }
+}
+
+/// Help for a function that does not exist: what others call one of ours, or the nearest name.
+fn function_help(name: &str) -> Option<String> {
+    let ours = match name {
+        "log" => return Some("`ln` is the natural logarithm, `log10` the decimal one".to_owned()),
+        "pow" => return Some("a power is written `x^y`".to_owned()),
+        "arcsin" => "asin",
+        "arccos" => "acos",
+        "arctan" => "atan",
+        "arctan2" => "atan2",
+        "sgn" | "signum" => "sign",
+        "fabs" => "abs",
+        "fmod" | "rem" => "mod",
+        _ => return names::help(name, &FUNCTIONS.map(|(known, _)| known)),
+    };
+    Some(format!("did you mean `{ours}`?"))
+}

@@ -1,0 +1,305 @@
+//! What connects two markers: joints, constraints, drivers and measures.
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::names::{quoted, shown};
+use crate::mechanism::syntax::Value;
+use crate::mechanism::{
+    Constraint, Coordinate, CoordinateKind, Driver, DriverSource, Expression, Joint, JointKind,
+    MarkerId, Measure,
+};
+
+use super::context::{Context, Entry, Fields, Quantity};
+
+const COORDINATES: [(&str, CoordinateKind); 4] = [
+    ("angle", CoordinateKind::Angle),
+    ("x", CoordinateKind::X),
+    ("y", CoordinateKind::Y),
+    ("distance", CoordinateKind::Distance),
+];
+
+/// A joint's type as written, before what else it needs is read.
+#[derive(Clone, Copy)]
+enum JointType {
+    Revolute,
+    Translational,
+    Slot,
+    Link,
+    RevoluteTranslational,
+    Weld,
+}
+
+const JOINT_TYPES: [(&str, JointType); 6] = [
+    ("revolute", JointType::Revolute),
+    ("translational", JointType::Translational),
+    ("slot", JointType::Slot),
+    ("link", JointType::Link),
+    ("revolute_translational", JointType::RevoluteTranslational),
+    ("weld", JointType::Weld),
+];
+
+/// How markers are written, for help where they are missing.
+const MARKERS_FORM: &str = "[\"ground.O\", \"crank.O\"]";
+
+impl<'a> Context<'a> {
+    pub(super) fn lower_joints(&mut self, entries: &[Entry<'a>]) -> Vec<Joint> {
+        let joints = entries.iter();
+        joints
+            .filter_map(|entry| self.lower_joint(*entry))
+            .collect()
+    }
+
+    fn lower_joint(&mut self, entry: Entry<'a>) -> Option<Joint> {
+        let fields = self.entry_fields(entry, "joint")?;
+        let joint_type = self.joint_type(&fields);
+        let markers = self.marker_pair(&fields);
+        let mut legal = vec!["type", "markers", "description"];
+        match joint_type {
+            Some(JointType::Link) => legal.push("length"),
+            Some(JointType::RevoluteTranslational) => legal.push("offset"),
+            Some(_) => {}
+            // Of a type that is not known nothing else is either.
+            None => legal.extend(fields.entries().map(|entry| entry.name())),
+        }
+        self.check_keys(&fields, &legal);
+        self.description(&fields);
+        let kind = match joint_type? {
+            JointType::Revolute => JointKind::Revolute,
+            JointType::Translational => JointKind::Translational,
+            JointType::Slot => JointKind::Slot,
+            JointType::Weld => JointKind::Weld,
+            JointType::Link => {
+                let length = self.required_quantity(&fields, "length", "0.1")?;
+                self.check_positive(&length, "`length`");
+                JointKind::Link {
+                    length: length.expression,
+                }
+            }
+            JointType::RevoluteTranslational => JointKind::RevoluteTranslational {
+                offset: self.required_quantity(&fields, "offset", "0.1")?.expression,
+            },
+        };
+        let (from, to) = markers?;
+        Some(Joint {
+            name: entry.name().to_owned(),
+            kind,
+            from,
+            to,
+        })
+    }
+
+    fn joint_type(&mut self, fields: &Fields<'a>) -> Option<JointType> {
+        let value = self.required(fields, "type", "\"revolute\"")?;
+        self.choice(value, &JOINT_TYPES, code::UNKNOWN_JOINT_TYPE, "joint type")
+    }
+
+    pub(super) fn lower_constraints(&mut self, entries: &[Entry<'a>]) -> Vec<Constraint> {
+        let constraints = entries.iter();
+        constraints
+            .filter_map(|entry| self.lower_constraint(*entry))
+            .collect()
+    }
+
+    fn lower_constraint(&mut self, entry: Entry<'a>) -> Option<Constraint> {
+        let fields = self.entry_fields(entry, "constraint")?;
+        let coordinate = self.coordinate(&fields, &["value", "description"]);
+        self.description(&fields);
+        let value = self.required_quantity(&fields, "value", "0");
+        let (coordinate, value) = (coordinate?, value?);
+        if coordinate.kind == CoordinateKind::Distance {
+            self.check_positive(&value, "a distance");
+        }
+        Some(Constraint {
+            name: entry.name().to_owned(),
+            coordinate,
+            value: value.expression,
+        })
+    }
+
+    pub(super) fn lower_drivers(&mut self, entries: &[Entry<'a>], start_time: f64) -> Vec<Driver> {
+        let drivers = entries.iter();
+        drivers
+            .filter_map(|entry| self.lower_driver(*entry, start_time))
+            .collect()
+    }
+
+    fn lower_driver(&mut self, entry: Entry<'a>, start_time: f64) -> Option<Driver> {
+        let fields = self.entry_fields(entry, "driver")?;
+        let coordinate = self.coordinate(&fields, &["start", "motion", "description"]);
+        let description = self.description(&fields);
+        let kind = coordinate.map(|coordinate| coordinate.kind);
+        let source = self.driver_source(&fields, kind, start_time);
+        Some(Driver {
+            name: entry.name().to_owned(),
+            description,
+            coordinate: coordinate?,
+            source: source?,
+        })
+    }
+
+    fn driver_source(
+        &mut self,
+        fields: &Fields<'a>,
+        kind: Option<CoordinateKind>,
+        start_time: f64,
+    ) -> Option<DriverSource> {
+        let motion = fields
+            .get("motion")
+            .map(|value| self.motion(value, kind, start_time));
+        let start = fields.get("start").map(|value| self.quantity(value));
+        match (start, motion) {
+            (Some(start), None) => {
+                let start = start?;
+                if kind == Some(CoordinateKind::Distance) {
+                    self.check_positive(&start, "the `start` of a distance");
+                }
+                Some(DriverSource::Input {
+                    start: start.value?,
+                })
+            }
+            (None, Some(motion)) => Some(DriverSource::Motion(motion?)),
+            (Some(_), Some(_)) => {
+                self.error_with_help(
+                    code::DRIVER_SOURCE,
+                    fields.key_span("start")?,
+                    format!("{} has both `start` and `motion`", fields.subject),
+                    "leave `start` out for a prescribed motion, `motion` for an FMI input"
+                        .to_owned(),
+                );
+                None
+            }
+            (None, None) => {
+                self.error_with_help(
+                    code::DRIVER_SOURCE,
+                    fields.place.clone(),
+                    format!("{} has neither `start` nor `motion`", fields.subject),
+                    "`start = \"60*deg\"` makes it an FMI input, `motion = \"10*deg*t\"` prescribes it"
+                        .to_owned(),
+                );
+                None
+            }
+        }
+    }
+
+    /// A function of time, checked at the start time.
+    fn motion(
+        &mut self,
+        value: &'a Value<'a>,
+        kind: Option<CoordinateKind>,
+        start_time: f64,
+    ) -> Option<Expression> {
+        let expression = self.expression(value, true)?;
+        let Some(start) = self.value_at(&expression, start_time) else {
+            return Some(expression);
+        };
+        let derivatives = [
+            (start.value, "the value"),
+            (start.first, "the velocity"),
+            (start.second, "the acceleration"),
+        ];
+        if let Some((_, what)) = derivatives.iter().find(|(value, _)| !value.is_finite()) {
+            self.not_finite(
+                value.span(),
+                &format!("at t = {}, {what}", shown(start_time)),
+            );
+            return None;
+        }
+        if kind == Some(CoordinateKind::Distance) {
+            let at_start = Quantity {
+                expression: Expression::constant(start.value),
+                value: Some(start.value),
+                span: value.span(),
+            };
+            self.check_positive(&at_start, "a distance, at the start time too,");
+        }
+        Some(expression)
+    }
+
+    pub(super) fn lower_measures(&mut self, entries: &[Entry<'a>]) -> Vec<Measure> {
+        let measures = entries.iter();
+        measures
+            .filter_map(|entry| {
+                let fields = self.entry_fields(*entry, "measure")?;
+                let coordinate = self.coordinate(&fields, &["description"]);
+                let description = self.description(&fields);
+                Some(Measure {
+                    name: entry.name().to_owned(),
+                    description,
+                    coordinate: coordinate?,
+                })
+            })
+            .collect()
+    }
+
+    /// The table of a named entry of a section of `what`s.
+    fn entry_fields(&mut self, entry: Entry<'a>, what: &str) -> Option<Fields<'a>> {
+        let subject = format!("{what} {}", quoted(entry.name()));
+        self.fields(entry.key, entry.value, subject)
+    }
+
+    fn required_quantity(
+        &mut self,
+        fields: &Fields<'a>,
+        key: &str,
+        form: &str,
+    ) -> Option<Quantity> {
+        let value = self.required(fields, key, form)?;
+        self.quantity(value)
+    }
+
+    /// The coordinate that a table describes, besides which it may have the keys `further`.
+    fn coordinate(&mut self, fields: &Fields<'a>, further: &[&str]) -> Option<Coordinate> {
+        let mut legal = vec!["coordinate", "markers", "axes"];
+        legal.extend(further);
+        self.check_keys(fields, &legal);
+        let kind = self
+            .required(fields, "coordinate", "\"angle\"")
+            .and_then(|value| {
+                self.choice(value, &COORDINATES, code::UNKNOWN_COORDINATE, "coordinate")
+            });
+        let markers = self.marker_pair(fields);
+        let axes = fields.get("axes").map(|value| self.marker(value));
+        if let (Some(CoordinateKind::Angle | CoordinateKind::Distance), Some(span)) =
+            (kind, fields.key_span("axes"))
+        {
+            self.error_with_help(
+                code::UNKNOWN_KEY,
+                span,
+                format!(
+                    "{} has `axes`, but is neither an `x` nor a `y`",
+                    fields.subject
+                ),
+                "an angle or a distance is the same on any axes".to_owned(),
+            );
+        }
+        let (from, to) = markers?;
+        Some(Coordinate {
+            kind: kind?,
+            from,
+            to,
+            axes: axes.unwrap_or(Some(from))?,
+        })
+    }
+
+    /// The two markers under `markers`, fixed on different bodies.
+    fn marker_pair(&mut self, fields: &Fields<'a>) -> Option<(MarkerId, MarkerId)> {
+        let value = self.required(fields, "markers", MARKERS_FORM)?;
+        let items = self.items_of(value, 2..=2, "an array of two markers")?;
+        // Both are looked up, so that each says what is wrong with it.
+        let markers: Vec<Option<MarkerId>> = items.iter().map(|item| self.marker(item)).collect();
+        let &[Some(from), Some(to)] = markers.as_slice() else {
+            return None;
+        };
+        let carrier = self.carriers[from.index()];
+        if carrier == self.carriers[to.index()] {
+            let name = quoted(self.carrier_name(carrier));
+            self.error_with_help(
+                code::SAME_BODY,
+                value.span(),
+                format!("both markers of {} are on {name}", fields.subject),
+                "a coordinate is measured between two bodies, or ground and a body".to_owned(),
+            );
+            return None;
+        }
+        Some((from, to))
+    }
+}

@@ -1,0 +1,255 @@
+//! Names: which are legal, which are taken, and the nearest right one to a wrong one.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+
+use super::expression::{CONSTANTS, function_names};
+
+/// Names that the FMU or the file's language uses itself, besides constants and functions.
+const TAKEN: [&str; 6] = ["ground", "solver", "rates", "extrapolation", "time", "t"];
+
+/// Names of a body's own quantities, which no marker may bear.
+const BODY_QUANTITIES: [&str; 9] = ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
+
+/// Looked up for a suggestion at most so often per table, so that a file of nothing but wrong
+/// names takes no quadratic time.
+const MAX_SUGGESTIONS: u32 = 100;
+
+/// Names longer than this get no suggestion: edit distance is quadratic in the length.
+const MAX_SUGGESTED_LENGTH: usize = 64;
+
+/// Most names that a message lists.
+const MAX_LISTED: usize = 16;
+
+/// Longest piece of the file that a message repeats, in characters.
+const MAX_QUOTED_LENGTH: usize = 60;
+
+/// Whether `name` matches `[A-Za-z][A-Za-z0-9_]*`.
+pub(super) fn is_legal(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+}
+
+/// Whether `name` is not free for parameters, bodies, joints and the like.
+pub(super) fn is_taken(name: &str) -> bool {
+    TAKEN.contains(&name)
+        || CONSTANTS.iter().any(|(constant, _)| *constant == name)
+        || function_names().any(|function| function == name)
+}
+
+/// Whether `name` is the name of a body's own quantity.
+pub(super) fn is_body_quantity(name: &str) -> bool {
+    BODY_QUANTITIES.contains(&name)
+}
+
+/// What names stand for, with a bounded supply of suggestions for wrong ones.
+#[derive(Debug)]
+pub(super) struct NameTable<'a, T> {
+    meanings: HashMap<&'a str, T>,
+    suggestions_left: Cell<u32>,
+}
+
+impl<'a, T: Copy> NameTable<'a, T> {
+    pub(super) fn new() -> Self {
+        Self {
+            meanings: HashMap::new(),
+            suggestions_left: Cell::new(MAX_SUGGESTIONS),
+        }
+    }
+
+    /// Adds a name; if it is there already, leaves and returns its meaning.
+    pub(super) fn insert(&mut self, name: &'a str, meaning: T) -> Option<T> {
+        let earlier = self.get(name);
+        if earlier.is_none() {
+            self.meanings.insert(name, meaning);
+        }
+        earlier
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.meanings.len()
+    }
+
+    pub(super) fn get(&self, name: &str) -> Option<T> {
+        self.meanings.get(name).copied()
+    }
+
+    /// Help for a name that is not in the table, nor among `further` legal ones: the nearest of
+    /// all these, or else the table's names if they are few.
+    pub(super) fn help(&self, name: &str, further: &[&str]) -> Option<String> {
+        let left = self.suggestions_left.get().checked_sub(1)?;
+        self.suggestions_left.set(left);
+        let mut candidates: Vec<&str> = self.meanings.keys().copied().collect();
+        // A hash map has no order of its own; the help must have one.
+        candidates.sort_unstable();
+        let own = candidates.len();
+        candidates.extend(further);
+        did_you_mean(name, &candidates).or_else(|| list(&candidates[..own]))
+    }
+}
+
+impl<'a, T: Copy> FromIterator<(&'a str, T)> for NameTable<'a, T> {
+    fn from_iter<I: IntoIterator<Item = (&'a str, T)>>(names: I) -> Self {
+        let mut table = Self::new();
+        for (name, meaning) in names {
+            table.insert(name, meaning);
+        }
+        table
+    }
+}
+
+/// The nearest candidate, or else all of them if they are few.
+pub(super) fn help(name: &str, candidates: &[&str]) -> Option<String> {
+    did_you_mean(name, candidates).or_else(|| list(candidates))
+}
+
+/// "did you mean `crank`?", if that is near.
+fn did_you_mean(name: &str, candidates: &[&str]) -> Option<String> {
+    nearest(name, candidates).map(|near| format!("did you mean {}?", quoted(near)))
+}
+
+/// "expected `x`, `y` or `angle`", if there are few candidates.
+fn list(candidates: &[&str]) -> Option<String> {
+    (1..=MAX_LISTED)
+        .contains(&candidates.len())
+        .then(|| format!("expected {}", either(candidates)))
+}
+
+/// The candidate nearest to `name` in edit distance, if one is near enough to be meant.
+pub(super) fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    let length = name.chars().count();
+    if length > MAX_SUGGESTED_LENGTH {
+        return None;
+    }
+    // One slip in a short word, up to one in three letters of a long one; a single letter is
+    // not near to any other, except to itself in the other case.
+    let near = if length < 2 { 0 } else { length.div_ceil(3) };
+    let distance = |candidate: &str| {
+        if candidate.eq_ignore_ascii_case(name) {
+            Some(0)
+        } else if candidate.len().abs_diff(name.len()) > 4 * near {
+            None
+        } else {
+            Some(strsim::damerau_levenshtein(name, candidate)).filter(|d| *d <= near)
+        }
+    };
+    // Farther than any slip: one is short for the other, as `deg` is for `degree`.
+    let abbreviation = |candidate: &str| {
+        let (short, long) = if candidate.len() < name.len() {
+            (candidate, name)
+        } else {
+            (name, candidate)
+        };
+        (short.len() >= 3 && long.starts_with(short)).then_some(usize::MAX)
+    };
+    candidates
+        .iter()
+        .filter(|candidate| candidate.len() <= MAX_SUGGESTED_LENGTH)
+        .filter_map(|candidate| {
+            let distance = distance(candidate).or_else(|| abbreviation(candidate))?;
+            Some((distance, *candidate))
+        })
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// "`a`, `b` or `c`".
+pub(super) fn either(candidates: &[&str]) -> String {
+    joined(candidates, "or")
+}
+
+/// The candidates in back quotes, the last after `conjunction`.
+pub(super) fn joined(candidates: &[&str], conjunction: &str) -> String {
+    match candidates {
+        [] => "nothing".to_owned(),
+        [one] => quoted(one),
+        [first @ .., last] => {
+            let first: Vec<String> = first.iter().map(|c| quoted(c)).collect();
+            format!("{} {conjunction} {}", first.join(", "), quoted(last))
+        }
+    }
+}
+
+/// A number as people write it: every digit, but no rows of zeros.
+pub(super) fn shown(number: f64) -> String {
+    if number == 0.0 || (1e-4..1e7).contains(&number.abs()) {
+        format!("{number}")
+    } else {
+        format!("{number:e}")
+    }
+}
+
+/// A piece of the file in back quotes, on one line, cut where it is very long.
+pub(super) fn quoted(text: &str) -> String {
+    let mut shown: String = text
+        .chars()
+        .take(MAX_QUOTED_LENGTH)
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect();
+    if text.chars().nth(MAX_QUOTED_LENGTH).is_some() {
+        shown.push('…');
+    }
+    format!("`{shown}`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn legal_names_are_ascii_words_that_start_with_a_letter() {
+        for name in ["a", "A1", "crank_2_", "x"] {
+            assert!(is_legal(name), "{name}");
+        }
+        for name in ["", "_a", "1a", "a-b", "a.b", "ä", "a b", "a\0"] {
+            assert!(!is_legal(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn taken_names_include_constants_and_functions() {
+        for name in ["ground", "t", "pi", "deg", "sin", "max", "hypot", "rates"] {
+            assert!(is_taken(name), "{name}");
+        }
+        assert!(!is_taken("crank"));
+    }
+
+    #[test]
+    fn the_nearest_name_is_one_slip_away() {
+        let candidates = ["crank", "coupler", "rocker"];
+        assert_eq!(nearest("cranck", &candidates), Some("crank"));
+        assert_eq!(nearest("Coupler", &candidates), Some("coupler"));
+        assert_eq!(nearest("rokcer", &candidates), Some("rocker"));
+        assert_eq!(nearest("slider", &candidates), None);
+        assert_eq!(nearest("A", &["B"]), None);
+        assert_eq!(nearest("a", &["B", "A"]), Some("A"));
+        assert_eq!(nearest("degrees", &["degre", "deg"]), Some("degre"));
+        assert_eq!(nearest("degree", &["crank", "deg"]), Some("deg"));
+        assert_eq!(nearest(&"x".repeat(1_000_000), &candidates), None);
+    }
+
+    #[test]
+    fn suggestions_are_bounded_in_number() {
+        let table: NameTable<()> = [("crank", ())].into_iter().collect();
+        for _ in 0..MAX_SUGGESTIONS {
+            assert!(table.help("cranc", &[]).is_some());
+        }
+        assert_eq!(table.help("cranc", &[]), None);
+    }
+
+    #[test]
+    fn numbers_are_shown_without_rows_of_zeros() {
+        let numbers = [0.0, 1.0, -0.25, 1e-6, 1e300, 0.1 + 0.2].map(shown);
+        assert_eq!(
+            numbers,
+            ["0", "1", "-0.25", "1e-6", "1e300", "0.30000000000000004"]
+        );
+    }
+
+    #[test]
+    fn quotes_stay_on_one_line() {
+        assert_eq!(quoted("a\nb"), "`a\u{fffd}b`");
+        assert!(quoted(&"y".repeat(100)).ends_with("y…`"));
+        assert_eq!(either(&["a", "b", "c"]), "`a`, `b` or `c`");
+    }
+}

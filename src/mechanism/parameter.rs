@@ -1,0 +1,46 @@
+//! Parameters and their derivation from one another.
+
+use super::{Expression, Mechanism, Number, Unit};
+
+/// A named number that can be changed without exporting again, or one derived from such.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Name, unique among all named things of the mechanism.
+    pub name: String,
+    /// One line for people, empty if the file gives none.
+    pub description: String,
+    /// Its value as the file gives it.
+    pub expression: Expression,
+    /// The file's value \[SI\].
+    pub default: f64,
+    /// Whether its value uses another parameter: such a one cannot be set.
+    pub derived: bool,
+    /// Whether it may change between steps.
+    pub tunable: bool,
+    /// Unit, for the FMU's description and for labels; values are SI all the same.
+    pub unit: Option<Unit>,
+    /// Smallest permitted value \[SI\].
+    pub min: Option<f64>,
+    /// Largest permitted value \[SI\].
+    pub max: Option<f64>,
+}
+
+impl Mechanism {
+    /// The file's value of every parameter, in parameter order.
+    #[must_use]
+    pub fn default_parameters(&self) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.default).collect()
+    }
+
+    /// Brings the derived parameters in line with the others. Allocates nothing.
+    ///
+    /// `values` is as long as [`Mechanism::parameters`]. A derivation that leaves its domain gives
+    /// a value that is not finite. On [`Jet`](super::Jet)s it carries derivatives along.
+    pub fn derive_parameters<N: Number>(&self, values: &mut [N]) {
+        for id in &self.derivation_order {
+            values[id.index()] = self.parameters[id.index()]
+                .expression
+                .evaluate(&|p| values[p.index()], N::constant(0.0));
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! TOML to a document in which each key and value knows its place.
+
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+use super::diagnostic::code;
+use super::{Diagnostic, Source, Span};
+
+/// A key with its place.
+pub(super) type Key<'a> = Spanned<DeString<'a>>;
+
+/// A value with its place.
+pub(super) type Value<'a> = Spanned<DeValue<'a>>;
+
+/// A table, in the order of the file.
+pub(super) type Table<'a> = DeTable<'a>;
+
+/// What the TOML parser says of a key that a table already has.
+const DUPLICATE_KEY: &str = "duplicate key";
+
+/// Parses the text. With the document come the keys that stand twice, whose first value is kept.
+///
+/// # Errors
+///
+/// The first syntax error: one slip brings a dozen others after it.
+pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Diagnostic>), Diagnostic> {
+    let (document, errors) = DeTable::parse_recoverable(source.text());
+    let mut duplicates = Vec::new();
+    for error in errors {
+        let span = error.span().unwrap_or(0..0);
+        if error.message() == DUPLICATE_KEY {
+            let key = source.text().get(span.clone()).unwrap_or_default();
+            let message = format!("the key {} stands here twice", super::names::quoted(key));
+            duplicates.push(Diagnostic::error(code::DUPLICATE_KEY, message).label(span, ""));
+        } else {
+            return Err(Diagnostic::error(code::SYNTAX, error.message()).label(span, ""));
+        }
+    }
+    Ok((document.into_inner(), duplicates))
+}
+
+/// What kind of value it is, as people say it.
+pub(super) fn kind(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "a boolean",
+        DeValue::Datetime(_) => "a date or time",
+        DeValue::Array(_) => "an array",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// The number nearest to what a TOML integer or float says; `None` for other values. Infinite for
+/// one that is out of range.
+pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+        DeValue::Integer(integer) => {
+            // TOML has no sign here. Past 128 bits it is no number that anyone meant.
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "rounded as a decimal one would be"
+            )]
+            let number = u128::from_str_radix(integer.as_str(), integer.radix())
+                .map_or(f64::INFINITY, |digits| digits as f64);
+            Some(number)
+        }
+        _ => None,
+    }
+}
+
+/// Where in the source the content of a string is, if the source has it literally: between plain
+/// quotes and without escapes. Then byte n of the string is byte n of that place.
+pub(super) fn content_span(source: &Source, quoted: Span, content: &str) -> Option<Span> {
+    let raw = source.text().get(quoted.clone())?;
+    ["\"\"\"", "'''", "\"", "'"].iter().find_map(|quote| {
+        let inner = raw.strip_prefix(quote)?.strip_suffix(quote)?;
+        let start = quoted.start + quote.len();
+        (inner == content).then(|| start..start + inner.len())
+    })
+}
+
+/// The document's content as text without comments and layout: equal for two documents exactly
+/// when they have the same keys and values in the same order, numbers compared as 64-bit floats.
+pub(super) fn canonical(document: &Table<'_>) -> String {
+    let mut text = String::new();
+    write_table(&mut text, document);
+    text
+}
+
+fn write_table(text: &mut String, table: &Table<'_>) {
+    text.push('{');
+    for (index, (key, value)) in table.iter().enumerate() {
+        if index > 0 {
+            text.push(',');
+        }
+        write_string(text, key.get_ref());
+        text.push(':');
+        write_value(text, value.get_ref());
+    }
+    text.push('}');
+}
+
+fn write_value(text: &mut String, value: &DeValue<'_>) {
+    match value {
+        DeValue::String(string) => write_string(text, string),
+        DeValue::Integer(_) | DeValue::Float(_) => {
+            let number = number(value).unwrap_or(f64::NAN);
+            // The shortest digits that give the same number back.
+            *text += &format!("{number:?}");
+        }
+        DeValue::Boolean(boolean) => *text += if *boolean { "true" } else { "false" },
+        DeValue::Datetime(datetime) => *text += &datetime.to_string(),
+        DeValue::Array(array) => {
+            text.push('[');
+            for (index, item) in array.iter().enumerate() {
+                if index > 0 {
+                    text.push(',');
+                }
+                write_value(text, item.get_ref());
+            }
+            text.push(']');
+        }
+        DeValue::Table(table) => write_table(text, table),
+    }
+}
+
+fn write_string(text: &mut String, string: &str) {
+    text.push('"');
+    for character in string.chars() {
+        if matches!(character, '"' | '\\') {
+            text.push('\\');
+        }
+        text.push(character);
+    }
+    text.push('"');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn canonical_of(text: &str) -> String {
+        let source = Source::new("a.toml", text);
+        let (document, duplicates) = parse(&source).expect("good syntax");
+        assert!(duplicates.is_empty());
+        canonical(&document)
+    }
+
+    #[test]
+    fn layout_and_comments_do_not_count() {
+        let inline = canonical_of("[a]\nb = { c = [1, 2.5], d = 'x' } # comment\n");
+        let header = canonical_of("# comment\n[a.b]\nc = [\n  1.0,\n  25e-1,\n]\nd = \"x\"\n");
+        assert_eq!(inline, header);
+        assert_eq!(inline, r#"{"a":{"b":{"c":[1.0,2.5],"d":"x"}}}"#);
+    }
+
+    #[test]
+    fn equal_numbers_are_written_alike() {
+        for text in ["1", "1.0", "0.1e1", "0x1", "1_0e-1", "+1"] {
+            assert_eq!(
+                canonical_of(&format!("a = {text}")),
+                r#"{"a":1.0}"#,
+                "{text}"
+            );
+        }
+        assert_eq!(canonical_of("a = 0.10"), canonical_of("a = 0.1"));
+        assert_ne!(
+            canonical_of("a = 0.1"),
+            canonical_of("a = 0.10000000000000002")
+        );
+    }
+
+    #[test]
+    fn order_types_and_strings_count() {
+        assert_ne!(canonical_of("a = 1\nb = 2"), canonical_of("b = 2\na = 1"));
+        assert_ne!(canonical_of("a = 1"), canonical_of("a = '1.0'"));
+        assert_ne!(
+            canonical_of("a = ['x', 'y']"),
+            canonical_of("a = ['x\",\"y']")
+        );
+        assert_ne!(canonical_of("a = 'b '"), canonical_of("a = 'b'"));
+    }
+
+    #[test]
+    fn huge_integers_are_no_panic() {
+        let source = Source::new(
+            "a.toml",
+            format!("a = {}\nb = 0x{}", "9".repeat(400), "f".repeat(400)),
+        );
+        let (document, _) = parse(&source).expect("good syntax");
+        for (_, value) in &document {
+            assert_eq!(number(value.get_ref()), Some(f64::INFINITY));
+        }
+    }
+
+    #[test]
+    fn the_content_of_a_plain_string_has_a_place() {
+        let source = Source::new("a.toml", r#"a = "1 + x" # b"#);
+        assert_eq!(content_span(&source, 4..11, "1 + x"), Some(5..10));
+        let escaped = Source::new("a.toml", r#"a = "1\u0020x""#);
+        assert_eq!(content_span(&escaped, 4..14, "1 x"), None);
+    }
+}

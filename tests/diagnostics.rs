@@ -1,0 +1,209 @@
+//! What a bad mechanism file is answered, message by message.
+//!
+//! Each file in `tests/diagnostics` is bad in one way; its name is the code of that problem, with
+//! a word after an underscore where a code has several files.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use biela::cli::render::render;
+use biela::mechanism::{Diagnostic, Mechanism, Severity, Source};
+use proptest::prelude::*;
+
+fn directory(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The TOML files of a directory by name, in order, with their text.
+fn files(name: &str) -> Vec<(String, String)> {
+    let mut files: Vec<(String, String)> = fs::read_dir(directory(name))
+        .expect("the directory is there")
+        .map(|entry| entry.expect("it can be read").path())
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .map(|path| {
+            let stem = path.file_stem().expect("it has a name").to_string_lossy();
+            let text = fs::read_to_string(&path).expect("it is text");
+            (stem.into_owned(), text)
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+/// Everything said of a text; an `Err` has an error in it and an `Ok` has none.
+fn diagnostics(source: &Source) -> Vec<Diagnostic> {
+    let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
+    match Mechanism::parse(source) {
+        Ok((_, warnings)) => {
+            assert!(!warnings.iter().any(is_error));
+            warnings
+        }
+        Err(diagnostics) => {
+            assert!(diagnostics.iter().any(is_error));
+            diagnostics
+        }
+    }
+}
+
+#[test]
+fn each_bad_file_is_answered_as_reviewed() {
+    for (stem, text) in files("tests/diagnostics") {
+        let source = Source::new(format!("{stem}.toml"), text);
+        let diagnostics = diagnostics(&source);
+        let code = stem.split('_').next().unwrap_or_default();
+        assert!(
+            diagnostics.iter().any(|diagnostic| diagnostic.code == code),
+            "{stem}.toml has no `{code}`"
+        );
+        let shown = match diagnostics.as_slice() {
+            // Of very many the last ones tell enough.
+            [.., last, end] if diagnostics.len() > 20 => &[last.clone(), end.clone()],
+            all => all,
+        };
+        insta::assert_snapshot!(stem, render(&source, shown, false));
+    }
+}
+
+#[test]
+fn each_code_has_a_file() {
+    let stems: BTreeSet<String> = files("tests/diagnostics")
+        .into_iter()
+        .map(|(stem, _)| stem)
+        .collect();
+    for code in Diagnostic::CODES {
+        assert!(stems.contains(*code), "no tests/diagnostics/{code}.toml");
+    }
+}
+
+#[test]
+fn no_problem_is_told_twice() {
+    for (stem, text) in files("tests/diagnostics") {
+        let source = Source::new(stem, text);
+        let lines: Vec<String> = diagnostics(&source)
+            .iter()
+            .map(|diagnostic| diagnostic.one_line(&source))
+            .collect();
+        let distinct: BTreeSet<&String> = lines.iter().collect();
+        assert_eq!(distinct.len(), lines.len(), "{lines:#?}");
+    }
+}
+
+#[test]
+fn the_shipped_mechanisms_have_no_problem() {
+    for (stem, text) in files("mechanisms") {
+        let source = Source::new(stem, text);
+        let diagnostics = diagnostics(&source);
+        assert!(
+            diagnostics.is_empty(),
+            "{}",
+            render(&source, &diagnostics, false)
+        );
+    }
+}
+
+/// Reads and renders a text; what that gives is of no matter here.
+fn survive(text: &str) {
+    let source = Source::new("hostile.toml", text);
+    let diagnostics = diagnostics(&source);
+    for diagnostic in &diagnostics {
+        for label in &diagnostic.labels {
+            assert!(text.get(label.span.clone()).is_some(), "{diagnostic:?}");
+        }
+        assert!(!diagnostic.one_line(&source).is_empty());
+    }
+    let rendered = render(&source, &diagnostics, true);
+    assert_eq!(rendered.is_empty(), diagnostics.is_empty());
+}
+
+#[test]
+fn hostile_files_are_answered() {
+    let texts = [
+        String::new(),
+        "\0".repeat(1000),
+        "\u{feff}format = 1".to_owned(),
+        "\u{fffe}\u{ffff}\u{10ffff} = 1".to_owned(),
+        format!("a = {}", "[".repeat(100_000)),
+        format!("a = {}", "{ a = ".repeat(100_000)),
+        format!("{}a = 1", "a.".repeat(100_000)),
+        format!("format = {}", "9".repeat(100_000)),
+        format!("format = 0x{}", "f".repeat(100_000)),
+        format!("format = 1e{}", "9".repeat(1000)),
+        format!("name = \"{}\"", "n".repeat(1_000_000)),
+        "garbage\r".repeat(100_000),
+        "ø = ÿ\n".repeat(100_000),
+        format!("[parameters]\na = \"{}1\"", "(".repeat(1_000_000)),
+        format!("[parameters]\na = \"{}1\"", "1+".repeat(500_000)),
+        format!("[parameters]\n{} = \"b\"", "a".repeat(1_000_000)),
+    ];
+    for text in texts {
+        survive(&text);
+    }
+}
+
+/// A file with as many bodies in a chain, each on a parameter derived from the one before.
+fn chain(count: usize) -> String {
+    let mut text = "format = 1\nname = \"chain\"\n[parameters]\nl0 = 1\n".to_owned();
+    for link in 1..=count {
+        text += &format!("l{link} = \"l{} + 1\"\n", link - 1);
+    }
+    text += "[ground.markers]\nB = [0, 0]\n";
+    for link in 1..=count {
+        text += &format!("[bodies.b{link}]\nmarkers = {{ A = [0, 0], B = [\"l{link}\", 0] }}\n");
+    }
+    text += "[joints]\nj1 = { type = \"revolute\", markers = [\"ground.B\", \"b1.A\"] }\n";
+    for link in 2..=count {
+        let before = link - 1;
+        text += &format!(
+            "j{link} = {{ type = \"revolute\", markers = [\"b{before}.B\", \"b{link}.A\"] }}\n"
+        );
+    }
+    text
+}
+
+#[test]
+fn a_long_file_is_read_to_its_end() {
+    let source = Source::new("chain.toml", chain(10_000));
+    let (mechanism, warnings) = Mechanism::parse(&source).expect("it is right");
+    assert!(warnings.is_empty());
+    assert_eq!(mechanism.bodies.len(), 10_000);
+    assert_eq!(mechanism.derivation_order.len(), 10_000);
+    let last = mechanism.parameters.last().expect("it has parameters");
+    assert!((last.default - 10_001.0).abs() < f64::EPSILON);
+    // And one in which every name is wrong, or every parameter waits for the last.
+    survive(&chain(10_000).replace("\"b", "\"c"));
+    survive(&chain(10_000).replace(" + 1", " + m"));
+    survive(&chain(10_000).replace("l0 = 1", "l0 = \"l10000\""));
+}
+
+proptest! {
+    // Each case reads a whole file: fewer of them, so that the test stays quick.
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn a_slip_anywhere_is_no_panic(
+        file in 0_usize..100,
+        slips in proptest::collection::vec(
+            (any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4_u8, any::<u8>()),
+            1..6,
+        ),
+    ) {
+        let files = files("mechanisms");
+        let mut bytes = files[file % files.len()].1.clone().into_bytes();
+        for (at, to, kind, byte) in slips {
+            let (at, to) = (at.index(bytes.len()), to.index(bytes.len()));
+            match kind {
+                0 => bytes[at] = byte,
+                1 => bytes.insert(at, byte % 0x80),
+                2 => bytes.swap(at, to),
+                _ => {
+                    bytes.drain(at.min(to)..at.max(to).min(at.min(to) + 8));
+                }
+            }
+        }
+        survive(&String::from_utf8_lossy(&bytes));
+    }
+}
