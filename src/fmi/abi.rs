@@ -10,7 +10,8 @@
 )]
 #![allow(
     non_snake_case,
-    reason = "the function names are those of the standard"
+    non_upper_case_globals,
+    reason = "the names are those of the standard"
 )]
 
 use std::any::Any;

@@ -217,3 +217,183 @@ impl History {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HOLD: Extrapolation = Extrapolation::Hold;
+    const TAYLOR: Extrapolation = Extrapolation::Taylor;
+
+    /// An input that a host set to `position(t)` before steps at these times.
+    fn after_steps(times: &[f64], position: impl Fn(f64) -> f64) -> DriverInput {
+        let mut input = DriverInput::new(0.0);
+        for &time in times {
+            input.set(Order::Position, position(time));
+            input.complete_step(time);
+        }
+        input
+    }
+
+    fn rates(velocity: f64, acceleration: f64) -> DriverRates {
+        DriverRates {
+            velocity,
+            acceleration,
+        }
+    }
+
+    #[test]
+    fn a_parabola_is_estimated_exactly_whatever_the_steps() {
+        // Numbers whose sums and quotients are exact in binary.
+        let input = after_steps(&[1.0, 1.5, 3.5], |t| 2.0 + 3.0 * t + 4.0 * t * t);
+        for source in [RateSource::Auto, RateSource::Estimated] {
+            assert_eq!(
+                input.rates_after(source, HOLD, 3.5, 0.25),
+                rates(3.0 + 8.0 * 3.5, 8.0)
+            );
+        }
+    }
+
+    #[test]
+    fn two_samples_give_a_line_and_one_gives_rest() {
+        let position = |t: f64| 5.0 - 2.0 * t;
+        let one = after_steps(&[1.0], position);
+        assert_eq!(
+            one.rates_after(RateSource::Auto, HOLD, 1.0, 1.0),
+            rates(0.0, 0.0)
+        );
+        let two = after_steps(&[1.0, 2.0], position);
+        assert_eq!(
+            two.rates_after(RateSource::Auto, HOLD, 2.0, 1.0),
+            rates(-2.0, 0.0)
+        );
+    }
+
+    #[test]
+    fn a_communication_point_is_one_sample_however_often_it_is_set() {
+        let mut input = after_steps(&[0.0, 1.0], |t| t);
+        input.set(Order::Position, 7.0);
+        input.complete_step(1.0);
+        assert_eq!(
+            input.rates_after(RateSource::Auto, HOLD, 1.0, 1.0),
+            rates(7.0, 0.0)
+        );
+    }
+
+    #[test]
+    fn rate_inputs_count_once_one_was_not_zero() {
+        let mut input = after_steps(&[0.0, 1.0, 2.0], |t| t * t);
+        input.set(Order::Velocity, 0.0);
+        input.set(Order::Acceleration, 0.0);
+        let estimated = rates(4.0, 2.0);
+        assert_eq!(
+            input.rates_after(RateSource::Auto, HOLD, 2.0, 1.0),
+            estimated
+        );
+        assert_eq!(
+            input.rates_after(RateSource::Inputs, HOLD, 2.0, 1.0),
+            rates(0.0, 0.0)
+        );
+        input.set(Order::Velocity, 10.0);
+        input.set(Order::Acceleration, 20.0);
+        // Back at zero, where the motion turns: they still count.
+        input.set(Order::Velocity, 0.0);
+        assert_eq!(
+            input.rates_after(RateSource::Auto, HOLD, 2.0, 1.0),
+            rates(0.0, 20.0)
+        );
+        assert_eq!(
+            input.rates_after(RateSource::Inputs, HOLD, 2.0, 1.0),
+            rates(0.0, 20.0)
+        );
+        assert_eq!(
+            input.rates_after(RateSource::Estimated, HOLD, 2.0, 1.0),
+            estimated
+        );
+    }
+
+    #[test]
+    fn velocity_alone_is_differenced() {
+        let mut input = DriverInput::new(0.0);
+        input.set(Order::Velocity, 3.0);
+        assert_eq!(
+            input.rates_after(RateSource::Auto, HOLD, 0.0, 0.5),
+            rates(3.0, 0.0)
+        );
+        input.complete_step(0.0);
+        input.set(Order::Velocity, 4.0);
+        assert_eq!(
+            input.rates_after(RateSource::Auto, HOLD, 0.5, 0.5),
+            rates(4.0, 2.0)
+        );
+        assert_eq!(
+            input.rates_after(RateSource::Inputs, HOLD, 0.5, 0.5),
+            rates(4.0, 0.0)
+        );
+    }
+
+    #[test]
+    fn input_derivatives_come_first_and_last_one_step() {
+        let mut input = DriverInput::new(1.0);
+        input.set(Order::Velocity, 100.0);
+        input.set_derivative(Order::Position, 1, 2.0);
+        input.set_derivative(Order::Position, 2, 4.0);
+        for source in [RateSource::Auto, RateSource::Inputs] {
+            assert_eq!(input.path_rates(source, HOLD, 0.0), rates(2.0, 4.0));
+            assert_eq!(input.rates_after(source, HOLD, 0.0, 0.5), rates(4.0, 4.0));
+        }
+        // The path follows them even where rates are estimated.
+        assert_eq!(
+            input.path_rates(RateSource::Estimated, HOLD, 0.0),
+            rates(2.0, 4.0)
+        );
+        assert_eq!(
+            input.rates_after(RateSource::Estimated, HOLD, 0.0, 0.5),
+            rates(0.0, 0.0)
+        );
+        input.complete_step(0.0);
+        assert_eq!(
+            input.path_rates(RateSource::Auto, HOLD, 0.5),
+            rates(0.0, 0.0)
+        );
+        assert_eq!(
+            input.rates_after(RateSource::Inputs, HOLD, 0.5, 0.5),
+            rates(100.0, 0.0)
+        );
+    }
+
+    #[test]
+    fn derivatives_of_rate_inputs_carry_these_along() {
+        let mut input = DriverInput::new(0.0);
+        input.set(Order::Velocity, 1.0);
+        input.set_derivative(Order::Velocity, 1, 2.0);
+        input.set_derivative(Order::Velocity, 2, 8.0);
+        input.set(Order::Acceleration, 3.0);
+        input.set_derivative(Order::Acceleration, 1, 4.0);
+        assert_eq!(
+            input.path_rates(RateSource::Auto, HOLD, 0.0),
+            rates(0.0, 0.0)
+        );
+        assert_eq!(
+            input.rates_after(RateSource::Auto, HOLD, 0.0, 0.5),
+            rates(3.0, 5.0)
+        );
+    }
+
+    #[test]
+    fn taylor_carries_the_rates_in_force_at_the_start_of_the_step() {
+        let input = after_steps(&[0.0, 1.0, 2.0], |t| t * t);
+        assert_eq!(
+            input.path_rates(RateSource::Auto, TAYLOR, 2.0),
+            rates(4.0, 2.0)
+        );
+        assert_eq!(
+            input.rates_after(RateSource::Auto, TAYLOR, 2.0, 0.5),
+            rates(5.0, 2.0)
+        );
+        assert_eq!(
+            input.path_rates(RateSource::Auto, HOLD, 2.0),
+            rates(0.0, 0.0)
+        );
+    }
+}

@@ -397,7 +397,10 @@ impl<'a> Indices<'a> {
     /// What a quantity of this order depends on at the start: parameters as well.
     fn initial(&self, dependencies: &Dependencies, order: Order) -> BTreeSet<usize> {
         let mut places = self.inputs(dependencies, order);
-        places.extend(dependencies.parameters.iter().map(|&p| self.parameter(p)));
+        // What no driver moves has rates of zero, whatever the parameters.
+        if order == Order::Position || !dependencies.drivers.is_empty() {
+            places.extend(dependencies.parameters.iter().map(|&p| self.parameter(p)));
+        }
         let has_input = |driver: &crate::mechanism::DriverId| {
             self.mechanism.drivers[driver.index()].motion().is_none()
         };

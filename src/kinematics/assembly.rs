@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::constraint::{Dimension, Incidence};
 use super::error::OpenJoint;
+use super::newton::Outcome;
 use super::solver::{Pose, Solver};
 use super::stepping::Progress;
 use super::system::{System, Target};
@@ -38,6 +39,12 @@ const STEPS_PER_WEIGHT: usize = 20;
 const STEPS_TO_NEAREST: usize = 200;
 /// Newton from the minimum; it also has to creep into nearly singular positions.
 const MAX_ITERATIONS: u32 = 30;
+/// The estimates themselves, and this many less one deterministic shifts of them: estimates of
+/// zero often lie on a symmetry from which no minimisation can choose a side.
+const STARTS: usize = 8;
+/// A reciprocal condition below this is that of a singular position: Newton ends within the
+/// square root of the machine's rounding of it.
+const SINGULAR: f64 = 1e-7;
 /// A scaled residual below this is no gap that anyone could measure: the mechanism closes, and
 /// Newton failed because the position is singular.
 const CLOSED: f64 = 1e-7;
@@ -66,24 +73,46 @@ impl Solver {
         self.at.set_pose(self.system.mechanism(), &self.pose.q);
         self.fix_turns();
 
-        for weight in WEIGHTS {
-            let pull = Some((&estimate, weight.recip()));
-            self.minimise(pull, |_| 1.0, STEPS_PER_WEIGHT);
-        }
-        let mut outcome = self.correct(MAX_ITERATIONS);
-        if !outcome.converged {
+        let mut nearest = (f64::INFINITY, self.pose.q.clone());
+        let mut outcome = None;
+        for attempt in 0..STARTS {
+            for (k, q) in self.pose.q.iter_mut().enumerate() {
+                *q = estimate[k] + shift(attempt, k) * System::column_scale(k, self.at.size());
+            }
+            let attempted = self.minimise_and_correct();
+            if attempted.converged {
+                outcome = Some(attempted);
+                break;
+            }
             self.minimise(None, |_| 1.0, STEPS_TO_NEAREST);
-            outcome = self.correct(MAX_ITERATIONS);
+            let gap = self.residual_norm();
+            if gap < nearest.0 {
+                nearest = (gap, self.pose.q.clone());
+            }
         }
-        if !outcome.converged {
+        let Some(outcome) = outcome else {
+            self.pose.q.copy_from_slice(&nearest.1);
             return Err(self.explain_failure());
-        }
+        };
         self.choose_turns(&estimate);
         self.refresh()?;
+        let rcond = self.lu.rcond();
+        if rcond < SINGULAR {
+            return Err(Error::Singular { rcond });
+        }
         Ok(Assembly {
             iterations: outcome.iterations,
             distance: self.scaled_distance(&estimate),
         })
+    }
+
+    /// Minimises Ec. 3.6.9 for growing r from the present q, then applies Newton–Raphson.
+    fn minimise_and_correct(&mut self) -> Outcome {
+        let start = DVector::from_column_slice(&self.pose.q);
+        for weight in WEIGHTS {
+            self.minimise(Some((&start, weight.recip())), |_| 1.0, STEPS_PER_WEIGHT);
+        }
+        self.correct(MAX_ITERATIONS)
     }
 
     /// Finds the pose at the end of `path`: moves there continuously from `home`, which is at its
@@ -211,19 +240,22 @@ impl Solver {
     fn weighted_equations(&mut self, weights: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let order = self.system.unknowns();
         self.at.set_pose(self.system.mechanism(), &self.pose.q);
-        let mut residual = DVector::zeros(order);
         let mut jacobian = DMatrix::zeros(order, order);
         self.system.evaluate(
             &self.at,
             &self.pose.q,
             &self.targets,
             &self.pose.drivers,
-            residual.as_mut_slice(),
-            &mut self.rounding,
+            &mut self.residual,
             |row, column, value| jacobian[(row, column)] += value * weights[row],
         );
-        residual.component_mul_assign(weights);
-        (residual, jacobian)
+        (self.residual.value.component_mul(weights), jacobian)
+    }
+
+    /// The norm of Phi at the present q, scaled.
+    fn residual_norm(&mut self) -> f64 {
+        self.evaluate();
+        self.residual.value.norm()
     }
 
     /// Adds whole turns to the bodies so that each angle is nearest its estimate. Bodies whose
@@ -268,7 +300,6 @@ impl Solver {
     /// The verdict on a mechanism whose nearest pose, at which the solver stands, leaves gaps.
     fn explain_failure(&mut self) -> Error {
         let order = self.system.unknowns();
-        self.minimise(None, |_| 1.0, STEPS_TO_NEAREST);
         let ones = DVector::repeat(order, 1.0);
         let (residual, jacobian) = self.weighted_equations(&ones);
         if residual.amax() <= CLOSED {
@@ -305,7 +336,10 @@ impl Solver {
             Some((_, joint)) => vec![joint],
             None => spread.into_iter().map(|(_, joint)| joint).collect(),
         };
-        Error::NotAssembled { open }
+        Error::NotAssembled {
+            open,
+            starts: STARTS,
+        }
     }
 
     /// Joints, constraints and drivers with a noticeable part of the largest scaled residual.
@@ -335,5 +369,16 @@ impl Solver {
             }
         }
         open
+    }
+}
+
+/// By how much start `attempt` differs from the estimates in coordinate k, scaled: nothing the
+/// first time, then up to half a length or radian, spread evenly by the golden ratio.
+fn shift(attempt: usize, k: usize) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    if attempt == 0 {
+        0.0
+    } else {
+        (GOLDEN * (attempt * (k + 1)) as f64).fract() - 0.5
     }
 }

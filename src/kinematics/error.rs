@@ -33,8 +33,13 @@ pub enum Error {
         value: f64,
     },
     /// No pose was found that satisfies all equations.
-    #[error("the mechanism does not close: {}", open_message(.open))]
+    #[error(
+        "the mechanism was not found to close, from {starts} starts at and near the estimates: {}",
+        open_message(.open)
+    )]
     NotAssembled {
+        /// From how many starts it was tried.
+        starts: usize,
         /// What stays open in the nearest pose found.
         open: Vec<OpenJoint>,
     },

@@ -38,4 +38,4 @@ pub use rates::Rates;
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress};
 pub use structure::{Dependencies, Structure};
-pub use system::{Equation, System, Target, Targets};
+pub use system::{Equation, Residual, System, Target, Targets};

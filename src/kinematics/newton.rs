@@ -34,16 +34,7 @@ impl Solver {
         let mut last_correction = f64::INFINITY;
         loop {
             self.evaluate();
-            let excess = self
-                .residual
-                .iter()
-                .zip(&self.rounding)
-                .map(|(residual, rounding)| residual.abs() / rounding)
-                // Not `f64::max`, which would drop a NaN.
-                .fold(
-                    0.0,
-                    |worst, ratio| if ratio <= worst { worst } else { ratio },
-                );
+            let excess = self.residual.excess();
             if !excess.is_finite() || self.factorise().is_err() {
                 return outcome;
             }
@@ -55,7 +46,7 @@ impl Solver {
             if outcome.iterations == max_iterations {
                 return outcome;
             }
-            self.correction.copy_from(&self.residual);
+            self.correction.copy_from(&self.residual.value);
             self.lu.solve(&mut self.correction);
             let size = self.at.size();
             for (column, (q, scaled)) in self.pose.q.iter_mut().zip(&self.correction).enumerate() {

@@ -9,7 +9,7 @@ use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration,
 use super::factor::DenseLu;
 use super::rates::Rates;
 use super::structure::Structure;
-use super::system::{System, Targets};
+use super::system::{Residual, System, Targets};
 use super::{Error, Path};
 use crate::mechanism::{DriverId, Jet, MarkerId, Mechanism};
 
@@ -70,9 +70,8 @@ pub struct Solver {
     pub(super) lu: DenseLu,
     /// Whether `lu` holds the factors of the Jacobian at `pose`.
     pub(super) factorised: bool,
-    /// Phi at the pose last evaluated, scaled, and its rounding error.
-    pub(super) residual: DVector<f64>,
-    pub(super) rounding: Vec<f64>,
+    /// Phi at the pose last evaluated.
+    pub(super) residual: Residual,
     /// Newton's correction.
     pub(super) correction: DVector<f64>,
     /// Tangent and curvature along a path.
@@ -119,8 +118,7 @@ impl Solver {
             at,
             lu: DenseLu::new(order),
             factorised: false,
-            residual: DVector::zeros(order),
-            rounding: vec![0.0; order],
+            residual: Residual::new(order),
             correction: DVector::zeros(order),
             tangent: Rates::new(order),
             system,
@@ -178,7 +176,7 @@ impl Solver {
     /// characteristic length, radians.
     #[must_use]
     pub fn residual(&self) -> f64 {
-        self.residual.amax()
+        self.residual.value.amax()
     }
 
     /// Scaled reciprocal condition of the Jacobian at the present pose: 1 is best, 0 singular.
@@ -260,8 +258,7 @@ impl Solver {
             &self.pose.q,
             &self.targets,
             &self.pose.drivers,
-            self.residual.as_mut_slice(),
-            &mut self.rounding,
+            &mut self.residual,
             |row, column, value| lu.add(row, column, value),
         );
     }

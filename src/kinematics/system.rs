@@ -6,6 +6,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use nalgebra::DVector;
+
 use super::configuration::Configuration;
 use super::constraint::{self, Axis, Coincidence, Constraint, Dimension, Gradient};
 use super::{Element, Error};
@@ -47,6 +49,40 @@ pub struct Targets {
     constants: Vec<f64>,
     /// Whole turns by which an angle row differs from its constant.
     pub turns: Vec<i32>,
+}
+
+/// Phi at some q, scaled, with the rounding error that each value carries anyhow.
+#[derive(Clone, Debug)]
+pub struct Residual {
+    /// Phi, one entry a row.
+    pub value: DVector<f64>,
+    /// Estimated rounding error of each entry.
+    pub rounding: DVector<f64>,
+}
+
+impl Residual {
+    /// Zeros for a system of `rows` equations.
+    #[must_use]
+    pub fn new(rows: usize) -> Self {
+        Self {
+            value: DVector::zeros(rows),
+            rounding: DVector::zeros(rows),
+        }
+    }
+
+    /// The largest entry in multiples of its rounding error; NaN if any entry is.
+    #[must_use]
+    pub fn excess(&self) -> f64 {
+        self.value
+            .iter()
+            .zip(&self.rounding)
+            .map(|(value, rounding)| value.abs() / rounding)
+            // Not `f64::max`, which would drop a NaN.
+            .fold(
+                0.0,
+                |worst, ratio| if ratio <= worst { worst } else { ratio },
+            )
+    }
 }
 
 impl System {
@@ -188,17 +224,15 @@ impl System {
     /// metres are divided by the mechanism's size, columns multiplied by
     /// [`column_scale`](Self::column_scale).
     ///
-    /// `residual[row]` becomes Phi_row; `rounding[row]` an estimate of the rounding error that
-    /// this value carries anyhow; `entry(row, column, value)` is called for each entry of the
-    /// Jacobian (Ec. 3.6.4). `q` is the pose that `at` was made from.
+    /// `entry(row, column, value)` is called for each entry of the Jacobian (Ec. 3.6.4); two
+    /// calls for the same place add up. `q` is the pose that `at` was made from.
     pub fn evaluate(
         &self,
         at: &Configuration,
         q: &[f64],
         targets: &Targets,
         drivers: &[f64],
-        residual: &mut [f64],
-        rounding: &mut [f64],
+        residual: &mut Residual,
         mut entry: impl FnMut(usize, usize, f64),
     ) {
         let size = at.size();
@@ -206,7 +240,7 @@ impl System {
         for (row, equation) in self.equations.iter().enumerate() {
             let row_scale = equation.row_scale(at);
             let target = self.target(row, targets, drivers);
-            residual[row] = (equation.constraint.value(at) - target) * row_scale;
+            residual.value[row] = (equation.constraint.value(at) - target) * row_scale;
             // To first order each coordinate's own rounding moves the value by gradient times
             // q eps; the sines and products inside add some eps of the size.
             let mut magnitude = target.abs() * row_scale + 1.0;
@@ -220,7 +254,7 @@ impl System {
                     value * row_scale * Self::column_scale(column, size),
                 );
             }
-            rounding[row] = magnitude * f64::EPSILON;
+            residual.rounding[row] = magnitude * f64::EPSILON;
         }
     }
 

@@ -183,7 +183,7 @@ impl Instance {
             .drivers
             .iter()
             .enumerate()
-            .filter(|(index, _)| asked[*index] != self.committed.drivers[*index])
+            .filter(|(index, _)| (asked[*index] - self.committed.drivers[*index]).abs() > 0.0)
             .map(|(index, driver)| {
                 let show = |value| show(driver.coordinate.kind, value);
                 format!(

@@ -1,0 +1,97 @@
+//! The step path allocates nothing.
+
+#![allow(
+    unsafe_code,
+    reason = "a counting allocator has to implement `GlobalAlloc`"
+)]
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use biela::fmi::{Category, Instance, Sink, Status};
+use common::shipped;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Counts what this thread allocates.
+struct Counting;
+
+// SAFETY: everything is passed on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // No thread-local storage is left while a thread ends; nothing is measured then.
+        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller's promise is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise is passed on.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+struct Silent;
+
+impl Sink for Silent {
+    fn write(&self, _: Status, _: Category, message: &str) {
+        panic!("unexpected message: {message}");
+    }
+}
+
+fn allocations(work: impl FnOnce()) -> usize {
+    let before = ALLOCATIONS.get();
+    work();
+    ALLOCATIONS.get() - before
+}
+
+#[test]
+fn the_allocator_counts() {
+    assert_eq!(allocations(|| drop(Box::new(1))), 1);
+}
+
+#[test]
+fn a_cycle_of_set_step_and_get_allocates_nothing() {
+    for name in ["pendulum", "slider_crank", "four_bar", "tlv_crank"] {
+        let mut instance =
+            Instance::new(shipped(name), Box::new(Silent), false).expect("the mechanism assembles");
+        let outputs: Vec<u32> = (0..instance.variables().list().len() as u32)
+            .filter(|vr| {
+                let variable = &instance.variables().list()[*vr as usize];
+                matches!(variable.kind, biela::fmi::Kind::Real { .. })
+            })
+            .collect();
+        let mut values = vec![0.0; outputs.len()];
+        instance.setup_experiment(0.0, None).unwrap();
+        instance.enter_initialization_mode().unwrap();
+        instance.exit_initialization_mode().unwrap();
+        let count = allocations(|| {
+            for step in 0..100 {
+                let t = 0.01 * f64::from(step);
+                // The three inputs of the driver, a derivative, a large step now and then.
+                let angle = 0.6 + t + if step % 10 == 0 { 2.5 } else { 0.0 };
+                instance.set_real(&[0, 1, 2], &[angle, 1.0, 0.1]).unwrap();
+                if step % 3 == 0 {
+                    instance
+                        .set_real_input_derivatives(&[0], &[1], &[1.0])
+                        .unwrap();
+                }
+                // Reading between setting and stepping, too.
+                if step % 4 == 0 {
+                    instance.get_real(&outputs, &mut values).unwrap();
+                }
+                instance.do_step(t, 0.01).unwrap();
+                instance.get_real(&outputs, &mut values).unwrap();
+            }
+        });
+        assert_eq!(count, 0, "{name}");
+        assert!(values.iter().all(|value| value.is_finite()));
+    }
+}

@@ -1,0 +1,321 @@
+//! The commands as a user types them.
+
+use std::path::Path;
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+
+fn biela(arguments: &[&str]) -> Assert {
+    Command::new(env!("CARGO_BIN_EXE_biela"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .env_remove("SOURCE_DATE_EPOCH")
+        .args(arguments)
+        .assert()
+}
+
+fn stdout(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stdout.clone()).expect("output is text")
+}
+
+fn stderr(assert: &Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).expect("output is text")
+}
+
+/// A mechanism file made from a shipped one.
+fn altered(folder: &Path, name: &str, changes: &[(&str, &str)]) -> String {
+    let mut text =
+        std::fs::read_to_string(format!("mechanisms/{name}.toml")).expect("it is shipped");
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    let path = folder.join(format!("{name}.toml"));
+    std::fs::write(&path, text).expect("the folder is ours");
+    path.to_str()
+        .expect("temporary folders have plain names")
+        .to_owned()
+}
+
+#[test]
+fn check_describes_a_mechanism() {
+    let assert = biela(&["check", "mechanisms/four_bar.toml"]).success();
+    assert_eq!(stderr(&assert), "");
+    insta::assert_snapshot!(
+        stdout(&assert).split("\n  residual").next().unwrap_or_default(),
+        @r"
+    four_bar: Crank–rocker four-bar linkage (cuadrilátero articulado)
+
+      bodies                 3    crank, coupler, rocker
+      unknowns               9    x, y, phi of each body
+      constraints            8    O2 (2), A (2), B (2), O4 (2)
+      drivers                1    crank_angle (input)
+      degrees of freedom     1    all driven
+
+    assembled at
+      crank_angle = 60.000000 deg
+
+      body            x [m]         y [m]     phi [deg]
+      crank        0.000000      0.000000     60.000000
+      coupler      0.050000      0.086603     41.451706
+      rocker       0.400000      0.000000    122.824780
+
+      transmission = 81.373073 deg
+    "
+    );
+}
+
+#[test]
+fn a_bad_file_exits_with_1_and_shows_the_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("\"crank.O\"]", "\"cranck.O\"]")],
+    );
+    for command in ["check", "run", "export"] {
+        let assert = biela(&[command, &file]).code(1);
+        assert_eq!(stdout(&assert), "");
+        let message = stderr(&assert);
+        assert!(message.contains("four_bar.toml:31:"), "{message}");
+        assert!(message.contains("no body `cranck`"), "{message}");
+        assert!(message.contains("did you mean `crank`?"), "{message}");
+    }
+}
+
+#[test]
+fn a_mechanism_that_does_not_close_exits_with_1_and_names_the_joint() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("value = 0.10", "value = 0.80")],
+    );
+    for command in ["check", "run", "export"] {
+        let assert = biela(&[command, &file]).code(1);
+        let message = stderr(&assert);
+        assert!(
+            message.contains("joint `O4` stays open by 142.8 mm"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn a_mechanism_without_driver_exits_with_1_and_says_what_is_loose() {
+    let folder = tempfile::tempdir().unwrap();
+    let driver = "crank_angle = { coordinate = \"angle\", markers = [\"ground.O2\", \"crank.O\"], start = \"60*deg\" }";
+    let file = altered(folder.path(), "four_bar", &[(driver, "")]);
+    let assert = biela(&["check", &file]).code(1);
+    // What can be counted is shown all the same.
+    assert!(stdout(&assert).contains("constraints            8"));
+    assert!(stderr(&assert).contains("not fully driven: body `crank`"));
+}
+
+#[test]
+fn bad_usage_exits_with_2() {
+    for (arguments, expected) in [
+        (&["check"][..], "required"),
+        (
+            &["check", "no_such_file.toml"],
+            "cannot read `no_such_file.toml`",
+        ),
+        (&["fly"], "unrecognized subcommand"),
+        (
+            &["run", "mechanisms/tlv.toml", "--step", "0"],
+            "expected a positive time",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--stop", "-1"],
+            "must not be before the start",
+        ),
+        (&["run", "mechanisms/tlv.toml", "--step", "1e-300"], "rows"),
+        (
+            &["run", "mechanisms/tlv.toml", "--drive", "side_length"],
+            "has no `=`",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--drive", "side=1"],
+            "no driver `side`; expected `side_length`",
+        ),
+        (
+            &[
+                "run",
+                "mechanisms/tlv.toml",
+                "--drive",
+                "side_length=0.3+*t",
+            ],
+            "^",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--set", "bas=1"],
+            "no parameter `bas`",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--set", "base=0"],
+            "not a permitted value",
+        ),
+        (&["run", "mechanisms/tlv.toml", "--set", "base=t"], "--set"),
+        (
+            &["export", "mechanisms/tlv.toml", "--runtime", "mechanisms"],
+            "no runtime library",
+        ),
+        (
+            &[
+                "export",
+                "mechanisms/tlv.toml",
+                "-o",
+                "no_such_folder/x.fmu",
+            ],
+            "cannot write",
+        ),
+    ] {
+        let assert = biela(arguments).code(2);
+        let message = stderr(&assert);
+        assert!(message.contains(expected), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn help_goes_to_stdout() {
+    for arguments in [
+        &["-h"][..],
+        &["--help"],
+        &["check", "-h"],
+        &["run", "--help"],
+        &["export", "-h"],
+    ] {
+        let assert = biela(arguments).success();
+        assert!(stdout(&assert).contains("Usage: biela"), "{arguments:?}");
+        assert_eq!(stderr(&assert), "");
+    }
+    let version = concat!("biela ", env!("CARGO_PKG_VERSION"), "\n");
+    assert_eq!(stdout(&biela(&["--version"]).success()), version);
+}
+
+/// Column `name` of a CSV.
+fn column(csv: &str, name: &str) -> Vec<f64> {
+    let mut lines = csv.lines();
+    let header = lines.next().expect("there is a header");
+    let index = header
+        .split(',')
+        .position(|column| column == name)
+        .unwrap_or_else(|| panic!("no column {name} in {header}"));
+    lines
+        .map(|line| {
+            line.split(',')
+                .nth(index)
+                .expect("rows are complete")
+                .parse()
+                .expect("columns are numbers")
+        })
+        .collect()
+}
+
+#[test]
+fn run_writes_exact_rates() {
+    // u = 60° + 10 t + t²: u̇ = 10 + 2 t, ü = 2. The crank's phi is u itself.
+    let drive = "crank_angle = 60*deg + 10*t + t^2";
+    let arguments = [
+        "run",
+        "mechanisms/four_bar.toml",
+        "--drive",
+        drive,
+        "--stop",
+        "1",
+        "--step",
+        "0.3",
+    ];
+    let csv = stdout(&biela(&arguments).success());
+    let time = column(&csv, "time");
+    assert_eq!(time, [0.0, 0.3, 0.6, 0.899_999_999_999_999_9, 1.0]);
+    for (row, t) in time.iter().enumerate() {
+        let expected = [
+            ("crank.phi", 60_f64.to_radians() + 10.0 * t + t * t),
+            ("crank.omega", 10.0 + 2.0 * t),
+            ("crank.alpha", 2.0),
+            ("crank_angle.velocity", 10.0 + 2.0 * t),
+        ];
+        for (name, value) in expected {
+            assert!(
+                (column(&csv, name)[row] - value).abs() < 1e-13,
+                "{name} at {t}"
+            );
+        }
+    }
+}
+
+#[test]
+fn run_keeps_the_assembly_mode_however_far_the_start_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("out.csv");
+    let file = file.to_str().unwrap();
+    let drive = "crank_angle = 500*deg + t";
+    biela(&[
+        "run",
+        "mechanisms/four_bar.toml",
+        "--drive",
+        drive,
+        "--set",
+        "crank_length = 80*mm",
+        "-o",
+        file,
+    ])
+    .success();
+    let csv = std::fs::read_to_string(file).unwrap();
+    assert!((column(&csv, "crank.phi")[0] - 500_f64.to_radians()).abs() < 1e-12);
+    // In the other mode the transmission angle is negative.
+    assert!(
+        column(&csv, "transmission.position")
+            .iter()
+            .all(|angle| *angle > 0.0)
+    );
+    assert_eq!(column(&csv, "time").len(), 201);
+}
+
+#[test]
+fn run_stops_at_a_dead_point_and_keeps_the_rows_before() {
+    let drive = "side_length = 0.35 + 0.1*t";
+    let assert = biela(&[
+        "run",
+        "mechanisms/tlv.toml",
+        "--drive",
+        drive,
+        "--stop",
+        "5",
+        "--step",
+        "0.5",
+    ])
+    .code(1);
+    // 0.65 m, where arm and base are in line, is reached at 3 s.
+    let time = column(&stdout(&assert), "time");
+    assert_eq!(time.last(), Some(&2.5));
+    let message = stderr(&assert);
+    assert!(message.contains("dead point"), "{message}");
+    assert!(message.contains("`side_length` at 0.65"), "{message}");
+}
+
+#[test]
+fn export_is_reproducible_and_dated_only_on_demand() {
+    let folder = tempfile::tempdir().unwrap();
+    let export = |name: &str, epoch: Option<&str>| {
+        let path = folder.path().join(name);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_biela"));
+        command.current_dir(env!("CARGO_MANIFEST_DIR"));
+        command.env_remove("SOURCE_DATE_EPOCH");
+        command.envs(epoch.map(|epoch| ("SOURCE_DATE_EPOCH", epoch)));
+        command
+            .args(["export", "mechanisms/tlv.toml", "-o"])
+            .arg(&path);
+        command.assert().success();
+        std::fs::read(path).unwrap()
+    };
+    let first = export("a.fmu", None);
+    assert!(first == export("b.fmu", None));
+    assert!(first != export("c.fmu", Some("1700000000")));
+    assert!(export("d.fmu", Some("1700000000")) == export("e.fmu", Some("1700000000")));
+    Command::new(env!("CARGO_BIN_EXE_biela"))
+        .env("SOURCE_DATE_EPOCH", "yesterday")
+        .args(["export", "mechanisms/tlv.toml"])
+        .assert()
+        .code(2);
+}

@@ -1,0 +1,60 @@
+//! Position, velocity and acceleration of every body against closed forms.
+
+mod common;
+
+use biela::kinematics::{Curve, Rates};
+use biela::mechanism::Jet;
+use common::{EXACT, Errors, assembled, shipped, straight_to};
+
+/// The solution is right to the rounding of the equations (some eps of the size) times the
+/// condition of the Jacobian, which stays above 0.02 over these motions: 1e-14 for positions;
+/// velocity and acceleration each pass through the Jacobian once more.
+const LIMITS: [f64; 3] = [1e-14, 1e-13, 1e-12];
+
+#[test]
+fn the_four_systems_move_as_their_closed_forms_say() {
+    for exact in EXACT {
+        let mechanism = shipped(exact.file);
+        let (mut solver, mut path) = assembled(&mechanism);
+        let (from, to) = exact.range;
+        straight_to(&solver, &mut path, from);
+        solver.follow(&path).expect("the start can be reached");
+        let mut rates = Rates::new(solver.pose().q.len());
+        let mut errors = Errors::default();
+        // From rest with a constant acceleration, over one second.
+        let acceleration = 2.0 * (to - from);
+        let steps = 500;
+        let h = 1.0 / f64::from(steps);
+        for step in 0..steps {
+            let t = h * f64::from(step);
+            path.start = t;
+            path.duration = h;
+            path.curves[0] = Curve::Input {
+                position: from + 0.5 * acceleration * t * t,
+                velocity: acceleration * t,
+                acceleration,
+                jump: 0.0,
+            };
+            let progress = solver.follow(&path).expect("nothing is in the way");
+            assert_eq!(progress.substeps, 1, "{}: an ordinary step", exact.file);
+            let driver = Jet {
+                value: solver.pose().drivers[0],
+                first: acceleration * (t + h),
+                second: acceleration,
+            };
+            solver
+                .solve_rates(|_| driver, &mut rates)
+                .expect("the pose is regular");
+            errors.collect(&solver, &rates, &exact.solution(&mechanism, driver));
+        }
+        let relative = errors.relative();
+        println!("{}: {relative:?}", exact.file);
+        for order in 0..3 {
+            assert!(
+                relative[order] <= LIMITS[order],
+                "{}, order {order}: {relative:?}",
+                exact.file
+            );
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Steps of any size keep to the continuous motion, and stop where it ends.
+
+mod common;
+
+use std::f64::consts::{PI, TAU};
+
+use biela::kinematics::{Path, Solver};
+use biela::mechanism::Jet;
+use common::{EXACT, assembled, parse, shipped, straight_to};
+use proptest::prelude::*;
+
+/// q at rounding level: some eps times the condition, 1e-14, in metres and radians below ten.
+const SAME_POSE: f64 = 1e-13;
+
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// A crank may jump by almost half a turn either way: the closed form, which has one branch
+    /// only, tells where the continuous motion ends.
+    #[test]
+    fn large_steps_stay_on_the_branch(steps in prop::collection::vec(-3.1..3.1_f64, 1..20)) {
+        for exact in EXACT.iter().filter(|exact| exact.file != "tlv") {
+            let mechanism = shipped(exact.file);
+            let (mut solver, mut path) = assembled(&mechanism);
+            let mut angle = solver.pose().drivers[0];
+            for step in &steps {
+                angle += step;
+                straight_to(&solver, &mut path, angle);
+                prop_assert!(solver.follow(&path).is_ok(), "{} at {angle}", exact.file);
+                let truth: Vec<_> = exact
+                    .solution(&mechanism, Jet::constant(angle))
+                    .iter()
+                    .map(|q| q.value)
+                    .collect();
+                let off = difference(&solver.pose().q, &truth);
+                // Angles grow with the turns, and their rounding with them.
+                prop_assert!(off < SAME_POSE * angle.abs().max(1.0), "{}: {off:e}", exact.file);
+            }
+        }
+    }
+
+    /// The same for the telescopic side, whose length has limits at 0.15 m and 0.65 m.
+    #[test]
+    fn large_strokes_stay_on_the_branch(lengths in prop::collection::vec(0.16..0.64_f64, 1..20)) {
+        let mechanism = shipped("tlv");
+        let exact = EXACT.iter().find(|exact| exact.file == "tlv").expect("it is listed");
+        let (mut solver, mut path) = assembled(&mechanism);
+        for length in lengths {
+            straight_to(&solver, &mut path, length);
+            prop_assert!(solver.follow(&path).is_ok(), "at {length}");
+            let solution = exact.solution(&mechanism, Jet::constant(length));
+            let truth: Vec<_> = solution.iter().map(|q| q.value).collect();
+            // 0.01 m from a limit of 0.65 m the arm's angle changes 12 times as fast as the length
+            // does in arm lengths, and the closed form loses as much.
+            prop_assert!(difference(&solver.pose().q, &truth) < 20.0 * SAME_POSE);
+        }
+    }
+}
+
+#[test]
+fn a_whole_turn_in_one_step_is_a_whole_turn() {
+    let mechanism = shipped("four_bar");
+    let (mut solver, mut path) = assembled(&mechanism);
+    let before = solver.pose().q.clone();
+    let target = solver.pose().drivers[0] + TAU;
+    straight_to(&solver, &mut path, target);
+    let progress = solver.follow(&path).expect("the crank turns fully");
+    // No body turns by more than half a radian in a sub-step.
+    assert!(progress.substeps >= 13, "{progress:?}");
+    let mut expected = before;
+    expected[2] += TAU;
+    assert!(difference(&solver.pose().q, &expected) < SAME_POSE);
+}
+
+#[test]
+fn a_thousand_turns_keep_their_phase() {
+    let mechanism = shipped("four_bar");
+    let exact = &EXACT[2];
+    let (mut solver, mut path) = assembled(&mechanism);
+    let start = solver.pose().drivers[0];
+    for turn in 1..=1000 {
+        straight_to(&solver, &mut path, start + TAU * f64::from(turn));
+        solver.follow(&path).expect("the crank turns fully");
+    }
+    let angle = solver.pose().drivers[0];
+    // The crank's equation is phi − u = 0: its angle is the driver's to the last bit or two.
+    assert!((solver.pose().q[2] - angle).abs() <= 2.0 * f64::EPSILON * angle);
+    let solution = exact.solution(&mechanism, Jet::constant(angle));
+    for k in [5, 8] {
+        // An angle of 6,000 rad has a rounding of 1e-12, and so has its sine.
+        assert!((solver.pose().q[k] - solution[k].value).abs() < 2e-12);
+    }
+}
+
+#[test]
+fn a_step_in_two_halves_is_the_same_step() {
+    for exact in EXACT {
+        let mechanism = shipped(exact.file);
+        let (mut whole, mut path) = assembled(&mechanism);
+        let (mut halves, _) = assembled(&mechanism);
+        let now = whole.pose().drivers[0];
+        let target = now + if exact.file == "tlv" { 0.1 } else { 1.0 };
+        straight_to(&whole, &mut path, target);
+        whole.follow(&path).expect("nothing is in the way");
+        for part in [0.5 * (now + target), target] {
+            straight_to(&halves, &mut path, part);
+            halves.follow(&path).expect("nothing is in the way");
+        }
+        assert!(
+            difference(&whole.pose().q, &halves.pose().q) < SAME_POSE,
+            "{}",
+            exact.file
+        );
+    }
+}
+
+#[test]
+fn the_way_back_ends_where_the_way_out_began() {
+    let mechanism = shipped("slider_crank");
+    let (mut solver, mut path) = assembled(&mechanism);
+    let home = solver.pose().clone();
+    for angle in [2.0, 5.0, 9.0, 5.0, 2.0, home.drivers[0]] {
+        straight_to(&solver, &mut path, angle);
+        solver.follow(&path).expect("the crank turns fully");
+    }
+    assert!(difference(&solver.pose().q, &home.q) < SAME_POSE);
+}
+
+/// The telescopic side of the triangle ends at base + arm = 0.65 m and at base − arm = 0.15 m.
+#[test]
+fn a_dead_point_is_where_the_triangle_ends() {
+    for (target, limit) in [(0.7, 0.65), (0.1, 0.15)] {
+        let mechanism = shipped("tlv");
+        let (mut solver, mut path) = assembled(&mechanism);
+        straight_to(&solver, &mut path, target);
+        let blocked = solver.follow(&path).expect_err("the triangle cannot close");
+        let reached = solver.pose().drivers[0];
+        assert!((reached - limit).abs() < 1e-9, "{reached} {limit}");
+        assert!((blocked.s - (limit - 0.35) / (target - 0.35)).abs() < 1e-8);
+        // The pose there is a valid one, and the way back is open.
+        assert!(solver.residual() < 1e-14);
+        straight_to(&solver, &mut path, 0.35);
+        solver.follow(&path).expect("the way back is open");
+        assert!((solver.pose().q[2].to_degrees() - 60.0).abs() < 1e-9);
+    }
+}
+
+/// A distance cannot be zero or negative: the side is blocked before, never turned inside out.
+#[test]
+fn a_distance_stays_positive() {
+    let mechanism = shipped("tlv");
+    let (mut solver, mut path) = assembled(&mechanism);
+    straight_to(&solver, &mut path, -0.35);
+    solver.follow(&path).expect_err("no distance is negative");
+    assert!(solver.pose().drivers[0] >= 0.15);
+}
+
+#[test]
+fn a_prescribed_motion_is_followed_along_its_own_curve() {
+    // Both ends of the step have the same value; the peak between them is beyond the limit.
+    let text = std::fs::read_to_string("mechanisms/tlv.toml")
+        .expect("it is shipped")
+        .replace("start = 0.35", "motion = \"0.35 + 0.4*sin(pi*t)\"");
+    let mechanism = parse(&text);
+    let (mut solver, mut path) = assembled(&mechanism);
+    path.duration = 1.0;
+    let blocked = solver.follow(&path).expect_err("the peak is at 0.75 m");
+    // 0.35 + 0.4 sin(pi t) = 0.65 at t = asin(3/4)/pi.
+    let limit = 0.75_f64.asin() / PI;
+    assert!((blocked.s - limit).abs() < 1e-8, "{} {limit}", blocked.s);
+    assert!((solver.pose().time - limit).abs() < 1e-8);
+}
+
+#[test]
+fn parameters_move_the_mechanism_continuously() {
+    let mechanism = shipped("four_bar");
+    let (mut solver, mut path) = assembled(&mechanism);
+    let rocker = mechanism
+        .parameter_id("rocker_length")
+        .expect("it is in the file");
+    path.to[rocker.index()] = 0.35;
+    solver
+        .follow(&path)
+        .expect("a longer rocker closes as well");
+    // The same mechanism, written with the longer rocker.
+    let text = std::fs::read_to_string("mechanisms/four_bar.toml")
+        .expect("it is shipped")
+        .replace("value = 0.30", "value = 0.35");
+    let (longer, _) = assembled(&parse(&text));
+    assert!(difference(&solver.pose().q, &longer.pose().q) < SAME_POSE);
+    assert_eq!(solver.pose().parameters, longer.pose().parameters);
+}
+
+#[test]
+fn a_restored_pose_goes_on_with_the_same_bits() {
+    let mechanism = shipped("four_bar");
+    let (mut solver, mut path) = assembled(&mechanism);
+    let home = solver.pose().clone();
+    let run = |solver: &mut Solver, path: &mut Path| {
+        (1..50)
+            .map(|step| {
+                straight_to(solver, path, home.drivers[0] + 0.3 * f64::from(step));
+                solver.follow(path).expect("the crank turns fully");
+                solver.pose().clone()
+            })
+            .collect::<Vec<_>>()
+    };
+    let first = run(&mut solver, &mut path);
+    solver.restore(&home);
+    assert_eq!(run(&mut solver, &mut path), first);
+    let mut other = Solver::new(mechanism).expect("the drivers match");
+    other.restore(&home);
+    assert_eq!(run(&mut other, &mut path), first);
+}
+
+#[test]
+fn ten_thousand_steps_leave_no_residual_behind() {
+    let mechanism = shipped("four_bar");
+    let (mut solver, mut path) = assembled(&mechanism);
+    let start = solver.pose().drivers[0];
+    for step in 1..=10_000 {
+        let position = start + TAU * f64::from(step) / 1000.0;
+        straight_to(&solver, &mut path, position);
+        let progress = solver.follow(&path).expect("the crank turns fully");
+        // A predictor of second order needs one correction, or two where the motion is fast.
+        assert!(
+            progress.substeps == 1 && progress.iterations <= 2,
+            "{progress:?}"
+        );
+        // Rounding of angles up to 63 rad.
+        assert!(
+            solver.residual() < 64.0 * f64::EPSILON,
+            "{:e}",
+            solver.residual()
+        );
+    }
+}
