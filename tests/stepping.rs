@@ -152,6 +152,17 @@ fn a_dead_point_is_where_the_triangle_ends() {
     }
 }
 
+/// At 0.65 m exactly the side has no velocity that would give the arm one.
+#[test]
+fn the_dead_point_itself_is_refused() {
+    let mechanism = shipped("tlv");
+    let (mut solver, mut path) = assembled(&mechanism);
+    straight_to(&solver, &mut path, 0.65);
+    solver.follow(&path).expect_err("arm and base are in line");
+    assert!(solver.pose().drivers[0] < 0.65);
+    assert!(solver.pose().drivers[0] > 0.65 - 1e-9);
+}
+
 /// A distance cannot be zero or negative: the side is blocked before, never turned inside out.
 #[test]
 fn a_distance_stays_positive() {

@@ -1,6 +1,6 @@
 //! `biela export`
 
-use std::io::Cursor;
+use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -65,8 +65,14 @@ impl Export {
     }
 }
 
+/// Writes a file, or to stdout for `-`.
 fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
-    std::fs::write(path, content).map_err(|source| Error::Write {
+    let written = if path.as_os_str() == "-" {
+        std::io::stdout().write_all(content)
+    } else {
+        std::fs::write(path, content)
+    };
+    written.map_err(|source| Error::Write {
         path: path.to_owned(),
         source,
     })

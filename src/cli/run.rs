@@ -152,6 +152,7 @@ impl Run {
     fn writer(&self) -> Result<Box<dyn Write>, Error> {
         Ok(match &self.output {
             None => Box::new(std::io::stdout().lock()),
+            Some(path) if path.as_os_str() == "-" => Box::new(std::io::stdout().lock()),
             Some(path) => {
                 let file = std::fs::File::create(path).map_err(|source| Error::Write {
                     path: path.clone(),

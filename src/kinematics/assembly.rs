@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::constraint::{Dimension, Incidence};
 use super::error::OpenJoint;
-use super::newton::Outcome;
+use super::newton::{Outcome, SINGULAR};
 use super::solver::{Pose, Solver};
 use super::stepping::Progress;
 use super::system::{System, Target};
@@ -42,9 +42,6 @@ const MAX_ITERATIONS: u32 = 30;
 /// The estimates themselves, and this many less one deterministic shifts of them: estimates of
 /// zero often lie on a symmetry from which no minimisation can choose a side.
 const STARTS: usize = 8;
-/// A reciprocal condition below this is that of a singular position: Newton ends within the
-/// square root of the machine's rounding of it.
-const SINGULAR: f64 = 1e-7;
 /// A scaled residual below this is no gap that anyone could measure: the mechanism closes, and
 /// Newton failed because the position is singular.
 const CLOSED: f64 = 1e-7;

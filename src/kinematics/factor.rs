@@ -111,6 +111,17 @@ impl DenseLu {
             })
     }
 
+    /// Whether the reciprocal condition is below `limit`. Cheap where it clearly is not.
+    pub fn is_singular(&mut self, limit: f64) -> bool {
+        let pivots = (0..self.pivots.len()).map(|k| self.matrix[(k, k)].abs());
+        let (low, high) = pivots.fold((f64::INFINITY, 0.0_f64), |(low, high), pivot| {
+            (low.min(pivot), high.max(pivot))
+        });
+        // With rows and columns scaled, pivots of similar size mean a good condition; the factor
+        // leaves room for the cases where they hide a bad one.
+        low < 1e3 * limit * high && self.rcond() < limit
+    }
+
     /// Estimate of 1 / (‖A‖₁ ‖A⁻¹‖₁), by Hager's method with Higham's extra vector
     /// (N. J. Higham, ACM Trans. Math. Softw. 14 (1988) 381–396). Never below the true value.
     pub fn rcond(&mut self) -> f64 {

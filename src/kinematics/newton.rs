@@ -20,6 +20,10 @@ const AT_ROUNDING: f64 = 4.0;
 /// estimate leaves out what sums and products inside a row add.
 const STALLED: f64 = 100.0;
 
+/// A reciprocal condition below this is that of a singular position: there Newton ends within
+/// the square root of the machine's rounding, and rates mean nothing.
+pub(super) const SINGULAR: f64 = 1e-7;
+
 impl Solver {
     /// Corrects q until Phi(q) = 0 to rounding: solves Phi_q Δq = −Phi and adds Δq, again and
     /// again. The last evaluation leaves the Jacobian factorised at the accepted pose, ready for

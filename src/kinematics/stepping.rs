@@ -2,10 +2,10 @@
 //!
 //! The mechanism is carried along the path in sub-steps. Each starts from the tangent and
 //! curvature of the motion, ends with Newton–Raphson, and is halved unless it shows that it
-//! stayed on its motion: Newton contracts, the correction is small, and the determinant of the
-//! Jacobian keeps its sign, as it must while no singular position is crossed.
+//! stayed on its motion: Newton contracts, the correction is small, the Jacobian is regular and
+//! its determinant keeps its sign, as it must while no singular position is crossed.
 
-use super::newton::Outcome;
+use super::newton::{Outcome, SINGULAR};
 use super::path::Path;
 use super::solver::Solver;
 use super::system::System;
@@ -130,6 +130,7 @@ impl Solver {
             && contraction <= CONTRACTION
             && self.lu.determinant_is_negative() == orientation
             && self.largest_correction(h) <= LARGEST_CORRECTION
+            && !self.lu.is_singular(SINGULAR)
     }
 
     /// How far the corrected pose is from the predicted one, scaled.
