@@ -21,6 +21,7 @@ pub mod constraint;
 mod element;
 mod error;
 mod factor;
+mod joint;
 mod newton;
 mod path;
 mod rates;

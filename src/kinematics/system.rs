@@ -9,11 +9,9 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::configuration::Configuration;
-use super::constraint::{self, Axis, Coincidence, Constraint, Dimension, Gradient};
-use super::{Element, Error};
-use crate::mechanism::{
-    Coordinate, CoordinateKind, DriverId, Expression, Joint, JointKind, MarkerId, Mechanism,
-};
+use super::constraint::{self, Constraint, Dimension, Gradient};
+use super::{Element, Error, joint};
+use crate::mechanism::{DriverId, Expression, Mechanism};
 
 /// What c(q) is held at.
 #[derive(Clone, Debug)]
@@ -91,7 +89,7 @@ impl System {
     pub fn new(mechanism: Arc<Mechanism>) -> Self {
         let mut equations = Vec::new();
         for (index, joint) in mechanism.joints.iter().enumerate() {
-            for (constraint, target) in joint_relations(joint) {
+            for (constraint, target) in joint::relations(joint) {
                 equations.push(Equation {
                     element: Element::Joint(index),
                     constraint,
@@ -201,9 +199,7 @@ impl System {
     /// configuration.
     pub fn fix_turns(&self, at: &Configuration, targets: &mut Targets) {
         for (row, equation) in self.equations.iter().enumerate() {
-            if let (Target::Constant(_), Dimension::Angle) =
-                (&equation.target, equation.constraint.dimension())
-            {
+            if matches!(equation.target, Target::Constant(_)) && equation.constraint.wraps() {
                 let excess = equation.constraint.value(at) - targets.constants[row];
                 // A saturating cast: nobody turns two thousand million times before assembly.
                 targets.turns[row] = (excess / TAU).round() as i32;
@@ -308,40 +304,4 @@ impl Equation {
             Dimension::Angle => 1.0,
         }
     }
-}
-
-/// The relations that a joint stands for, and what they are held at.
-fn joint_relations(joint: &Joint) -> Vec<(Box<dyn Constraint>, Expression)> {
-    let (from, to) = (joint.from, joint.to);
-    let zero = || Expression::constant(0.0);
-    let along = |kind| coordinate(kind, from, to);
-    let coincide = |axis| -> (Box<dyn Constraint>, Expression) {
-        (Box::new(Coincidence { from, to, axis }), zero())
-    };
-    match &joint.kind {
-        JointKind::Revolute => vec![coincide(Axis::X), coincide(Axis::Y)],
-        JointKind::Translational => vec![
-            (along(CoordinateKind::Y), zero()),
-            (along(CoordinateKind::Angle), zero()),
-        ],
-        JointKind::Slot => vec![(along(CoordinateKind::Y), zero())],
-        JointKind::Link { length } => vec![(along(CoordinateKind::Distance), length.clone())],
-        JointKind::RevoluteTranslational { offset } => {
-            vec![(along(CoordinateKind::Y), offset.clone())]
-        }
-        JointKind::Weld => vec![
-            coincide(Axis::X),
-            coincide(Axis::Y),
-            (along(CoordinateKind::Angle), zero()),
-        ],
-    }
-}
-
-fn coordinate(kind: CoordinateKind, from: MarkerId, to: MarkerId) -> Box<dyn Constraint> {
-    constraint::of_coordinate(&Coordinate {
-        kind,
-        from,
-        to,
-        axes: from,
-    })
 }

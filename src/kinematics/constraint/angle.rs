@@ -1,6 +1,6 @@
 //! The angle between two markers.
 
-use super::{Configuration, Constraint, Dimension, Gradient, Incidence};
+use super::{Configuration, Constraint, Dimension, Gradient, Incidence, Region};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = theta_j − theta_i, counting turns.
@@ -33,6 +33,21 @@ impl Constraint for Angle {
     /// Zero: the angle is linear in q.
     fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
         0.0
+    }
+
+    fn wraps(&self) -> bool {
+        true
+    }
+
+    /// Linear: nothing bends.
+    fn bend(
+        &self,
+        _at: &Configuration,
+        _region: &Region<'_>,
+        _v: &[f64],
+        _row: &mut Gradient,
+    ) -> Option<f64> {
+        Some(0.0)
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {

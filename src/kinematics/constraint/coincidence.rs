@@ -2,7 +2,10 @@
 
 use nalgebra::Vector2;
 
-use super::{Axis, Configuration, Constraint, Dimension, Gradient, Incidence, centripetal};
+use super::{
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, centripetal,
+    centripetal_bound,
+};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = the x or y component of P_j − P_i in ground axes.
@@ -54,6 +57,21 @@ impl Constraint for Coincidence {
         let (i, j) = (at.marker(self.from), at.marker(self.to));
         self.direction()
             .dot(&(centripetal(j, q_dot) - centripetal(i, q_dot)))
+    }
+
+    /// Only the arms turn: e · perp(A s) changes by the chord of the turn times the arm.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let (i, j) = (at.marker(self.from), at.marker(self.to));
+        for marker in [i, j] {
+            row.add_point_bound(marker, 0.0, marker.arm.norm() * region.sway(marker));
+        }
+        Some(centripetal_bound(i, j, v))
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {

@@ -3,7 +3,8 @@
 use nalgebra::Vector2;
 
 use super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, centripetal, point_velocity,
+    Configuration, Constraint, Dimension, Gradient, Incidence, Region, centripetal,
+    centripetal_bound, chord, point_velocity, speed_bound,
 };
 use crate::mechanism::{MarkerId, Mechanism};
 
@@ -64,6 +65,30 @@ impl Constraint for Distance {
 
     fn admits(&self, value: f64) -> bool {
         value > 0.0
+    }
+
+    /// The direction of d turns by asin(reach / ‖d‖) at most:
+    /// |c″| ≤ |ḋ|² / (‖d‖ − reach) + omega_i² |s_i| + omega_j² |s_j|.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let (i, j) = (at.marker(self.from), at.marker(self.to));
+        let (length, _) = self.span(at);
+        let reach = region.reach(i) + region.reach(j);
+        if reach >= length {
+            return None;
+        }
+        let direction = chord((reach / length).asin());
+        for marker in [i, j] {
+            let swing = marker.arm.norm() * (direction + region.sway(marker));
+            row.add_point_bound(marker, direction, swing);
+        }
+        let speed = speed_bound(i, j, v);
+        Some(speed * speed / (length - reach) + centripetal_bound(i, j, v))
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {

@@ -67,9 +67,82 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
         true
     }
 
+    /// Whether c is an angle that comes back to itself after a whole turn, so that a joint may
+    /// hold it at any number of turns.
+    fn wraps(&self) -> bool {
+        false
+    }
+
+    /// Bounds how far c can bend in a region around the present pose: an upper bound of
+    /// |vᵀ (∂²c/∂q²) v| for `v` and of the change of each entry of the gradient, which is added
+    /// to `row`. `None` if the region reaches a place where c is not smooth.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64>;
+
     /// Notes the unknowns and parameters that c contains. What is zero whatever the parameters
     /// is left out.
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence);
+}
+
+/// A neighbourhood of a pose: each unknown may be off by a radius of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Region<'a> {
+    /// One radius an unknown, \[m, m, rad\] for each body.
+    pub radii: &'a [f64],
+}
+
+impl Region<'_> {
+    /// How far the direction of a marker can turn \[rad\].
+    fn turn(&self, marker: &MarkerPose) -> f64 {
+        marker
+            .body
+            .map_or(0.0, |body| self.radii[3 * body.index() + 2])
+    }
+
+    /// How far a unit vector fixed to a marker's body can move: the chord of the turn.
+    fn sway(&self, marker: &MarkerPose) -> f64 {
+        chord(self.turn(marker))
+    }
+
+    /// How far a marker's point can move \[m\].
+    fn reach(&self, marker: &MarkerPose) -> f64 {
+        marker.body.map_or(0.0, |body| {
+            let k = 3 * body.index();
+            self.radii[k].hypot(self.radii[k + 1]) + marker.arm.norm() * self.sway(marker)
+        })
+    }
+}
+
+/// The chord of an angle on the unit circle, two at the most.
+fn chord(angle: f64) -> f64 {
+    if angle < std::f64::consts::PI {
+        2.0 * (0.5 * angle).sin()
+    } else {
+        2.0
+    }
+}
+
+/// An upper bound of the speed of a marker's point for the rates `v`, wherever its body points.
+fn speed_bound(from: &MarkerPose, to: &MarkerPose, v: &[f64]) -> f64 {
+    let origin = |marker: &MarkerPose| {
+        marker.body.map_or_else(Vector2::zeros, |body| {
+            let k = 3 * body.index();
+            Vector2::new(v[k], v[k + 1])
+        })
+    };
+    let swing = |marker: &MarkerPose| angular_velocity(marker, v).abs() * marker.arm.norm();
+    (origin(to) - origin(from)).norm() + swing(to) + swing(from)
+}
+
+/// An upper bound of the centripetal part of P_j − P_i for the rates `v`.
+fn centripetal_bound(from: &MarkerPose, to: &MarkerPose, v: &[f64]) -> f64 {
+    let part = |marker: &MarkerPose| angular_velocity(marker, v).powi(2) * marker.arm.norm();
+    part(from) + part(to)
 }
 
 /// The relation that a coordinate of the mechanism file measures.
@@ -126,6 +199,15 @@ impl Gradient {
             part[0] += direction.x;
             part[1] += direction.y;
             part[2] += direction.dot(&perp(marker.arm));
+        }
+    }
+
+    /// Adds bounds of a point's entries: `direction` for x and y, `swing` for phi.
+    fn add_point_bound(&mut self, marker: &MarkerPose, direction: f64, swing: f64) {
+        if let Some(part) = self.part(marker.body) {
+            part[0] += direction;
+            part[1] += direction;
+            part[2] += swing;
         }
     }
 

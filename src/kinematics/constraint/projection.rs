@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, angular_velocity, centripetal,
-    perp, point_velocity,
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, angular_velocity,
+    centripetal, centripetal_bound, perp, point_velocity, speed_bound,
 };
 use crate::mechanism::{MarkerId, Mechanism};
 
@@ -77,6 +77,36 @@ impl Constraint for Projection {
         let d_dot = point_velocity(j, q_dot) - point_velocity(i, q_dot);
         let d_ddot = centripetal(j, q_dot) - centripetal(i, q_dot);
         -omega * omega * e.dot(&d) + 2.0 * omega * perp(e).dot(&d_dot) + e.dot(&d_ddot)
+    }
+
+    /// The axis turns with marker k, the arms with their bodies, and d grows by the reach of
+    /// both points: |c″| ≤ omega_k² |d| + 2 |omega_k| |ḋ| + omega_i² |s_i| + omega_j² |s_j|.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let (i, j, k) = (
+            at.marker(self.from),
+            at.marker(self.to),
+            at.marker(self.axes),
+        );
+        let axis = region.sway(k);
+        for marker in [i, j] {
+            let swing = marker.arm.norm() * (axis + region.sway(marker));
+            row.add_point_bound(marker, axis, swing);
+        }
+        let d = (j.point - i.point).norm();
+        let reach = region.reach(i) + region.reach(j);
+        row.add_direction(k, d * axis + reach);
+        let omega = angular_velocity(k, v).abs();
+        Some(
+            omega * omega * (d + reach)
+                + 2.0 * omega * speed_bound(i, j, v)
+                + centripetal_bound(i, j, v),
+        )
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {

@@ -117,6 +117,52 @@ proptest! {
         }
     }
 
+    /// At points of the region the gradient has changed by no more than its bound, and the
+    /// quadratic term is no larger than its own.
+    #[test]
+    fn nothing_bends_more_than_its_bound(
+        (q, v) in pose_and_velocity(),
+        radii in prop::collection::vec(0.0..0.4_f64, 9),
+        places in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 9), 10),
+    ) {
+        let mechanism = mechanism();
+        let mut at = Configuration::new(&mechanism);
+        at.set_parameters(&mechanism, &[]).unwrap();
+        let dense = |row: &Gradient| {
+            let mut dense = [0.0; 9];
+            row.entries().for_each(|(column, value)| dense[column] += value);
+            dense
+        };
+        for constraint in samples(&mechanism) {
+            at.set_pose(&mechanism, &q);
+            let mut row = Gradient::new();
+            constraint.gradient(&at, &mut row);
+            let centre = dense(&row);
+            row.clear();
+            let Some(bound) = constraint.bend(&at, &Region { radii: &radii }, &v, &mut row) else {
+                continue;
+            };
+            let change = dense(&row);
+            for place in &places {
+                let off: Vec<_> = place.iter().zip(&radii).map(|(p, r)| p * r).collect();
+                at.set_pose(&mechanism, &moved(&q, &off, 1.0));
+                row.clear();
+                constraint.gradient(&at, &mut row);
+                let here = dense(&row);
+                for k in 0..9 {
+                    let changed = (here[k] - centre[k]).abs();
+                    // Rounding of values up to 7 m.
+                    prop_assert!(
+                        changed <= change[k] + 1e-13,
+                        "{constraint:?} column {k}: {changed} > {}", change[k]
+                    );
+                }
+                let quadratic = constraint.quadratic(&at, &v).abs();
+                prop_assert!(quadratic <= bound + 1e-13, "{constraint:?}: {quadratic} > {bound}");
+            }
+        }
+    }
+
     #[test]
     fn incidence_is_where_the_gradient_is_not_zero((q, _) in pose_and_velocity()) {
         let mechanism = mechanism();

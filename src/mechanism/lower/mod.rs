@@ -5,9 +5,10 @@
 
 mod bodies;
 mod context;
+mod coordinates;
 mod header;
+mod joints;
 mod names;
-mod pairs;
 mod parameters;
 mod settings;
 mod usage;

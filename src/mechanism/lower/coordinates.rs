@@ -1,11 +1,10 @@
-//! What connects two markers: joints, constraints, drivers and measures.
+//! Coordinates between two markers: constraints, drivers and measures.
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::{quoted, shown};
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
-    Constraint, Coordinate, CoordinateKind, Driver, DriverSource, Expression, Joint, JointKind,
-    MarkerId, Measure,
+    Constraint, Coordinate, CoordinateKind, Driver, DriverSource, Expression, MarkerId, Measure,
 };
 
 use super::context::{Context, Entry, Fields, Quantity};
@@ -17,81 +16,10 @@ const COORDINATES: [(&str, CoordinateKind); 4] = [
     ("distance", CoordinateKind::Distance),
 ];
 
-/// A joint's type as written, before what else it needs is read.
-#[derive(Clone, Copy)]
-enum JointType {
-    Revolute,
-    Translational,
-    Slot,
-    Link,
-    RevoluteTranslational,
-    Weld,
-}
-
-const JOINT_TYPES: [(&str, JointType); 6] = [
-    ("revolute", JointType::Revolute),
-    ("translational", JointType::Translational),
-    ("slot", JointType::Slot),
-    ("link", JointType::Link),
-    ("revolute_translational", JointType::RevoluteTranslational),
-    ("weld", JointType::Weld),
-];
-
 /// How markers are written, for help where they are missing.
 const MARKERS_FORM: &str = "[\"ground.O\", \"crank.O\"]";
 
 impl<'a> Context<'a> {
-    pub(super) fn lower_joints(&mut self, entries: &[Entry<'a>]) -> Vec<Joint> {
-        let joints = entries.iter();
-        joints
-            .filter_map(|entry| self.lower_joint(*entry))
-            .collect()
-    }
-
-    fn lower_joint(&mut self, entry: Entry<'a>) -> Option<Joint> {
-        let fields = self.entry_fields(entry, "joint")?;
-        let joint_type = self.joint_type(&fields);
-        let markers = self.marker_pair(&fields);
-        let mut legal = vec!["type", "markers", "description"];
-        match joint_type {
-            Some(JointType::Link) => legal.push("length"),
-            Some(JointType::RevoluteTranslational) => legal.push("offset"),
-            Some(_) => {}
-            // Of a type that is not known nothing else is either.
-            None => legal.extend(fields.entries().map(|entry| entry.name())),
-        }
-        self.check_keys(&fields, &legal);
-        self.description(&fields);
-        let kind = match joint_type? {
-            JointType::Revolute => JointKind::Revolute,
-            JointType::Translational => JointKind::Translational,
-            JointType::Slot => JointKind::Slot,
-            JointType::Weld => JointKind::Weld,
-            JointType::Link => {
-                let length = self.required_quantity(&fields, "length", "0.1")?;
-                self.check_positive(&length, "`length`");
-                JointKind::Link {
-                    length: length.expression,
-                }
-            }
-            JointType::RevoluteTranslational => JointKind::RevoluteTranslational {
-                offset: self.required_quantity(&fields, "offset", "0.1")?.expression,
-            },
-        };
-        let (from, to) = markers?;
-        Some(Joint {
-            name: entry.name().to_owned(),
-            kind,
-            from,
-            to,
-        })
-    }
-
-    fn joint_type(&mut self, fields: &Fields<'a>) -> Option<JointType> {
-        let value = self.required(fields, "type", "\"revolute\"")?;
-        self.choice(value, &JOINT_TYPES, code::UNKNOWN_JOINT_TYPE, "joint type")
-    }
-
     pub(super) fn lower_constraints(&mut self, entries: &[Entry<'a>]) -> Vec<Constraint> {
         let constraints = entries.iter();
         constraints
@@ -231,12 +159,12 @@ impl<'a> Context<'a> {
     }
 
     /// The table of a named entry of a section of `what`s.
-    fn entry_fields(&mut self, entry: Entry<'a>, what: &str) -> Option<Fields<'a>> {
+    pub(super) fn entry_fields(&mut self, entry: Entry<'a>, what: &str) -> Option<Fields<'a>> {
         let subject = format!("{what} {}", quoted(entry.name()));
         self.fields(entry.key, entry.value, subject)
     }
 
-    fn required_quantity(
+    pub(super) fn required_quantity(
         &mut self,
         fields: &Fields<'a>,
         key: &str,
@@ -281,7 +209,7 @@ impl<'a> Context<'a> {
     }
 
     /// The two markers under `markers`, fixed on different bodies.
-    fn marker_pair(&mut self, fields: &Fields<'a>) -> Option<(MarkerId, MarkerId)> {
+    pub(super) fn marker_pair(&mut self, fields: &Fields<'a>) -> Option<(MarkerId, MarkerId)> {
         let value = self.required(fields, "markers", MARKERS_FORM)?;
         let items = self.items_of(value, 2..=2, "an array of two markers")?;
         // Both are looked up, so that each says what is wrong with it.
