@@ -4,12 +4,11 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::constraint::{Dimension, Incidence};
+use super::constraint::{Dimension, Incidence, TurnEffect};
 use super::error::OpenJoint;
 use super::newton::{Outcome, SINGULAR};
 use super::solver::{Pose, Solver};
 use super::stepping::Progress;
-use super::system::{System, Target};
 use super::{Element, Error, Path};
 
 /// How the pose for the first values was found.
@@ -74,7 +73,7 @@ impl Solver {
         let mut outcome = None;
         for attempt in 0..STARTS {
             for (k, q) in self.pose.q.iter_mut().enumerate() {
-                *q = estimate[k] + shift(attempt, k) * System::column_scale(k, self.at.size());
+                *q = estimate[k] + shift(attempt, k) * self.system.column_scale(k, self.at.size());
             }
             let attempted = self.minimise_and_correct();
             if attempted.converged {
@@ -158,7 +157,7 @@ impl Solver {
             .iter()
             .zip(estimate)
             .enumerate()
-            .map(|(k, (q, e))| (q - e).abs() / System::column_scale(k, self.at.size()))
+            .map(|(k, (q, e))| (q - e).abs() / self.system.column_scale(k, self.at.size()))
             .fold(0.0, f64::max)
     }
 
@@ -171,7 +170,7 @@ impl Solver {
         steps: usize,
     ) {
         let order = self.system.unknowns();
-        let scale = DVector::from_fn(order, |k, _| System::column_scale(k, self.at.size()));
+        let scale = DVector::from_fn(order, |k, _| self.system.column_scale(k, self.at.size()));
         let weights = DVector::from_fn(order, |row, _| weight(row));
         let mut damping = 1e-6;
         let (mut residual, mut jacobian) = self.weighted_equations(&weights);
@@ -256,35 +255,40 @@ impl Solver {
     }
 
     /// Adds whole turns to the bodies so that each angle is nearest its estimate. Bodies whose
-    /// angles a driver ties together turn together, those it ties to ground not at all.
+    /// angles a driver ties together turn together, those it ties to ground not at all, nor do
+    /// those whose turns a gear counts.
     fn choose_turns(&mut self, estimate: &DVector<f64>) {
         let bodies = self.system.mechanism().bodies.len();
-        // Each body's group, ground's being the last.
+        let ground = bodies;
         let mut group: Vec<usize> = (0..=bodies).collect();
         for equation in self.system.equations() {
-            let counts_turns = matches!(equation.target, Target::Driver(_));
-            if !counts_turns || equation.constraint.dimension() != Dimension::Angle {
+            let effect = equation.constraint.turn_effect();
+            if effect == TurnEffect::None || equation.holds_any_turn() {
                 continue;
             }
             let mut incidence = Incidence::default();
             equation
                 .constraint
                 .incidence(self.system.mechanism(), &mut incidence);
-            let tied: Vec<_> = incidence.unknowns.iter().map(|k| group[k / 3]).collect();
-            let merged = match tied[..] {
-                [a, b] => [a, b],
-                [a] => [a, group[bodies]],
-                _ => continue,
-            };
-            let (keep, drop) = (merged[0].max(merged[1]), merged[0].min(merged[1]));
+            let mut tied: Vec<_> = incidence
+                .unknowns
+                .iter()
+                .map(|k| (k / 3).min(ground))
+                .collect();
+            // An angle between two bodies leaves both free to turn together.
+            if effect == TurnEffect::Proportional || tied.len() < 2 {
+                tied.push(ground);
+            }
+            let tied: Vec<_> = tied.into_iter().map(|body| group[body]).collect();
+            let keep = tied.iter().copied().max().unwrap_or(ground);
             for g in &mut group {
-                if *g == drop {
+                if tied.contains(g) {
                     *g = keep;
                 }
             }
         }
         let mut turns = vec![None; bodies + 1];
-        turns[group[bodies]] = Some(0.0);
+        turns[group[ground]] = Some(0.0);
         for body in 0..bodies {
             let phi = 3 * body + 2;
             let away = ((estimate[phi] - self.pose.q[phi]) / TAU).round();

@@ -3,7 +3,7 @@
 use nalgebra::{Rotation2, Vector2};
 
 use super::Error;
-use crate::mechanism::{BodyId, MarkerId, Mechanism};
+use crate::mechanism::{BodyId, Expression, MarkerId, Mechanism};
 
 /// A vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
 #[must_use]
@@ -37,6 +37,23 @@ pub struct MarkerPose {
     pub theta: f64,
 }
 
+/// A number in a relation that depends on parameters: index into the system's coefficients.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CoefficientId(pub usize);
+
+/// An unknown that a joint brings with it: its place behind the unknowns of the bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JointUnknownId(pub usize);
+
+/// What a relation needs besides markers, known when the equations are written down.
+#[derive(Clone, Debug)]
+pub struct Coefficient {
+    /// Its value as a function of the parameters.
+    pub expression: Expression,
+    /// What it belongs to, for messages.
+    pub what: String,
+}
+
 /// The markers of a mechanism at one q.
 ///
 /// Made once; [`set_parameters`](Self::set_parameters) and [`set_pose`](Self::set_pose) then
@@ -45,13 +62,18 @@ pub struct MarkerPose {
 pub struct Configuration {
     frames: Vec<LocalFrame>,
     markers: Vec<MarkerPose>,
+    phis: Vec<f64>,
+    coefficients: Vec<f64>,
+    /// The unknowns behind those of the bodies, which joints bring with them.
+    joint_unknowns: Vec<f64>,
     size: f64,
 }
 
 impl Configuration {
-    /// A configuration of all bodies at the origin, for parameter values still to be set.
+    /// A configuration of all bodies at the origin, for parameter values still to be set, with
+    /// room for what the system's joints need.
     #[must_use]
-    pub fn new(mechanism: &Mechanism) -> Self {
+    pub fn new(mechanism: &Mechanism, coefficients: usize, joint_unknowns: usize) -> Self {
         let frames: Vec<_> = mechanism
             .markers
             .iter()
@@ -66,11 +88,15 @@ impl Configuration {
         Self {
             frames,
             markers,
+            phis: vec![0.0; mechanism.bodies.len()],
+            coefficients: vec![0.0; coefficients],
+            joint_unknowns: vec![0.0; joint_unknowns],
             size: 1.0,
         }
     }
 
-    /// Takes over the markers' places on their bodies for these parameter values.
+    /// Takes over the markers' places on their bodies and the coefficients for these parameter
+    /// values.
     ///
     /// The pose has to be set anew afterwards.
     ///
@@ -81,6 +107,7 @@ impl Configuration {
     pub fn set_parameters(
         &mut self,
         mechanism: &Mechanism,
+        coefficients: &[Coefficient],
         parameters: &[f64],
     ) -> Result<(), Error> {
         let value = |p: crate::mechanism::ParameterId| parameters[p.index()];
@@ -100,13 +127,29 @@ impl Configuration {
                 self.markers[index] = frame.on_ground();
             }
         }
+        for (value_in_force, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
+            *value_in_force = coefficient.expression.evaluate(&value, 0.0);
+            if !value_in_force.is_finite() {
+                return Err(Error::NotFinite {
+                    what: coefficient.what.clone(),
+                });
+            }
+        }
         self.size = size(mechanism, &self.frames);
         Ok(())
     }
 
-    /// Moves the bodies to q, `3 * bodies` long, \[m, m, rad\].
+    /// Moves the bodies to q, \[m, m, rad\] for each body, then the joints' own unknowns.
     pub fn set_pose(&mut self, mechanism: &Mechanism, q: &[f64]) {
-        for (body, q) in mechanism.bodies.iter().zip(q.chunks_exact(3)) {
+        let (bodies, joint_unknowns) = q.split_at(3 * mechanism.bodies.len());
+        self.joint_unknowns.copy_from_slice(joint_unknowns);
+        for ((body, phi), q) in mechanism
+            .bodies
+            .iter()
+            .zip(&mut self.phis)
+            .zip(bodies.chunks_exact(3))
+        {
+            *phi = q[2];
             let origin = Vector2::new(q[0], q[1]);
             let rotation = Rotation2::new(q[2]);
             for marker in &body.markers {
@@ -127,6 +170,24 @@ impl Configuration {
     #[must_use]
     pub fn marker(&self, marker: MarkerId) -> &MarkerPose {
         &self.markers[marker.index()]
+    }
+
+    /// A body's angle \[rad\], zero for ground.
+    #[must_use]
+    pub fn phi(&self, body: Option<BodyId>) -> f64 {
+        body.map_or(0.0, |body| self.phis[body.index()])
+    }
+
+    /// A coefficient with the parameter values in force.
+    #[must_use]
+    pub fn coefficient(&self, id: CoefficientId) -> f64 {
+        self.coefficients[id.0]
+    }
+
+    /// The value of a joint's own unknown.
+    #[must_use]
+    pub fn joint_unknown(&self, id: JointUnknownId) -> f64 {
+        self.joint_unknowns[id.0]
     }
 
     /// The mechanism's characteristic length \[m\]: makes metres and radians comparable.

@@ -1,11 +1,17 @@
 //! The equations that each kind of joint stands for.
 
-use super::constraint::{Axis, Coincidence, Constraint, of_coordinate};
-use crate::mechanism::{Coordinate, CoordinateKind, Expression, Joint, JointKind};
+use super::constraint::{Axis, Coincidence, Constraint, Coupling, RackAndPinion, of_coordinate};
+use super::system::JointParts;
+use crate::mechanism::{
+    BodyId, Coordinate, CoordinateKind, Expression, Joint, JointKind, WheelSizes,
+};
 
 /// The relations of a joint, and what each is held at.
 #[must_use]
-pub(super) fn relations(joint: &Joint) -> Vec<(Box<dyn Constraint>, Expression)> {
+pub(super) fn relations(
+    joint: &Joint,
+    parts: &mut JointParts,
+) -> Vec<(Box<dyn Constraint>, Expression)> {
     let (from, to) = (joint.from, joint.to);
     let zero = || Expression::constant(0.0);
     let along = |kind| {
@@ -35,5 +41,47 @@ pub(super) fn relations(joint: &Joint) -> Vec<(Box<dyn Constraint>, Expression)>
             coincide(Axis::Y),
             (along(CoordinateKind::Angle), zero()),
         ],
+        JointKind::Gear {
+            sizes,
+            internal,
+            carrier,
+        } => vec![couple(joint, sizes, !internal, *carrier, parts)],
+        JointKind::Belt {
+            sizes,
+            crossed,
+            carrier,
+        } => vec![couple(joint, sizes, *crossed, *carrier, parts)],
+        JointKind::RackAndPinion { radius, side } => {
+            let rolling = RackAndPinion {
+                pinion: from,
+                rack: to,
+                radius: parts.coefficient(radius, format!("the radius of joint `{}`", joint.name)),
+                side: *side,
+            };
+            vec![(Box::new(rolling), zero())]
+        }
     }
+}
+
+/// Two wheels that turn in a fixed ratio.
+fn couple(
+    joint: &Joint,
+    sizes: &WheelSizes,
+    opposite: bool,
+    carrier: Option<BodyId>,
+    parts: &mut JointParts,
+) -> (Box<dyn Constraint>, Expression) {
+    let what = format!("a wheel's size in joint `{}`", joint.name);
+    let [first, second] = sizes.expressions();
+    let coupling = Coupling {
+        from: joint.from,
+        to: joint.to,
+        carrier,
+        sizes: [
+            parts.coefficient(first, what.clone()),
+            parts.coefficient(second, what),
+        ],
+        opposite,
+    };
+    (Box::new(coupling), Expression::constant(0.0))
 }

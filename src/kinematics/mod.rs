@@ -31,7 +31,7 @@ mod structure;
 mod system;
 
 pub use assembly::{Assembly, Start};
-pub use configuration::{Configuration, MarkerPose};
+pub use configuration::{Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose};
 pub use element::Element;
 pub use error::{Error, OpenJoint};
 pub use path::{Curve, Path};

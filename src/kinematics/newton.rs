@@ -1,7 +1,6 @@
 //! Newton–Raphson on the position equations (Ec. 3.6.7 and 3.6.8).
 
 use super::solver::Solver;
-use super::system::System;
 
 /// How a Newton iteration ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +53,7 @@ impl Solver {
             self.lu.solve(&mut self.correction);
             let size = self.at.size();
             for (column, (q, scaled)) in self.pose.q.iter_mut().zip(&self.correction).enumerate() {
-                *q -= scaled * System::column_scale(column, size);
+                *q -= scaled * self.system.column_scale(column, size);
             }
             let correction = self.correction.amax();
             outcome.contraction = outcome.contraction.max(correction / last_correction);

@@ -47,7 +47,7 @@ impl Rates {
     ) {
         system.velocity_side(at, |d| driver(d).first, self.velocity.as_mut_slice());
         lu.solve(&mut self.velocity);
-        unscale(&mut self.velocity, at.size());
+        unscale(system, &mut self.velocity, at.size());
 
         system.acceleration_side(
             at,
@@ -56,7 +56,7 @@ impl Rates {
             self.acceleration.as_mut_slice(),
         );
         lu.solve(&mut self.acceleration);
-        unscale(&mut self.acceleration, at.size());
+        unscale(system, &mut self.acceleration, at.size());
     }
 
     pub(super) fn is_finite(&self) -> bool {
@@ -65,8 +65,8 @@ impl Rates {
     }
 }
 
-fn unscale(rates: &mut DVector<f64>, size: f64) {
+fn unscale(system: &System, rates: &mut DVector<f64>, size: f64) {
     for (column, rate) in rates.iter_mut().enumerate() {
-        *rate *= System::column_scale(column, size);
+        *rate *= system.column_scale(column, size);
     }
 }

@@ -90,7 +90,6 @@ impl Solver {
     ///
     /// [`Error::Structure`] if the drivers do not match the degrees of freedom.
     pub fn new(mechanism: Arc<Mechanism>) -> Result<Self, Error> {
-        let at = Configuration::new(&mechanism);
         let path = Path::new(&mechanism);
         let system = System::new(Arc::clone(&mechanism));
         let structure = Structure::new(&system)?;
@@ -115,7 +114,7 @@ impl Solver {
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
             path_drivers: vec![Jet::constant(0.0); drivers],
             pose,
-            at,
+            at: system.configuration(),
             lu: DenseLu::new(order),
             factorised: false,
             residual: Residual::new(order),
@@ -239,10 +238,8 @@ impl Solver {
     /// Recomputes all that depends on the parameters of the pose alone.
     pub(super) fn take_over_parameters(&mut self) -> Result<(), Error> {
         self.parameters_taken = false;
-        let mechanism = self.system.mechanism();
-        self.at.set_parameters(mechanism, &self.pose.parameters)?;
         self.system
-            .set_parameters(&self.pose.parameters, &mut self.targets)?;
+            .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
         self.parameters_taken = true;
         Ok(())
     }

@@ -8,7 +8,6 @@
 use super::newton::{Outcome, SINGULAR};
 use super::path::Path;
 use super::solver::Solver;
-use super::system::System;
 use crate::mechanism::Jet;
 
 /// What following a path took.
@@ -100,8 +99,9 @@ impl Solver {
 
     /// The fastest turn of a body along the tangent, in radians for the whole path.
     fn turn_along_path(&self) -> f64 {
-        let turns = self.tangent.velocity().iter().skip(2).step_by(3);
-        turns.fold(0.0, |fastest: f64, turn| fastest.max(turn.abs()))
+        let tangent = self.tangent.velocity().iter().enumerate();
+        let turns = tangent.filter(|(column, _)| self.system.is_angle(*column));
+        turns.fold(0.0, |fastest: f64, (_, turn)| fastest.max(turn.abs()))
     }
 
     /// Goes from the remembered pose over `h` to s; true if that kept to the motion.
@@ -139,7 +139,7 @@ impl Solver {
         let size = self.at.size();
         (0..self.pose.q.len()).fold(0.0, |worst: f64, k| {
             let predicted = self.origin.q[k] + h * (first[k] + 0.5 * h * second[k]);
-            worst.max((self.pose.q[k] - predicted).abs() / System::column_scale(k, size))
+            worst.max((self.pose.q[k] - predicted).abs() / self.system.column_scale(k, size))
         })
     }
 

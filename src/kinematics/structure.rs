@@ -324,7 +324,12 @@ impl Matching {
             |row| incidences[row].unknowns.clone(),
             |column| self.row_of[column],
         );
-        let bodies: BTreeSet<_> = loose.into_iter().map(|column| column / 3).collect();
+        let mut loose_parts: Vec<_> = loose
+            .into_iter()
+            .map(|column| system.describe_unknown(column))
+            .collect();
+        // The unknowns of a body are next to each other.
+        loose_parts.dedup();
         let elements: BTreeSet<Element> = excess
             .into_iter()
             .map(|row| system.equations()[row].element)
@@ -332,10 +337,7 @@ impl Matching {
         Error::Structure {
             equations: incidences.len(),
             unknowns: system.unknowns(),
-            loose: bodies
-                .into_iter()
-                .map(|body| format!("body `{}`", mechanism.bodies[body].name))
-                .collect(),
+            loose: loose_parts,
             excess: elements
                 .into_iter()
                 .map(|element| element.describe(mechanism))

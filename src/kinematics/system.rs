@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use super::configuration::Configuration;
-use super::constraint::{self, Constraint, Dimension, Gradient};
+use super::configuration::{Coefficient, CoefficientId, Configuration};
+use super::constraint::{self, Constraint, Dimension, Gradient, TurnEffect};
 use super::{Element, Error, joint};
 use crate::mechanism::{DriverId, Expression, Mechanism};
 
@@ -38,6 +38,30 @@ pub struct Equation {
 pub struct System {
     mechanism: Arc<Mechanism>,
     equations: Vec<Equation>,
+    joint_parts: JointParts,
+}
+
+/// What joints bring with them besides their equations.
+#[derive(Debug, Default)]
+pub(super) struct JointParts {
+    coefficients: Vec<Coefficient>,
+    /// The joint of each unknown behind those of the bodies.
+    unknowns: Vec<Element>,
+}
+
+impl JointParts {
+    /// Registers a number that depends on parameters.
+    pub(super) fn coefficient(
+        &mut self,
+        expression: &Expression,
+        what: impl Into<String>,
+    ) -> CoefficientId {
+        self.coefficients.push(Coefficient {
+            expression: expression.clone(),
+            what: what.into(),
+        });
+        CoefficientId(self.coefficients.len() - 1)
+    }
 }
 
 /// The right-hand sides in force: what each c(q) is held at.
@@ -88,8 +112,9 @@ impl System {
     #[must_use]
     pub fn new(mechanism: Arc<Mechanism>) -> Self {
         let mut equations = Vec::new();
+        let mut joint_parts = JointParts::default();
         for (index, joint) in mechanism.joints.iter().enumerate() {
-            for (constraint, target) in joint::relations(joint) {
+            for (constraint, target) in joint::relations(joint, &mut joint_parts) {
                 equations.push(Equation {
                     element: Element::Joint(index),
                     constraint,
@@ -114,6 +139,7 @@ impl System {
         Self {
             mechanism,
             equations,
+            joint_parts,
         }
     }
 
@@ -129,10 +155,32 @@ impl System {
         &self.equations
     }
 
-    /// The number of generalized coordinates, three a body.
+    /// The number of unknowns: three generalized coordinates a body, and what joints bring.
     #[must_use]
     pub fn unknowns(&self) -> usize {
-        3 * self.mechanism.bodies.len()
+        3 * self.mechanism.bodies.len() + self.joint_parts.unknowns.len()
+    }
+
+    /// What an unknown belongs to, for messages: a body, or the joint that brought it.
+    #[must_use]
+    pub fn describe_unknown(&self, column: usize) -> String {
+        match self.mechanism.bodies.get(column / 3) {
+            Some(body) => format!("body `{}`", body.name),
+            None => {
+                let place = column - 3 * self.mechanism.bodies.len();
+                self.joint_parts.unknowns[place].describe(&self.mechanism)
+            }
+        }
+    }
+
+    /// A configuration for this system, its parameter values still to be set.
+    #[must_use]
+    pub fn configuration(&self) -> Configuration {
+        Configuration::new(
+            &self.mechanism,
+            self.joint_parts.coefficients.len(),
+            self.joint_parts.unknowns.len(),
+        )
     }
 
     /// Targets of which [`set_parameters`](Self::set_parameters) has still to give the values.
@@ -144,13 +192,20 @@ impl System {
         }
     }
 
-    /// Takes over the constants for these parameter values. Allocates nothing unless it fails.
+    /// Takes over all that depends on the parameters alone. Allocates nothing unless it fails.
     ///
     /// # Errors
     ///
     /// [`Error::NotFinite`] where an expression leaves its domain, [`Error::NotPositive`] where a
-    /// distance is held at a value that is not positive.
-    pub fn set_parameters(&self, parameters: &[f64], targets: &mut Targets) -> Result<(), Error> {
+    /// distance is held at a value that is not positive. Configuration and targets are then
+    /// without use until valid values are set.
+    pub fn set_parameters(
+        &self,
+        parameters: &[f64],
+        at: &mut Configuration,
+        targets: &mut Targets,
+    ) -> Result<(), Error> {
+        at.set_parameters(&self.mechanism, &self.joint_parts.coefficients, parameters)?;
         for (equation, constant) in self.equations.iter().zip(&mut targets.constants) {
             let Target::Constant(expression) = &equation.target else {
                 continue;
@@ -199,7 +254,7 @@ impl System {
     /// configuration.
     pub fn fix_turns(&self, at: &Configuration, targets: &mut Targets) {
         for (row, equation) in self.equations.iter().enumerate() {
-            if matches!(equation.target, Target::Constant(_)) && equation.constraint.wraps() {
+            if equation.holds_any_turn() {
                 let excess = equation.constraint.value(at) - targets.constants[row];
                 // A saturating cast: nobody turns two thousand million times before assembly.
                 targets.turns[row] = (excess / TAU).round() as i32;
@@ -247,7 +302,7 @@ impl System {
                 entry(
                     row,
                     column,
-                    value * row_scale * Self::column_scale(column, size),
+                    value * row_scale * self.column_scale(column, size),
                 );
             }
             residual.rounding[row] = magnitude * f64::EPSILON;
@@ -289,14 +344,28 @@ impl System {
         }
     }
 
+    /// Whether an unknown is an angle; what joints bring with them is.
+    #[must_use]
+    pub fn is_angle(&self, column: usize) -> bool {
+        column % 3 == 2 || column >= 3 * self.mechanism.bodies.len()
+    }
+
     /// The unknown in metres or radians that a scaled unknown of one stands for.
     #[must_use]
-    pub fn column_scale(column: usize, size: f64) -> f64 {
-        if column % 3 == 2 { 1.0 } else { size }
+    pub fn column_scale(&self, column: usize, size: f64) -> f64 {
+        if self.is_angle(column) { 1.0 } else { size }
     }
 }
 
 impl Equation {
+    /// Whether a joint or constraint holds an angle here, at whatever whole turn it was
+    /// assembled. A driver's angle counts turns.
+    #[must_use]
+    pub fn holds_any_turn(&self) -> bool {
+        matches!(self.target, Target::Constant(_))
+            && self.constraint.turn_effect() == TurnEffect::Whole
+    }
+
     /// A row in metres is divided by the mechanism's size, one in radians is left as it is.
     fn row_scale(&self, at: &Configuration) -> f64 {
         match self.constraint.dimension() {

@@ -145,6 +145,7 @@ codes! {
     UNUSED_PARAMETER = "unused-parameter",
     WRONG_DISPLAY_UNIT = "wrong-display-unit",
     WRONG_TYPE = "wrong-type",
+    WHEEL_SIZES = "wheel-sizes",
 }
 
 #[cfg(test)]

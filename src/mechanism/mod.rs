@@ -163,6 +163,59 @@ pub enum JointKind {
     },
     /// The markers coincide: x = y = angle = 0.
     Weld,
+    /// Two toothed wheels that roll on each other. Marker angles set the phase.
+    Gear {
+        /// The wheels' sizes, that of marker i's wheel first.
+        sizes: WheelSizes,
+        /// Whether the smaller wheel runs inside the larger one: both turn the same way.
+        internal: bool,
+        /// The body that carries both centres, `None` for ground.
+        carrier: Option<BodyId>,
+    },
+    /// Two wheels joined by a belt or chain. Marker angles set the phase.
+    Belt {
+        /// The wheels' sizes, that of marker i's wheel first.
+        sizes: WheelSizes,
+        /// Whether the belt crosses between the wheels: they then turn opposite ways.
+        crossed: bool,
+        /// The body that carries both centres, `None` for ground.
+        carrier: Option<BodyId>,
+    },
+    /// A pinion, which has marker i, that rolls along the x-axis of marker j, the rack.
+    RackAndPinion {
+        /// The pinion's radius \[m\].
+        radius: Expression,
+        /// On which side of the rack the pinion is.
+        side: RackSide,
+    },
+}
+
+/// The sizes of two wheels. Their ratio decides how they turn.
+#[derive(Clone, Debug)]
+pub enum WheelSizes {
+    /// Radii of the pitch circles \[m\].
+    Radii([Expression; 2]),
+    /// Numbers of teeth.
+    Teeth([Expression; 2]),
+}
+
+impl WheelSizes {
+    /// Both sizes, in metres or in teeth.
+    #[must_use]
+    pub fn expressions(&self) -> &[Expression; 2] {
+        match self {
+            Self::Radii(sizes) | Self::Teeth(sizes) => sizes,
+        }
+    }
+}
+
+/// The side of a rack on which its pinion rolls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RackSide {
+    /// On the +y side of the rack's marker.
+    Above,
+    /// On the −y side of the rack's marker.
+    Below,
 }
 
 /// A bare coordinate held at a value.

@@ -187,11 +187,11 @@ def test_prescribed_motion(fmu):
 
     yoke.x = r cos u, r the derived diameter halved, u = speed t + wobble sin 2t.
     """
-    scotch_yoke = fmu("scotch_yoke")
-    assert scotch_yoke.names("input") == []
-    assert not {"rates", "extrapolation"} & set(scotch_yoke.variables)
+    yoke = fmu("turning_yoke")
+    assert yoke.names("input") == []
+    assert not {"rates", "extrapolation"} & set(yoke.variables)
     speed, wobble, r = 4.0, 0.25, 0.05
-    result = simulate(scotch_yoke, start_values={"speed": speed, "radius": r})
+    result = simulate(yoke, start_values={"speed": speed, "radius": r})
     t = result["time"]
     assert (t[0], t[-1], len(t)) == (1.0, pytest.approx(3.0), 101), "the file's own experiment"
 
@@ -217,7 +217,7 @@ def test_prescribed_motion(fmu):
 
 
 def test_derived_parameter_follows(slave):
-    instance = slave("scotch_yoke").start({"radius": 0.045}, start_time=1.0)
+    instance = slave("turning_yoke").start({"radius": 0.045}, start_time=1.0)
     assert instance.get_one("diameter") == pytest.approx(0.09, rel=1e-15)
 
 

@@ -157,7 +157,7 @@ def test_fixed_after_initialization(slave, parameter):
 
 
 def test_derived_parameters_cannot_be_set(slave):
-    instance = slave("scotch_yoke")
+    instance = slave("turning_yoke")
     instance.setup()
     with pytest.raises(FMICallException) as refused:
         instance.set({"diameter": 0.1})
@@ -177,7 +177,7 @@ def test_derived_parameters_cannot_be_set(slave):
         ("four_bar", "crank_length", float("inf")),
         ("four_bar", "crank_angle.position", float("nan")),
         ("four_bar", "crank_angle.velocity", float("-inf")),
-        ("scotch_yoke", "radius", 1.5),
+        ("turning_yoke", "radius", 1.5),
         ("four_bar", "rates", 0),
         ("four_bar", "rates", 4),
         ("four_bar", "extrapolation", 3),

@@ -296,7 +296,7 @@ impl Instance {
             committed: pose.clone(),
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
-            rates: Rates::new(3 * mechanism.bodies.len()),
+            rates: Rates::new(pose.q.len()),
             freshness: Freshness::Stale,
             path: Path::new(&mechanism),
             progress: Progress::default(),

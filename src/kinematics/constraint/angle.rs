@@ -1,6 +1,6 @@
 //! The angle between two markers.
 
-use super::{Configuration, Constraint, Dimension, Gradient, Incidence, Region};
+use super::{Configuration, Constraint, Dimension, Gradient, Incidence, Region, TurnEffect};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = theta_j − theta_i, counting turns.
@@ -35,8 +35,8 @@ impl Constraint for Angle {
         0.0
     }
 
-    fn wraps(&self) -> bool {
-        true
+    fn turn_effect(&self) -> TurnEffect {
+        TurnEffect::Whole
     }
 
     /// Linear: nothing bends.

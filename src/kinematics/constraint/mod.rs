@@ -10,15 +10,19 @@
 
 mod angle;
 mod coincidence;
+mod coupling;
 mod distance;
 mod projection;
+mod rack_and_pinion;
 
 use nalgebra::Vector2;
 
 pub use angle::Angle;
 pub use coincidence::Coincidence;
+pub use coupling::Coupling;
 pub use distance::Distance;
 pub use projection::Projection;
+pub use rack_and_pinion::RackAndPinion;
 
 use super::configuration::{Configuration, MarkerPose, perp};
 use crate::mechanism::{
@@ -41,6 +45,17 @@ pub enum Axis {
     X,
     /// The y-axis, n.
     Y,
+}
+
+/// What a whole turn of a body does to a relation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TurnEffect {
+    /// Nothing: the body is back where it was.
+    None,
+    /// c changes by a whole turn, so that a joint may hold it at any number of turns.
+    Whole,
+    /// c changes by something else, so that turns have to be counted.
+    Proportional,
 }
 
 /// A scalar relation c(q) between bodies.
@@ -67,10 +82,9 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
         true
     }
 
-    /// Whether c is an angle that comes back to itself after a whole turn, so that a joint may
-    /// hold it at any number of turns.
-    fn wraps(&self) -> bool {
-        false
+    /// What a whole turn of one of its bodies does to c.
+    fn turn_effect(&self) -> TurnEffect {
+        TurnEffect::None
     }
 
     /// Bounds how far c can bend in a region around the present pose: an upper bound of
@@ -179,6 +193,8 @@ pub fn of_coordinate(coordinate: &Coordinate) -> Box<dyn Constraint> {
 pub struct Gradient {
     len: usize,
     parts: [(usize, [f64; 3]); 3],
+    /// Index in q of a joint's own unknown, and the entry there.
+    joint_unknown: Option<(usize, f64)>,
 }
 
 impl Gradient {
@@ -191,6 +207,7 @@ impl Gradient {
     /// Makes the row empty again.
     pub fn clear(&mut self) {
         self.len = 0;
+        self.joint_unknown = None;
     }
 
     /// Adds the gradient of `direction · P`, P being the marker's point and `direction` fixed.
@@ -213,7 +230,12 @@ impl Gradient {
 
     /// Adds the gradient of `factor * theta`, theta being the marker's direction.
     pub fn add_direction(&mut self, marker: &MarkerPose, factor: f64) {
-        if let Some(part) = self.part(marker.body) {
+        self.add_turn(marker.body, factor);
+    }
+
+    /// Adds the gradient of `factor * phi`, phi being the body's angle; nothing for ground.
+    pub fn add_turn(&mut self, body: Option<BodyId>, factor: f64) {
+        if let Some(part) = self.part(body) {
             part[2] += factor;
         }
     }
@@ -223,6 +245,7 @@ impl Gradient {
         self.parts[..self.len]
             .iter()
             .flat_map(|(body, part)| (0..3).map(move |k| (3 * body + k, part[k])))
+            .chain(self.joint_unknown)
     }
 
     /// The product of the row with a vector over q.

@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::mechanism::Source;
+use crate::kinematics::{Coefficient, CoefficientId};
+use crate::mechanism::{RackSide, Source};
 
 /// Three bodies and ground with markers in general position, one of them at its body's origin.
 const BODIES: &str = r#"
@@ -58,7 +59,50 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
             samples.push(Box::new(Coincidence { from, to, axis }));
         }
     }
+    // Wheels of every sense, their centres on ground or on a body.
+    for (from, to, carrier) in [
+        ("a.A", "b.B", None),
+        ("a.A", "b.B", Some(BodyId(2))),
+        ("ground.G", "b.B", Some(BodyId(0))),
+    ] {
+        for opposite in [false, true] {
+            samples.push(Box::new(Coupling {
+                from: id(from),
+                to: id(to),
+                carrier,
+                sizes: [CoefficientId(0), CoefficientId(1)],
+                opposite,
+            }));
+        }
+    }
+    for (pinion, rack) in [("a.A", "b.B"), ("a.A", "ground.G"), ("ground.H", "b.B")] {
+        for side in [RackSide::Above, RackSide::Below] {
+            samples.push(Box::new(RackAndPinion {
+                pinion: id(pinion),
+                rack: id(rack),
+                radius: CoefficientId(0),
+                side,
+            }));
+        }
+    }
     samples
+}
+
+/// The values of the samples' coefficients.
+fn coefficients() -> Vec<Coefficient> {
+    [0.3, 0.7]
+        .map(|value| Coefficient {
+            expression: Expression::constant(value),
+            what: "a sample".to_owned(),
+        })
+        .to_vec()
+}
+
+fn configuration(mechanism: &Mechanism) -> Configuration {
+    let mut at = Configuration::new(mechanism, coefficients().len(), 0);
+    at.set_parameters(mechanism, &coefficients(), &[])
+        .expect("the sample has numbers only");
+    at
 }
 
 fn mechanism() -> Mechanism {
@@ -96,8 +140,7 @@ proptest! {
     #[test]
     fn gradient_and_quadratic_term_agree_with_differences((q, q_dot) in pose_and_velocity()) {
         let mechanism = mechanism();
-        let mut at = Configuration::new(&mechanism);
-        at.set_parameters(&mechanism, &[]).unwrap();
+        let mut at = configuration(&mechanism);
         for constraint in samples(&mechanism) {
             let along = |at: &mut Configuration, s: f64| {
                 at.set_pose(&mechanism, &moved(&q, &q_dot, s));
@@ -126,8 +169,7 @@ proptest! {
         places in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 9), 10),
     ) {
         let mechanism = mechanism();
-        let mut at = Configuration::new(&mechanism);
-        at.set_parameters(&mechanism, &[]).unwrap();
+        let mut at = configuration(&mechanism);
         let dense = |row: &Gradient| {
             let mut dense = [0.0; 9];
             row.entries().for_each(|(column, value)| dense[column] += value);
@@ -166,8 +208,7 @@ proptest! {
     #[test]
     fn incidence_is_where_the_gradient_is_not_zero((q, _) in pose_and_velocity()) {
         let mechanism = mechanism();
-        let mut at = Configuration::new(&mechanism);
-        at.set_parameters(&mechanism, &[]).unwrap();
+        let mut at = configuration(&mechanism);
         at.set_pose(&mechanism, &q);
         for constraint in samples(&mechanism) {
             let mut row = Gradient::new();
@@ -190,8 +231,7 @@ proptest! {
 #[test]
 fn coinciding_points_have_a_distance_gradient_to_leave_by() {
     let mechanism = mechanism();
-    let mut at = Configuration::new(&mechanism);
-    at.set_parameters(&mechanism, &[]).unwrap();
+    let mut at = configuration(&mechanism);
     at.set_pose(&mechanism, &[0.0; 9]);
     // ground.H is the second marker, a.O the fourth; both are at the origin.
     let distance = Distance {

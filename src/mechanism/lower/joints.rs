@@ -18,7 +18,7 @@ struct JointType {
 type Read = for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<JointKind>;
 
 /// Every type of joint; a new one is a line here and a variant of [`JointKind`].
-static JOINT_TYPES: [JointType; 6] = [
+static JOINT_TYPES: [JointType; 9] = [
     plain("revolute", |_, _| Some(JointKind::Revolute)),
     plain("translational", |_, _| Some(JointKind::Translational)),
     plain("slot", |_, _| Some(JointKind::Slot)),
@@ -44,6 +44,21 @@ static JOINT_TYPES: [JointType; 6] = [
         },
     },
     plain("weld", |_, _| Some(JointKind::Weld)),
+    JointType {
+        name: "gear",
+        keys: &["radii", "teeth", "internal", "carrier"],
+        read: |context, fields| context.gear(fields),
+    },
+    JointType {
+        name: "belt",
+        keys: &["radii", "teeth", "crossed", "carrier"],
+        read: |context, fields| context.belt(fields),
+    },
+    JointType {
+        name: "rack_and_pinion",
+        keys: &["radius", "side"],
+        read: |context, fields| context.rack_and_pinion(fields),
+    },
 ];
 
 /// A type that needs nothing but its markers.

@@ -12,6 +12,7 @@ mod names;
 mod parameters;
 mod settings;
 mod usage;
+mod wheels;
 
 #[cfg(test)]
 mod tests;

@@ -1,0 +1,87 @@
+//! A pinion that rolls on a rack.
+
+use super::{
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Projection, Region, TurnEffect,
+};
+use crate::kinematics::configuration::CoefficientId;
+use crate::mechanism::{MarkerId, Mechanism, RackSide};
+
+/// c = s + σ r (theta_p − theta_r): s is the coordinate of the pinion's centre along the rack
+/// marker's x-axis, σ = +1 for a pinion above the rack and −1 for one below.
+#[derive(Clone, Debug)]
+pub struct RackAndPinion {
+    /// Marker p at the pinion's centre.
+    pub pinion: MarkerId,
+    /// Marker r on the rack, its x-axis along the teeth.
+    pub rack: MarkerId,
+    /// The pinion's radius \[m\].
+    pub radius: CoefficientId,
+    /// On which side of the rack the pinion is.
+    pub side: RackSide,
+}
+
+impl RackAndPinion {
+    /// s as a relation of its own.
+    fn travel(&self) -> Projection {
+        Projection {
+            from: self.rack,
+            to: self.pinion,
+            axes: self.rack,
+            axis: Axis::X,
+        }
+    }
+
+    /// σ r.
+    fn arc(&self, at: &Configuration) -> f64 {
+        let radius = at.coefficient(self.radius);
+        match self.side {
+            RackSide::Above => radius,
+            RackSide::Below => -radius,
+        }
+    }
+}
+
+impl Constraint for RackAndPinion {
+    fn dimension(&self) -> Dimension {
+        Dimension::Length
+    }
+
+    fn label(&self) -> &'static str {
+        "rolling"
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        let turn = at.marker(self.pinion).theta - at.marker(self.rack).theta;
+        self.travel().value(at) + self.arc(at) * turn
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        self.travel().gradient(at, row);
+        row.add_direction(at.marker(self.pinion), self.arc(at));
+        row.add_direction(at.marker(self.rack), -self.arc(at));
+    }
+
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        self.travel().quadratic(at, q_dot)
+    }
+
+    fn turn_effect(&self) -> TurnEffect {
+        TurnEffect::Proportional
+    }
+
+    /// The arc is linear, so that all bending is that of the travel.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        self.travel().bend(at, region, v, row)
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        self.travel().incidence(mechanism, incidence);
+        incidence.direction(mechanism, self.pinion);
+    }
+}

@@ -1,0 +1,494 @@
+/* A host in C for the tests: loads the runtime library and calls its functions through the types
+ * of the standard's own header, so that a call which does not fit them is no program.
+ *
+ *     host LIBRARY
+ *
+ * Each line of stdin is a request, a function without its `fmi2` and its arguments:
+ *
+ *     Instantiate  SLOT NAME GUID URI TYPE LOGGING_ON CALLBACKS     full, no logger, or none
+ *     GetReal      SLOT N VALUE_REFERENCES VALUES
+ *     DoStep       SLOT POINT SIZE NO_SET_FMU_STATE_PRIOR_TO_CURRENT_POINT
+ *
+ * and so on, as `requests` has them; `in-thread` before the function makes the call from another
+ * thread. The answer is one line for each message that the logger got meanwhile and a last one:
+ *
+ *     log     SLOT INSTANCE_NAME STATUS CATEGORY MESSAGE
+ *     answer  STATUS RESULT...
+ *
+ * Fields are separated by tabs. In them `\t`, `\n` and `\\` stand for these characters, `\N` for a
+ * null pointer. Items of a list are separated by commas. Slots are 0 to 3; `\N` is the null
+ * instance. At the end of stdin all instances are freed. Whatever the host did not expect ends
+ * it with a message on stderr and status 1. */
+
+#define _POSIX_C_SOURCE 200809L
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fmi2Functions.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* ---- the library ---- */
+
+#define FUNCTIONS(X)                                                                               \
+    X(GetTypesPlatform) X(GetVersion) X(SetDebugLogging) X(Instantiate) X(FreeInstance)            \
+    X(SetupExperiment) X(EnterInitializationMode) X(ExitInitializationMode) X(Terminate) X(Reset)  \
+    X(GetReal) X(GetInteger) X(GetBoolean) X(GetString)                                            \
+    X(SetReal) X(SetInteger) X(SetBoolean) X(SetString)                                            \
+    X(GetFMUstate) X(SetFMUstate) X(FreeFMUstate)                                                  \
+    X(SerializedFMUstateSize) X(SerializeFMUstate) X(DeSerializeFMUstate)                          \
+    X(GetDirectionalDerivative)                                                                    \
+    X(EnterEventMode) X(NewDiscreteStates) X(EnterContinuousTimeMode) X(CompletedIntegratorStep)   \
+    X(SetTime) X(SetContinuousStates) X(GetDerivatives) X(GetEventIndicators)                      \
+    X(GetContinuousStates) X(GetNominalsOfContinuousStates)                                        \
+    X(SetRealInputDerivatives) X(GetRealOutputDerivatives) X(DoStep) X(CancelStep)                 \
+    X(GetStatus) X(GetRealStatus) X(GetIntegerStatus) X(GetBooleanStatus) X(GetStringStatus)
+
+static struct {
+#define X(name) fmi2##name##TYPE *name;
+    FUNCTIONS(X)
+#undef X
+} fmu;
+
+static void fail(const char *what, const char *detail)
+{
+    fprintf(stderr, "host: %s: %s\n", what, detail);
+    exit(1);
+}
+
+static void *load(const char *path)
+{
+    void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (!library) fail("cannot load the library", dlerror());
+#define X(name)                                                                                    \
+    {                                                                                              \
+        void *symbol = dlsym(library, "fmi2" #name);                                               \
+        if (!symbol) fail("not exported", "fmi2" #name);                                           \
+        /* ISO C converts no object pointer to a function pointer; POSIX has them alike. */        \
+        memcpy(&fmu.name, &symbol, sizeof symbol);                                                 \
+    }
+    FUNCTIONS(X)
+#undef X
+    return library;
+}
+
+/* ---- requests and answers ---- */
+
+/* What is left of the request. */
+static char *rest;
+
+/* Cuts the next piece off `*text`; a null pointer if nothing is left. */
+static char *cut(char **text, char separator)
+{
+    char *piece = *text;
+    if (piece) {
+        char *end = strchr(piece, separator);
+        *text = end ? end + 1 : NULL;
+        if (end) *end = '\0';
+    }
+    return piece;
+}
+
+static char *field(void)
+{
+    char *text = cut(&rest, '\t');
+    if (!text) fail("request too short", "a field is missing");
+    return text;
+}
+
+static int is(const char *a, const char *b) { return strcmp(a, b) == 0; }
+
+/* Resolves the escapes of a text in place; a null pointer for `\N`. */
+static char *unescape(char *text)
+{
+    if (is(text, "\\N")) return NULL;
+    char *to = text;
+    for (const char *from = text; *from; from++) {
+        if (*from == '\\') {
+            from++;
+            *to++ = *from == 't' ? '\t' : *from == 'n' ? '\n' : *from;
+        } else {
+            *to++ = *from;
+        }
+    }
+    *to = '\0';
+    return text;
+}
+
+static double real(const char *text)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end) fail("not a number", text);
+    return value;
+}
+
+static long long integer(const char *text)
+{
+    char *end;
+    long long value = strtoll(text, &end, 10);
+    if (end == text || *end) fail("not an integer", text);
+    return value;
+}
+
+static size_t size(const char *text) { return strtoull(text, NULL, 10); }
+
+#define LONGEST_LIST 256
+
+/* Takes a list into `items`; a null pointer for `\N`. */
+#define LIST(type, name, parse)                                                                    \
+    static type *name(type items[LONGEST_LIST])                                                    \
+    {                                                                                              \
+        char *text = field();                                                                      \
+        if (is(text, "\\N")) return NULL;                                                          \
+        size_t n = 0;                                                                              \
+        for (char *item; *text && (item = cut(&text, ',')); n++) {                                 \
+            if (n == LONGEST_LIST) fail("too many items", item);                                   \
+            items[n] = (type)parse(item);                                                          \
+            if (!text) break;                                                                      \
+        }                                                                                          \
+        return items;                                                                              \
+    }
+
+LIST(fmi2Real, reals, real)
+LIST(fmi2Integer, integers, integer)
+LIST(fmi2ValueReference, value_references, integer)
+LIST(fmi2String, strings, unescape)
+
+static void put_text(const char *text)
+{
+    putchar('\t');
+    if (!text) fputs("\\N", stdout);
+    for (; text && *text; text++) {
+        switch (*text) {
+        case '\t': fputs("\\t", stdout); break;
+        case '\n': fputs("\\n", stdout); break;
+        case '\\': fputs("\\\\", stdout); break;
+        default: putchar(*text);
+        }
+    }
+}
+
+static void put_real(fmi2Real value) { printf("\t%.17g", value); }
+static void put_integer(fmi2Integer value) { printf("\t%d", value); }
+
+static void answer(fmi2Status status) { printf("answer\t%d", (int)status); }
+
+/* ---- instances ---- */
+
+static struct slot {
+    int number;
+    fmi2Component component;
+    /* Lives as long as the instance, which may use it. */
+    fmi2CallbackFunctions *callbacks;
+} slots[4] = {{.number = 0}, {.number = 1}, {.number = 2}, {.number = 3}};
+
+static struct slot *slot(const char *text)
+{
+    long long number = integer(text);
+    if (number < 0 || number >= (long long)COUNT(slots)) fail("no such slot", text);
+    return &slots[number];
+}
+
+static fmi2Component component(void)
+{
+    char *text = field();
+    if (is(text, "\\N")) return NULL;
+    fmi2Component c = slot(text)->component;
+    if (!c) fail("no instance in slot", text);
+    return c;
+}
+
+static void logger(fmi2ComponentEnvironment environment, fmi2String instance_name,
+                   fmi2Status status, fmi2String category, fmi2String message, ...)
+{
+    const struct slot *from = environment;
+    va_list arguments, again;
+    va_start(arguments, message);
+    va_copy(again, arguments);
+    int length = vsnprintf(NULL, 0, message, arguments);
+    char *text = malloc((size_t)length + 1);
+    if (length < 0 || !text) fail("cannot format", message);
+    vsnprintf(text, (size_t)length + 1, message, again);
+    va_end(again);
+    va_end(arguments);
+
+    printf("log\t%d", from->number);
+    put_text(instance_name);
+    printf("\t%d", (int)status);
+    put_text(category);
+    put_text(text);
+    putchar('\n');
+    free(text);
+}
+
+/* Frees what is in a slot, if anything. */
+static void discard(struct slot *which)
+{
+    fmu.FreeInstance(which->component);
+    free(which->callbacks);
+    which->component = NULL;
+    which->callbacks = NULL;
+}
+
+static void instantiate(void)
+{
+    struct slot *to = slot(field());
+    if (to->component) fail("slot in use", "Instantiate");
+    char *name = unescape(field()), *guid = unescape(field()), *uri = unescape(field());
+    fmi2Type type = (fmi2Type)integer(field());
+    fmi2Boolean logging_on = (fmi2Boolean)integer(field());
+    char *callbacks = field();
+    if (!is(callbacks, "none")) {
+        fmi2CallbackFunctions functions = {
+            .logger = is(callbacks, "no logger") ? NULL : logger,
+            .allocateMemory = calloc,
+            .freeMemory = free,
+            .componentEnvironment = to,
+        };
+        to->callbacks = malloc(sizeof functions);
+        if (!to->callbacks) fail("no memory", "Instantiate");
+        memcpy(to->callbacks, &functions, sizeof functions);
+    }
+    to->component = fmu.Instantiate(name, type, guid, uri, to->callbacks, fmi2False, logging_on);
+    answer(fmi2OK);
+    put_integer(to->component != NULL);
+    if (!to->component) discard(to);
+}
+
+static void free_instance(void)
+{
+    char *text = field();
+    if (is(text, "\\N"))
+        fmu.FreeInstance(NULL);
+    else
+        discard(slot(text));
+    answer(fmi2OK);
+}
+
+/* ---- the functions, by the shape of their arguments ---- */
+
+static void get_types_platform(void) { answer(fmi2OK); put_text(fmu.GetTypesPlatform()); }
+static void get_version(void) { answer(fmi2OK); put_text(fmu.GetVersion()); }
+
+#define WITHOUT_ARGUMENTS(X)                                                                       \
+    X(EnterInitializationMode) X(ExitInitializationMode) X(Terminate) X(Reset) X(CancelStep)       \
+    X(EnterEventMode) X(EnterContinuousTimeMode)
+
+#define X(name)                                                                                    \
+    static void call_##name(void) { answer(fmu.name(component())); }
+WITHOUT_ARGUMENTS(X)
+#undef X
+
+static void set_debug_logging(void)
+{
+    fmi2String categories[LONGEST_LIST];
+    fmi2Component c = component();
+    fmi2Boolean on = (fmi2Boolean)integer(field());
+    size_t n = size(field());
+    answer(fmu.SetDebugLogging(c, on, n, strings(categories)));
+}
+
+static void setup_experiment(void)
+{
+    fmi2Component c = component();
+    fmi2Real start = real(field());
+    char *stop = field();
+    fmi2Boolean stops = !is(stop, "\\N");
+    answer(fmu.SetupExperiment(c, fmi2False, 0.0, start, stops, stops ? real(stop) : 0.0));
+}
+
+static void do_step(void)
+{
+    fmi2Component c = component();
+    fmi2Real point = real(field()), step = real(field());
+    fmi2Boolean no_set_prior = (fmi2Boolean)integer(field());
+    answer(fmu.DoStep(c, point, step, no_set_prior));
+}
+
+/* Values that a getter has not written come back as 7; those of strings as null. */
+#define ACCESS(type, initial, put, parse)                                                          \
+    static void get_##type(void)                                                                   \
+    {                                                                                              \
+        fmi2ValueReference vr[LONGEST_LIST];                                                       \
+        fmi2##type values[LONGEST_LIST];                                                           \
+        for (size_t k = 0; k < LONGEST_LIST; k++) values[k] = initial;                             \
+        fmi2Component c = component();                                                             \
+        size_t n = size(field());                                                                  \
+        const fmi2ValueReference *from = value_references(vr);                                     \
+        int none = is(field(), "\\N");                                                             \
+        answer(fmu.Get##type(c, from, n, none ? NULL : values));                                   \
+        for (size_t k = 0; !none && k < n && k < LONGEST_LIST; k++) put(values[k]);                \
+    }                                                                                              \
+    static void set_##type(void)                                                                   \
+    {                                                                                              \
+        fmi2ValueReference vr[LONGEST_LIST];                                                       \
+        fmi2##type values[LONGEST_LIST];                                                           \
+        fmi2Component c = component();                                                             \
+        size_t n = size(field());                                                                  \
+        const fmi2ValueReference *to = value_references(vr);                                       \
+        answer(fmu.Set##type(c, to, n, parse(values)));                                            \
+    }
+
+ACCESS(Real, 7.0, put_real, reals)
+ACCESS(Integer, 7, put_integer, integers)
+ACCESS(Boolean, 7, put_integer, integers)
+ACCESS(String, NULL, put_text, strings)
+
+static void set_real_input_derivatives(void)
+{
+    fmi2ValueReference vr[LONGEST_LIST];
+    fmi2Integer orders[LONGEST_LIST];
+    fmi2Real values[LONGEST_LIST];
+    fmi2Component c = component();
+    size_t n = size(field());
+    const fmi2ValueReference *to = value_references(vr);
+    const fmi2Integer *order = integers(orders);
+    answer(fmu.SetRealInputDerivatives(c, to, n, order, reals(values)));
+}
+
+#define STATUS(name, type, initial, put)                                                           \
+    static void call_##name(void)                                                                  \
+    {                                                                                              \
+        type value = initial;                                                                      \
+        fmi2Component c = component();                                                             \
+        fmi2StatusKind kind = (fmi2StatusKind)integer(field());                                    \
+        int none = is(field(), "\\N");                                                             \
+        answer(fmu.name(c, kind, none ? NULL : &value));                                           \
+        put(value);                                                                                \
+    }
+
+static void put_status(fmi2Status status) { put_integer((fmi2Integer)status); }
+
+STATUS(GetStatus, fmi2Status, fmi2Pending, put_status)
+STATUS(GetRealStatus, fmi2Real, 7.0, put_real)
+STATUS(GetIntegerStatus, fmi2Integer, 7, put_integer)
+STATUS(GetBooleanStatus, fmi2Boolean, 7, put_integer)
+STATUS(GetStringStatus, fmi2String, NULL, put_text)
+
+/* What belongs to capabilities that are not declared. It has to leave its arguments alone. */
+static struct {
+    fmi2FMUstate state;
+    size_t size;
+    fmi2Byte bytes[8];
+    fmi2ValueReference vr[1];
+    fmi2Integer order[1];
+    fmi2Real real[1], other[1];
+    fmi2EventInfo event;
+    fmi2Boolean boolean[2];
+} untouched, scratch;
+
+#define UNDECLARED(X)                                                                              \
+    X(GetFMUstate, &scratch.state)                                                                 \
+    X(SetFMUstate, scratch.state)                                                                  \
+    X(FreeFMUstate, &scratch.state)                                                                \
+    X(SerializedFMUstateSize, scratch.state, &scratch.size)                                        \
+    X(SerializeFMUstate, scratch.state, scratch.bytes, sizeof scratch.bytes)                       \
+    X(DeSerializeFMUstate, scratch.bytes, sizeof scratch.bytes, &scratch.state)                    \
+    X(GetDirectionalDerivative, scratch.vr, 1, scratch.vr, 1, scratch.real, scratch.other)         \
+    X(GetRealOutputDerivatives, scratch.vr, 1, scratch.order, scratch.real)                        \
+    X(NewDiscreteStates, &scratch.event)                                                           \
+    X(CompletedIntegratorStep, fmi2True, &scratch.boolean[0], &scratch.boolean[1])                 \
+    X(SetTime, 1.0)                                                                                \
+    X(SetContinuousStates, scratch.real, 1)                                                        \
+    X(GetDerivatives, scratch.real, 1)                                                             \
+    X(GetEventIndicators, scratch.real, 1)                                                         \
+    X(GetContinuousStates, scratch.real, 1)                                                        \
+    X(GetNominalsOfContinuousStates, scratch.real, 1)
+
+#define X(name, ...)                                                                               \
+    static void call_##name(void)                                                                  \
+    {                                                                                              \
+        answer(fmu.name(component(), __VA_ARGS__));                                                \
+        if (memcmp(&scratch, &untouched, sizeof scratch)) fail("wrote to its arguments", #name);   \
+    }
+UNDECLARED(X)
+#undef X
+
+/* ---- the loop ---- */
+
+static const struct request {
+    const char *name;
+    void (*make)(void);
+} requests[] = {
+    {"GetTypesPlatform", get_types_platform},
+    {"GetVersion", get_version},
+    {"Instantiate", instantiate},
+    {"FreeInstance", free_instance},
+    {"SetDebugLogging", set_debug_logging},
+    {"SetupExperiment", setup_experiment},
+    {"DoStep", do_step},
+    {"GetReal", get_Real},
+    {"GetInteger", get_Integer},
+    {"GetBoolean", get_Boolean},
+    {"GetString", get_String},
+    {"SetReal", set_Real},
+    {"SetInteger", set_Integer},
+    {"SetBoolean", set_Boolean},
+    {"SetString", set_String},
+    {"SetRealInputDerivatives", set_real_input_derivatives},
+    {"GetStatus", call_GetStatus},
+    {"GetRealStatus", call_GetRealStatus},
+    {"GetIntegerStatus", call_GetIntegerStatus},
+    {"GetBooleanStatus", call_GetBooleanStatus},
+    {"GetStringStatus", call_GetStringStatus},
+#define X(name) {#name, call_##name},
+    WITHOUT_ARGUMENTS(X)
+#undef X
+#define X(name, ...) {#name, call_##name},
+    UNDECLARED(X)
+#undef X
+};
+
+static const struct request *find(const char *name)
+{
+    for (size_t k = 0; k < COUNT(requests); k++)
+        if (is(requests[k].name, name)) return &requests[k];
+    fail("unknown request", name);
+    return NULL;
+}
+
+static void *make(void *request)
+{
+    ((const struct request *)request)->make();
+    return NULL;
+}
+
+static void serve(void)
+{
+    char *name = field();
+    int in_thread = is(name, "in-thread");
+    const struct request *request = find(in_thread ? field() : name);
+    if (in_thread) {
+        pthread_t thread;
+        if (pthread_create(&thread, NULL, make, (void *)request) || pthread_join(thread, NULL))
+            fail("no thread for", request->name);
+    } else {
+        request->make();
+    }
+    if (rest) fail("request too long", rest);
+    putchar('\n');
+    fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) fail("usage", "host LIBRARY");
+    void *library = load(argv[1]);
+    char *line = NULL;
+    size_t capacity = 0;
+    for (ssize_t length; (length = getline(&line, &capacity, stdin)) > 0;) {
+        if (line[length - 1] == '\n') line[length - 1] = '\0';
+        rest = line;
+        serve();
+    }
+    free(line);
+    for (size_t k = 0; k < COUNT(slots); k++) discard(&slots[k]);
+    if (dlclose(library)) fail("cannot unload the library", dlerror());
+    return 0;
+}
