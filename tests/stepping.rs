@@ -4,7 +4,7 @@ mod common;
 
 use std::f64::consts::{PI, TAU};
 
-use biela::kinematics::{Path, Solver};
+use biela::kinematics::{Path, Reason, Solver};
 use biela::mechanism::Jet;
 use common::{EXACT, assembled, parse, shipped, straight_to};
 use proptest::prelude::*;
@@ -187,6 +187,147 @@ fn a_prescribed_motion_is_followed_along_its_own_curve() {
     let limit = 0.75_f64.asin() / PI;
     assert!((blocked.s - limit).abs() < 1e-8, "{} {limit}", blocked.s);
     assert!((solver.pose().time - limit).abs() < 1e-8);
+}
+
+#[test]
+fn a_motion_at_rest_at_both_ends_is_followed_in_between() {
+    // Value, velocity and acceleration are the same at both ends; the peak is at 0.75 m.
+    let text = std::fs::read_to_string("mechanisms/tlv.toml")
+        .expect("it is shipped")
+        .replace("start = 0.35", "motion = \"0.35 + 0.4*sin(pi*t)^4\"");
+    let (mut solver, mut path) = assembled(&parse(&text));
+    path.duration = 1.0;
+    let blocked = solver.follow(&path).expect_err("the peak is at 0.75 m");
+    // sin(pi t)^4 = 3/4.
+    let limit = 0.75_f64.powf(0.25).asin() / PI;
+    assert!((blocked.s - limit).abs() < 1e-8, "{} {limit}", blocked.s);
+}
+
+#[test]
+fn a_path_that_never_ends_is_given_up() {
+    let (mut solver, mut path) = assembled(&shipped("pendulum"));
+    for target in [1e8, 1e12, 1e17] {
+        straight_to(&solver, &mut path, target);
+        let blocked = solver.follow(&path).expect_err("that is too far to follow");
+        assert_eq!(blocked.reason, Reason::TooLong);
+        assert!(solver.residual() < 1e-10);
+    }
+}
+
+#[test]
+fn a_motion_that_leaves_its_domain_says_so() {
+    let text = std::fs::read_to_string("mechanisms/pendulum.toml")
+        .expect("it is shipped")
+        .replace("start = \"30*deg\"", "motion = \"sqrt(0.5 - t)\"");
+    let (mut solver, mut path) = assembled(&parse(&text));
+    path.duration = 1.0;
+    let blocked = solver.follow(&path).expect_err("no root of -0.5");
+    assert!(matches!(blocked.reason, Reason::Value(_)), "{blocked:?}");
+    assert!((blocked.s - 0.5).abs() < 1e-6);
+}
+
+/// Two sliders on a rod of 0.5 micrometres: as accurate as one of half a metre.
+#[test]
+fn small_mechanisms_are_as_accurate_as_large_ones() {
+    for scale in [1.0, 1e-6, 1e-9] {
+        let text = format!(
+            r#"
+            format = 1
+            name = "trammel"
+            [ground.markers]
+            X = [0, 0]
+            Y = [0, 0, "90*deg"]
+            [bodies.a]
+            markers = {{ A = [0, 0] }}
+            estimate = [{x}, 0, 0]
+            [bodies.b]
+            markers = {{ B = [0, 0] }}
+            estimate = [0, {y}, "90*deg"]
+            [joints]
+            x = {{ type = "translational", markers = ["ground.X", "a.A"] }}
+            y = {{ type = "translational", markers = ["ground.Y", "b.B"] }}
+            rod = {{ type = "link", markers = ["a.A", "b.B"], length = {rod} }}
+            [drivers]
+            u = {{ coordinate = "x", markers = ["ground.X", "a.A"], start = {x} }}
+            "#,
+            x = 0.3 * scale,
+            y = 0.4 * scale,
+            rod = 0.5 * scale
+        );
+        let (mut solver, mut path) = assembled(&parse(&text));
+        for u in [0.35, 0.1, 0.45] {
+            straight_to(&solver, &mut path, u * scale);
+            solver.follow(&path).expect("the rod reaches");
+            let y = (0.25 - u * u).sqrt() * scale;
+            assert!(
+                (solver.pose().q[4] - y).abs() < 1e-14 * scale,
+                "scale {scale:e}"
+            );
+        }
+    }
+}
+
+/// Gears keep their phase: the planet of a planetary gear turns 1 + z_sun/z_planet times as fast
+/// as the arm around a sun that stands still.
+#[test]
+fn a_planet_keeps_its_phase_over_a_thousand_turns() {
+    let mechanism = parse(
+        r#"
+        format = 1
+        name = "planetary"
+        [ground.markers]
+        O = [0, 0]
+        [bodies.arm]
+        markers = { O = [0, 0], P = [0.06, 0] }
+        [bodies.planet]
+        markers = { C = [0, 0] }
+        estimate = [0.06, 0, 0]
+        [joints]
+        O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+        P = { type = "revolute", markers = ["arm.P", "planet.C"] }
+        mesh = { type = "gear", markers = ["ground.O", "planet.C"], teeth = [40, 20], carrier = "arm" }
+        [drivers]
+        turn = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0 }
+        "#,
+    );
+    let (mut solver, mut path) = assembled(&mechanism);
+    for turn in 1..=1000 {
+        straight_to(&solver, &mut path, TAU * f64::from(turn));
+        solver.follow(&path).expect("gears turn fully");
+    }
+    let arm = solver.pose().q[2];
+    let planet = solver.pose().q[5];
+    assert!((planet - 3.0 * arm).abs() <= 4.0 * f64::EPSILON * planet);
+}
+
+/// A pinion of 20 mm on a rack: half a turn moves it by pi r, to the left if it turns forward.
+#[test]
+fn a_pinion_rolls() {
+    let mechanism = parse(
+        r#"
+        format = 1
+        name = "rack_drive"
+        [ground.markers]
+        R = [0, 0]
+        way = [0, "20*mm"]
+        [bodies.carriage]
+        markers = { C = [0, 0] }
+        estimate = [0, "20*mm", 0]
+        [bodies.pinion]
+        markers = { C = [0, 0] }
+        estimate = [0, "20*mm", 0]
+        [joints]
+        way = { type = "translational", markers = ["ground.way", "carriage.C"] }
+        axle = { type = "revolute", markers = ["carriage.C", "pinion.C"] }
+        mesh = { type = "rack_and_pinion", markers = ["pinion.C", "ground.R"], radius = "20*mm" }
+        [drivers]
+        turn = { coordinate = "angle", markers = ["carriage.C", "pinion.C"], start = 0 }
+        "#,
+    );
+    let (mut solver, mut path) = assembled(&mechanism);
+    straight_to(&solver, &mut path, PI);
+    solver.follow(&path).expect("the rack has no end");
+    assert!((solver.pose().q[0] + 0.02 * PI).abs() < 1e-15);
 }
 
 #[test]

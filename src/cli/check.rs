@@ -130,9 +130,9 @@ fn describe_pose(solver: &mut Solver, assembly: Assembly) -> String {
             out,
             "  {:<width$}  {:>12.6}  {:>12.6}  {:>12.6}",
             body.name,
-            q[0] + 0.0,
-            q[1] + 0.0,
-            q[2].to_degrees() + 0.0
+            tidy(q[0]),
+            tidy(q[1]),
+            tidy(q[2].to_degrees())
         );
     }
     let still = Rates::new(solver.pose().q.len());
@@ -166,7 +166,12 @@ fn describe_pose(solver: &mut Solver, assembly: Assembly) -> String {
 
 fn with_unit(kind: CoordinateKind, value: f64) -> String {
     match kind {
-        CoordinateKind::Angle => format!("{:.6} deg", value.to_degrees() + 0.0),
-        _ => format!("{:.6} m", value + 0.0),
+        CoordinateKind::Angle => format!("{:.6} deg", tidy(value.to_degrees())),
+        _ => format!("{:.6} m", tidy(value)),
     }
+}
+
+/// Zero where six decimals would show a negative zero.
+fn tidy(value: f64) -> f64 {
+    if value.abs() < 5e-7 { 0.0 } else { value }
 }

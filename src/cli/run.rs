@@ -9,7 +9,7 @@ use clap::Args;
 use super::error::Error;
 use super::input::Input;
 use crate::fmi::{Causality, Order, Quantity, Variables};
-use crate::kinematics::{Curve, Path, Pose, Rates, Solver, Start};
+use crate::kinematics::{Curve, Path, Pose, Rates, Reason, Solver, Start};
 use crate::mechanism::{DriverId, DriverSource, ExpressionError, Jet, Mechanism, ParameterId};
 
 /// Run a mechanism and print its motion as CSV.
@@ -276,7 +276,12 @@ impl Motion {
     fn advance(&mut self, time: f64) -> Result<(), Error> {
         self.path.start = self.solver.pose().time;
         self.path.duration = time - self.path.start;
-        if self.solver.follow(&self.path).is_err() {
+        if let Err(blocked) = self.solver.follow(&self.path) {
+            let why = match &blocked.reason {
+                Reason::Value(error) => error.to_string(),
+                Reason::TooLong => "the motion is too fast for the steps".to_owned(),
+                _ => "dead point".to_owned(),
+            };
             let pose = self.solver.pose();
             let mechanism = self.solver.mechanism();
             let drivers: Vec<_> = mechanism
@@ -287,7 +292,7 @@ impl Motion {
                 .map(|(driver, value)| format!("`{}` at {value:.9}", driver.name))
                 .collect();
             return Err(Error::DeadPoint(format!(
-                "dead point at t = {:.9} s: the mechanism cannot go on, with {}",
+                "{why} at t = {:.9} s: the mechanism cannot go on, with {}",
                 pose.time,
                 drivers.join(", ")
             )));

@@ -311,7 +311,9 @@ pub unsafe extern "C" fn fmi2Instantiate(
         instance_name: c_string(instance_name),
     };
     let complain = |message: &str| {
-        logger("").write(
+        // SAFETY: promised by the caller.
+        let name = unsafe { text("instanceName", instance_name) };
+        logger(name.unwrap_or_default()).write(
             Status::Error,
             Category::Error,
             &format!("fmi2Instantiate: {message}"),

@@ -60,8 +60,12 @@ impl Category {
         matches!(self, Self::Warning | Self::Error | Self::Fatal)
     }
 
-    fn bit(self) -> u8 {
-        1 << self as u8
+    /// The categories that it switches.
+    fn bits(self) -> u8 {
+        match self {
+            Self::All => u8::MAX,
+            other => 1 << other as u8,
+        }
     }
 }
 
@@ -87,13 +91,13 @@ impl std::fmt::Debug for Logger {
 
 impl Logger {
     pub(super) fn new(sink: Box<dyn Sink + Send>, logging_on: bool) -> Self {
-        let enabled = if logging_on { Category::All.bit() } else { 0 };
+        let enabled = if logging_on { Category::All.bits() } else { 0 };
         Self { sink, enabled }
     }
 
     /// Whether a message of this category would go out: lets callers skip making one.
     pub(super) fn wants(&self, category: Category) -> bool {
-        category.always() || self.enabled & (category.bit() | Category::All.bit()) != 0
+        category.always() || self.enabled & category.bits() != 0
     }
 
     pub(super) fn write(&self, status: Status, category: Category, message: &str) {
@@ -110,7 +114,7 @@ impl Logger {
     pub(super) fn switch<'a>(&mut self, on: bool, categories: &[&'a str]) -> Result<(), &'a str> {
         let mut bits = 0;
         for name in categories {
-            bits |= Category::by_name(name).ok_or(*name)?.bit();
+            bits |= Category::by_name(name).ok_or(*name)?.bits();
         }
         if categories.is_empty() {
             bits = u8::MAX;
@@ -121,5 +125,30 @@ impl Logger {
             self.enabled &= !bits;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Nowhere;
+
+    impl Sink for Nowhere {
+        fn write(&self, _: Status, _: Category, _: &str) {}
+    }
+
+    #[test]
+    fn one_category_goes_off_while_the_others_stay_on() {
+        let mut logger = Logger::new(Box::new(Nowhere), true);
+        assert!(logger.wants(Category::Solver) && logger.wants(Category::Events));
+        logger.switch(false, &["logSolver"]).unwrap();
+        assert!(!logger.wants(Category::Solver) && logger.wants(Category::Events));
+        logger.switch(false, &["logAll"]).unwrap();
+        assert!(!logger.wants(Category::Events) && logger.wants(Category::Warning));
+        logger.switch(true, &["logEvents"]).unwrap();
+        assert!(!logger.wants(Category::Solver) && logger.wants(Category::Events));
+        assert_eq!(logger.switch(true, &["logSolver", "logX"]), Err("logX"));
+        assert!(!logger.wants(Category::Solver));
     }
 }

@@ -5,7 +5,7 @@
 //! archive beside this library; instantiating reads the mechanism back. An [`Instance`] is safe
 //! Rust and knows nothing of C; `abi` wraps it.
 
-pub mod abi;
+mod abi;
 mod guid;
 mod inputs;
 mod instance;

@@ -91,7 +91,7 @@ impl Configuration {
             phis: vec![0.0; mechanism.bodies.len()],
             coefficients: vec![0.0; coefficients],
             joint_unknowns: vec![0.0; joint_unknowns],
-            size: 1.0,
+            size: 0.0,
         }
     }
 
@@ -192,11 +192,16 @@ impl Configuration {
 
     /// The mechanism's characteristic length \[m\]: makes metres and radians comparable.
     ///
-    /// It is the extent of the largest body, not of the whole, so that a long chain of small
-    /// loops is measured by its loops.
+    /// It is the extent of the largest body or the largest length that a joint holds, not the
+    /// extent of the whole, so that a long chain of small loops is measured by its loops.
     #[must_use]
     pub fn size(&self) -> f64 {
-        self.size
+        if self.size > 0.0 { self.size } else { 1.0 }
+    }
+
+    /// Takes a length that a joint holds into account for the [size](Self::size).
+    pub(super) fn enlarge(&mut self, length: f64) {
+        self.size = self.size.max(length);
     }
 }
 
@@ -212,7 +217,7 @@ impl LocalFrame {
     }
 }
 
-/// Extent of the largest body, else of ground's markers, else 1 m.
+/// Extent of the largest body, else of ground's markers; zero if neither has any.
 fn size(mechanism: &Mechanism, frames: &[LocalFrame]) -> f64 {
     let extent = |markers: &mut dyn Iterator<Item = &LocalFrame>| {
         let (low, high) = markers.fold(
@@ -236,6 +241,5 @@ fn size(mechanism: &Mechanism, frames: &[LocalFrame]) -> f64 {
     if bodies > 0.0 {
         return bodies;
     }
-    let ground = extent(&mut frames.iter().filter(|frame| frame.body.is_none()));
-    if ground > 0.0 { ground } else { 1.0 }
+    extent(&mut frames.iter().filter(|frame| frame.body.is_none()))
 }

@@ -37,6 +37,6 @@ pub use error::{Error, OpenJoint};
 pub use path::{Curve, Path};
 pub use rates::Rates;
 pub use solver::{Pose, Solver};
-pub use stepping::{Blocked, Progress};
+pub use stepping::{Blocked, Progress, Reason};
 pub use structure::{Dependencies, Structure};
 pub use system::{Equation, Residual, System, Target, Targets};

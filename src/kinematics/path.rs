@@ -72,6 +72,12 @@ impl Path {
         self.from != self.to
     }
 
+    /// Whether any driver runs along a prescribed motion.
+    #[must_use]
+    pub fn has_motions(&self) -> bool {
+        self.curves.contains(&Curve::Motion)
+    }
+
     /// Time at s.
     #[must_use]
     pub fn time(&self, s: f64) -> f64 {

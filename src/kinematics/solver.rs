@@ -81,6 +81,8 @@ pub struct Solver {
     /// Parameters and drivers along a path.
     pub(super) path_parameters: Vec<Jet>,
     pub(super) path_drivers: Vec<Jet>,
+    /// The drivers where a sub-step starts.
+    pub(super) origin_drivers: Vec<Jet>,
 }
 
 impl Solver {
@@ -113,6 +115,7 @@ impl Solver {
             origin: pose.clone(),
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
             path_drivers: vec![Jet::constant(0.0); drivers],
+            origin_drivers: vec![Jet::constant(0.0); drivers],
             pose,
             at: system.configuration(),
             lu: DenseLu::new(order),
@@ -175,7 +178,7 @@ impl Solver {
     /// characteristic length, radians.
     #[must_use]
     pub fn residual(&self) -> f64 {
-        self.residual.value.amax()
+        self.residual.largest()
     }
 
     /// Scaled reciprocal condition of the Jacobian at the present pose: 1 is best, 0 singular.

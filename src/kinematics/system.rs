@@ -92,6 +92,15 @@ impl Residual {
         }
     }
 
+    /// The magnitude of the largest entry; NaN if any entry is.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.value
+            .iter()
+            .map(|value| value.abs())
+            .fold(0.0, nan_or_larger)
+    }
+
     /// The largest entry in multiples of its rounding error; NaN if any entry is.
     #[must_use]
     pub fn excess(&self) -> f64 {
@@ -99,12 +108,13 @@ impl Residual {
             .iter()
             .zip(&self.rounding)
             .map(|(value, rounding)| value.abs() / rounding)
-            // Not `f64::max`, which would drop a NaN.
-            .fold(
-                0.0,
-                |worst, ratio| if ratio <= worst { worst } else { ratio },
-            )
+            .fold(0.0, nan_or_larger)
     }
+}
+
+/// The larger of two numbers; unlike `f64::max` it keeps a NaN, wherever it stands.
+fn nan_or_larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
 }
 
 impl System {
@@ -221,6 +231,9 @@ impl System {
                     what: equation.element.describe(&self.mechanism),
                     value: *constant,
                 });
+            }
+            if equation.constraint.dimension() == Dimension::Length {
+                at.enlarge(constant.abs());
             }
         }
         Ok(())
@@ -371,6 +384,23 @@ impl Equation {
         match self.constraint.dimension() {
             Dimension::Length => 1.0 / at.size(),
             Dimension::Angle => 1.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Residual;
+
+    #[test]
+    fn no_entry_that_is_not_a_number_is_overlooked() {
+        for place in 0..3 {
+            let mut residual = Residual::new(3);
+            residual.rounding.fill(1.0);
+            residual.value[1] = 2.0;
+            assert_eq!((residual.excess(), residual.largest()), (2.0, 2.0));
+            residual.value[place] = f64::NAN;
+            assert!(residual.excess().is_nan() && residual.largest().is_nan());
         }
     }
 }

@@ -605,6 +605,8 @@ fn what_cannot_be_instantiated_is_null_and_tells_the_logger() {
         };
         assert_eq!(message.status, Status::Error);
         assert_eq!(message.category, "logStatusError");
+        assert_eq!(message.instance, with.name.clone().unwrap_or_default());
+        assert!(message.text.starts_with("fmi2Instantiate: "), "{message:?}");
         message.text.clone()
     };
     for (with, why) in [

@@ -232,6 +232,8 @@ pub struct Instance {
     at_committed: bool,
     /// Rates of all drivers that the outputs belong to; `value` is without use.
     driver_rates: Vec<Jet>,
+    /// Those at the last communication point.
+    committed_rates: Vec<Jet>,
     rates: Rates,
     freshness: Freshness,
     path: Path,
@@ -261,7 +263,8 @@ impl Instance {
         match solver {
             Ok(solver) => Ok(Self::at_home(solver, logger)),
             Err(error) => {
-                logger.write(Status::Error, Category::Error, &error.to_string());
+                let message = format!("fmi2Instantiate: {error}");
+                logger.write(Status::Error, Category::Error, &message);
                 Err(error)
             }
         }
@@ -296,6 +299,7 @@ impl Instance {
             committed: pose.clone(),
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
+            committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             rates: Rates::new(pose.q.len()),
             freshness: Freshness::Stale,
             path: Path::new(&mechanism),
@@ -474,6 +478,7 @@ impl Instance {
         self.solver.restore(&self.home);
         self.at_committed = true;
         self.driver_rates.fill(Jet::constant(0.0));
+        self.committed_rates.fill(Jet::constant(0.0));
         self.freshness = Freshness::Stale;
         self.progress = Progress::default();
         self.time = self.home.time;

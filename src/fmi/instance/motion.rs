@@ -5,7 +5,7 @@ use crate::fmi::inputs::DriverRates;
 use crate::fmi::log::Category;
 use crate::fmi::state::{Call, State};
 use crate::fmi::variables::Order;
-use crate::kinematics::{Blocked, Curve, Progress, Start};
+use crate::kinematics::{Blocked, Curve, Progress, Reason, Start};
 use crate::mechanism::{CoordinateKind, DriverSource, Jet};
 
 /// Hosts add up step sizes: communication points may be off by this much, relative to the
@@ -139,14 +139,22 @@ impl Instance {
     /// Makes the solver's pose the one of the communication point.
     pub(super) fn commit(&mut self) {
         self.solver.save(&mut self.committed);
+        self.committed_rates.copy_from_slice(&self.driver_rates);
         self.at_committed = true;
         self.last_successful_time = self.time;
         self.freshness = Freshness::Pose;
     }
 
+    /// Goes back to the last communication point.
+    fn stand_at_committed(&mut self) {
+        self.solver.restore(&self.committed);
+        self.driver_rates.copy_from_slice(&self.committed_rates);
+        self.at_committed = true;
+    }
+
     /// Deals with a dead point at the part `blocked.s` of a step.
     fn fail_step(&mut self, blocked: Blocked, start: f64, h: f64) -> Error {
-        let message = self.describe_dead_point(blocked, start, h);
+        let message = self.describe_dead_point(&blocked, start, h);
         self.progress = blocked.progress;
         // Held inputs and parameters reach their values only at the very end of the step; what
         // runs along its own curve has been right up to here.
@@ -157,7 +165,7 @@ impl Instance {
                 .iter()
                 .any(|curve| matches!(curve, Curve::Input { jump, .. } if *jump != 0.0));
         if jumped {
-            self.solver.restore(&self.committed);
+            self.stand_at_committed();
         } else {
             self.time = start + blocked.s * h;
             self.collect_driver_rates(start, h, blocked.s);
@@ -175,7 +183,7 @@ impl Instance {
     }
 
     /// Which drivers move along the path, how far they came and what was asked for.
-    fn describe_dead_point(&mut self, blocked: Blocked, start: f64, h: f64) -> String {
+    fn describe_dead_point(&mut self, blocked: &Blocked, start: f64, h: f64) -> String {
         let reached = self.solver.pose().drivers.clone();
         let asked = self.solver.drivers_at_end(&self.path);
         let mut parts: Vec<String> = self
@@ -183,9 +191,20 @@ impl Instance {
             .drivers
             .iter()
             .enumerate()
-            .filter(|(index, _)| (asked[*index] - self.committed.drivers[*index]).abs() > 0.0)
+            .filter(|(index, driver)| {
+                let way = asked[*index] - self.committed.drivers[*index];
+                driver.motion().is_some() || way.abs() > 0.0
+            })
             .map(|(index, driver)| {
                 let show = |value| show(driver.coordinate.kind, value);
+                if driver.motion().is_some() {
+                    let time = start + blocked.s * h;
+                    return format!(
+                        "driver `{}` cannot follow its motion beyond {} at t = {time} s",
+                        driver.name,
+                        show(reached[index])
+                    );
+                }
                 format!(
                     "driver `{}` was asked for {} and cannot go beyond {}",
                     driver.name,
@@ -197,8 +216,19 @@ impl Instance {
         if self.path.moves_parameters() {
             parts.push("the parameters set lead to no mechanism on the way".to_owned());
         }
+        let what = match &blocked.reason {
+            Reason::Value(error) => {
+                parts.push(error.to_string());
+                "no mechanism"
+            }
+            Reason::TooLong => {
+                parts.push("the step asks for more sub-steps than can be taken".to_owned());
+                "given up"
+            }
+            _ => "dead point",
+        };
         format!(
-            "dead point after {:.4} of the step from {start} s over {h} s: {}",
+            "{what} after {:.4} of the step from {start} s over {h} s: {}",
             blocked.s,
             parts.join("; ")
         )
@@ -228,10 +258,7 @@ impl Instance {
             State::InitializationMode => self.initialize()?,
             State::StepComplete => self.look_ahead()?,
             // Nothing can be set in any other state that allows reading.
-            _ => {
-                self.solver.restore(&self.committed);
-                self.at_committed = true;
-            }
+            _ => self.stand_at_committed(),
         }
         self.freshness = Freshness::Pose;
         Ok(())
@@ -294,12 +321,9 @@ impl Instance {
         self.at_committed = false;
         self.collect_driver_rates(self.time, 0.0, 0.0);
         match followed {
-            Ok(progress) => {
-                self.progress = progress;
-                Ok(())
-            }
+            Ok(_) => Ok(()),
             Err(blocked) => {
-                let message = self.describe_dead_point(blocked, self.time, 0.0);
+                let message = self.describe_dead_point(&blocked, self.time, 0.0);
                 Err(self.warn_of_dead_point(message))
             }
         }

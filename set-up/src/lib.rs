@@ -1,0 +1,1 @@
+//! Only its build script matters.
