@@ -12,10 +12,11 @@ impl Sink for Silent {
 }
 
 fn running(name: &str) -> Instance {
-    let mut instance = Instance::new(shipped(name), Box::new(Silent), true).unwrap();
-    instance.setup_experiment(0.0, None).unwrap();
-    instance.enter_initialization_mode().unwrap();
-    instance.exit_initialization_mode().unwrap();
+    let mut instance =
+        Instance::new(shipped(name), Box::new(Silent), true).expect("the mechanism assembles");
+    instance.setup_experiment(0.0, None).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
+    instance.exit_initialization_mode().expect("it starts");
     instance
 }
 
@@ -24,10 +25,16 @@ fn read(instance: &mut Instance, names: &[&str]) -> Vec<f64> {
     let list = instance.variables().list();
     let references: Vec<u32> = names
         .iter()
-        .map(|name| list.iter().position(|v| v.name == *name).unwrap() as u32)
+        .map(|name| {
+            list.iter()
+                .position(|v| v.name == *name)
+                .expect("an output") as u32
+        })
         .collect();
     let mut values = vec![0.0; names.len()];
-    instance.get_real(&references, &mut values).unwrap();
+    instance
+        .get_real(&references, &mut values)
+        .expect("readable");
     values
 }
 
@@ -58,4 +65,24 @@ fn a_step_that_would_never_end_is_discarded() {
     instance.set_real(&[0], &[1e12]).unwrap();
     let error = instance.do_step(0.0, 0.1).expect_err("that is too far");
     assert!(error.to_string().contains("more sub-steps"), "{error}");
+}
+
+/// The side grows as 0.35 + 0.2 t, told with derivatives; it ends at 0.65 m, at t = 1.5 s. Each
+/// value is off by a nanometre from where the polynomial before it ended.
+#[test]
+fn the_last_successful_time_of_a_moving_input_is_where_it_stopped() {
+    let mut instance = running("tlv");
+    for step in 0.. {
+        let t = 0.4 * f64::from(step);
+        let off = if step % 2 == 0 { 1e-9 } else { 0.0 };
+        instance.set_real(&[0], &[0.35 + 0.2 * t + off]).unwrap();
+        instance
+            .set_real_input_derivatives(&[0], &[1], &[0.2])
+            .unwrap();
+        if instance.do_step(t, 0.4).is_err() {
+            break;
+        }
+    }
+    // A nanometre is 5e-9 s of travel; the dead point itself is met to about as much.
+    assert!((instance.last_successful_time() - 1.5).abs() < 1e-7);
 }

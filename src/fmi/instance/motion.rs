@@ -12,6 +12,9 @@ use crate::mechanism::{CoordinateKind, DriverSource, Jet};
 /// larger of time and step.
 const TIME_ROUNDING: f64 = 1e-9;
 
+/// The part of a step's own travel below which two polynomials of an input count as meeting.
+const SEAM: f64 = 0.01;
+
 impl Instance {
     /// `fmi2DoStep`: goes from the last communication point over `h` seconds. Allocates nothing
     /// if it succeeds.
@@ -157,13 +160,18 @@ impl Instance {
         let message = self.describe_dead_point(&blocked, start, h);
         self.progress = blocked.progress;
         // Held inputs and parameters reach their values only at the very end of the step; what
-        // runs along its own curve has been right up to here.
+        // runs along its own curve has been right up to here. A host's polynomials do not meet
+        // exactly where one ends and the next begins; that is no jump.
         let jumped = self.path.moves_parameters()
-            || self
-                .path
-                .curves
-                .iter()
-                .any(|curve| matches!(curve, Curve::Input { jump, .. } if *jump != 0.0));
+            || self.path.curves.iter().any(|curve| match *curve {
+                Curve::Input {
+                    velocity,
+                    acceleration,
+                    jump,
+                    ..
+                } => jump.abs() > SEAM * (h * (velocity + 0.5 * h * acceleration)).abs(),
+                Curve::Motion => false,
+            });
         if jumped {
             self.stand_at_committed();
         } else {

@@ -17,10 +17,6 @@ impl Constraint for Angle {
         Dimension::Angle
     }
 
-    fn label(&self) -> &'static str {
-        "angle"
-    }
-
     fn value(&self, at: &Configuration) -> f64 {
         at.marker(self.to).theta - at.marker(self.from).theta
     }

@@ -36,13 +36,6 @@ impl Constraint for Coincidence {
         Dimension::Length
     }
 
-    fn label(&self) -> &'static str {
-        match self.axis {
-            Axis::X => "x",
-            Axis::Y => "y",
-        }
-    }
-
     fn value(&self, at: &Configuration) -> f64 {
         let d = at.marker(self.to).point - at.marker(self.from).point;
         self.direction().dot(&d)

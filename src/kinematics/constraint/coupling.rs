@@ -34,10 +34,6 @@ impl Constraint for Coupling {
         Dimension::Angle
     }
 
-    fn label(&self) -> &'static str {
-        "ratio"
-    }
-
     fn value(&self, at: &Configuration) -> f64 {
         let phi = at.phi(self.carrier);
         let [first, second] = [self.from, self.to].map(|marker| at.marker(marker).theta - phi);

@@ -38,10 +38,6 @@ impl Constraint for Distance {
         Dimension::Length
     }
 
-    fn label(&self) -> &'static str {
-        "distance"
-    }
-
     fn value(&self, at: &Configuration) -> f64 {
         self.span(at).0
     }

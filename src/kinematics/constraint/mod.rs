@@ -63,9 +63,6 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     /// What the value measures.
     fn dimension(&self) -> Dimension;
 
-    /// A short name of the relation for messages: `angle`, `x`, `distance`, …
-    fn label(&self) -> &'static str;
-
     /// c(q) \[m or rad\].
     fn value(&self, at: &Configuration) -> f64;
 

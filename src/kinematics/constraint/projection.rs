@@ -40,13 +40,6 @@ impl Constraint for Projection {
         Dimension::Length
     }
 
-    fn label(&self) -> &'static str {
-        match self.axis {
-            Axis::X => "x",
-            Axis::Y => "y",
-        }
-    }
-
     fn value(&self, at: &Configuration) -> f64 {
         let d = at.marker(self.to).point - at.marker(self.from).point;
         self.direction(at).dot(&d)

@@ -46,10 +46,6 @@ impl Constraint for RackAndPinion {
         Dimension::Length
     }
 
-    fn label(&self) -> &'static str {
-        "rolling"
-    }
-
     fn value(&self, at: &Configuration) -> f64 {
         let turn = at.marker(self.pinion).theta - at.marker(self.rack).theta;
         self.travel().value(at) + self.arc(at) * turn
