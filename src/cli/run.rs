@@ -150,9 +150,9 @@ impl Run {
     }
 
     fn writer(&self) -> Result<Box<dyn Write>, Error> {
-        Ok(match &self.output {
+        let file = self.output.as_ref().filter(|path| path.as_os_str() != "-");
+        Ok(match file {
             None => Box::new(std::io::stdout().lock()),
-            Some(path) if path.as_os_str() == "-" => Box::new(std::io::stdout().lock()),
             Some(path) => {
                 let file = std::fs::File::create(path).map_err(|source| Error::Write {
                     path: path.clone(),

@@ -106,7 +106,7 @@ impl DriverInput {
     }
 
     /// The rates in force at the end of a step of size `h` from `time`; with `h = 0` those at
-    /// `time` itself. `path` is what carried the position along.
+    /// `time` itself.
     pub(super) fn rates_after(
         &self,
         source: RateSource,
@@ -114,7 +114,6 @@ impl DriverInput {
         time: f64,
         h: f64,
     ) -> DriverRates {
-        let rates = self.rates(source, time, h);
         let carried = extrapolation == Extrapolation::Taylor && !self.derivative_given[0];
         if carried {
             let DriverRates {
@@ -126,7 +125,7 @@ impl DriverInput {
                 acceleration,
             }
         } else {
-            rates
+            self.rates(source, time, h)
         }
     }
 

@@ -18,18 +18,22 @@ impl Instance {
             let variable = self.settable(value_reference, "Real")?;
             check_value(variable, value)?;
         }
+        let mut parameters_changed = false;
         for (&value_reference, &value) in value_references.iter().zip(values) {
             match self.variables.list()[value_reference as usize].quantity {
                 Quantity::Input(driver, order) => self.inputs[driver.index()].set(order, value),
                 Quantity::Parameter(parameter) => {
                     self.settings.parameters[parameter.index()] = value;
+                    parameters_changed = true;
                 }
                 _ => unreachable!("`settable` passes inputs and parameters only"),
             }
         }
-        if !value_references.is_empty() {
+        if parameters_changed {
             self.mechanism
                 .derive_parameters(&mut self.settings.parameters);
+        }
+        if !value_references.is_empty() {
             self.freshness = Freshness::Stale;
         }
         Ok(())

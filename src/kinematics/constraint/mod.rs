@@ -5,8 +5,8 @@
 //! unknowns it contains. It knows nothing of what it is held at: the equation of a constraint is
 //! c(q) − constant = 0, that of a driver c(q) − u(t) = 0.
 //!
-//! A new kind is a new file here with its `impl Constraint`; the tests at the end of this file
-//! check it once it is listed in `samples`.
+//! A new kind is a new file here with its `impl Constraint`; the tests in `tests.rs` check
+//! it once it is listed in `samples`.
 
 mod angle;
 mod coincidence;
