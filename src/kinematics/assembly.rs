@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, DVector};
-
 use super::constraint::{Dimension, Incidence, TurnEffect};
 use super::error::OpenJoint;
-use super::newton::{Outcome, SINGULAR};
+use super::minimise::{MAX_ITERATIONS, Part, SMALL_PART, STARTS};
+use super::newton::{Correction, SINGULAR};
+use super::plan::Kernel;
 use super::solver::{Pose, Solver};
 use super::stepping::Progress;
 use super::{Element, Error, Path};
@@ -29,18 +29,8 @@ pub struct Assembly {
     pub distance: f64,
 }
 
-/// The weights r of Ec. 3.6.9, from one where the estimates count as much as the constraints to
-/// one where the minimum is within Newton's reach.
-const WEIGHTS: [f64; 5] = [1.0, 1e2, 1e4, 1e6, 1e8];
-/// Minimisation steps for each weight; Newton follows, so that none needs to converge.
-const STEPS_PER_WEIGHT: usize = 20;
 /// Minimisation steps towards the nearest pose of a mechanism that does not close.
 const STEPS_TO_NEAREST: usize = 200;
-/// Newton from the minimum; it also has to creep into nearly singular positions.
-const MAX_ITERATIONS: u32 = 30;
-/// The estimates themselves, and this many less one deterministic shifts of them: estimates of
-/// zero often lie on a symmetry from which no minimisation can choose a side.
-const STARTS: usize = 8;
 /// A scaled residual below this is no gap that anyone could measure: the mechanism closes, and
 /// Newton failed because the position is singular.
 const CLOSED: f64 = 1e-7;
@@ -65,50 +55,116 @@ impl Solver {
         self.take_over_parameters()?;
         self.set_path(path, 1.0)?;
         let estimate = self.estimate()?;
-        self.pose.q.copy_from_slice(estimate.as_slice());
-        self.at.set_pose(self.system.mechanism(), &self.pose.q);
+        self.pose.q.copy_from_slice(&estimate);
+        self.stand_at_pose();
         self.fix_turns();
 
-        let mut nearest = (f64::INFINITY, self.pose.q.clone());
-        let mut outcome = None;
-        for attempt in 0..STARTS {
-            for (k, q) in self.pose.q.iter_mut().enumerate() {
-                *q = estimate[k] + shift(attempt, k) * self.system.column_scale(k, self.at.size());
-            }
-            let attempted = self.minimise_and_correct();
-            if attempted.converged {
-                outcome = Some(attempted);
-                break;
-            }
-            self.minimise(None, |_| 1.0, STEPS_TO_NEAREST);
-            let gap = self.residual_norm();
-            if gap < nearest.0 {
-                nearest = (gap, self.pose.q.clone());
-            }
-        }
-        let Some(outcome) = outcome else {
-            self.pose.q.copy_from_slice(&nearest.1);
-            return Err(self.explain_failure());
+        let iterations = match self.assemble_in_order(&estimate) {
+            Ok(iterations) => iterations,
+            Err(kernel) => self.assemble_at_once(kernel, &estimate)?,
         };
         self.choose_turns(&estimate);
         self.refresh()?;
-        let rcond = self.lu.rcond();
+        let rcond = self.plan.rcond();
         if rcond < SINGULAR {
             return Err(Error::Singular { rcond });
         }
         Ok(Assembly {
-            iterations: outcome.iterations,
+            iterations,
             distance: self.scaled_distance(&estimate),
         })
     }
 
-    /// Minimises Ec. 3.6.9 for growing r from the present q, then applies Newton–Raphson.
-    fn minimise_and_correct(&mut self) -> Outcome {
-        let start = DVector::from_column_slice(&self.pose.q);
-        for weight in WEIGHTS {
-            self.minimise(Some((&start, weight.recip())), |_| 1.0, STEPS_PER_WEIGHT);
+    /// Assembles kernel by kernel, each behind those before it. Returns the most corrections
+    /// that one needed.
+    ///
+    /// # Errors
+    ///
+    /// The kernel that does not close.
+    fn assemble_in_order(&mut self, estimate: &[f64]) -> Result<u32, usize> {
+        let (plan, mut work) = self.work();
+        let mut iterations = 0;
+        for (index, kernel) in plan.kernels.iter_mut().enumerate() {
+            let assembled = match kernel {
+                Kernel::Pinned(kernel) => {
+                    kernel.locate(&mut work);
+                    Ok(Correction::default())
+                }
+                Kernel::Dyad(kernel) => kernel.assemble(&mut work, estimate),
+                Kernel::Coupled(kernel) => Part::new(kernel.rows(), kernel.columns()).assemble(
+                    &mut work,
+                    estimate,
+                    |work, most| kernel.correct(work, most),
+                ),
+            };
+            let correction = assembled.map_err(|_| index)?;
+            iterations = iterations.max(correction.iterations);
         }
-        self.correct(MAX_ITERATIONS)
+        self.at.copy_pose(&mut self.pose.q);
+        Ok(iterations)
+    }
+
+    /// Assembles a small mechanism as a whole, after a kernel did not close behind the others:
+    /// they may have to close in another mode.
+    ///
+    /// # Errors
+    ///
+    /// What stays open in the nearest pose found; in a large mechanism that of the kernel's
+    /// part alone.
+    fn assemble_at_once(&mut self, kernel: usize, estimate: &[f64]) -> Result<u32, Error> {
+        let whole = self.system.unknowns() <= SMALL_PART;
+        let part = if whole {
+            let all: Vec<_> = (0..self.system.unknowns()).collect();
+            Part::new(&all, &all)
+        } else {
+            let kernel = &self.plan.kernels[kernel];
+            Part::new(kernel.rows(), kernel.columns())
+        };
+        let mut nearest: Option<(f64, Vec<f64>)> = None;
+        for attempt in 0..STARTS {
+            let (_, mut work) = self.work();
+            part.start(&mut work, estimate, attempt);
+            part.minimise_growing(&mut work);
+            if whole {
+                self.at.copy_pose(&mut self.pose.q);
+                if let Some(iterations) = self.close() {
+                    return Ok(iterations);
+                }
+                self.stand_at_pose();
+            }
+            let (_, mut work) = self.work();
+            part.minimise(&mut work, None, |_| 1.0, STEPS_TO_NEAREST);
+            let gap = part.equations(&work).0.norm();
+            if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
+                self.at.copy_pose(&mut self.pose.q);
+                nearest = Some((gap, self.pose.q.clone()));
+            }
+        }
+        if let Some((_, q)) = nearest {
+            self.pose.q.copy_from_slice(&q);
+        }
+        self.stand_at_pose();
+        Err(self.explain_failure(&part))
+    }
+
+    /// Newton–Raphson, kernel by kernel, from where the bodies are. Returns the most corrections
+    /// that one needed; `None` leaves the pose as it was.
+    fn close(&mut self) -> Option<u32> {
+        let (plan, mut work) = self.work();
+        let mut iterations = 0;
+        for kernel in &mut plan.kernels {
+            let correction = match kernel {
+                Kernel::Pinned(kernel) => {
+                    kernel.locate(&mut work);
+                    continue;
+                }
+                Kernel::Dyad(kernel) => kernel.close(&mut work, MAX_ITERATIONS),
+                Kernel::Coupled(kernel) => kernel.correct(&mut work, MAX_ITERATIONS),
+            };
+            iterations = iterations.max(correction.ok()?.iterations);
+        }
+        self.at.copy_pose(&mut self.pose.q);
+        Some(iterations)
     }
 
     /// Finds the pose at the end of `path`: moves there continuously from `home`, which is at its
@@ -126,14 +182,11 @@ impl Solver {
     }
 
     /// q⁰, with the parameter values in force.
-    fn estimate(&self) -> Result<DVector<f64>, Error> {
+    fn estimate(&self) -> Result<Vec<f64>, Error> {
         let parameters = &self.pose.parameters;
         let bodies = &self.system.mechanism().bodies;
-        let mut estimate = DVector::zeros(self.system.unknowns());
-        for (body, q) in bodies
-            .iter()
-            .zip(estimate.as_mut_slice().chunks_exact_mut(3))
-        {
+        let mut estimate = vec![0.0; self.system.unknowns()];
+        for (body, q) in bodies.iter().zip(estimate.chunks_exact_mut(3)) {
             for (q, expression) in q.iter_mut().zip(&body.estimate) {
                 *q = expression.evaluate(&|p| parameters[p.index()], 0.0);
                 if !q.is_finite() {
@@ -151,7 +204,7 @@ impl Solver {
         self.pose.turns.copy_from_slice(&self.targets.turns);
     }
 
-    fn scaled_distance(&self, estimate: &DVector<f64>) -> f64 {
+    fn scaled_distance(&self, estimate: &[f64]) -> f64 {
         self.pose
             .q
             .iter()
@@ -161,106 +214,21 @@ impl Solver {
             .fold(0.0, f64::max)
     }
 
-    /// Levenberg–Marquardt on pull · ‖q − q⁰‖² + Σ (weight(row) Phi_row)², scaled, from the
-    /// present q.
-    fn minimise(
-        &mut self,
-        pull: Option<(&DVector<f64>, f64)>,
-        weight: impl Fn(usize) -> f64,
-        steps: usize,
-    ) {
-        let order = self.system.unknowns();
-        let scale = DVector::from_fn(order, |k, _| self.system.column_scale(k, self.at.size()));
-        let weights = DVector::from_fn(order, |row, _| weight(row));
-        let mut damping = 1e-6;
-        let (mut residual, mut jacobian) = self.weighted_equations(&weights);
-        let mut cost = self.cost(pull, &scale, &residual);
-        for _ in 0..steps {
-            let mut gradient = jacobian.tr_mul(&residual);
-            let mut normal = jacobian.tr_mul(&jacobian);
-            if let Some((estimate, strength)) = pull {
-                for k in 0..order {
-                    gradient[k] += strength * (self.pose.q[k] - estimate[k]) / scale[k];
-                    normal[(k, k)] += strength;
-                }
-            }
-            let before = self.pose.q.clone();
-            let improved = loop {
-                let mut damped = normal.clone();
-                for k in 0..order {
-                    damped[(k, k)] += damping;
-                }
-                if let Some(factor) = damped.cholesky() {
-                    let step = factor.solve(&gradient);
-                    for k in 0..order {
-                        self.pose.q[k] = before[k] - step[k] * scale[k];
-                    }
-                    let (new_residual, new_jacobian) = self.weighted_equations(&weights);
-                    let new_cost = self.cost(pull, &scale, &new_residual);
-                    if new_cost < cost {
-                        let gain = (cost - new_cost) / cost;
-                        (residual, jacobian, cost) = (new_residual, new_jacobian, new_cost);
-                        damping = (damping * 0.1).max(1e-15);
-                        break gain > 1e-12;
-                    }
-                }
-                damping *= 10.0;
-                if damping > 1e12 {
-                    self.pose.q.copy_from_slice(&before);
-                    break false;
-                }
-            };
-            if !improved {
-                break;
-            }
-        }
-        self.at.set_pose(self.system.mechanism(), &self.pose.q);
-    }
-
-    fn cost(
-        &self,
-        pull: Option<(&DVector<f64>, f64)>,
-        scale: &DVector<f64>,
-        residual: &DVector<f64>,
-    ) -> f64 {
-        let distance = pull.map_or(0.0, |(estimate, strength)| {
-            let squares = (0..scale.len())
-                .map(|k| ((self.pose.q[k] - estimate[k]) / scale[k]).powi(2))
-                .sum::<f64>();
-            strength * squares
-        });
-        distance + residual.norm_squared()
-    }
-
-    /// Phi and Phi_q at the present q, scaled, each row times its weight.
-    fn weighted_equations(&mut self, weights: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let order = self.system.unknowns();
-        self.at.set_pose(self.system.mechanism(), &self.pose.q);
-        let mut jacobian = DMatrix::zeros(order, order);
-        self.system.evaluate(
-            &self.at,
-            &self.pose.q,
-            &self.targets,
-            &self.pose.drivers,
-            &mut self.residual,
-            |row, column, value| jacobian[(row, column)] += value * weights[row],
-        );
-        (self.residual.value.component_mul(weights), jacobian)
-    }
-
-    /// The norm of Phi at the present q, scaled.
-    fn residual_norm(&mut self) -> f64 {
-        self.evaluate();
-        self.residual.value.norm()
-    }
-
     /// Adds whole turns to the bodies so that each angle is nearest its estimate. Bodies whose
     /// angles a driver ties together turn together, those it ties to ground not at all, nor do
     /// those whose turns a gear counts.
-    fn choose_turns(&mut self, estimate: &DVector<f64>) {
+    fn choose_turns(&mut self, estimate: &[f64]) {
         let bodies = self.system.mechanism().bodies.len();
         let ground = bodies;
+        // Each body points to a later one that turns with it, the last of them to itself.
         let mut group: Vec<usize> = (0..=bodies).collect();
+        let last_of = |group: &mut [usize], mut body: usize| {
+            while group[body] != body {
+                group[body] = group[group[body]];
+                body = group[body];
+            }
+            body
+        };
         for equation in self.system.equations() {
             let effect = equation.constraint.turn_effect();
             if effect == TurnEffect::None || equation.holds_any_turn() {
@@ -279,51 +247,53 @@ impl Solver {
             if effect == TurnEffect::Proportional || tied.len() < 2 {
                 tied.push(ground);
             }
-            let tied: Vec<_> = tied.into_iter().map(|body| group[body]).collect();
+            for body in &mut tied {
+                *body = last_of(&mut group, *body);
+            }
             let keep = tied.iter().copied().max().unwrap_or(ground);
-            for g in &mut group {
-                if tied.contains(g) {
-                    *g = keep;
-                }
+            for body in tied {
+                group[body] = keep;
             }
         }
         let mut turns = vec![None; bodies + 1];
-        turns[group[ground]] = Some(0.0);
+        turns[last_of(&mut group, ground)] = Some(0.0);
         for body in 0..bodies {
             let phi = 3 * body + 2;
             let away = ((estimate[phi] - self.pose.q[phi]) / TAU).round();
-            self.pose.q[phi] += TAU * *turns[group[body]].get_or_insert(away);
+            let last = last_of(&mut group, body);
+            self.pose.q[phi] += TAU * *turns[last].get_or_insert(away);
         }
-        self.at.set_pose(self.system.mechanism(), &self.pose.q);
+        self.stand_at_pose();
         self.fix_turns();
     }
 
-    /// The verdict on a mechanism whose nearest pose, at which the solver stands, leaves gaps.
-    fn explain_failure(&mut self) -> Error {
-        let order = self.system.unknowns();
-        let ones = DVector::repeat(order, 1.0);
-        let (residual, jacobian) = self.weighted_equations(&ones);
+    /// The verdict on a part whose nearest pose, at which the solver stands, leaves gaps.
+    fn explain_failure(&mut self, part: &Part) -> Error {
+        let (residual, jacobian) = part.equations(&self.work().1);
         if residual.amax() <= CLOSED {
             let singular = jacobian.singular_values();
             return Error::Singular {
                 rcond: singular.min() / singular.max(),
             };
         }
-        let nearest = self.pose.q.clone();
-        let spread = self.open_joints(residual.amax());
+        let spread = self.open_joints(part, residual.amax());
         // The minimum spreads the gap over all joints of a loop. People look for one joint that
         // does not meet: gather it where it is smallest, in the joint declared last on a tie.
         let mut best: Option<(f64, OpenJoint)> = None;
         for (element, _) in &spread {
-            self.pose.q.copy_from_slice(&nearest);
-            let open = |row: usize| self.system.equations()[row].element == *element;
-            let weights: Vec<_> = (0..order)
-                .map(|row| if open(row) { 1.0 } else { HOLD_CLOSED })
-                .collect();
-            self.minimise(None, |row| weights[row], STEPS_TO_NEAREST);
-            let (residual, _) = self.weighted_equations(&ones);
-            let gap = residual.amax();
-            if let [(only, joint)] = &self.open_joints(gap)[..]
+            self.stand_at_pose();
+            let (_, mut work) = self.work();
+            let equations = work.system.equations();
+            let weight = |row: usize| {
+                if equations[row].element == *element {
+                    1.0
+                } else {
+                    HOLD_CLOSED
+                }
+            };
+            part.minimise(&mut work, None, weight, STEPS_TO_NEAREST);
+            let gap = part.equations(&work).0.amax();
+            if let [(only, joint)] = &self.open_joints(part, gap)[..]
                 && only == element
                 && best
                     .as_ref()
@@ -332,7 +302,7 @@ impl Solver {
                 best = Some((gap, joint.clone()));
             }
         }
-        self.pose.q.copy_from_slice(&nearest);
+        self.stand_at_pose();
         let open = match best {
             Some((_, joint)) => vec![joint],
             None => spread.into_iter().map(|(_, joint)| joint).collect(),
@@ -344,9 +314,10 @@ impl Solver {
     }
 
     /// Joints, constraints and drivers with a noticeable part of the largest scaled residual.
-    fn open_joints(&self, largest: f64) -> Vec<(Element, OpenJoint)> {
+    fn open_joints(&self, part: &Part, largest: f64) -> Vec<(Element, OpenJoint)> {
         let mut open: Vec<(Element, OpenJoint)> = Vec::new();
-        for (row, equation) in self.system.equations().iter().enumerate() {
+        for &row in &part.rows {
+            let equation = &self.system.equations()[row];
             let target = self.system.target(row, &self.targets, &self.pose.drivers);
             let error = (equation.constraint.value(&self.at) - target).abs();
             let (gap, angle) = match equation.constraint.dimension() {
@@ -370,16 +341,5 @@ impl Solver {
             }
         }
         open
-    }
-}
-
-/// By how much start `attempt` differs from the estimates in coordinate k, scaled: nothing the
-/// first time, then up to half a length or radian, spread evenly by the golden ratio.
-fn shift(attempt: usize, k: usize) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    if attempt == 0 {
-        0.0
-    } else {
-        (GOLDEN * (attempt * (k + 1)) as f64).fract() - 0.5
     }
 }

@@ -1,6 +1,6 @@
 //! Where every marker is, for a given q: what all constraints read.
 
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::Vector2;
 
 use super::Error;
 use crate::mechanism::{BodyId, Expression, MarkerId, Mechanism};
@@ -37,6 +37,39 @@ pub struct MarkerPose {
     pub theta: f64,
 }
 
+/// A body's frame in global coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct BodyPose {
+    /// r, its origin \[m\].
+    pub(super) origin: Vector2<f64>,
+    /// phi \[rad\], counting turns.
+    pub(super) phi: f64,
+    pub(super) cos: f64,
+    pub(super) sin: f64,
+}
+
+impl BodyPose {
+    /// The frame of ground.
+    const GROUND: Self = Self {
+        origin: Vector2::new(0.0, 0.0),
+        phi: 0.0,
+        cos: 1.0,
+        sin: 0.0,
+    };
+
+    /// A(phi) s.
+    #[inline]
+    pub(super) fn rotate(&self, s: Vector2<f64>) -> Vector2<f64> {
+        rotate(self.cos, self.sin, s)
+    }
+}
+
+/// A vector turned by the angle with this cosine and sine.
+#[inline]
+pub(super) fn rotate(cos: f64, sin: f64, s: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(cos * s.x - sin * s.y, sin * s.x + cos * s.y)
+}
+
 /// A number in a relation that depends on parameters: index into the system's coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CoefficientId(pub usize);
@@ -54,15 +87,15 @@ pub struct Coefficient {
     pub what: String,
 }
 
-/// The markers of a mechanism at one q.
+/// The bodies of a mechanism at one q, and where that puts every marker.
 ///
 /// Made once; [`set_parameters`](Self::set_parameters) and [`set_pose`](Self::set_pose) then
-/// change it without allocating.
+/// change it without allocating. A marker's pose is computed when it is asked for.
 #[derive(Clone, Debug)]
 pub struct Configuration {
     frames: Vec<LocalFrame>,
-    markers: Vec<MarkerPose>,
-    phis: Vec<f64>,
+    /// The bodies, then ground.
+    bodies: Vec<BodyPose>,
     coefficients: Vec<f64>,
     /// The unknowns behind those of the bodies, which joints bring with them.
     joint_unknowns: Vec<f64>,
@@ -74,7 +107,7 @@ impl Configuration {
     /// room for what the system's joints need.
     #[must_use]
     pub fn new(mechanism: &Mechanism, coefficients: usize, joint_unknowns: usize) -> Self {
-        let frames: Vec<_> = mechanism
+        let frames = mechanism
             .markers
             .iter()
             .map(|marker| LocalFrame {
@@ -84,11 +117,9 @@ impl Configuration {
                 angle: 0.0,
             })
             .collect();
-        let markers = frames.iter().map(LocalFrame::on_ground).collect();
         Self {
             frames,
-            markers,
-            phis: vec![0.0; mechanism.bodies.len()],
+            bodies: vec![BodyPose::GROUND; mechanism.bodies.len() + 1],
             coefficients: vec![0.0; coefficients],
             joint_unknowns: vec![0.0; joint_unknowns],
             size: 0.0,
@@ -97,8 +128,6 @@ impl Configuration {
 
     /// Takes over the markers' places on their bodies and the coefficients for these parameter
     /// values.
-    ///
-    /// The pose has to be set anew afterwards.
     ///
     /// # Errors
     ///
@@ -122,10 +151,8 @@ impl Configuration {
                     what: format!("marker `{}`", mechanism.marker_path(MarkerId(index))),
                 });
             }
-            frame.axis = Rotation2::new(frame.angle) * Vector2::x();
-            if marker.body.is_none() {
-                self.markers[index] = frame.on_ground();
-            }
+            let (sin, cos) = frame.angle.sin_cos();
+            frame.axis = Vector2::new(cos, sin);
         }
         for (value_in_force, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
             *value_in_force = coefficient.expression.evaluate(&value, 0.0);
@@ -143,39 +170,102 @@ impl Configuration {
     pub fn set_pose(&mut self, mechanism: &Mechanism, q: &[f64]) {
         let (bodies, joint_unknowns) = q.split_at(3 * mechanism.bodies.len());
         self.joint_unknowns.copy_from_slice(joint_unknowns);
-        for ((body, phi), q) in mechanism
-            .bodies
-            .iter()
-            .zip(&mut self.phis)
-            .zip(bodies.chunks_exact(3))
-        {
-            *phi = q[2];
-            let origin = Vector2::new(q[0], q[1]);
-            let rotation = Rotation2::new(q[2]);
-            for marker in &body.markers {
-                let frame = &self.frames[marker.index()];
-                let arm = rotation * frame.position;
-                self.markers[marker.index()] = MarkerPose {
-                    body: frame.body,
-                    arm,
-                    point: origin + arm,
-                    axis: rotation * frame.axis,
-                    theta: q[2] + frame.angle,
-                };
+        for (body, q) in self.bodies.iter_mut().zip(bodies.chunks_exact(3)) {
+            let (sin, cos) = q[2].sin_cos();
+            *body = BodyPose {
+                origin: Vector2::new(q[0], q[1]),
+                phi: q[2],
+                cos,
+                sin,
+            };
+        }
+    }
+
+    /// Writes q, as [`set_pose`](Self::set_pose) reads it.
+    pub(super) fn copy_pose(&self, q: &mut [f64]) {
+        let (bodies, joint_unknowns) = q.split_at_mut(3 * (self.bodies.len() - 1));
+        for (body, q) in self.bodies.iter().zip(bodies.chunks_exact_mut(3)) {
+            q[0] = body.origin.x;
+            q[1] = body.origin.y;
+            q[2] = body.phi;
+        }
+        joint_unknowns.copy_from_slice(&self.joint_unknowns);
+    }
+
+    /// The unknown q\[column\].
+    pub(super) fn coordinate(&self, column: usize) -> f64 {
+        let place = column / 3;
+        if place >= self.bodies.len() - 1 {
+            return self.joint_unknowns[column - 3 * (self.bodies.len() - 1)];
+        }
+        let body = &self.bodies[place];
+        match column % 3 {
+            0 => body.origin.x,
+            1 => body.origin.y,
+            _ => body.phi,
+        }
+    }
+
+    /// Sets the unknown q\[column\].
+    pub(super) fn set_coordinate(&mut self, column: usize, value: f64) {
+        let place = column / 3;
+        if place >= self.bodies.len() - 1 {
+            self.joint_unknowns[column - 3 * (self.bodies.len() - 1)] = value;
+            return;
+        }
+        let body = &mut self.bodies[place];
+        match column % 3 {
+            0 => body.origin.x = value,
+            1 => body.origin.y = value,
+            _ => {
+                body.phi = value;
+                (body.sin, body.cos) = value.sin_cos();
             }
         }
     }
 
+    /// The place of a body in [`frame`](Self::frame), that of ground for `None`.
+    pub(super) fn place(&self, body: Option<BodyId>) -> usize {
+        body.map_or(self.bodies.len() - 1, BodyId::index)
+    }
+
+    /// The frame of the body at a place.
+    #[inline]
+    pub(super) fn frame(&self, place: usize) -> &BodyPose {
+        &self.bodies[place]
+    }
+
+    /// Puts the body at a place.
+    #[inline]
+    pub(super) fn set_frame(&mut self, place: usize, frame: BodyPose) {
+        self.bodies[place] = frame;
+    }
+
+    /// A marker's place on its body: s, and its angle.
+    pub(super) fn local(&self, marker: MarkerId) -> (Vector2<f64>, f64) {
+        let frame = &self.frames[marker.index()];
+        (frame.position, frame.angle)
+    }
+
     /// A marker's pose.
     #[must_use]
-    pub fn marker(&self, marker: MarkerId) -> &MarkerPose {
-        &self.markers[marker.index()]
+    pub fn marker(&self, marker: MarkerId) -> MarkerPose {
+        let frame = &self.frames[marker.index()];
+        let body = &self.bodies[self.place(frame.body)];
+        let arm = body.rotate(frame.position);
+        MarkerPose {
+            body: frame.body,
+            arm,
+            point: body.origin + arm,
+            axis: body.rotate(frame.axis),
+            theta: body.phi + frame.angle,
+        }
     }
 
     /// A body's angle \[rad\], zero for ground.
     #[must_use]
     pub fn phi(&self, body: Option<BodyId>) -> f64 {
-        body.map_or(0.0, |body| self.phis[body.index()])
+        self.bodies[self.place(body)].phi
     }
 
     /// A coefficient with the parameter values in force.
@@ -202,18 +292,6 @@ impl Configuration {
     /// Takes a length that a joint holds into account for the [size](Self::size).
     pub(super) fn enlarge(&mut self, length: f64) {
         self.size = self.size.max(length);
-    }
-}
-
-impl LocalFrame {
-    fn on_ground(&self) -> MarkerPose {
-        MarkerPose {
-            body: self.body,
-            arm: self.position,
-            point: self.position,
-            axis: self.axis,
-            theta: self.angle,
-        }
     }
 }
 

@@ -15,7 +15,9 @@ pub struct DenseLu {
     matrix: DMatrix<f64>,
     /// Row exchanged with row k at step k.
     pivots: Vec<usize>,
-    /// 1-norm of the matrix before factorisation.
+    /// Leading pivots that are taken from the diagonal as they come.
+    fixed: usize,
+    /// 1-norm of the matrix before factorisation, or what it is measured against if larger.
     norm: f64,
     /// Work space of the condition estimate.
     probe: DVector<f64>,
@@ -27,10 +29,13 @@ pub struct DenseLu {
 pub struct Singular;
 
 impl DenseLu {
-    /// Storage for a matrix of order `order`.
+    /// Storage for a matrix of order `order`, whose first `fixed` diagonal entries are ±1
+    /// throughout the elimination: they need no search, and where their rows and columns are
+    /// nearly empty they cost next to nothing.
     #[must_use]
-    pub fn new(order: usize) -> Self {
+    pub fn new(order: usize, fixed: usize) -> Self {
         Self {
+            fixed,
             matrix: DMatrix::zeros(order, order),
             pivots: vec![0; order],
             norm: 0.0,
@@ -49,19 +54,23 @@ impl DenseLu {
         self.matrix[(row, column)] += value;
     }
 
-    /// Replaces the matrix by its factors.
+    /// Replaces the matrix by its factors. [`rcond`](Self::rcond) counts the matrix as at least
+    /// `least_norm` large.
     ///
     /// # Errors
     ///
     /// [`Singular`] on a pivot that is zero or not finite. A matrix that is singular only up to
     /// rounding passes; [`rcond`](Self::rcond) tells.
-    pub fn factorise(&mut self) -> Result<(), Singular> {
+    pub fn factorise(&mut self, least_norm: f64) -> Result<(), Singular> {
         self.norm = self
             .matrix
             .column_iter()
             .map(|column| column.lp_norm(1))
-            .fold(0.0, f64::max);
-        for k in 0..self.matrix.nrows() {
+            .fold(least_norm, f64::max);
+        for k in 0..self.fixed {
+            self.eliminate(k)?;
+        }
+        for k in self.fixed..self.matrix.nrows() {
             let pivot_row = k + self.matrix.view_range(k.., k).icamax();
             let pivot = self.matrix[(pivot_row, k)];
             if pivot == 0.0 || !pivot.is_finite() {
@@ -73,6 +82,28 @@ impl DenseLu {
             } else {
                 self.matrix.columns_range_mut(..k).swap_rows(k, pivot_row);
                 gauss_step_swap(&mut self.matrix, pivot, k, pivot_row);
+            }
+        }
+        Ok(())
+    }
+
+    /// Step k of the elimination with the pivot on the diagonal, leaving alone what is zero.
+    fn eliminate(&mut self, k: usize) -> Result<(), Singular> {
+        let pivot = self.matrix[(k, k)];
+        if pivot == 0.0 || !pivot.is_finite() {
+            return Err(Singular);
+        }
+        self.pivots[k] = k;
+        let order = self.matrix.nrows();
+        let (mut left, mut right) = self.matrix.columns_range_pair_mut(0..k + 1, k + 1..);
+        let mut factors = left.view_range_mut(k + 1.., k);
+        factors /= pivot;
+        for mut column in right.column_iter_mut() {
+            let above = column[k];
+            if above != 0.0 {
+                column
+                    .rows_range_mut(k + 1..order)
+                    .axpy(-above, &factors, 1.0);
             }
         }
         Ok(())
@@ -114,7 +145,7 @@ impl DenseLu {
     /// Whether the reciprocal condition is below `limit`. Cheap where it clearly is not.
     pub fn is_singular(&mut self, limit: f64) -> bool {
         let pivots = (0..self.pivots.len()).map(|k| self.matrix[(k, k)].abs());
-        let (low, high) = pivots.fold((f64::INFINITY, 0.0_f64), |(low, high), pivot| {
+        let (low, high) = pivots.fold((f64::INFINITY, self.norm), |(low, high), pivot| {
             (low.min(pivot), high.max(pivot))
         });
         // With rows and columns scaled, pivots of similar size mean a good condition; the factor
@@ -171,7 +202,7 @@ mod tests {
 
     fn filled(order: usize, values: &[f64]) -> (DenseLu, DMatrix<f64>) {
         let matrix = DMatrix::from_column_slice(order, order, &values[..order * order]);
-        let mut lu = DenseLu::new(order);
+        let mut lu = DenseLu::new(order, 0);
         lu.clear();
         for row in 0..order {
             for column in 0..order {
@@ -191,7 +222,7 @@ mod tests {
             let norm1 = |m: &DMatrix<f64>| m.column_iter().map(|c| c.lp_norm(1)).fold(0.0, f64::max);
             let rcond = 1.0 / (norm1(&matrix) * norm1(&inverse));
             prop_assume!(rcond > 1e-8);
-            lu.factorise().unwrap();
+            lu.factorise(0.0).unwrap();
             let b = DVector::from_fn(order, |k, _| values[63 - k]);
             let tolerance = 100.0 * order as f64 * f64::EPSILON / rcond;
             let mut x = b.clone();
@@ -213,12 +244,12 @@ mod tests {
     #[test]
     fn zero_column_is_singular() {
         let (mut lu, _) = filled(2, &[0.0, 0.0, 1.0, 2.0]);
-        assert_eq!(lu.factorise(), Err(Singular));
+        assert_eq!(lu.factorise(0.0), Err(Singular));
     }
 
     #[test]
     fn infinite_entry_is_singular() {
         let (mut lu, _) = filled(2, &[f64::INFINITY, 0.0, 1.0, 2.0]);
-        assert_eq!(lu.factorise(), Err(Singular));
+        assert_eq!(lu.factorise(0.0), Err(Singular));
     }
 }

@@ -1,17 +1,10 @@
-//! Velocity and acceleration analysis (Ec. 3.6.10 and 3.6.11).
-
-use nalgebra::DVector;
-
-use super::configuration::Configuration;
-use super::factor::DenseLu;
-use super::system::System;
-use crate::mechanism::{DriverId, Jet};
+//! First and second derivatives of the generalized coordinates.
 
 /// First and second derivative of q: with respect to time, or along a path.
 #[derive(Clone, Debug)]
 pub struct Rates {
-    velocity: DVector<f64>,
-    acceleration: DVector<f64>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
 }
 
 impl Rates {
@@ -19,54 +12,59 @@ impl Rates {
     #[must_use]
     pub fn new(unknowns: usize) -> Self {
         Self {
-            velocity: DVector::zeros(unknowns),
-            acceleration: DVector::zeros(unknowns),
+            velocity: vec![0.0; unknowns],
+            acceleration: vec![0.0; unknowns],
         }
     }
 
     /// q̇: \[m/s, m/s, rad/s\] for each body.
     #[must_use]
     pub fn velocity(&self) -> &[f64] {
-        self.velocity.as_slice()
+        &self.velocity
     }
 
     /// q̈: \[m/s², m/s², rad/s²\] for each body.
     #[must_use]
     pub fn acceleration(&self) -> &[f64] {
-        self.acceleration.as_slice()
+        &self.acceleration
     }
 
-    /// Solves both equations with the Jacobian factorised at the accepted pose:
-    /// Phi_q q̇ = u̇ in the drivers' rows, then Phi_q q̈ = ü − q̇ᵀ (∂²c/∂q²) q̇.
-    pub(super) fn solve(
-        &mut self,
-        system: &System,
-        at: &Configuration,
-        lu: &DenseLu,
-        driver: impl Fn(DriverId) -> Jet,
-    ) {
-        system.velocity_side(at, |d| driver(d).first, self.velocity.as_mut_slice());
-        lu.solve(&mut self.velocity);
-        unscale(system, &mut self.velocity, at.size());
+    /// Velocity and acceleration, to be written.
+    pub(super) fn both_mut(&mut self) -> (&mut [f64], &mut [f64]) {
+        (&mut self.velocity, &mut self.acceleration)
+    }
 
-        system.acceleration_side(
-            at,
-            self.velocity.as_slice(),
-            |d| driver(d).second,
-            self.acceleration.as_mut_slice(),
-        );
-        lu.solve(&mut self.acceleration);
-        unscale(system, &mut self.acceleration, at.size());
+    /// Velocity and acceleration of a body, given the first of its unknowns.
+    #[inline]
+    pub(super) fn body(&self, column: usize) -> [[f64; 3]; 2] {
+        let three = |v: &[f64]| [v[column], v[column + 1], v[column + 2]];
+        [three(&self.velocity), three(&self.acceleration)]
+    }
+
+    /// Sets velocity and acceleration of a body.
+    #[inline]
+    pub(super) fn set_body(&mut self, column: usize, [velocity, acceleration]: [[f64; 3]; 2]) {
+        self.velocity[column..column + 3].copy_from_slice(&velocity);
+        self.acceleration[column..column + 3].copy_from_slice(&acceleration);
+    }
+
+    /// The rates of a motion along which a parameter u runs with u̇ and ü, these being those
+    /// with respect to u: q̇ = q_u u̇ and q̈ = q_uu u̇² + q_u ü. Returns whether all are finite.
+    pub(super) fn run(&self, first: f64, second: f64, rates: &mut Self) -> bool {
+        // Not finite as soon as one of them is not, and free to be summed in any order.
+        let mut sum = 0.0;
+        let derivatives = self.velocity.iter().zip(&self.acceleration);
+        let rates = rates.velocity.iter_mut().zip(&mut rates.acceleration);
+        for ((v, a), (velocity, acceleration)) in derivatives.zip(rates) {
+            *velocity = v * first;
+            *acceleration = a * (first * first) + v * second;
+            sum += 0.0 * (*velocity + *acceleration);
+        }
+        sum == 0.0
     }
 
     pub(super) fn is_finite(&self) -> bool {
-        self.velocity.iter().all(|v| v.is_finite())
-            && self.acceleration.iter().all(|v| v.is_finite())
-    }
-}
-
-fn unscale(system: &System, rates: &mut DVector<f64>, size: f64) {
-    for (column, rate) in rates.iter_mut().enumerate() {
-        *rate *= system.column_scale(column, size);
+        let all = self.velocity.iter().chain(&self.acceleration);
+        all.fold(0.0, |sum, rate| sum + 0.0 * rate) == 0.0
     }
 }

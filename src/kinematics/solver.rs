@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use nalgebra::DVector;
-
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration, point_velocity};
-use super::factor::DenseLu;
+use super::newton::Rejected;
+use super::plan::{Plan, Work};
 use super::rates::Rates;
 use super::structure::Structure;
-use super::system::{Residual, System, Targets};
+use super::system::{System, Targets};
 use super::{Error, Path};
 use crate::mechanism::{DriverId, Jet, MarkerId, Mechanism};
 
@@ -63,28 +62,36 @@ pub struct Solver {
     pub(super) system: System,
     structure: Structure,
     measures: Vec<Box<dyn Constraint>>,
+    pub(super) plan: Plan,
     pub(super) pose: Pose,
+    /// The bodies at the pose, outside of the calls that look for another one.
     pub(super) at: Configuration,
     pub(super) targets: Targets,
-    /// Whether `at` and `targets` are those of the pose's parameters.
+    /// Whether `at`, `targets` and the plan are those of the pose's parameters.
     parameters_taken: bool,
-    pub(super) lu: DenseLu,
-    /// Whether `lu` holds the factors of the Jacobian at `pose`.
+    /// Whether the plan is factorised at the pose, and, with a single driver, `flow` belongs to
+    /// the pose.
     pub(super) factorised: bool,
-    /// Phi at the pose last evaluated.
-    pub(super) residual: Residual,
-    /// Newton's correction.
-    pub(super) correction: DVector<f64>,
-    /// Tangent and curvature along a path.
-    pub(super) tangent: Rates,
-    /// The pose that a sub-step starts from.
-    pub(super) origin: Pose,
+    /// Rates of q: with a single driver the derivatives with respect to its value, from which
+    /// all others follow; else those along a path.
+    pub(super) flow: Rates,
     /// Parameters and drivers along a path.
     pub(super) path_parameters: Vec<Jet>,
     pub(super) path_drivers: Vec<Jet>,
     /// The drivers where a sub-step starts.
     pub(super) origin_drivers: Vec<Jet>,
+    /// Their values that the pose belongs to; a path may differ from them by its rounding.
+    pub(super) standing_at: Vec<f64>,
+    /// Rates of the drivers that the host gives.
+    host_drivers: Vec<Jet>,
 }
+
+/// The rates of a single driver with respect to its own value.
+pub(super) const UNIT: [Jet; 1] = [Jet {
+    value: 0.0,
+    first: 1.0,
+    second: 0.0,
+}];
 
 impl Solver {
     /// Writes down the equations, analyses their structure and makes all storage.
@@ -107,23 +114,22 @@ impl Solver {
         };
         let measures = mechanism.measures.iter();
         Ok(Self {
+            plan: Plan::new(&system, &structure),
             structure,
             measures: measures
                 .map(|measure| of_coordinate(&measure.coordinate))
                 .collect(),
             targets: system.targets(),
             parameters_taken: false,
-            origin: pose.clone(),
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
             path_drivers: vec![Jet::constant(0.0); drivers],
             origin_drivers: vec![Jet::constant(0.0); drivers],
+            standing_at: vec![0.0; drivers],
+            host_drivers: vec![Jet::constant(0.0); drivers],
             pose,
             at: system.configuration(),
-            lu: DenseLu::new(order),
             factorised: false,
-            residual: Residual::new(order),
-            correction: DVector::zeros(order),
-            tangent: Rates::new(order),
+            flow: Rates::new(order),
             system,
         })
     }
@@ -166,7 +172,7 @@ impl Solver {
                 .expect("the parameters of a pose were valid when it was solved");
         }
         self.targets.turns.copy_from_slice(&self.pose.turns);
-        self.evaluate();
+        self.stand_at_pose();
     }
 
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates
@@ -179,13 +185,15 @@ impl Solver {
     /// characteristic length, radians.
     #[must_use]
     pub fn residual(&self) -> f64 {
-        self.residual.largest()
+        self.system
+            .largest_residual(&self.at, &self.targets, &self.pose.drivers)
     }
 
     /// Scaled reciprocal condition of the Jacobian at the present pose: 1 is best, 0 singular.
+    /// It is that of the part of the mechanism that is nearest to a singular position.
     pub fn rcond(&mut self) -> f64 {
         if self.refresh().is_ok() {
-            self.lu.rcond()
+            self.plan.rcond()
         } else {
             0.0
         }
@@ -203,8 +211,24 @@ impl Solver {
         rates: &mut Rates,
     ) -> Result<(), Error> {
         self.refresh()?;
-        rates.solve(&self.system, &self.at, &self.lu, driver);
-        if rates.is_finite() {
+        let finite = if self.has_unit() {
+            let driver = driver(DriverId(0));
+            self.flow.run(driver.first, driver.second, rates)
+        } else {
+            for (index, jet) in self.host_drivers.iter_mut().enumerate() {
+                *jet = driver(DriverId(index));
+            }
+            let mut work = Work {
+                system: &self.system,
+                targets: &self.targets,
+                drivers: &self.pose.drivers,
+                at: &mut self.at,
+                flow: rates,
+            };
+            self.plan.solve_rates(&mut work, &self.host_drivers);
+            rates.is_finite()
+        };
+        if finite {
             Ok(())
         } else {
             Err(Error::Singular { rcond: 0.0 })
@@ -244,40 +268,46 @@ impl Solver {
         self.parameters_taken = false;
         self.system
             .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
+        self.plan.set_parameters(&self.at);
         self.parameters_taken = true;
         Ok(())
     }
 
-    /// Evaluates Phi and Phi_q at the pose and puts Phi_q, not yet factorised, into `lu`.
-    pub(super) fn evaluate(&mut self) {
-        self.at.set_pose(self.system.mechanism(), &self.pose.q);
-        self.factorised = false;
-        self.lu.clear();
-        let lu = &mut self.lu;
-        self.system.evaluate(
-            &self.at,
-            &self.pose.q,
-            &self.targets,
-            &self.pose.drivers,
-            &mut self.residual,
-            |row, column, value| lu.add(row, column, value),
-        );
+    /// The plan, and what it works on.
+    pub(super) fn work(&mut self) -> (&mut Plan, Work<'_>) {
+        let work = Work {
+            system: &self.system,
+            targets: &self.targets,
+            drivers: &self.pose.drivers,
+            at: &mut self.at,
+            flow: &mut self.flow,
+        };
+        (&mut self.plan, work)
     }
 
-    /// Makes sure that `lu` holds the factors of the Jacobian at the pose.
+    /// Whether the motion runs along the values of one driver.
+    pub(super) fn has_unit(&self) -> bool {
+        self.pose.drivers.len() == 1
+    }
+
+    /// Moves the bodies to the pose.
+    pub(super) fn stand_at_pose(&mut self) {
+        self.factorised = false;
+        self.at.set_pose(self.system.mechanism(), &self.pose.q);
+    }
+
+    /// Makes sure that the plan is factorised at the pose.
     pub(super) fn refresh(&mut self) -> Result<(), Error> {
         if !self.factorised {
-            self.evaluate();
-            self.factorise()?;
+            let unit = self.has_unit();
+            let (plan, mut work) = self.work();
+            plan.factorise(&mut work)
+                .map_err(|Rejected| Error::Singular { rcond: 0.0 })?;
+            if unit {
+                plan.solve_rates(&mut work, &UNIT);
+            }
+            self.factorised = true;
         }
-        Ok(())
-    }
-
-    pub(super) fn factorise(&mut self) -> Result<(), Error> {
-        self.lu
-            .factorise()
-            .map_err(|_| Error::Singular { rcond: 0.0 })?;
-        self.factorised = true;
         Ok(())
     }
 }

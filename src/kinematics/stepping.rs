@@ -1,14 +1,16 @@
 //! Following a path from one pose to the next without changing the assembly mode.
 //!
 //! The mechanism is carried along the path in sub-steps. Each starts from the tangent and
-//! curvature of the motion, ends with Newton–Raphson, and is halved unless it shows that it
-//! stayed on its motion: Newton contracts, the correction is small, the Jacobian is regular and
-//! its determinant keeps its sign, as it must while no singular position is crossed.
+//! curvature of the motion, ends with Newton–Raphson, and is halved unless each part of the
+//! mechanism shows that it stayed on its motion: Newton contracts, the correction is small, the
+//! Jacobian is regular and its determinant keeps its sign, as it must while no singular position
+//! is crossed.
 
 use super::Error;
-use super::newton::{Outcome, SINGULAR};
+use super::newton::LARGEST_CORRECTION;
 use super::path::Path;
-use super::solver::Solver;
+use super::plan::Advance;
+use super::solver::{Solver, UNIT};
 use crate::mechanism::Jet;
 
 /// Why a path could not be followed to its end.
@@ -26,7 +28,8 @@ pub enum Reason {
 /// What following a path took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// Newton corrections, failed sub-steps included.
+    /// Newton corrections: the most that any part of the mechanism needed, summed over the
+    /// sub-steps that succeeded.
     pub iterations: u32,
     /// Sub-steps, failed ones included; one for an ordinary step.
     pub substeps: u32,
@@ -47,12 +50,6 @@ pub struct Blocked {
 /// The largest turn of a body in one sub-step \[rad\]. A four-bar's sub-steps can be proved safe
 /// up to 0.66–1.13 rad, depending on the pose.
 const LARGEST_TURN: f64 = 0.5;
-/// The largest correction of a prediction, in radians and characteristic lengths.
-const LARGEST_CORRECTION: f64 = 0.1;
-/// Newton has to shrink its corrections at least by this factor from one to the next.
-const CONTRACTION: f64 = 0.25;
-/// Newton converges quadratically from a good prediction; one that needs more is halved.
-const MAX_ITERATIONS: u32 = 8;
 /// Some thousand turns; a path that asks for more is a slip, and the host waits.
 const MOST_SUBSTEPS: u32 = 100_000;
 /// Where a sub-step looks whether a prescribed motion does what its start foretells: at places
@@ -82,13 +79,15 @@ impl Solver {
         if self.refresh().is_err() {
             return blocked(s, Reason::DeadPoint, progress);
         }
+        self.standing_at.copy_from_slice(&self.pose.drivers);
         if let Err(error) = self.set_path(path, 0.0) {
             return blocked(s, Reason::Value(error), progress);
         }
-        let orientation = self.lu.determinant_is_negative();
+        self.pose.drivers.copy_from_slice(&self.standing_at);
         while s < 1.0 {
             self.predict();
-            substep = substep.min(LARGEST_TURN / self.turn_along_path());
+            let advance = self.advance_of(1.0);
+            substep = substep.min(LARGEST_TURN / self.turn_of(advance));
             let start = s;
             if substep < SMALLEST_SUBSTEP || progress.substeps >= MOST_SUBSTEPS {
                 return blocked(s, Reason::TooLong, progress);
@@ -100,18 +99,18 @@ impl Solver {
                     1.0
                 };
                 progress.substeps = progress.substeps.saturating_add(1);
-                let reached = self.try_substep(path, [start, next], orientation, &mut progress);
+                let reached = self.try_substep(path, [start, next], &mut progress);
                 if reached == Ok(true) {
+                    self.standing_at.copy_from_slice(&self.pose.drivers);
                     s = next;
                     break;
                 }
+                self.stand_at(path, start);
                 substep = 0.5 * (next - start);
                 if substep < SMALLEST_SUBSTEP {
-                    self.stand_at(path, start);
                     let reason = reached.map_or_else(Reason::Value, |_| Reason::DeadPoint);
                     return blocked(start, reason, progress);
                 }
-                self.pose.q.copy_from_slice(&self.origin.q);
             }
             // Twice the sub-step that was possible here.
             substep = 2.0 * (s - start);
@@ -119,23 +118,46 @@ impl Solver {
         Ok(progress)
     }
 
-    /// Computes tangent and curvature of the motion along the path where the mechanism stands,
-    /// and remembers the pose.
+    /// Computes tangent and curvature of the motion along the path where the mechanism stands.
     fn predict(&mut self) {
-        let drivers = &self.path_drivers;
-        self.tangent
-            .solve(&self.system, &self.at, &self.lu, |driver| {
-                drivers[driver.index()]
-            });
-        self.origin.q.copy_from_slice(&self.pose.q);
         self.origin_drivers.copy_from_slice(&self.path_drivers);
+        if !self.has_unit() {
+            let drivers = std::mem::take(&mut self.path_drivers);
+            let (plan, mut work) = self.work();
+            plan.solve_rates(&mut work, &drivers);
+            self.path_drivers = drivers;
+        }
     }
 
-    /// The fastest turn of a body along the tangent, in radians for the whole path.
-    fn turn_along_path(&self) -> f64 {
-        let tangent = self.tangent.velocity().iter().enumerate();
-        let turns = tangent.filter(|(column, _)| self.system.is_angle(*column));
-        turns.fold(0.0, |fastest: f64, (_, turn)| fastest.max(turn.abs()))
+    /// How far along the flow the part `h` of the path leads: q + h q′ + ½ h² q″, where with a
+    /// single driver q′ = q_u u′ and q″ = q_u u″ + q_uu u′².
+    fn advance_of(&self, h: f64) -> Advance {
+        match self.origin_drivers[..] {
+            [u] => Advance {
+                first: h * (u.first + 0.5 * h * u.second),
+                second: 0.5 * (h * u.first).powi(2),
+            },
+            _ => Advance {
+                first: h,
+                second: 0.5 * h * h,
+            },
+        }
+    }
+
+    /// The fastest turn of a body along the tangent, in radians for the whole path, whose
+    /// `advance` this is.
+    fn turn_of(&self, advance: Advance) -> f64 {
+        let first = match self.origin_drivers[..] {
+            [u] => u.first,
+            _ => advance.first,
+        };
+        let bodies = 3 * self.system.mechanism().bodies.len();
+        let (bodies, joints) = self.flow.velocity().split_at(bodies);
+        let angles = bodies
+            .chunks_exact(3)
+            .map(|v| v[2])
+            .chain(joints.iter().copied());
+        first.abs() * angles.fold(0.0, |fastest: f64, turn| fastest.max(turn.abs()))
     }
 
     /// Whether the prescribed motions between the two ends go where their value, velocity and
@@ -163,7 +185,8 @@ impl Solver {
         Ok(true)
     }
 
-    /// Goes from the remembered pose to the end of a sub-step; true if that kept to the motion.
+    /// Goes from the pose to the end of a sub-step; true if that kept to the motion. If not, the
+    /// mechanism is neither here nor there, the pose apart.
     ///
     /// # Errors
     ///
@@ -172,39 +195,21 @@ impl Solver {
         &mut self,
         path: &Path,
         [start, end]: [f64; 2],
-        orientation: bool,
         progress: &mut Progress,
     ) -> Result<bool, Error> {
         if !self.is_as_foretold(path, [start, end])? {
             return Ok(false);
         }
-        let h = end - start;
-        let (first, second) = (self.tangent.velocity(), self.tangent.acceleration());
-        for (k, q) in self.pose.q.iter_mut().enumerate() {
-            *q += h * (first[k] + 0.5 * h * second[k]);
-        }
         self.set_path(path, end)?;
-        let Outcome {
-            converged,
-            iterations,
-            contraction,
-        } = self.correct(MAX_ITERATIONS);
-        progress.iterations = progress.iterations.saturating_add(iterations);
-        Ok(converged
-            && contraction <= CONTRACTION
-            && self.lu.determinant_is_negative() == orientation
-            && self.largest_correction(h) <= LARGEST_CORRECTION
-            && !self.lu.is_singular(SINGULAR))
-    }
-
-    /// How far the corrected pose is from the predicted one, scaled.
-    fn largest_correction(&self, h: f64) -> f64 {
-        let (first, second) = (self.tangent.velocity(), self.tangent.acceleration());
-        let size = self.at.size();
-        (0..self.pose.q.len()).fold(0.0, |worst: f64, k| {
-            let predicted = self.origin.q[k] + h * (first[k] + 0.5 * h * second[k]);
-            worst.max((self.pose.q[k] - predicted).abs() / self.system.column_scale(k, size))
-        })
+        let advance = self.advance_of(end - start);
+        let unit = self.has_unit().then_some(&UNIT[..]);
+        let (plan, mut work) = self.work();
+        let Ok(correction) = plan.advance(&mut work, advance, unit) else {
+            return Ok(false);
+        };
+        self.at.copy_pose(&mut self.pose.q);
+        progress.iterations = progress.iterations.saturating_add(correction.iterations);
+        Ok(true)
     }
 
     /// Takes time, parameters and drivers from the path at s, leaving q as it is.
@@ -255,11 +260,14 @@ impl Solver {
             .collect()
     }
 
-    /// Returns to the remembered pose, which was reached at s.
+    /// Returns from a sub-step that failed to the pose, which was reached at s.
     fn stand_at(&mut self, path: &Path, s: f64) {
-        self.pose.q.copy_from_slice(&self.origin.q);
         self.set_path(path, s)
             .expect("the path was valid where the mechanism has been");
-        self.evaluate();
+        self.pose.drivers.copy_from_slice(&self.standing_at);
+        self.stand_at_pose();
+        self.refresh()
+            .expect("the pose was regular when it was reached");
+        self.predict();
     }
 }

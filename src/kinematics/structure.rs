@@ -6,6 +6,7 @@
 //! block lower triangular order.
 
 use std::collections::{BTreeSet, VecDeque};
+use std::sync::{Arc, OnceLock};
 
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
@@ -18,9 +19,13 @@ use crate::mechanism::{Coordinate, DriverId, Expression, MarkerId, Mechanism, Pa
 /// The block lower triangular structure of a system.
 #[derive(Clone, Debug)]
 pub struct Structure {
+    mechanism: Arc<Mechanism>,
     blocks: Vec<Block>,
     /// Block of each unknown.
     block_of: Vec<usize>,
+    /// What each block's unknowns depend on, through it and those before it; found when it is
+    /// first asked for, as only an export wants it and in a chain it grows with every link.
+    dependencies: OnceLock<Vec<Dependencies>>,
 }
 
 /// Equations and unknowns that have to be solved together.
@@ -30,8 +35,12 @@ pub struct Block {
     pub rows: Vec<usize>,
     /// Indices in q, `rows[k]` matched with `columns[k]`.
     pub columns: Vec<usize>,
-    /// What the unknowns depend on, through this block and those before it.
-    pub dependencies: Dependencies,
+    /// The blocks before it whose unknowns its rows contain, ascending.
+    pub reads: Vec<usize>,
+    /// The drivers in its rows.
+    drivers: Vec<DriverId>,
+    /// The parameters in its rows, as the expressions name them.
+    parameters: Vec<ParameterId>,
 }
 
 /// What a quantity depends on, structurally exact.
@@ -95,11 +104,12 @@ impl Structure {
             return Err(matching.problem(system, &incidences));
         }
         let mut structure = Self {
+            mechanism: Arc::clone(system.mechanism()),
             blocks: Vec::new(),
             block_of: vec![usize::MAX; system.unknowns()],
+            dependencies: OnceLock::new(),
         };
         for rows in matching.components(&incidences) {
-            let dependencies = structure.dependencies_of(system, &incidences, &rows);
             let columns: Vec<_> = rows
                 .iter()
                 .map(|&row| matching.column_of[row].expect("the matching is perfect"))
@@ -107,11 +117,8 @@ impl Structure {
             for &column in &columns {
                 structure.block_of[column] = structure.blocks.len();
             }
-            structure.blocks.push(Block {
-                rows,
-                columns,
-                dependencies,
-            });
+            let block = structure.block(system, &incidences, rows, columns);
+            structure.blocks.push(block);
         }
         Ok(structure)
     }
@@ -125,7 +132,13 @@ impl Structure {
     /// What the unknown q\[column\] depends on.
     #[must_use]
     pub fn dependencies(&self, column: usize) -> &Dependencies {
-        &self.blocks[self.block_of[column]].dependencies
+        &self.all_dependencies()[self.block_of[column]]
+    }
+
+    /// The block of each unknown.
+    #[must_use]
+    pub fn block_of(&self, column: usize) -> usize {
+        self.block_of[column]
     }
 
     /// What a coordinate depends on.
@@ -165,39 +178,60 @@ impl Structure {
         dependencies
     }
 
-    /// Dependencies of the unknowns that `rows` determine; the blocks before are known.
-    fn dependencies_of(
+    /// The block of these rows and columns; those before it are known.
+    fn block(
         &self,
         system: &System,
         incidences: &[Incidence],
-        rows: &[usize],
-    ) -> Dependencies {
+        rows: Vec<usize>,
+        columns: Vec<usize>,
+    ) -> Block {
         let mechanism = system.mechanism();
-        let mut dependencies = Dependencies::default();
-        let mut upstream = BTreeSet::new();
-        for &row in rows {
+        let mut block = Block {
+            rows,
+            columns,
+            reads: Vec::new(),
+            drivers: Vec::new(),
+            parameters: Vec::new(),
+        };
+        for &row in &block.rows {
             match &system.equations()[row].target {
-                Target::Constant(expression) => {
-                    dependencies.add_expression(mechanism, expression);
-                }
+                Target::Constant(expression) => block.parameters.extend(expression.parameters()),
                 Target::Driver(driver) => {
-                    dependencies.drivers.insert(*driver);
+                    block.drivers.push(*driver);
                     if let Some(motion) = mechanism.drivers[driver.index()].motion() {
-                        dependencies.add_expression(mechanism, motion);
+                        block.parameters.extend(motion.parameters());
                     }
                 }
             }
-            for &parameter in &incidences[row].parameters {
-                dependencies.add_parameter(mechanism, parameter);
-            }
-            upstream.extend(incidences[row].unknowns.iter().map(|&u| self.block_of[u]));
+            block.parameters.extend(&incidences[row].parameters);
+            let unknowns = &incidences[row].unknowns;
+            let owners = unknowns.iter().map(|&unknown| self.block_of[unknown]);
+            block
+                .reads
+                .extend(owners.filter(|&owner| owner != self.blocks.len()));
         }
-        for block in upstream {
-            if let Some(block) = self.blocks.get(block) {
-                dependencies.extend(&block.dependencies);
+        block.reads.sort_unstable();
+        block.reads.dedup();
+        block
+    }
+
+    fn all_dependencies(&self) -> &[Dependencies] {
+        self.dependencies.get_or_init(|| {
+            let mut all: Vec<Dependencies> = Vec::with_capacity(self.blocks.len());
+            for block in &self.blocks {
+                let mut dependencies = Dependencies::default();
+                dependencies.drivers.extend(&block.drivers);
+                for &parameter in &block.parameters {
+                    dependencies.add_parameter(&self.mechanism, parameter);
+                }
+                for &before in &block.reads {
+                    dependencies.extend(&all[before]);
+                }
+                all.push(dependencies);
             }
-        }
-        dependencies
+            all
+        })
     }
 }
 

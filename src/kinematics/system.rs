@@ -6,8 +6,6 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use nalgebra::DVector;
-
 use super::configuration::{Coefficient, CoefficientId, Configuration};
 use super::constraint::{self, Constraint, Dimension, Gradient, TurnEffect};
 use super::{Element, Error, joint};
@@ -38,6 +36,8 @@ pub struct Equation {
 pub struct System {
     mechanism: Arc<Mechanism>,
     equations: Vec<Equation>,
+    /// The row of each driver.
+    driver_rows: Vec<usize>,
     joint_parts: JointParts,
 }
 
@@ -73,47 +73,16 @@ pub struct Targets {
     pub turns: Vec<i32>,
 }
 
-/// Phi at some q, scaled, with the rounding error that each value carries anyhow.
-#[derive(Clone, Debug)]
-pub struct Residual {
-    /// Phi, one entry a row.
-    pub value: DVector<f64>,
-    /// Estimated rounding error of each entry.
-    pub rounding: DVector<f64>,
-}
-
-impl Residual {
-    /// Zeros for a system of `rows` equations.
-    #[must_use]
-    pub fn new(rows: usize) -> Self {
-        Self {
-            value: DVector::zeros(rows),
-            rounding: DVector::zeros(rows),
-        }
-    }
-
-    /// The magnitude of the largest entry; NaN if any entry is.
-    #[must_use]
-    pub fn largest(&self) -> f64 {
-        self.value
-            .iter()
-            .map(|value| value.abs())
-            .fold(0.0, nan_or_larger)
-    }
-
-    /// The largest entry in multiples of its rounding error; NaN if any entry is.
-    #[must_use]
-    pub fn excess(&self) -> f64 {
-        self.value
-            .iter()
-            .zip(&self.rounding)
-            .map(|(value, rounding)| value.abs() / rounding)
-            .fold(0.0, nan_or_larger)
-    }
+/// One entry of Phi, scaled, with the rounding error that it carries anyhow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct RowValue {
+    pub(super) value: f64,
+    /// Estimated rounding error of the value.
+    pub(super) rounding: f64,
 }
 
 /// The larger of two numbers; unlike `f64::max` it keeps a NaN, wherever it stands.
-fn nan_or_larger(a: f64, b: f64) -> f64 {
+pub(super) fn nan_or_larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
 }
 
@@ -139,7 +108,9 @@ impl System {
                 target: Target::Constant(held.value.clone()),
             });
         }
+        let mut driver_rows = Vec::with_capacity(mechanism.drivers.len());
         for (index, driver) in mechanism.drivers.iter().enumerate() {
+            driver_rows.push(equations.len());
             equations.push(Equation {
                 element: Element::Driver(DriverId(index)),
                 constraint: constraint::of_coordinate(&driver.coordinate),
@@ -149,6 +120,7 @@ impl System {
         Self {
             mechanism,
             equations,
+            driver_rows,
             joint_parts,
         }
     }
@@ -245,19 +217,17 @@ impl System {
     ///
     /// [`Error::NotFinite`] or [`Error::NotPositive`], naming the driver.
     pub fn check_drivers(&self, drivers: &[f64]) -> Result<(), Error> {
-        for equation in &self.equations {
-            if let Target::Driver(driver) = equation.target {
-                let value = drivers[driver.index()];
-                let what = || equation.element.describe(&self.mechanism);
-                if !value.is_finite() {
-                    return Err(Error::NotFinite { what: what() });
-                }
-                if !equation.constraint.admits(value) {
-                    return Err(Error::NotPositive {
-                        what: what(),
-                        value,
-                    });
-                }
+        for (&row, &value) in self.driver_rows.iter().zip(drivers) {
+            let equation = &self.equations[row];
+            let what = || equation.element.describe(&self.mechanism);
+            if !value.is_finite() {
+                return Err(Error::NotFinite { what: what() });
+            }
+            if !equation.constraint.admits(value) {
+                return Err(Error::NotPositive {
+                    what: what(),
+                    value,
+                });
             }
         }
         Ok(())
@@ -284,77 +254,52 @@ impl System {
         }
     }
 
-    /// Evaluates Phi and its Jacobian, scaled so that metres and radians compare: rows in
-    /// metres are divided by the mechanism's size, columns multiplied by
+    /// Evaluates row `row` of Phi and its gradient, scaled so that metres and radians compare:
+    /// rows in metres are divided by the mechanism's size, columns multiplied by
     /// [`column_scale`](Self::column_scale).
     ///
-    /// `entry(row, column, value)` is called for each entry of the Jacobian (Ec. 3.6.4); two
-    /// calls for the same place add up. `q` is the pose that `at` was made from.
-    pub fn evaluate(
+    /// `entry(column, value)` is called for each entry of the row of the Jacobian (Ec. 3.6.4);
+    /// two calls for the same column add up.
+    pub(super) fn evaluate_row(
         &self,
+        row: usize,
         at: &Configuration,
-        q: &[f64],
         targets: &Targets,
         drivers: &[f64],
-        residual: &mut Residual,
-        mut entry: impl FnMut(usize, usize, f64),
-    ) {
+        mut entry: impl FnMut(usize, f64),
+    ) -> RowValue {
+        let equation = &self.equations[row];
         let size = at.size();
+        let row_scale = equation.row_scale(at);
+        let target = self.target(row, targets, drivers);
+        let value = (equation.constraint.value(at) - target) * row_scale;
+        // To first order each coordinate's own rounding moves the value by gradient times
+        // q eps; the sines and products inside add some eps of the size.
+        let mut magnitude = target.abs() * row_scale + 1.0;
         let mut gradient = Gradient::new();
-        for (row, equation) in self.equations.iter().enumerate() {
-            let row_scale = equation.row_scale(at);
-            let target = self.target(row, targets, drivers);
-            residual.value[row] = (equation.constraint.value(at) - target) * row_scale;
-            // To first order each coordinate's own rounding moves the value by gradient times
-            // q eps; the sines and products inside add some eps of the size.
-            let mut magnitude = target.abs() * row_scale + 1.0;
-            gradient.clear();
-            equation.constraint.gradient(at, &mut gradient);
-            for (column, value) in gradient.entries() {
-                magnitude += (value * q[column]).abs() * row_scale;
-                entry(
-                    row,
-                    column,
-                    value * row_scale * self.column_scale(column, size),
-                );
-            }
-            residual.rounding[row] = magnitude * f64::EPSILON;
+        equation.constraint.gradient(at, &mut gradient);
+        for (column, partial) in gradient.entries() {
+            magnitude += (partial * at.coordinate(column)).abs() * row_scale;
+            entry(
+                column,
+                partial * row_scale * self.column_scale(column, size),
+            );
+        }
+        RowValue {
+            value,
+            rounding: magnitude * f64::EPSILON,
         }
     }
 
-    /// Writes nu, the right-hand side of the velocity equation (Ec. 3.6.10), scaled as Phi:
-    /// `first(driver)`, the driver's first derivative, in its row and zero elsewhere.
-    pub fn velocity_side(
-        &self,
-        at: &Configuration,
-        first: impl Fn(DriverId) -> f64,
-        nu: &mut [f64],
-    ) {
-        for (equation, nu) in self.equations.iter().zip(nu) {
-            *nu = match equation.target {
-                Target::Constant(_) => 0.0,
-                Target::Driver(driver) => first(driver) * equation.row_scale(at),
-            };
-        }
-    }
-
-    /// Writes gamma, the right-hand side of the acceleration equation (Ec. 3.6.11), scaled as
-    /// Phi: `second(driver)`, the driver's second derivative, in its row, minus the quadratic
-    /// term of each row. Phi_qt is zero, as drivers and coordinates are in separate terms.
-    pub fn acceleration_side(
-        &self,
-        at: &Configuration,
-        q_dot: &[f64],
-        second: impl Fn(DriverId) -> f64,
-        gamma: &mut [f64],
-    ) {
-        for (equation, gamma) in self.equations.iter().zip(gamma) {
-            let u_ddot = match equation.target {
-                Target::Constant(_) => 0.0,
-                Target::Driver(driver) => second(driver),
-            };
-            *gamma = (u_ddot - equation.constraint.quadratic(at, q_dot)) * equation.row_scale(at);
-        }
+    /// The magnitude of the largest entry of Phi, scaled; NaN if any entry is.
+    #[must_use]
+    pub fn largest_residual(&self, at: &Configuration, targets: &Targets, drivers: &[f64]) -> f64 {
+        let rows = self.equations.iter().enumerate();
+        rows.map(|(row, equation)| {
+            let error = equation.constraint.value(at) - self.target(row, targets, drivers);
+            (error * equation.row_scale(at)).abs()
+        })
+        .fold(0.0, nan_or_larger)
     }
 
     /// Whether an unknown is an angle; what joints bring with them is.
@@ -380,7 +325,7 @@ impl Equation {
     }
 
     /// A row in metres is divided by the mechanism's size, one in radians is left as it is.
-    fn row_scale(&self, at: &Configuration) -> f64 {
+    pub(super) fn row_scale(&self, at: &Configuration) -> f64 {
         match self.constraint.dimension() {
             Dimension::Length => 1.0 / at.size(),
             Dimension::Angle => 1.0,
@@ -390,17 +335,15 @@ impl Equation {
 
 #[cfg(test)]
 mod tests {
-    use super::Residual;
+    use super::nan_or_larger;
 
     #[test]
     fn no_entry_that_is_not_a_number_is_overlooked() {
         for place in 0..3 {
-            let mut residual = Residual::new(3);
-            residual.rounding.fill(1.0);
-            residual.value[1] = 2.0;
-            assert_eq!((residual.excess(), residual.largest()), (2.0, 2.0));
-            residual.value[place] = f64::NAN;
-            assert!(residual.excess().is_nan() && residual.largest().is_nan());
+            let mut entries = [0.0, 2.0, 0.0];
+            assert_eq!(entries.into_iter().fold(0.0, nan_or_larger), 2.0);
+            entries[place] = f64::NAN;
+            assert!(entries.into_iter().fold(0.0, nan_or_larger).is_nan());
         }
     }
 }

@@ -1,10 +1,12 @@
 //! The angle between two markers.
 
-use super::{Configuration, Constraint, Dimension, Gradient, Incidence, Region, TurnEffect};
+use super::{
+    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, TurnEffect,
+};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = theta_j − theta_i, counting turns.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Angle {
     /// Marker i.
     pub from: MarkerId,
@@ -15,6 +17,10 @@ pub struct Angle {
 impl Constraint for Angle {
     fn dimension(&self) -> Dimension {
         Dimension::Angle
+    }
+
+    fn relation(&self) -> Relation {
+        Relation::Angle(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, centripetal,
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, centripetal,
     centripetal_bound,
 };
 use crate::mechanism::{MarkerId, Mechanism};
@@ -12,7 +12,7 @@ use crate::mechanism::{MarkerId, Mechanism};
 ///
 /// Where both components are held at zero it does not matter on whose axes they are measured;
 /// in ground axes the coefficients of x and y are ±1.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coincidence {
     /// Marker i.
     pub from: MarkerId,
@@ -34,6 +34,10 @@ impl Coincidence {
 impl Constraint for Coincidence {
     fn dimension(&self) -> Dimension {
         Dimension::Length
+    }
+
+    fn relation(&self) -> Relation {
+        Relation::Coincidence(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {

@@ -73,6 +73,11 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     /// sign). `q_dot` is `3 * bodies` long.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
 
+    /// Whether this is one of the relations that special kernels know.
+    fn relation(&self) -> Relation {
+        Relation::Other
+    }
+
     /// Whether c can be held at this value; a distance cannot at zero or below.
     fn admits(&self, value: f64) -> bool {
         let _ = value;
@@ -100,6 +105,19 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence);
 }
 
+/// What a relation is, for kernels that solve particular ones by straight code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// [`Angle`].
+    Angle(Angle),
+    /// [`Coincidence`].
+    Coincidence(Coincidence),
+    /// [`Projection`].
+    Projection(Projection),
+    /// Known by its trait only.
+    Other,
+}
+
 /// A neighbourhood of a pose: each unknown may be off by a radius of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Region<'a> {
@@ -109,19 +127,19 @@ pub struct Region<'a> {
 
 impl Region<'_> {
     /// How far the direction of a marker can turn \[rad\].
-    fn turn(&self, marker: &MarkerPose) -> f64 {
+    fn turn(&self, marker: MarkerPose) -> f64 {
         marker
             .body
             .map_or(0.0, |body| self.radii[3 * body.index() + 2])
     }
 
     /// How far a unit vector fixed to a marker's body can move: the chord of the turn.
-    fn sway(&self, marker: &MarkerPose) -> f64 {
+    fn sway(&self, marker: MarkerPose) -> f64 {
         chord(self.turn(marker))
     }
 
     /// How far a marker's point can move \[m\].
-    fn reach(&self, marker: &MarkerPose) -> f64 {
+    fn reach(&self, marker: MarkerPose) -> f64 {
         marker.body.map_or(0.0, |body| {
             let k = 3 * body.index();
             self.radii[k].hypot(self.radii[k + 1]) + marker.arm.norm() * self.sway(marker)
@@ -139,20 +157,20 @@ fn chord(angle: f64) -> f64 {
 }
 
 /// An upper bound of the speed of a marker's point for the rates `v`, wherever its body points.
-fn speed_bound(from: &MarkerPose, to: &MarkerPose, v: &[f64]) -> f64 {
-    let origin = |marker: &MarkerPose| {
+fn speed_bound(from: MarkerPose, to: MarkerPose, v: &[f64]) -> f64 {
+    let origin = |marker: MarkerPose| {
         marker.body.map_or_else(Vector2::zeros, |body| {
             let k = 3 * body.index();
             Vector2::new(v[k], v[k + 1])
         })
     };
-    let swing = |marker: &MarkerPose| angular_velocity(marker, v).abs() * marker.arm.norm();
+    let swing = |marker: MarkerPose| angular_velocity(marker, v).abs() * marker.arm.norm();
     (origin(to) - origin(from)).norm() + swing(to) + swing(from)
 }
 
 /// An upper bound of the centripetal part of P_j − P_i for the rates `v`.
-fn centripetal_bound(from: &MarkerPose, to: &MarkerPose, v: &[f64]) -> f64 {
-    let part = |marker: &MarkerPose| angular_velocity(marker, v).powi(2) * marker.arm.norm();
+fn centripetal_bound(from: MarkerPose, to: MarkerPose, v: &[f64]) -> f64 {
+    let part = |marker: MarkerPose| angular_velocity(marker, v).powi(2) * marker.arm.norm();
     part(from) + part(to)
 }
 
@@ -208,7 +226,7 @@ impl Gradient {
     }
 
     /// Adds the gradient of `direction · P`, P being the marker's point and `direction` fixed.
-    pub fn add_point(&mut self, marker: &MarkerPose, direction: Vector2<f64>) {
+    pub fn add_point(&mut self, marker: MarkerPose, direction: Vector2<f64>) {
         if let Some(part) = self.part(marker.body) {
             part[0] += direction.x;
             part[1] += direction.y;
@@ -217,7 +235,7 @@ impl Gradient {
     }
 
     /// Adds bounds of a point's entries: `direction` for x and y, `swing` for phi.
-    fn add_point_bound(&mut self, marker: &MarkerPose, direction: f64, swing: f64) {
+    fn add_point_bound(&mut self, marker: MarkerPose, direction: f64, swing: f64) {
         if let Some(part) = self.part(marker.body) {
             part[0] += direction;
             part[1] += direction;
@@ -226,7 +244,7 @@ impl Gradient {
     }
 
     /// Adds the gradient of `factor * theta`, theta being the marker's direction.
-    pub fn add_direction(&mut self, marker: &MarkerPose, factor: f64) {
+    pub fn add_direction(&mut self, marker: MarkerPose, factor: f64) {
         self.add_turn(marker.body, factor);
     }
 
@@ -265,7 +283,7 @@ impl Gradient {
 
 /// Velocity of a marker's point: ṙ + omega perp(A s).
 #[must_use]
-pub fn point_velocity(marker: &MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
+pub fn point_velocity(marker: MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
     marker.body.map_or_else(Vector2::zeros, |body| {
         let k = 3 * body.index();
         Vector2::new(q_dot[k], q_dot[k + 1]) + q_dot[k + 2] * perp(marker.arm)
@@ -274,17 +292,17 @@ pub fn point_velocity(marker: &MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
 
 /// Acceleration of a marker's point: r̈ + alpha perp(A s) − omega² A s.
 #[must_use]
-pub fn point_acceleration(marker: &MarkerPose, q_dot: &[f64], q_ddot: &[f64]) -> Vector2<f64> {
+pub fn point_acceleration(marker: MarkerPose, q_dot: &[f64], q_ddot: &[f64]) -> Vector2<f64> {
     point_velocity(marker, q_ddot) + centripetal(marker, q_dot)
 }
 
 /// What remains of the point's acceleration where q̈ = 0: −omega² A s.
-fn centripetal(marker: &MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
+fn centripetal(marker: MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
     let omega = angular_velocity(marker, q_dot);
     -omega * omega * marker.arm
 }
 
-fn angular_velocity(marker: &MarkerPose, q_dot: &[f64]) -> f64 {
+fn angular_velocity(marker: MarkerPose, q_dot: &[f64]) -> f64 {
     marker.body.map_or(0.0, |body| q_dot[3 * body.index() + 2])
 }
 

@@ -3,13 +3,13 @@
 use nalgebra::Vector2;
 
 use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, angular_velocity,
-    centripetal, centripetal_bound, perp, point_velocity, speed_bound,
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation,
+    angular_velocity, centripetal, centripetal_bound, perp, point_velocity, speed_bound,
 };
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · (P_j − P_i), e being the x- or y-axis of marker k.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Projection {
     /// Marker i.
     pub from: MarkerId,
@@ -38,6 +38,10 @@ impl Projection {
 impl Constraint for Projection {
     fn dimension(&self) -> Dimension {
         Dimension::Length
+    }
+
+    fn relation(&self) -> Relation {
+        Relation::Projection(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {

@@ -1,0 +1,349 @@
+//! From equations and blocks to kernels.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+use super::coupled::{Coupled, Place};
+use super::dyad::{Dyad, SideParts};
+use super::pinned::{Parts, Pinned};
+use super::{Kernel, Plan};
+use crate::kinematics::constraint::{Axis, Relation};
+use crate::kinematics::structure::Structure;
+use crate::kinematics::system::{System, Target};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// Blocks that one kernel solves.
+struct Group {
+    /// Ascending.
+    blocks: Vec<usize>,
+    recipe: Recipe,
+}
+
+/// Which kernel, and what it is made of.
+enum Recipe {
+    Pinned(Parts),
+    Dyad([usize; 6], [SideParts; 2]),
+    Coupled,
+}
+
+/// The two rows of a revolute: its points coincide.
+#[derive(Clone, Copy)]
+struct Revolute {
+    rows: [usize; 2],
+    from: MarkerId,
+    to: MarkerId,
+}
+
+/// What the search for kernels looks at.
+struct Search<'a> {
+    system: &'a System,
+    structure: &'a Structure,
+    mechanism: &'a Mechanism,
+    /// The revolute that each row is part of.
+    revolutes: Vec<Option<Revolute>>,
+    /// The group that has taken each block.
+    group_of: Vec<Option<usize>>,
+    groups: Vec<Group>,
+}
+
+impl Plan {
+    /// Compiles the plan. Each block of the structure that a special kernel knows how to solve,
+    /// alone or with others of the same bodies, goes to it; the rest is left to [`Coupled`].
+    pub(in crate::kinematics) fn new(system: &System, structure: &Structure) -> Self {
+        let mut search = Search {
+            system,
+            structure,
+            mechanism: system.mechanism(),
+            revolutes: revolutes(system),
+            group_of: vec![None; structure.blocks().len()],
+            groups: Vec::new(),
+        };
+        search.find();
+        let order = search.order();
+        Self {
+            kernels: search.kernels(&order),
+        }
+    }
+}
+
+/// Pairs the rows that hold two points together.
+fn revolutes(system: &System) -> Vec<Option<Revolute>> {
+    let equations = system.equations();
+    let point = |row: usize| {
+        let equation = equations.get(row)?;
+        let at_zero =
+            matches!(&equation.target, Target::Constant(value) if value.literal() == Some(0.0));
+        match equation.constraint.relation() {
+            Relation::Coincidence(c) if at_zero => Some(c),
+            _ => None,
+        }
+    };
+    let mut revolutes = vec![None; equations.len()];
+    for row in 0..equations.len() {
+        if let (Some(x), Some(y)) = (point(row), point(row + 1))
+            && (x.axis, y.axis) == (Axis::X, Axis::Y)
+            && (x.from, x.to) == (y.from, y.to)
+        {
+            let revolute = Revolute {
+                rows: [row, row + 1],
+                from: x.from,
+                to: x.to,
+            };
+            revolutes[row] = Some(revolute);
+            revolutes[row + 1] = Some(revolute);
+        }
+    }
+    revolutes
+}
+
+impl Search<'_> {
+    /// Groups blocks for the special kernels, then leaves each other block to itself.
+    fn find(&mut self) {
+        for block in 0..self.structure.blocks().len() {
+            if self.group_of[block].is_some() {
+                continue;
+            }
+            let bodies = self.turning(block);
+            let group = match bodies[..] {
+                [body] => self.pinned(body),
+                [a, b] => self.dyad(a, b),
+                _ => None,
+            };
+            if let Some(group) = group {
+                for &block in &group.blocks {
+                    self.group_of[block] = Some(self.groups.len());
+                }
+                self.groups.push(group);
+            }
+        }
+        self.leave_rest();
+    }
+
+    fn leave_rest(&mut self) {
+        for block in 0..self.group_of.len() {
+            if self.group_of[block].is_none() {
+                self.group_of[block] = Some(self.groups.len());
+                self.groups.push(Group {
+                    blocks: vec![block],
+                    recipe: Recipe::Coupled,
+                });
+            }
+        }
+    }
+
+    /// The bodies whose angles a block determines.
+    fn turning(&self, block: usize) -> Vec<usize> {
+        let bodies = self.mechanism.bodies.len();
+        let columns = self.structure.blocks()[block].columns.iter();
+        let angles = columns.filter(|&&column| column % 3 == 2 && column < 3 * bodies);
+        angles.map(|column| column / 3).collect()
+    }
+
+    /// The blocks that determine these bodies and nothing else, and their rows.
+    fn determining(&self, bodies: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
+        let columns = || {
+            bodies
+                .iter()
+                .flat_map(|body| (0..3).map(move |k| 3 * body + k))
+        };
+        let mut blocks: Vec<_> = columns()
+            .map(|column| self.structure.block_of(column))
+            .collect();
+        blocks.sort_unstable();
+        blocks.dedup();
+        let own = blocks.iter().all(|&block| {
+            let columns = &self.structure.blocks()[block].columns;
+            self.group_of[block].is_none()
+                && columns.iter().all(|column| bodies.contains(&(column / 3)))
+        });
+        let rows = |block: &usize| self.structure.blocks()[*block].rows.clone();
+        own.then(|| {
+            let mut rows: Vec<_> = blocks.iter().flat_map(rows).collect();
+            rows.sort_unstable();
+            (blocks, rows)
+        })
+    }
+
+    fn body_of(&self, marker: MarkerId) -> Option<usize> {
+        let body = self.mechanism.markers[marker.index()].body;
+        body.map(|body| body.index())
+    }
+
+    /// A body with a revolute to a point found before, its angle held or driven.
+    fn pinned(&self, body: usize) -> Option<Group> {
+        let (blocks, rows) = self.determining(&[body])?;
+        let [first, second, third] = rows[..] else {
+            return None;
+        };
+        let (revolute, angle) = match (self.revolutes[first], self.revolutes[second]) {
+            (Some(revolute), _) if revolute.rows == [first, second] => (revolute, third),
+            (_, Some(revolute)) if revolute.rows == [second, third] => (revolute, first),
+            _ => return None,
+        };
+        let Relation::Angle(measured) = self.system.equations()[angle].constraint.relation() else {
+            return None;
+        };
+        let mine = |marker| self.body_of(marker) == Some(body);
+        let (pin, anchor) = self.own_first(revolute, body)?;
+        let (angle_marker, reference, sense) = match (mine(measured.from), mine(measured.to)) {
+            (false, true) => (measured.to, measured.from, 1.0),
+            (true, false) => (measured.from, measured.to, -1.0),
+            _ => return None,
+        };
+        Some(Group {
+            blocks,
+            recipe: Recipe::Pinned(Parts {
+                rows: [revolute.rows[0], revolute.rows[1], angle],
+                body,
+                pin,
+                anchor,
+                angle: angle_marker,
+                reference,
+                sense,
+            }),
+        })
+    }
+
+    /// The marker of a revolute that is on `body`, then the other, which is not.
+    fn own_first(&self, revolute: Revolute, body: usize) -> Option<(MarkerId, MarkerId)> {
+        let mine = |marker| self.body_of(marker) == Some(body);
+        match (mine(revolute.from), mine(revolute.to)) {
+            (true, false) => Some((revolute.from, revolute.to)),
+            (false, true) => Some((revolute.to, revolute.from)),
+            _ => None,
+        }
+    }
+
+    /// Two bodies with a revolute between them and one each to points found before.
+    fn dyad(&self, a: usize, b: usize) -> Option<Group> {
+        let (blocks, rows) = self.determining(&[a, b])?;
+        let mut revolutes = Vec::with_capacity(3);
+        for pair in rows.chunks(2) {
+            let revolute = self.revolutes[pair[0]]?;
+            if revolute.rows[..] != *pair {
+                return None;
+            }
+            revolutes.push(revolute);
+        }
+        let bodies = |revolute: &Revolute| [revolute.from, revolute.to].map(|m| self.body_of(m));
+        let joins = |revolute: &&Revolute, x: usize| bodies(revolute).contains(&Some(x));
+        let inner = revolutes.iter().find(|r| joins(r, a) && joins(r, b))?;
+        let (inner_a, inner_b) = self.own_first(*inner, a)?;
+        let side = |body: usize, other: usize, inner: MarkerId| {
+            let outer = revolutes
+                .iter()
+                .find(|r| joins(r, body) && !joins(r, other))?;
+            let (own, anchor) = self.own_first(*outer, body)?;
+            Some((
+                outer.rows,
+                SideParts {
+                    body,
+                    outer: own,
+                    anchor,
+                    inner,
+                },
+            ))
+        };
+        let (rows_a, side_a) = side(a, b, inner_a)?;
+        let (rows_b, side_b) = side(b, a, inner_b)?;
+        let [r0, r1] = rows_a;
+        let [r2, r3] = rows_b;
+        let [r4, r5] = inner.rows;
+        Some(Group {
+            blocks,
+            recipe: Recipe::Dyad([r0, r1, r2, r3, r4, r5], [side_a, side_b]),
+        })
+    }
+
+    /// An order of the groups in which each comes after those it reads, the earliest block
+    /// first. Grouping may have tied a knot, where a group reads what another one finds from a
+    /// part of it; such groups are taken apart again.
+    fn order(&mut self) -> Vec<usize> {
+        loop {
+            let order = self.sorted();
+            if order.len() == self.groups.len() {
+                return order;
+            }
+            let mut done = vec![false; self.groups.len()];
+            order.iter().for_each(|&group| done[group] = true);
+            let groups = std::mem::take(&mut self.groups);
+            let kept =
+                |(group, done): (Group, bool)| (done || group.blocks.len() == 1).then_some(group);
+            self.groups = groups.into_iter().zip(done).filter_map(kept).collect();
+            self.group_of.fill(None);
+            for (index, group) in self.groups.iter().enumerate() {
+                for &block in &group.blocks {
+                    self.group_of[block] = Some(index);
+                }
+            }
+            self.leave_rest();
+        }
+    }
+
+    /// As many groups as can be put in order.
+    fn sorted(&self) -> Vec<usize> {
+        let group_of = |block: usize| self.group_of[block].expect("every block has its group");
+        let mut waits_for = vec![0_usize; self.groups.len()];
+        let mut read_by = vec![Vec::new(); self.groups.len()];
+        for (index, group) in self.groups.iter().enumerate() {
+            let blocks = group.blocks.iter();
+            let reads = blocks.flat_map(|&block| &self.structure.blocks()[block].reads);
+            for read in reads.map(|&block| group_of(block)) {
+                if read != index {
+                    waits_for[index] += 1;
+                    read_by[read].push(index);
+                }
+            }
+        }
+        let last = |group: usize| self.groups[group].blocks.last().copied();
+        let free = (0..self.groups.len()).filter(|&group| waits_for[group] == 0);
+        let mut ready: BinaryHeap<_> = free.map(|group| Reverse((last(group), group))).collect();
+        let mut order = Vec::with_capacity(self.groups.len());
+        while let Some(Reverse((_, group))) = ready.pop() {
+            order.push(group);
+            for &reader in &read_by[group] {
+                waits_for[reader] -= 1;
+                if waits_for[reader] == 0 {
+                    ready.push(Reverse((last(reader), reader)));
+                }
+            }
+        }
+        order
+    }
+
+    fn kernels(&self, order: &[usize]) -> Vec<Kernel> {
+        let mut places = vec![
+            Place {
+                kernel: usize::MAX,
+                local: 0
+            };
+            self.system.unknowns()
+        ];
+        let mut coupled = Vec::new();
+        for (kernel, &group) in order.iter().enumerate() {
+            let group = &self.groups[group];
+            if let Recipe::Coupled = group.recipe {
+                let block = &self.structure.blocks()[group.blocks[0]];
+                for (local, &column) in block.columns.iter().enumerate() {
+                    places[column] = Place { kernel, local };
+                }
+                coupled.push((block.rows.clone(), block.columns.clone(), 0));
+            }
+        }
+        let places: Arc<[Place]> = places.into();
+        let mut coupled = coupled.into_iter();
+        let kernels = order.iter().enumerate();
+        kernels
+            .map(|(index, &group)| match &self.groups[group].recipe {
+                Recipe::Pinned(parts) => Kernel::Pinned(Pinned::new(self.mechanism, parts)),
+                Recipe::Dyad(rows, sides) => Kernel::Dyad(Dyad::new(self.mechanism, *rows, sides)),
+                Recipe::Coupled => {
+                    let (rows, columns, fixed) = coupled.next().expect("one was made for each");
+                    let places = Arc::clone(&places);
+                    Kernel::Coupled(Box::new(Coupled::new(index, rows, columns, fixed, places)))
+                }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,243 @@
+//! Any block of equations that have to be solved together.
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+
+use super::{Advance, Work};
+use crate::kinematics::factor::DenseLu;
+use crate::kinematics::newton::{
+    AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
+    SMALL, STALLED,
+};
+use crate::kinematics::system::{Target, nan_or_larger};
+use crate::mechanism::Jet;
+
+/// Where an unknown is found: the kernel, and its place among the unknowns of that kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) kernel: usize,
+    pub(super) local: usize,
+}
+
+/// Newton–Raphson on the rows of a block, whatever they are.
+#[derive(Debug)]
+pub(in crate::kinematics) struct Coupled {
+    /// Which kernel of the plan this is.
+    index: usize,
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    places: Arc<[Place]>,
+    lu: DenseLu,
+    /// Whether the determinant is negative at the pose last factorised.
+    negative: bool,
+    /// Entries of the rows at unknowns found before: row of the block, column, scaled value.
+    upstream: Vec<(usize, usize, f64)>,
+    residual: DVector<f64>,
+    /// The largest residual in multiples of its rounding error.
+    excess: f64,
+    correction: DVector<f64>,
+    predicted: Vec<f64>,
+}
+
+impl Coupled {
+    /// The block with these rows and unknowns, in the order of elimination; the first `fixed`
+    /// pivots are ±1.
+    pub(super) fn new(
+        index: usize,
+        rows: Vec<usize>,
+        columns: Vec<usize>,
+        fixed: usize,
+        places: Arc<[Place]>,
+    ) -> Self {
+        let order = rows.len();
+        /// Three bodies and an unknown of its own at the most.
+        const ENTRIES: usize = 10;
+        Self {
+            index,
+            lu: DenseLu::new(order, fixed),
+            negative: false,
+            upstream: Vec::with_capacity(ENTRIES * order),
+            residual: DVector::zeros(order),
+            excess: 0.0,
+            correction: DVector::zeros(order),
+            predicted: vec![0.0; order],
+            rows,
+            columns,
+            places,
+        }
+    }
+
+    pub(in crate::kinematics) fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+
+    pub(in crate::kinematics) fn columns(&self) -> &[usize] {
+        &self.columns
+    }
+
+    /// Evaluates the rows and their Jacobian at the pose in `work`, not yet factorised.
+    fn evaluate(&mut self, work: &Work<'_>) {
+        let Self {
+            index,
+            rows,
+            places,
+            lu,
+            upstream,
+            residual,
+            ..
+        } = self;
+        lu.clear();
+        upstream.clear();
+        let mut excess = 0.0;
+        for (local, &row) in rows.iter().enumerate() {
+            let value = work.system.evaluate_row(
+                row,
+                work.at,
+                work.targets,
+                work.drivers,
+                |column, value| {
+                    let place = places[column];
+                    if place.kernel == *index {
+                        lu.add(local, place.local, value);
+                    } else if value != 0.0 {
+                        upstream.push((local, column, value));
+                    }
+                },
+            );
+            residual[local] = value.value;
+            excess = nan_or_larger(excess, value.value.abs() / value.rounding);
+        }
+        self.excess = excess;
+    }
+
+    /// Replaces the Jacobian by its factors.
+    fn decompose(&mut self) -> Result<(), Rejected> {
+        // A row that hardly depends on the block's own unknowns makes them run away, however
+        // well the rows of the block agree with each other.
+        let upstream = self.upstream.iter().map(|(_, _, value)| value.abs());
+        self.lu
+            .factorise(upstream.fold(0.0, f64::max))
+            .map_err(|_| Rejected)?;
+        self.negative = self.lu.determinant_is_negative();
+        Ok(())
+    }
+
+    /// Factorises at the pose in `work`.
+    pub(super) fn factorise(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
+        self.evaluate(work);
+        self.decompose()
+    }
+
+    /// Predicts the unknowns and corrects them until the rows are at rounding.
+    pub(super) fn advance(
+        &mut self,
+        work: &mut Work<'_>,
+        advance: Advance,
+    ) -> Result<Correction, Rejected> {
+        let before = self.negative;
+        for (predicted, &column) in self.predicted.iter_mut().zip(&self.columns) {
+            *predicted = advance.predict(column, work.at.coordinate(column), work.flow);
+            work.at.set_coordinate(column, *predicted);
+        }
+        let correction = self.correct(work, MAX_ITERATIONS)?;
+        let size = work.at.size();
+        let moved = self.predicted.iter().zip(&self.columns);
+        let largest = moved
+            .map(|(predicted, &column)| {
+                let moved = (work.at.coordinate(column) - predicted).abs();
+                moved / work.system.column_scale(column, size)
+            })
+            .fold(0.0, nan_or_larger);
+        let kept = correction.contraction <= CONTRACTION
+            && largest <= LARGEST_CORRECTION
+            && self.negative == before
+            && !self.lu.is_singular(SINGULAR);
+        if kept { Ok(correction) } else { Err(Rejected) }
+    }
+
+    /// Corrects the block's unknowns from where they are until Phi = 0 to rounding: solves
+    /// Phi_q Δq = −Phi and adds Δq, again and again (Ec. 3.6.7 and 3.6.8). The last evaluation
+    /// leaves the Jacobian factorised at the accepted pose, ready for rates.
+    pub(in crate::kinematics) fn correct(
+        &mut self,
+        work: &mut Work<'_>,
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        // A single row can be had to the last bit, so that gears keep their phase.
+        let at_rounding = if self.rows.len() == 1 {
+            0.5
+        } else {
+            AT_ROUNDING
+        };
+        let mut outcome = Correction::default();
+        let mut last_excess = f64::INFINITY;
+        let mut last_correction = f64::INFINITY;
+        loop {
+            self.evaluate(work);
+            let excess = self.excess;
+            if !excess.is_finite() {
+                return Err(Rejected);
+            }
+            self.decompose()?;
+            let stalled = excess <= STALLED && excess >= 0.5 * last_excess;
+            if excess <= at_rounding || stalled {
+                return Ok(outcome);
+            }
+            if outcome.iterations == max_iterations {
+                return Err(Rejected);
+            }
+            self.correction.copy_from(&self.residual);
+            self.lu.solve(&mut self.correction);
+            let size = work.at.size();
+            for (&column, scaled) in self.columns.iter().zip(&self.correction) {
+                let step = scaled * work.system.column_scale(column, size);
+                let value = work.at.coordinate(column) - step;
+                work.at.set_coordinate(column, value);
+            }
+            let correction = self.correction.amax();
+            outcome.contraction = outcome.contraction.max(correction / last_correction);
+            last_correction = correction.max(SMALL);
+            last_excess = excess;
+            outcome.iterations += 1;
+        }
+    }
+
+    /// Writes the rates of the block's unknowns: Phi_q q̇ = u̇ in the drivers' rows (Ec. 3.6.10),
+    /// then Phi_q q̈ = ü − q̇ᵀ (∂²c/∂q²) q̇ (Ec. 3.6.11).
+    pub(super) fn solve_rates(&mut self, work: &mut Work<'_>, drivers: &[Jet]) {
+        let driver = |row: usize| match work.system.equations()[row].target {
+            Target::Constant(_) => Jet::constant(0.0),
+            Target::Driver(driver) => drivers[driver.index()],
+        };
+        let scale = |row: usize| work.system.equations()[row].row_scale(work.at);
+        for (side, &row) in self.correction.iter_mut().zip(&self.rows) {
+            *side = driver(row).first * scale(row);
+        }
+        let (velocity, _) = work.flow.both_mut();
+        self.solve(work.system, work.at.size(), velocity);
+        for (side, &row) in self.correction.iter_mut().zip(&self.rows) {
+            let equation = &work.system.equations()[row];
+            let quadratic = equation.constraint.quadratic(work.at, work.flow.velocity());
+            *side = (driver(row).second - quadratic) * scale(row);
+        }
+        let (_, acceleration) = work.flow.both_mut();
+        self.solve(work.system, work.at.size(), acceleration);
+    }
+
+    /// Solves for the block's entries of `rates`, whose entries upstream are known, with the
+    /// scaled right-hand side in `correction`.
+    fn solve(&mut self, system: &crate::kinematics::System, size: f64, rates: &mut [f64]) {
+        for &(row, column, value) in &self.upstream {
+            self.correction[row] -= value * rates[column] / system.column_scale(column, size);
+        }
+        self.lu.solve(&mut self.correction);
+        for (&column, scaled) in self.columns.iter().zip(&self.correction) {
+            rates[column] = scaled * system.column_scale(column, size);
+        }
+    }
+
+    pub(super) fn rcond(&mut self) -> f64 {
+        self.lu.rcond()
+    }
+}

@@ -1,0 +1,188 @@
+//! The order of work: which unknowns are found when, each group of them by a kernel of its own.
+//!
+//! A plan is compiled once from the equations and their block structure. It lists kernels so
+//! that each reads only what those before it have found. Position, velocity and acceleration go
+//! through the list once; the work is proportional to the number of bodies.
+//!
+//! | kernel | unknowns | how |
+//! |---|---|---|
+//! | [`Pinned`] | x, y, phi of a body | straight from a revolute and an angle |
+//! | [`Dyad`] | x, y, phi of two bodies | Newton on two angles, 2×2 in closed form |
+//! | [`Coupled`] | any block | Newton on its rows, whatever they are |
+
+mod anchor;
+mod compile;
+mod coupled;
+mod dyad;
+mod pinned;
+
+use super::configuration::Configuration;
+use super::newton::{Correction, Rejected};
+use super::rates::Rates;
+use super::system::{System, Targets};
+use crate::mechanism::Jet;
+
+pub(super) use coupled::Coupled;
+use dyad::Dyad;
+use pinned::Pinned;
+
+/// The kernels in the order in which they run.
+#[derive(Debug)]
+pub(super) struct Plan {
+    pub(super) kernels: Vec<Kernel>,
+}
+
+/// What finds the unknowns of one part of the mechanism.
+#[derive(Debug)]
+pub(super) enum Kernel {
+    Pinned(Pinned),
+    Dyad(Dyad),
+    Coupled(Box<Coupled>),
+}
+
+/// What kernels read and change: the mechanism at the pose that is being found.
+pub(super) struct Work<'a> {
+    pub(super) system: &'a System,
+    pub(super) targets: &'a Targets,
+    /// The values u of all drivers.
+    pub(super) drivers: &'a [f64],
+    pub(super) at: &'a mut Configuration,
+    /// Rates of q along some motion of the drivers.
+    pub(super) flow: &'a mut Rates,
+}
+
+/// How far a sub-step goes along the flow: q + q′ · first + q″ · second.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Advance {
+    pub(super) first: f64,
+    pub(super) second: f64,
+}
+
+impl Advance {
+    /// Where the unknown q\[column\] is expected to go.
+    #[inline]
+    pub(super) fn predict(self, column: usize, q: f64, flow: &Rates) -> f64 {
+        q + (self.first * flow.velocity()[column] + self.second * flow.acceleration()[column])
+    }
+}
+
+impl Plan {
+    /// Takes over what depends on the parameters alone. Allocates nothing.
+    pub(super) fn set_parameters(&mut self, at: &Configuration) {
+        for kernel in &mut self.kernels {
+            match kernel {
+                Kernel::Pinned(kernel) => kernel.set_parameters(at),
+                Kernel::Dyad(kernel) => kernel.set_parameters(at),
+                Kernel::Coupled(_) => {}
+            }
+        }
+    }
+
+    /// Goes from the pose at which all kernels are factorised to the one that belongs to new
+    /// values of the drivers: predicts along the flow, then corrects, kernel by kernel. With
+    /// `unit`, the flow becomes the one for these rates of the drivers at the new pose on the
+    /// way.
+    ///
+    /// # Errors
+    ///
+    /// A kernel cannot show that it stayed on its motion. What was found up to there is then in
+    /// `work`, to be put back.
+    pub(super) fn advance(
+        &mut self,
+        work: &mut Work<'_>,
+        advance: Advance,
+        unit: Option<&[Jet]>,
+    ) -> Result<Correction, Rejected> {
+        let mut most = Correction::default();
+        for kernel in &mut self.kernels {
+            let correction = match kernel {
+                Kernel::Pinned(kernel) => {
+                    kernel.locate(work);
+                    if let Some(unit) = unit {
+                        kernel.solve_rates(work, unit);
+                    }
+                    continue;
+                }
+                Kernel::Dyad(kernel) => {
+                    let correction = kernel.advance(work, advance)?;
+                    if unit.is_some() {
+                        kernel.solve_rates(work);
+                    }
+                    correction
+                }
+                Kernel::Coupled(kernel) => {
+                    let correction = kernel.advance(work, advance)?;
+                    if let Some(unit) = unit {
+                        kernel.solve_rates(work, unit);
+                    }
+                    correction
+                }
+            };
+            most.iterations = most.iterations.max(correction.iterations);
+        }
+        Ok(most)
+    }
+
+    /// Factorises every kernel at the pose in `work`.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] where a Jacobian is singular to the last bit.
+    pub(super) fn factorise(&mut self, work: &mut Work<'_>) -> Result<(), Rejected> {
+        for kernel in &mut self.kernels {
+            match kernel {
+                Kernel::Pinned(kernel) => kernel.factorise(work),
+                Kernel::Dyad(kernel) => kernel.factorise(work)?,
+                Kernel::Coupled(kernel) => kernel.factorise(work)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes the flow the one for these rates of the drivers (`first` and `second` of each) at
+    /// the pose at which all kernels are factorised.
+    pub(super) fn solve_rates(&mut self, work: &mut Work<'_>, drivers: &[Jet]) {
+        for kernel in &mut self.kernels {
+            match kernel {
+                Kernel::Pinned(kernel) => kernel.solve_rates(work, drivers),
+                Kernel::Dyad(kernel) => kernel.solve_rates(work),
+                Kernel::Coupled(kernel) => kernel.solve_rates(work, drivers),
+            }
+        }
+    }
+
+    /// Scaled reciprocal condition: the smallest of all kernels, which are factorised.
+    pub(super) fn rcond(&mut self) -> f64 {
+        let kernels = self.kernels.iter_mut();
+        kernels.fold(1.0, |smallest: f64, kernel| smallest.min(kernel.rcond()))
+    }
+}
+
+impl Kernel {
+    /// The rows of Phi that it satisfies.
+    pub(super) fn rows(&self) -> &[usize] {
+        match self {
+            Self::Pinned(kernel) => kernel.rows(),
+            Self::Dyad(kernel) => kernel.rows(),
+            Self::Coupled(kernel) => kernel.rows(),
+        }
+    }
+
+    /// The unknowns that it finds, as many as rows.
+    pub(super) fn columns(&self) -> &[usize] {
+        match self {
+            Self::Pinned(kernel) => kernel.columns(),
+            Self::Dyad(kernel) => kernel.columns(),
+            Self::Coupled(kernel) => kernel.columns(),
+        }
+    }
+
+    /// Scaled reciprocal condition: 1 is best, 0 singular.
+    fn rcond(&mut self) -> f64 {
+        match self {
+            Self::Pinned(_) => 1.0,
+            Self::Dyad(kernel) => kernel.rcond(),
+            Self::Coupled(kernel) => kernel.rcond(),
+        }
+    }
+}
