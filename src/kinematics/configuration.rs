@@ -57,15 +57,27 @@ impl BodyPose {
         sin: 0.0,
     };
 
+    /// A frame at the origin, turned by phi.
+    #[inline(always)]
+    pub(super) fn turned(phi: f64) -> Self {
+        let (sin, cos) = phi.sin_cos();
+        Self {
+            origin: Vector2::new(0.0, 0.0),
+            phi,
+            cos,
+            sin,
+        }
+    }
+
     /// A(phi) s.
-    #[inline]
+    #[inline(always)]
     pub(super) fn rotate(&self, s: Vector2<f64>) -> Vector2<f64> {
         rotate(self.cos, self.sin, s)
     }
 }
 
 /// A vector turned by the angle with this cosine and sine.
-#[inline]
+#[inline(always)]
 pub(super) fn rotate(cos: f64, sin: f64, s: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(cos * s.x - sin * s.y, sin * s.x + cos * s.y)
 }
@@ -171,12 +183,9 @@ impl Configuration {
         let (bodies, joint_unknowns) = q.split_at(3 * mechanism.bodies.len());
         self.joint_unknowns.copy_from_slice(joint_unknowns);
         for (body, q) in self.bodies.iter_mut().zip(bodies.chunks_exact(3)) {
-            let (sin, cos) = q[2].sin_cos();
             *body = BodyPose {
                 origin: Vector2::new(q[0], q[1]),
-                phi: q[2],
-                cos,
-                sin,
+                ..BodyPose::turned(q[2])
             };
         }
     }
@@ -224,21 +233,22 @@ impl Configuration {
         }
     }
 
-    /// The place of a body in [`frame`](Self::frame), that of ground for `None`.
-    pub(super) fn place(&self, body: Option<BodyId>) -> usize {
-        body.map_or(self.bodies.len() - 1, BodyId::index)
+    /// The bodies' frames, then that of ground.
+    #[inline(always)]
+    pub(super) fn frames(&self) -> &[BodyPose] {
+        &self.bodies
     }
 
-    /// The frame of the body at a place.
-    #[inline]
-    pub(super) fn frame(&self, place: usize) -> &BodyPose {
+    /// The bodies' frames, to be changed, then that of ground.
+    #[inline(always)]
+    pub(super) fn frames_mut(&mut self) -> &mut [BodyPose] {
+        &mut self.bodies
+    }
+
+    /// The frame of a body, that of ground for `None`.
+    fn frame(&self, body: Option<BodyId>) -> &BodyPose {
+        let place = body.map_or(self.bodies.len() - 1, BodyId::index);
         &self.bodies[place]
-    }
-
-    /// Puts the body at a place.
-    #[inline]
-    pub(super) fn set_frame(&mut self, place: usize, frame: BodyPose) {
-        self.bodies[place] = frame;
     }
 
     /// A marker's place on its body: s, and its angle.
@@ -251,7 +261,7 @@ impl Configuration {
     #[must_use]
     pub fn marker(&self, marker: MarkerId) -> MarkerPose {
         let frame = &self.frames[marker.index()];
-        let body = &self.bodies[self.place(frame.body)];
+        let body = self.frame(frame.body);
         let arm = body.rotate(frame.position);
         MarkerPose {
             body: frame.body,
@@ -265,7 +275,7 @@ impl Configuration {
     /// A body's angle \[rad\], zero for ground.
     #[must_use]
     pub fn phi(&self, body: Option<BodyId>) -> f64 {
-        self.bodies[self.place(body)].phi
+        self.frame(body).phi
     }
 
     /// A coefficient with the parameter values in force.

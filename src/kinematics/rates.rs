@@ -34,20 +34,6 @@ impl Rates {
         (&mut self.velocity, &mut self.acceleration)
     }
 
-    /// Velocity and acceleration of a body, given the first of its unknowns.
-    #[inline]
-    pub(super) fn body(&self, column: usize) -> [[f64; 3]; 2] {
-        let three = |v: &[f64]| [v[column], v[column + 1], v[column + 2]];
-        [three(&self.velocity), three(&self.acceleration)]
-    }
-
-    /// Sets velocity and acceleration of a body.
-    #[inline]
-    pub(super) fn set_body(&mut self, column: usize, [velocity, acceleration]: [[f64; 3]; 2]) {
-        self.velocity[column..column + 3].copy_from_slice(&velocity);
-        self.acceleration[column..column + 3].copy_from_slice(&acceleration);
-    }
-
     /// The rates of a motion along which a parameter u runs with u̇ and ü, these being those
     /// with respect to u: q̇ = q_u u̇ and q̈ = q_uu u̇² + q_u ü. Returns whether all are finite.
     pub(super) fn run(&self, first: f64, second: f64, rates: &mut Self) -> bool {

@@ -2,59 +2,82 @@
 
 use nalgebra::Vector2;
 
-use crate::kinematics::configuration::{Configuration, perp};
-use crate::kinematics::rates::Rates;
+use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// A marker on ground or on a body that an earlier kernel has found.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Anchor {
-    marker: MarkerId,
-    /// Place of its body.
-    place: usize,
-    /// First of its body's unknowns, `None` on ground.
-    column: Option<usize>,
+    /// Place of its body, [`GROUND`] for none.
+    place: u32,
     /// s, its point in the body's frame.
     s: Vector2<f64>,
-    /// A s at the pose last located.
-    arm: Vector2<f64>,
+}
+
+const GROUND: u32 = u32::MAX;
+
+/// Position, velocity and acceleration of a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moving {
+    pub(super) velocity: Vector2<f64>,
+    pub(super) acceleration: Vector2<f64>,
+}
+
+/// The place of a body as kernels keep it.
+///
+/// # Panics
+///
+/// With more bodies than any memory holds.
+pub(super) fn compact(place: usize) -> u32 {
+    u32::try_from(place).expect("fewer than four thousand million bodies")
 }
 
 impl Anchor {
     pub(super) fn new(mechanism: &Mechanism, marker: MarkerId) -> Self {
         let body = mechanism.markers[marker.index()].body;
         Self {
-            marker,
-            place: body.map_or(mechanism.bodies.len(), |body| body.index()),
-            column: body.map(|body| 3 * body.index()),
+            place: body.map_or(GROUND, |body| compact(body.index())),
             s: Vector2::zeros(),
-            arm: Vector2::zeros(),
         }
     }
 
-    pub(super) fn set_parameters(&mut self, at: &Configuration) {
-        self.s = at.local(self.marker).0;
+    /// Takes over the place of its marker.
+    pub(super) fn set_parameters(&mut self, at: &Configuration, marker: MarkerId) {
+        self.s = at.local(marker).0;
     }
 
-    /// Notes where the anchor is; returns P.
-    #[inline]
-    pub(super) fn locate(&mut self, at: &Configuration) -> Vector2<f64> {
-        let frame = at.frame(self.place);
-        self.arm = frame.rotate(self.s);
-        frame.origin + self.arm
+    /// P.
+    #[inline(always)]
+    pub(super) fn point(self, frames: &[BodyPose]) -> Vector2<f64> {
+        if self.place == GROUND {
+            return self.s;
+        }
+        let frame = &frames[self.place as usize];
+        frame.origin + frame.rotate(self.s)
     }
 
-    /// Ṗ and P̈ where it was located.
-    #[inline]
-    pub(super) fn rates(&self, flow: &Rates) -> [Vector2<f64>; 2] {
-        let Some(column) = self.column else {
-            return [Vector2::zeros(); 2];
-        };
-        let [v, a] = flow.body(column);
-        let turned = perp(self.arm);
-        [
-            Vector2::new(v[0], v[1]) + turned * v[2],
-            Vector2::new(a[0], a[1]) + turned * a[2] - self.arm * (v[2] * v[2]),
-        ]
+    /// Ṗ and P̈.
+    #[inline(always)]
+    pub(super) fn rates(
+        self,
+        frames: &[BodyPose],
+        velocity: &[f64],
+        acceleration: &[f64],
+    ) -> Moving {
+        if self.place == GROUND {
+            return Moving {
+                velocity: Vector2::zeros(),
+                acceleration: Vector2::zeros(),
+            };
+        }
+        let place = self.place as usize;
+        let arm = frames[place].rotate(self.s);
+        let v = &velocity[3 * place..3 * place + 3];
+        let a = &acceleration[3 * place..3 * place + 3];
+        let turned = perp(arm);
+        Moving {
+            velocity: Vector2::new(v[0], v[1]) + turned * v[2],
+            acceleration: Vector2::new(a[0], a[1]) + turned * a[2] - arm * (v[2] * v[2]),
+        }
     }
 }

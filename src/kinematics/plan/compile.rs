@@ -5,8 +5,8 @@ use std::collections::BinaryHeap;
 use std::sync::Arc;
 
 use super::coupled::{Coupled, Place};
-use super::dyad::{Dyad, SideParts};
-use super::pinned::{Parts, Pinned};
+use super::dyad::{self, Dyad, SideParts};
+use super::pinned::{self, Pinned};
 use super::{Kernel, Plan};
 use crate::kinematics::constraint::{Axis, Relation};
 use crate::kinematics::structure::Structure;
@@ -22,8 +22,8 @@ struct Group {
 
 /// Which kernel, and what it is made of.
 enum Recipe {
-    Pinned(Parts),
-    Dyad([usize; 6], [SideParts; 2]),
+    Pinned(pinned::Parts),
+    Dyad(dyad::Parts),
     Coupled,
 }
 
@@ -193,7 +193,7 @@ impl Search<'_> {
         };
         Some(Group {
             blocks,
-            recipe: Recipe::Pinned(Parts {
+            recipe: Recipe::Pinned(pinned::Parts {
                 rows: [revolute.rows[0], revolute.rows[1], angle],
                 body,
                 pin,
@@ -252,7 +252,11 @@ impl Search<'_> {
         let [r4, r5] = inner.rows;
         Some(Group {
             blocks,
-            recipe: Recipe::Dyad([r0, r1, r2, r3, r4, r5], [side_a, side_b]),
+            recipe: Recipe::Dyad(dyad::Parts {
+                rows: [r0, r1, r2, r3, r4, r5],
+                columns: [3 * a, 3 * a + 1, 3 * a + 2, 3 * b, 3 * b + 1, 3 * b + 2],
+                sides: [side_a, side_b],
+            }),
         })
     }
 
@@ -312,15 +316,13 @@ impl Search<'_> {
         order
     }
 
-    fn kernels(&self, order: &[usize]) -> Vec<Kernel> {
-        let mut places = vec![
-            Place {
-                kernel: usize::MAX,
-                local: 0
-            };
-            self.system.unknowns()
-        ];
-        let mut coupled = Vec::new();
+    /// Makes the kernels in this order of their groups.
+    fn kernels(self, order: &[usize]) -> Vec<Kernel> {
+        let none = Place {
+            kernel: usize::MAX,
+            local: 0,
+        };
+        let mut places = vec![none; self.system.unknowns()];
         for (kernel, &group) in order.iter().enumerate() {
             let group = &self.groups[group];
             if let Recipe::Coupled = group.recipe {
@@ -328,20 +330,24 @@ impl Search<'_> {
                 for (local, &column) in block.columns.iter().enumerate() {
                     places[column] = Place { kernel, local };
                 }
-                coupled.push((block.rows.clone(), block.columns.clone(), 0));
             }
         }
         let places: Arc<[Place]> = places.into();
-        let mut coupled = coupled.into_iter();
-        let kernels = order.iter().enumerate();
-        kernels
-            .map(|(index, &group)| match &self.groups[group].recipe {
-                Recipe::Pinned(parts) => Kernel::Pinned(Pinned::new(self.mechanism, parts)),
-                Recipe::Dyad(rows, sides) => Kernel::Dyad(Dyad::new(self.mechanism, *rows, sides)),
+        let mut groups: Vec<_> = self.groups.into_iter().map(Some).collect();
+        let in_order = order.iter().map(|&group| groups[group].take());
+        in_order
+            .flatten()
+            .enumerate()
+            .map(|(index, group)| match group.recipe {
+                Recipe::Pinned(parts) => {
+                    Kernel::Pinned(Box::new(Pinned::new(self.mechanism, parts)))
+                }
+                Recipe::Dyad(parts) => Kernel::Dyad(Dyad::new(self.mechanism, parts)),
                 Recipe::Coupled => {
-                    let (rows, columns, fixed) = coupled.next().expect("one was made for each");
+                    let block = &self.structure.blocks()[group.blocks[0]];
+                    let (rows, columns) = (block.rows.clone(), block.columns.clone());
                     let places = Arc::clone(&places);
-                    Kernel::Coupled(Box::new(Coupled::new(index, rows, columns, fixed, places)))
+                    Kernel::Coupled(Box::new(Coupled::new(index, rows, columns, 0, places)))
                 }
             })
             .collect()

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::anchor::Anchor;
+use super::anchor::{Anchor, Moving, compact};
 use super::{Advance, Work};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
 use crate::kinematics::newton::{
@@ -13,27 +13,6 @@ use crate::kinematics::newton::{
 };
 use crate::mechanism::{MarkerId, Mechanism};
 
-/// One of the two bodies of a dyad.
-#[derive(Debug)]
-struct Side {
-    place: usize,
-    /// First of its unknowns.
-    column: usize,
-    /// Its point in the revolute to what is already found, and that point's partner.
-    outer: MarkerId,
-    anchor: Anchor,
-    /// Its point in the revolute to the other side.
-    inner: MarkerId,
-    /// s of the outer point.
-    s: Vector2<f64>,
-    /// From the outer to the inner point, in the body's frame, and its length.
-    l: Vector2<f64>,
-    length: f64,
-    /// A s and A l at the pose last located.
-    arm: Vector2<f64>,
-    link: Vector2<f64>,
-}
-
 /// x, y and phi of two bodies: P_a + A_a l_a = P_b + A_b l_b with both P already found. The two
 /// angles are solved for; x and y follow.
 ///
@@ -41,130 +20,193 @@ struct Side {
 /// determinant d_a × d_b, so that solving takes two dot products.
 #[derive(Debug)]
 pub(in crate::kinematics) struct Dyad {
-    rows: [usize; 6],
-    columns: [usize; 6],
     sides: [Side; 2],
     /// d_a × d_b at the pose last factorised.
     determinant: f64,
+    /// What no step needs.
+    parts: Box<Parts>,
+}
+
+/// One of the two bodies of a dyad.
+#[derive(Debug)]
+struct Side {
+    /// Place of the body.
+    place: u32,
+    /// The point that its outer point coincides with, on what is already found.
+    anchor: Anchor,
+    /// s of the outer point.
+    s: Vector2<f64>,
+    /// l, from the outer to the inner point in the body's frame, and its length.
+    l: Vector2<f64>,
+    length: f64,
+    /// d = A l at the pose last factorised.
+    link: Vector2<f64>,
+}
+
+/// What a dyad is made of.
+#[derive(Debug)]
+pub(super) struct Parts {
+    /// The rows of the first side's outer revolute, the second's, and the inner one's.
+    pub(super) rows: [usize; 6],
+    pub(super) columns: [usize; 6],
+    pub(super) sides: [SideParts; 2],
 }
 
 /// What one side of a dyad is made of.
+#[derive(Debug)]
 pub(super) struct SideParts {
     pub(super) body: usize,
+    /// Its point in the revolute to what is already found, and that point's partner there.
     pub(super) outer: MarkerId,
     pub(super) anchor: MarkerId,
+    /// Its point in the revolute to the other side.
     pub(super) inner: MarkerId,
+}
+
+/// Turns of up to this are taken from the sine and cosine at hand by their series.
+const SHORT_TURN: f64 = 0.1;
+
+/// Cosine and sine of phi + turn, given those of phi: to some eps for a short turn.
+#[inline(always)]
+fn turned_on(frame: &BodyPose, turn: f64, phi: f64) -> (f64, f64) {
+    if turn.abs() <= SHORT_TURN {
+        let square = turn * turn;
+        // Up to the tenth power: what is left of the series is below 3e-19.
+        let cos = 1.0
+            - square
+                * (1.0 / 2.0
+                    - square
+                        * (1.0 / 24.0
+                            - square
+                                * (1.0 / 720.0
+                                    - square * (1.0 / 40_320.0 - square * (1.0 / 3_628_800.0)))));
+        let sin = turn
+            * (1.0
+                - square
+                    * (1.0 / 6.0
+                        - square
+                            * (1.0 / 120.0
+                                - square * (1.0 / 5_040.0 - square * (1.0 / 362_880.0)))));
+        (
+            frame.cos * cos - frame.sin * sin,
+            frame.sin * cos + frame.cos * sin,
+        )
+    } else {
+        let (sin, cos) = phi.sin_cos();
+        (cos, sin)
+    }
 }
 
 impl Side {
     fn new(mechanism: &Mechanism, parts: &SideParts) -> Self {
         Self {
-            place: parts.body,
-            column: 3 * parts.body,
-            outer: parts.outer,
+            place: compact(parts.body),
             anchor: Anchor::new(mechanism, parts.anchor),
-            inner: parts.inner,
             s: Vector2::zeros(),
             l: Vector2::zeros(),
             length: 0.0,
-            arm: Vector2::zeros(),
             link: Vector2::zeros(),
         }
     }
 
-    fn set_parameters(&mut self, at: &Configuration) {
-        self.anchor.set_parameters(at);
-        self.s = at.local(self.outer).0;
-        self.l = at.local(self.inner).0 - self.s;
+    fn set_parameters(&mut self, at: &Configuration, parts: &SideParts) {
+        self.anchor.set_parameters(at, parts.anchor);
+        self.s = at.local(parts.outer).0;
+        self.l = at.local(parts.inner).0 - self.s;
         self.length = self.l.norm();
     }
 
-    /// Where its angle is expected to go.
-    #[inline]
-    fn predict(&self, work: &Work<'_>, advance: Advance) -> f64 {
-        let [v, a] = work.flow.body(self.column);
-        work.at.frame(self.place).phi + (advance.first * v[2] + advance.second * a[2])
-    }
-
-    /// Puts the body at the angle with this cosine and sine, its outer point at `point`.
-    #[inline]
-    fn put(&mut self, at: &mut Configuration, point: Vector2<f64>, phi: f64, [sin, cos]: [f64; 2]) {
-        self.arm = rotate(cos, sin, self.s);
-        let origin = point - self.arm;
-        at.set_frame(
-            self.place,
-            BodyPose {
-                origin,
-                phi,
-                cos,
-                sin,
-            },
-        );
+    /// How far its angle is expected to turn.
+    #[inline(always)]
+    fn turn(&self, work: &Work<'_>, advance: Advance) -> f64 {
+        let phi = 3 * self.place as usize + 2;
+        advance.first * work.flow.velocity()[phi] + advance.second * work.flow.acceleration()[phi]
     }
 
     /// Writes its rates, given those of its outer point and of its angle.
-    #[inline]
+    #[inline(always)]
     fn set_rates(
         &self,
-        work: &mut Work<'_>,
-        [velocity, acceleration]: [Vector2<f64>; 2],
-        [omega, alpha]: [f64; 2],
+        frames: &[BodyPose],
+        velocity: &mut [f64],
+        acceleration: &mut [f64],
+        outer: Moving,
+        omega: f64,
+        alpha: f64,
     ) {
-        let turned = perp(self.arm);
-        let v = velocity - turned * omega;
-        let a = acceleration - turned * alpha + self.arm * (omega * omega);
-        work.flow
-            .set_body(self.column, [[v.x, v.y, omega], [a.x, a.y, alpha]]);
+        let place = self.place as usize;
+        let arm = frames[place].rotate(self.s);
+        let turned = perp(arm);
+        let v = outer.velocity - turned * omega;
+        let a = outer.acceleration - turned * alpha + arm * (omega * omega);
+        velocity[3 * place..3 * place + 3].copy_from_slice(&[v.x, v.y, omega]);
+        acceleration[3 * place..3 * place + 3].copy_from_slice(&[a.x, a.y, alpha]);
     }
 }
 
+/// The magnitude of the larger component.
+#[inline(always)]
+fn largest(v: Vector2<f64>) -> f64 {
+    larger(v.x.abs(), v.y.abs())
+}
+
+/// The larger of two numbers; the first where one is none. Unlike `f64::max` a single instruction.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
 impl Dyad {
-    /// `rows` are those of the first side's outer revolute, the second's, and the inner one's.
-    pub(super) fn new(mechanism: &Mechanism, rows: [usize; 6], sides: &[SideParts; 2]) -> Self {
-        let [a, b] = [sides[0].body, sides[1].body].map(|body| 3 * body);
+    pub(super) fn new(mechanism: &Mechanism, parts: Parts) -> Self {
         Self {
-            rows,
-            columns: [a, a + 1, a + 2, b, b + 1, b + 2],
             sides: [
-                Side::new(mechanism, &sides[0]),
-                Side::new(mechanism, &sides[1]),
+                Side::new(mechanism, &parts.sides[0]),
+                Side::new(mechanism, &parts.sides[1]),
             ],
             determinant: 0.0,
+            parts: Box::new(parts),
         }
     }
 
     pub(super) fn rows(&self) -> &[usize] {
-        &self.rows
+        &self.parts.rows
     }
 
     pub(super) fn columns(&self) -> &[usize] {
-        &self.columns
+        &self.parts.columns
     }
 
     pub(super) fn set_parameters(&mut self, at: &Configuration) {
-        for side in &mut self.sides {
-            side.set_parameters(at);
+        for (side, parts) in self.sides.iter_mut().zip(&self.parts.sides) {
+            side.set_parameters(at, parts);
         }
     }
 
     /// Predicts both angles and corrects them until the loop closes to rounding.
-    #[inline]
-    pub(in crate::kinematics) fn advance(
+    #[inline(always)]
+    pub(super) fn advance(
         &mut self,
         work: &mut Work<'_>,
         advance: Advance,
     ) -> Result<Correction, Rejected> {
-        let predicted = [
-            self.sides[0].predict(work, advance),
-            self.sides[1].predict(work, advance),
-        ];
+        let [a, b] = &self.sides;
+        let frame_a = work.at.frames()[a.place as usize];
+        let frame_b = work.at.frames()[b.place as usize];
+        let (turn_a, turn_b) = (a.turn(work, advance), b.turn(work, advance));
+        let (phi_a, phi_b) = (frame_a.phi + turn_a, frame_b.phi + turn_b);
+        let (cos_a, sin_a) = turned_on(&frame_a, turn_a, phi_a);
+        let (cos_b, sin_b) = turned_on(&frame_b, turn_b, phi_b);
         let before = self.determinant;
-        let found = self.correct(work, predicted, MAX_ITERATIONS)?;
-        let moved = [0, 1].map(|k| (found.phi[k] - predicted[k]).abs());
+        let start = Turned {
+            phi: [phi_a, phi_b],
+            links: [rotate(cos_a, sin_a, a.l), rotate(cos_b, sin_b, b.l)],
+            exact: None,
+        };
+        let found = self.correct(work, start, MAX_ITERATIONS)?;
         // An angle that is not a number fails all of these.
         let kept = found.correction.contraction <= CONTRACTION
-            && moved[0] <= LARGEST_CORRECTION
-            && moved[1] <= LARGEST_CORRECTION
+            && (found.phi[0] - phi_a).abs() <= LARGEST_CORRECTION
+            && (found.phi[1] - phi_b).abs() <= LARGEST_CORRECTION
             && self.determinant * before > 0.0
             && !self.is_singular();
         if kept {
@@ -174,56 +216,94 @@ impl Dyad {
         }
     }
 
-    /// Newton–Raphson on the two angles from `phi`.
-    #[inline]
+    /// Newton–Raphson on the two angles. The angles accepted are those of exact sines and
+    /// cosines, so that nothing depends on how they were reached.
+    #[inline(always)]
     fn correct(
         &mut self,
         work: &mut Work<'_>,
-        mut phi: [f64; 2],
+        mut now: Turned,
         max_iterations: u32,
     ) -> Result<Found, Rejected> {
         let [a, b] = &mut self.sides;
-        let points = [a.anchor.locate(work.at), b.anchor.locate(work.at)];
-        let base = points[0] - points[1];
-        let reach = points[0].amax() + points[1].amax();
+        let frames = work.at.frames_mut();
+        let (point_a, point_b) = (a.anchor.point(frames), b.anchor.point(frames));
+        let base = point_a - point_b;
+        let reach = largest(point_a) + largest(point_b);
         let mut correction = Correction::default();
         let mut last = f64::INFINITY;
         let mut last_gap = f64::INFINITY;
         loop {
-            let turns = [phi[0].sin_cos(), phi[1].sin_cos()];
-            a.link = rotate(turns[0].1, turns[0].0, a.l);
-            b.link = rotate(turns[1].1, turns[1].0, b.l);
-            let gap = base + a.link - b.link;
-            self.determinant = a.link.perp(&b.link);
+            let gap = base + now.links[0] - now.links[1];
+            let determinant = now.links[0].perp(&now.links[1]);
             // The rounding of the points, and that of the angles times the links.
             let rounding = f64::EPSILON
-                * (reach + a.length * (1.0 + phi[0].abs()) + b.length * (1.0 + phi[1].abs()));
-            let open = gap.amax();
-            let stalled = open <= STALLED * rounding && open >= 0.5 * last_gap;
-            if open <= AT_ROUNDING * rounding || stalled {
-                let [turn_a, turn_b] = turns.map(|(sin, cos)| [sin, cos]);
-                a.put(work.at, points[0], phi[0], turn_a);
-                b.put(work.at, points[1], phi[1], turn_b);
-                return Ok(Found { phi, correction });
+                * (reach
+                    + a.length * (1.0 + now.phi[0].abs())
+                    + b.length * (1.0 + now.phi[1].abs()));
+            let open = largest(gap);
+            let closed = open <= AT_ROUNDING * rounding
+                || (open <= STALLED * rounding && open >= 0.5 * last_gap);
+            match now.exact {
+                Some([turned_a, turned_b]) if closed => {
+                    frames[a.place as usize] = BodyPose {
+                        origin: point_a - turned_a.rotate(a.s),
+                        ..turned_a
+                    };
+                    frames[b.place as usize] = BodyPose {
+                        origin: point_b - turned_b.rotate(b.s),
+                        ..turned_b
+                    };
+                    [a.link, b.link] = now.links;
+                    self.determinant = determinant;
+                    return Ok(Found {
+                        phi: now.phi,
+                        correction,
+                    });
+                }
+                // At rest, say: nothing to correct.
+                None if closed => {}
+                _ if correction.iterations == max_iterations => return Err(Rejected),
+                _ => {
+                    let inverse = -1.0 / determinant;
+                    let step_a = gap.dot(&now.links[1]) * inverse;
+                    let step_b = gap.dot(&now.links[0]) * inverse;
+                    if !(step_a + step_b).is_finite() {
+                        return Err(Rejected);
+                    }
+                    now.phi[0] += step_a;
+                    now.phi[1] += step_b;
+                    let size = larger(step_a.abs(), step_b.abs());
+                    correction.contraction = larger(correction.contraction, size / last);
+                    last = larger(size, SMALL);
+                    last_gap = open;
+                    correction.iterations += 1;
+                }
             }
-            if correction.iterations == max_iterations {
-                return Err(Rejected);
-            }
-            let step = [
-                -gap.dot(&b.link) / self.determinant,
-                -gap.dot(&a.link) / self.determinant,
-            ];
-            phi[0] += step[0];
-            phi[1] += step[1];
-            let size = step[0].abs().max(step[1].abs());
-            if !(step[0] + step[1]).is_finite() {
-                return Err(Rejected);
-            }
-            correction.contraction = correction.contraction.max(size / last);
-            last = size.max(SMALL);
-            last_gap = open;
-            correction.iterations += 1;
+            let (turned_a, turned_b) = (BodyPose::turned(now.phi[0]), BodyPose::turned(now.phi[1]));
+            now.links = [turned_a.rotate(a.l), turned_b.rotate(b.l)];
+            now.exact = Some([turned_a, turned_b]);
         }
+    }
+
+    /// Closes the loop from these angles.
+    fn close_from(
+        &mut self,
+        work: &mut Work<'_>,
+        phi: [f64; 2],
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        let exact = phi.map(BodyPose::turned);
+        let links = [
+            exact[0].rotate(self.sides[0].l),
+            exact[1].rotate(self.sides[1].l),
+        ];
+        let start = Turned {
+            phi,
+            links,
+            exact: Some(exact),
+        };
+        Ok(self.correct(work, start, max_iterations)?.correction)
     }
 
     /// Closes the loop from where its bodies are.
@@ -232,17 +312,14 @@ impl Dyad {
         work: &mut Work<'_>,
         max_iterations: u32,
     ) -> Result<Correction, Rejected> {
-        let phi = [0, 1].map(|k| work.at.frame(self.sides[k].place).phi);
-        Ok(self.correct(work, phi, max_iterations)?.correction)
+        let phi = [0, 1].map(|k| work.at.frames()[self.sides[k].place as usize].phi);
+        self.close_from(work, phi, max_iterations)
     }
 
-    /// Notes the arms and the determinant at the pose.
+    /// Notes the links and the determinant at the pose.
     pub(super) fn factorise(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
         for side in &mut self.sides {
-            let frame = work.at.frame(side.place);
-            side.anchor.locate(work.at);
-            side.arm = frame.rotate(side.s);
-            side.link = frame.rotate(side.l);
+            side.link = work.at.frames()[side.place as usize].rotate(side.l);
         }
         self.determinant = self.sides[0].link.perp(&self.sides[1].link);
         if self.determinant == 0.0 || !self.determinant.is_finite() {
@@ -252,24 +329,23 @@ impl Dyad {
     }
 
     /// Ṗ_a + omega_a perp(d_a) = Ṗ_b + omega_b perp(d_b), and the same once more derived.
-    #[inline]
+    #[inline(always)]
     pub(super) fn solve_rates(&self, work: &mut Work<'_>) {
         let [a, b] = &self.sides;
-        let (outer_a, outer_b) = (a.anchor.rates(work.flow), b.anchor.rates(work.flow));
+        let frames = work.at.frames();
+        let (velocity, acceleration) = work.flow.both_mut();
+        let outer_a = a.anchor.rates(frames, velocity, acceleration);
+        let outer_b = b.anchor.rates(frames, velocity, acceleration);
         let inverse = -1.0 / self.determinant;
-        let velocity = outer_a[0] - outer_b[0];
-        let omega = [
-            velocity.dot(&b.link) * inverse,
-            velocity.dot(&a.link) * inverse,
-        ];
-        let acceleration = outer_a[1] - outer_b[1] - a.link * (omega[0] * omega[0])
-            + b.link * (omega[1] * omega[1]);
-        let alpha = [
-            acceleration.dot(&b.link) * inverse,
-            acceleration.dot(&a.link) * inverse,
-        ];
-        a.set_rates(work, outer_a, [omega[0], alpha[0]]);
-        b.set_rates(work, outer_b, [omega[1], alpha[1]]);
+        let v = outer_a.velocity - outer_b.velocity;
+        let omega_a = v.dot(&b.link) * inverse;
+        let omega_b = v.dot(&a.link) * inverse;
+        let w = outer_a.acceleration - outer_b.acceleration - a.link * (omega_a * omega_a)
+            + b.link * (omega_b * omega_b);
+        let alpha_a = w.dot(&b.link) * inverse;
+        let alpha_b = w.dot(&a.link) * inverse;
+        a.set_rates(frames, velocity, acceleration, outer_a, omega_a, alpha_a);
+        b.set_rates(frames, velocity, acceleration, outer_b, omega_b, alpha_b);
     }
 
     /// Whether the links are in line, to what makes a position singular. Cheaper than
@@ -310,11 +386,12 @@ impl Dyad {
             };
             let mut phi = [0.0; 2];
             let mut distance = 0.0;
-            for (k, side) in self.sides.iter_mut().enumerate() {
-                let guess = &estimate[side.column..side.column + 3];
+            for (k, side) in self.sides.iter().enumerate() {
+                let column = 3 * side.place as usize;
+                let guess = &estimate[column..column + 3];
                 let angle = links[k].y.atan2(links[k].x) - side.l.y.atan2(side.l.x);
                 phi[k] = angle + TAU * ((guess[2] - angle) / TAU).round();
-                let point = side.anchor.locate(work.at);
+                let point = side.anchor.point(work.at.frames());
                 let (sin, cos) = phi[k].sin_cos();
                 let origin = point - rotate(cos, sin, side.s);
                 distance += ((origin.x - guess[0]) / size).powi(2)
@@ -327,13 +404,14 @@ impl Dyad {
             }
         }
         let (_, phi) = best.ok_or(Rejected)?;
-        Ok(self.correct(work, phi, MAX_ITERATIONS)?.correction)
+        self.close_from(work, phi, MAX_ITERATIONS)
     }
 
     /// d_a and d_b where the links meet, on one side of the line between the anchors.
     fn meet(&mut self, work: &Work<'_>, estimate: &[f64], side: f64) -> Option<[Vector2<f64>; 2]> {
-        let [a, b] = &mut self.sides;
-        let span = b.anchor.locate(work.at) - a.anchor.locate(work.at);
+        let [a, b] = &self.sides;
+        let frames = work.at.frames();
+        let span = b.anchor.point(frames) - a.anchor.point(frames);
         let distance = span.norm();
         let along = 0.5 * (distance + (a.length - b.length) * (a.length + b.length) / distance);
         let across = (a.length - along) * (a.length + along);
@@ -347,12 +425,21 @@ impl Dyad {
             e * along + perp(e) * (side * across.max(0.0).sqrt())
         } else {
             // Any direction will do where the anchors coincide.
-            let (sin, cos) = estimate[a.column + 2].sin_cos();
+            let (sin, cos) = estimate[3 * a.place as usize + 2].sin_cos();
             rotate(cos, sin, a.l)
         };
         let links = [link, link - span];
         links.iter().all(|l| l.sum().is_finite()).then_some(links)
     }
+}
+
+/// Two angles with what they turn.
+struct Turned {
+    phi: [f64; 2],
+    /// d of each side.
+    links: [Vector2<f64>; 2],
+    /// The bodies' frames, origins apart, where sines and cosines are exact.
+    exact: Option<[BodyPose; 2]>,
 }
 
 /// Where Newton ended.

@@ -35,7 +35,7 @@ pub(super) struct Plan {
 /// What finds the unknowns of one part of the mechanism.
 #[derive(Debug)]
 pub(super) enum Kernel {
-    Pinned(Pinned),
+    Pinned(Box<Pinned>),
     Dyad(Dyad),
     Coupled(Box<Coupled>),
 }
@@ -131,7 +131,7 @@ impl Plan {
     pub(super) fn factorise(&mut self, work: &mut Work<'_>) -> Result<(), Rejected> {
         for kernel in &mut self.kernels {
             match kernel {
-                Kernel::Pinned(kernel) => kernel.factorise(work),
+                Kernel::Pinned(_) => {}
                 Kernel::Dyad(kernel) => kernel.factorise(work)?,
                 Kernel::Coupled(kernel) => kernel.factorise(work)?,
             }
