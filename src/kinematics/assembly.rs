@@ -54,6 +54,7 @@ impl Solver {
         self.pose.parameters.copy_from_slice(&path.to);
         self.take_over_parameters()?;
         self.set_path(path, 1.0)?;
+        self.pose.drivers.copy_from_slice(&self.next_drivers);
         let estimate = self.estimate()?;
         self.pose.q.copy_from_slice(&estimate);
         self.stand_at_pose();

@@ -80,8 +80,8 @@ pub struct Solver {
     pub(super) path_drivers: Vec<Jet>,
     /// The drivers where a sub-step starts.
     pub(super) origin_drivers: Vec<Jet>,
-    /// Their values that the pose belongs to; a path may differ from them by its rounding.
-    pub(super) standing_at: Vec<f64>,
+    /// The values of all drivers that a step goes to.
+    pub(super) next_drivers: Vec<f64>,
     /// Rates of the drivers that the host gives.
     host_drivers: Vec<Jet>,
 }
@@ -124,7 +124,7 @@ impl Solver {
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
             path_drivers: vec![Jet::constant(0.0); drivers],
             origin_drivers: vec![Jet::constant(0.0); drivers],
-            standing_at: vec![0.0; drivers],
+            next_drivers: vec![0.0; drivers],
             host_drivers: vec![Jet::constant(0.0); drivers],
             pose,
             at: system.configuration(),

@@ -79,11 +79,8 @@ impl Solver {
         if self.refresh().is_err() {
             return blocked(s, Reason::DeadPoint, progress);
         }
-        self.standing_at.copy_from_slice(&self.pose.drivers);
-        if let Err(error) = self.set_path(path, 0.0) {
-            return blocked(s, Reason::Value(error), progress);
-        }
-        self.pose.drivers.copy_from_slice(&self.standing_at);
+        self.pose.time = path.time(0.0);
+        self.drive(path, 0.0);
         while s < 1.0 {
             self.predict();
             let advance = self.advance_of(1.0);
@@ -101,7 +98,6 @@ impl Solver {
                 progress.substeps = progress.substeps.saturating_add(1);
                 let reached = self.try_substep(path, [start, next], &mut progress);
                 if reached == Ok(true) {
-                    self.standing_at.copy_from_slice(&self.pose.drivers);
                     s = next;
                     break;
                 }
@@ -118,14 +114,15 @@ impl Solver {
         Ok(progress)
     }
 
-    /// Computes tangent and curvature of the motion along the path where the mechanism stands.
+    /// Computes tangent and curvature of the motion along the path where the mechanism stands,
+    /// which is where `path_drivers` are from.
     fn predict(&mut self) {
-        self.origin_drivers.copy_from_slice(&self.path_drivers);
+        std::mem::swap(&mut self.origin_drivers, &mut self.path_drivers);
         if !self.has_unit() {
-            let drivers = std::mem::take(&mut self.path_drivers);
+            let drivers = std::mem::take(&mut self.origin_drivers);
             let (plan, mut work) = self.work();
             plan.solve_rates(&mut work, &drivers);
-            self.path_drivers = drivers;
+            self.origin_drivers = drivers;
         }
     }
 
@@ -203,8 +200,11 @@ impl Solver {
         self.set_path(path, end)?;
         let advance = self.advance_of(end - start);
         let unit = self.has_unit().then_some(&UNIT[..]);
+        // The pose takes the new values with the new q, or keeps both as they are.
+        std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
         let (plan, mut work) = self.work();
         let Ok(correction) = plan.advance(&mut work, advance, unit) else {
+            std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
             return Ok(false);
         };
         self.at.copy_pose(&mut self.pose.q);
@@ -212,8 +212,26 @@ impl Solver {
         Ok(true)
     }
 
-    /// Takes time, parameters and drivers from the path at s, leaving q as it is.
+    /// Takes time, parameters and drivers from the path at s, leaving q and the pose's drivers,
+    /// which go with it, as they are.
     pub(super) fn set_path(&mut self, path: &Path, s: f64) -> Result<(), Error> {
+        self.drive(path, s);
+        self.pose.time = path.time(s);
+        for (value, jet) in self.next_drivers.iter_mut().zip(&self.path_drivers) {
+            *value = jet.value;
+        }
+        if path.moves_parameters() {
+            let parameters = self.pose.parameters.iter_mut();
+            for (value, jet) in parameters.zip(&self.path_parameters) {
+                *value = jet.value;
+            }
+            self.take_over_parameters()?;
+        }
+        self.system.check_drivers(&self.next_drivers)
+    }
+
+    /// The drivers along the path at s, with their derivatives.
+    fn drive(&mut self, path: &Path, s: f64) {
         let Self {
             system,
             pose,
@@ -222,26 +240,14 @@ impl Solver {
             ..
         } = self;
         let mechanism = system.mechanism();
-        pose.time = path.time(s);
-        let moves = path.moves_parameters();
-        if moves {
+        if path.moves_parameters() {
             path.parameters(mechanism, s, path_parameters);
-            for (value, jet) in pose.parameters.iter_mut().zip(path_parameters.iter()) {
-                *value = jet.value;
-            }
             path.drivers(mechanism, s, &|p| path_parameters[p.index()], path_drivers);
         } else {
             let parameters = &pose.parameters;
             let constant = |p: crate::mechanism::ParameterId| Jet::constant(parameters[p.index()]);
             path.drivers(mechanism, s, &constant, path_drivers);
         }
-        for (value, jet) in pose.drivers.iter_mut().zip(path_drivers.iter()) {
-            *value = jet.value;
-        }
-        if moves {
-            self.take_over_parameters()?;
-        }
-        self.system.check_drivers(&self.pose.drivers)
     }
 
     /// The drivers' values at the end of a path.
@@ -264,7 +270,6 @@ impl Solver {
     fn stand_at(&mut self, path: &Path, s: f64) {
         self.set_path(path, s)
             .expect("the path was valid where the mechanism has been");
-        self.pose.drivers.copy_from_slice(&self.standing_at);
         self.stand_at_pose();
         self.refresh()
             .expect("the pose was regular when it was reached");

@@ -17,6 +17,10 @@ pub(in crate::kinematics) struct Pinned {
     anchor: Anchor,
     /// s of the pin.
     s: Vector2<f64>,
+    /// The body that the angle is measured against, `None` for ground.
+    reference: Option<usize>,
+    /// phi where that body's angle and the target are zero.
+    zero: f64,
 }
 
 /// What a body pinned by an angle is made of.
@@ -41,6 +45,10 @@ impl Pinned {
             columns: [0, 1, 2].map(|k| 3 * parts.body + k),
             anchor: Anchor::new(mechanism, parts.anchor),
             s: Vector2::zeros(),
+            reference: mechanism.markers[parts.reference.index()]
+                .body
+                .map(|body| body.index()),
+            zero: 0.0,
             parts,
         }
     }
@@ -56,6 +64,7 @@ impl Pinned {
     pub(super) fn set_parameters(&mut self, at: &Configuration) {
         self.s = at.local(self.parts.pin).0;
         self.anchor.set_parameters(at, self.parts.anchor);
+        self.zero = at.local(self.parts.reference).1 - at.local(self.parts.angle).1;
     }
 
     /// Puts the body where it belongs.
@@ -64,8 +73,10 @@ impl Pinned {
         let target = work
             .system
             .target(parts.rows[2], work.targets, work.drivers);
-        let reference = work.at.marker(parts.reference).theta;
-        let phi = reference + parts.sense * target - work.at.local(parts.angle).1;
+        let reference = self
+            .reference
+            .map_or(0.0, |body| work.at.frames()[body].phi);
+        let phi = reference + parts.sense * target + self.zero;
         let frame = BodyPose::turned(phi);
         let point = self.anchor.point(work.at.frames());
         work.at.frames_mut()[parts.body] = BodyPose {
@@ -76,11 +87,10 @@ impl Pinned {
 
     pub(super) fn solve_rates(&self, work: &mut Work<'_>, drivers: &[Jet]) {
         let parts = &self.parts;
-        let reference = work.at.marker(parts.reference).body;
         let frames = work.at.frames();
         let (velocity, acceleration) = work.flow.both_mut();
-        let [mut omega, mut alpha] = reference.map_or([0.0; 2], |body| {
-            let phi = 3 * body.index() + 2;
+        let [mut omega, mut alpha] = self.reference.map_or([0.0; 2], |body| {
+            let phi = 3 * body + 2;
             [velocity[phi], acceleration[phi]]
         });
         if let Target::Driver(driver) = work.system.equations()[parts.rows[2]].target {
