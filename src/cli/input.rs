@@ -19,11 +19,11 @@ pub(super) struct Input {
 impl Input {
     /// Reads a file; errors and warnings are shown on stderr.
     pub(super) fn read(path: &FilePath) -> Result<Self, Error> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        let source = Source::new(path.display().to_string(), text);
+        let source =
+            Source::open(path.display().to_string(), path).map_err(|source| Error::Read {
+                path: path.to_owned(),
+                source,
+            })?;
         match Mechanism::parse(&source) {
             Ok((mechanism, warnings)) => {
                 show(&source, &warnings);

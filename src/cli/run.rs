@@ -10,7 +10,9 @@ use super::error::Error;
 use super::input::Input;
 use crate::fmi::{Causality, Order, Quantity, Variables};
 use crate::kinematics::{Curve, Path, Pose, Rates, Reason, Solver, Start};
-use crate::mechanism::{DriverId, DriverSource, ExpressionError, Jet, Mechanism, ParameterId};
+use crate::mechanism::{
+    DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion as Prescribed, ParameterId,
+};
 
 /// Run a mechanism and print its motion as CSV.
 ///
@@ -144,7 +146,8 @@ impl Run {
             let motion = mechanism
                 .parse_expression(text, true)
                 .map_err(|error| in_argument("--drive", text, &error))?;
-            driven.drivers[id.index()].source = DriverSource::Motion(motion);
+            driven.drivers[id.index()].source =
+                DriverSource::Motion(Prescribed::Expression(motion));
         }
         Ok(Arc::new(driven))
     }
@@ -239,8 +242,11 @@ impl Motion {
         path.duration = time - home.time;
         path.to.clone_from(&parameters);
         for (index, (curve, driver)) in path.curves.iter_mut().zip(&driven.drivers).enumerate() {
-            if let (Curve::Input { position, jump, .. }, Some(motion)) = (curve, driver.motion()) {
-                *position = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);
+            // What is an input in the file has got an expression.
+            if let (Curve::Input { position, jump, .. }, Some(Prescribed::Expression(expression))) =
+                (curve, driver.motion())
+            {
+                *position = expression.evaluate(&|p: ParameterId| parameters[p.index()], time);
                 *jump = home.drivers[index] - *position;
             }
         }
@@ -302,18 +308,11 @@ impl Motion {
     }
 
     fn solve_rates(&mut self) -> Result<(), crate::kinematics::Error> {
-        let pose = self.solver.pose();
-        let parameters = &pose.parameters;
-        for (rates, driver) in self
-            .driver_rates
-            .iter_mut()
-            .zip(&self.solver.mechanism().drivers)
-        {
-            if let Some(motion) = driver.motion() {
-                *rates = motion.evaluate(
-                    &|p| Jet::constant(parameters[p.index()]),
-                    Jet::variable(pose.time),
-                );
+        let time = self.solver.pose().time;
+        let drivers = self.solver.mechanism().drivers.iter().enumerate();
+        for (rates, (index, driver)) in self.driver_rates.iter_mut().zip(drivers) {
+            if driver.motion().is_some() {
+                *rates = self.solver.motion(DriverId(index), time);
             }
         }
         let driver_rates = &self.driver_rates;

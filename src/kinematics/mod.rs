@@ -22,6 +22,7 @@ mod element;
 mod error;
 mod factor;
 mod joint;
+mod motions;
 mod newton;
 mod path;
 mod rates;

@@ -7,6 +7,7 @@ use nalgebra::DVector;
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration, point_velocity};
 use super::factor::DenseLu;
+use super::motions::Motions;
 use super::rates::Rates;
 use super::structure::Structure;
 use super::system::{Residual, System, Targets};
@@ -79,7 +80,10 @@ pub struct Solver {
     pub(super) tangent: Rates,
     /// The pose that a sub-step starts from.
     pub(super) origin: Pose,
-    /// Parameters and drivers along a path.
+    /// The prescribed motions for the pose's parameters.
+    pub(super) motions: Motions,
+    /// Prescribed motions, parameters and drivers along a path on which parameters move.
+    pub(super) path_motions: Motions,
     pub(super) path_parameters: Vec<Jet>,
     pub(super) path_drivers: Vec<Jet>,
     /// The drivers where a sub-step starts.
@@ -105,6 +109,7 @@ impl Solver {
             q: vec![0.0; order],
             turns: vec![0; order],
         };
+        let motions = Motions::new(&mechanism);
         let measures = mechanism.measures.iter();
         Ok(Self {
             structure,
@@ -114,6 +119,8 @@ impl Solver {
             targets: system.targets(),
             parameters_taken: false,
             origin: pose.clone(),
+            path_motions: motions.clone(),
+            motions,
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
             path_drivers: vec![Jet::constant(0.0); drivers],
             origin_drivers: vec![Jet::constant(0.0); drivers],
@@ -239,11 +246,22 @@ impl Solver {
         })
     }
 
+    /// Value, velocity and acceleration of a driver with a prescribed motion at a time, for the
+    /// pose's parameters. Parameters contribute nothing to velocities, even while they change.
+    /// Not a number for an input. Allocates nothing.
+    #[must_use]
+    pub fn motion(&self, driver: DriverId, time: f64) -> Jet {
+        self.motions.evaluate(driver, Jet::variable(time))
+    }
+
     /// Recomputes all that depends on the parameters of the pose alone.
     pub(super) fn take_over_parameters(&mut self) -> Result<(), Error> {
         self.parameters_taken = false;
         self.system
             .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
+        let parameters = &self.pose.parameters;
+        self.motions
+            .set_parameters(|p| Jet::constant(parameters[p.index()]));
         self.parameters_taken = true;
         Ok(())
     }

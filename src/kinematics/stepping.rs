@@ -212,6 +212,8 @@ impl Solver {
         let Self {
             system,
             pose,
+            motions,
+            path_motions,
             path_parameters,
             path_drivers,
             ..
@@ -224,11 +226,10 @@ impl Solver {
             for (value, jet) in pose.parameters.iter_mut().zip(path_parameters.iter()) {
                 *value = jet.value;
             }
-            path.drivers(mechanism, s, &|p| path_parameters[p.index()], path_drivers);
+            path_motions.set_parameters(|p| path_parameters[p.index()]);
+            path.drivers(s, path_motions, path_drivers);
         } else {
-            let parameters = &pose.parameters;
-            let constant = |p: crate::mechanism::ParameterId| Jet::constant(parameters[p.index()]);
-            path.drivers(mechanism, s, &constant, path_drivers);
+            path.drivers(s, motions, path_drivers);
         }
         for (value, jet) in pose.drivers.iter_mut().zip(path_drivers.iter()) {
             *value = jet.value;
@@ -241,14 +242,9 @@ impl Solver {
 
     /// The drivers' values at the end of a path.
     pub fn drivers_at_end(&mut self, path: &Path) -> Vec<f64> {
-        let mechanism = self.system.mechanism();
-        let parameters = &path.to;
-        path.drivers(
-            mechanism,
-            1.0,
-            &|p| Jet::constant(parameters[p.index()]),
-            &mut self.path_drivers,
-        );
+        self.path_motions
+            .set_parameters(|p| Jet::constant(path.to[p.index()]));
+        path.drivers(1.0, &self.path_motions, &mut self.path_drivers);
         self.path_drivers
             .iter()
             .map(|driver| driver.value)

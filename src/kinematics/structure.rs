@@ -13,7 +13,9 @@ use petgraph::graph::{DiGraph, NodeIndex};
 use super::constraint::Incidence;
 use super::system::{System, Target};
 use super::{Element, Error, constraint};
-use crate::mechanism::{Coordinate, DriverId, Expression, MarkerId, Mechanism, ParameterId};
+use crate::mechanism::{
+    Coordinate, DriverId, Expression, MarkerId, Mechanism, Motion, ParameterId,
+};
 
 /// The block lower triangular structure of a system.
 #[derive(Clone, Debug)]
@@ -53,6 +55,13 @@ impl Dependencies {
     /// Adds what an expression of the mechanism uses.
     pub fn add_expression(&mut self, mechanism: &Mechanism, expression: &Expression) {
         for parameter in expression.parameters() {
+            self.add_parameter(mechanism, parameter);
+        }
+    }
+
+    /// Adds what a prescribed motion uses.
+    pub fn add_motion(&mut self, mechanism: &Mechanism, motion: &Motion) {
+        for parameter in motion.parameters() {
             self.add_parameter(mechanism, parameter);
         }
     }
@@ -183,7 +192,7 @@ impl Structure {
                 Target::Driver(driver) => {
                     dependencies.drivers.insert(*driver);
                     if let Some(motion) = mechanism.drivers[driver.index()].motion() {
-                        dependencies.add_expression(mechanism, motion);
+                        dependencies.add_motion(mechanism, motion);
                     }
                 }
             }

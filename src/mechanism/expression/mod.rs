@@ -34,6 +34,16 @@ pub(super) fn function_names() -> impl Iterator<Item = &'static str> {
     function::FUNCTIONS.iter().map(|(name, _)| *name)
 }
 
+/// The sine, on any kind of number.
+pub(super) fn sin<N: Number>(x: N) -> N {
+    Unary::Sin.apply(x)
+}
+
+/// The cosine, on any kind of number.
+pub(super) fn cos<N: Number>(x: N) -> N {
+    Unary::Cos.apply(x)
+}
+
 /// Operands that may wait for their operator at one time: what evaluation keeps on the stack.
 /// Far more than anyone writes by hand.
 const MAX_STACK: usize = 32;

@@ -9,7 +9,7 @@ use crate::mechanism::expression::Scope;
 use crate::mechanism::names::{self, NameTable, quoted, shown};
 use crate::mechanism::syntax::{self, Key, Table, Value};
 use crate::mechanism::{
-    BodyId, Diagnostic, Expression, Jet, MarkerId, ParameterId, Severity, Source, Span,
+    BodyId, Diagnostic, Expression, Jet, MarkerId, ParameterId, Severity, Source, Span, TableFile,
 };
 
 /// More problems than this are counted, not shown: nobody reads them, and a file of garbage would
@@ -76,6 +76,10 @@ pub(super) struct Context<'a> {
     pub(super) owners: HashMap<&'a str, &'a str>,
     /// What each marker is fixed on.
     pub(super) carriers: Vec<Option<BodyId>>,
+    /// The CSV files read so far.
+    pub(super) table_files: Vec<TableFile>,
+    /// The numbers taken from them, for the canonical form.
+    pub(super) file_tables: String,
 }
 
 /// A number of the file: an expression, with its value for the file's parameters.
@@ -136,6 +140,8 @@ impl<'a> Context<'a> {
             body_names: Vec::new(),
             owners: HashMap::new(),
             carriers: Vec::new(),
+            table_files: Vec::new(),
+            file_tables: String::new(),
         };
         for problem in problems {
             context.problems.push(problem);
