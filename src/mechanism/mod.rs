@@ -17,7 +17,7 @@ mod syntax;
 mod unit;
 
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use expression::{Expression, ExpressionError, Jet, Number, Partials};
+pub use expression::{Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use parameter::Parameter;
 pub use source::{Position, Source, Span};

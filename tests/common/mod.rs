@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use biela::kinematics::{Curve, Path, Rates, Solver};
-use biela::mechanism::{Jet, Mechanism, Source};
+use biela::mechanism::{Jet, Mechanism, Source, Variable};
 
 /// A shipped mechanism with one driver, and each of its generalized coordinates as a formula in
 /// the driver's value `t`.
@@ -159,7 +159,7 @@ impl Exact {
             .flat_map(|(_, formulas)| formulas)
             .map(|formula| {
                 let expression = mechanism
-                    .parse_expression(&self.expand(formula), true)
+                    .parse_expression(&self.expand(formula), Some(Variable::Time))
                     .expect("the formula is right");
                 expression.evaluate(&|p| Jet::constant(parameters[p.index()]), driver)
             })

@@ -5,6 +5,7 @@ use crate::mechanism::names::{quoted, shown};
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
     Constraint, Coordinate, CoordinateKind, Driver, DriverSource, Expression, MarkerId, Measure,
+    Variable,
 };
 
 use super::context::{Context, Entry, Fields, Quantity};
@@ -115,7 +116,7 @@ impl<'a> Context<'a> {
         kind: Option<CoordinateKind>,
         start_time: f64,
     ) -> Option<Expression> {
-        let expression = self.expression(value, true)?;
+        let expression = self.expression(value, Some(Variable::Time))?;
         let Some(start) = self.value_at(&expression, start_time) else {
             return Some(expression);
         };
