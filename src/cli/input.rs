@@ -47,13 +47,17 @@ impl Input {
         }
     }
 
-    /// A solver at the file's own assembled pose, and how it got there.
+    /// A solver at the file's own assembled pose, and how it got there. Joints that do not fit
+    /// their own numbers there are warned of on stderr.
     pub(super) fn assemble(&self) -> Result<(Solver, crate::kinematics::Assembly), Error> {
         let mut solver =
             Solver::new(Arc::clone(&self.mechanism)).map_err(|error| self.error(error))?;
         let assembly = solver
             .assemble(&Path::new(&self.mechanism))
             .map_err(|error| self.error(error))?;
+        for misfit in solver.misfits() {
+            anstream::eprintln!("warning: {}: {misfit}\n", self.source.name());
+        }
         Ok((solver, assembly))
     }
 }

@@ -12,6 +12,7 @@ use crate::fmi::{Causality, Order, Quantity, Variables};
 use crate::kinematics::{Curve, Path, Pose, Rates, Reason, Solver, Start};
 use crate::mechanism::{
     DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion as Prescribed, ParameterId,
+    Variable,
 };
 
 /// Run a mechanism and print its motion as CSV.
@@ -118,7 +119,7 @@ impl Run {
                 )));
             }
             let value = mechanism
-                .parse_expression(text, false)
+                .parse_expression(text, None)
                 .map_err(|error| in_argument("--set", text, &error))?
                 .evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
             let too_low = parameter.min.is_some_and(|min| value < min);
@@ -144,7 +145,7 @@ impl Run {
                 unknown("driver", name, names)
             })?;
             let motion = mechanism
-                .parse_expression(text, true)
+                .parse_expression(text, Some(Variable::Time))
                 .map_err(|error| in_argument("--drive", text, &error))?;
             driven.drivers[id.index()].source =
                 DriverSource::Motion(Prescribed::Expression(motion));

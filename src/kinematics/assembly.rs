@@ -75,6 +75,7 @@ impl Solver {
             for (k, q) in self.pose.q.iter_mut().enumerate() {
                 *q = estimate[k] + shift(attempt, k) * self.system.column_scale(k, self.at.size());
             }
+            self.estimate_joint_unknowns();
             let attempted = self.minimise_and_correct();
             if attempted.converged {
                 outcome = Some(attempted);
@@ -146,14 +147,25 @@ impl Solver {
         Ok(estimate)
     }
 
+    /// Gives the joints' own unknowns their estimates, for bodies where q has them.
+    fn estimate_joint_unknowns(&mut self) {
+        self.at.set_pose(self.system.mechanism(), &self.pose.q);
+        let bodies = self.system.mechanism().bodies.len();
+        let unknowns = self.pose.q[3 * bodies..].iter_mut();
+        for (q, estimate) in unknowns.zip(self.system.estimate_joint_unknowns(&self.at)) {
+            *q = estimate;
+        }
+    }
+
     fn fix_turns(&mut self) {
         self.system.fix_turns(&self.at, &mut self.targets);
         self.pose.turns.copy_from_slice(&self.targets.turns);
     }
 
+    /// The largest distance of a body from its estimate.
     fn scaled_distance(&self, estimate: &DVector<f64>) -> f64 {
-        self.pose
-            .q
+        let bodies = self.system.mechanism().bodies.len();
+        self.pose.q[..3 * bodies]
             .iter()
             .zip(estimate)
             .enumerate()

@@ -21,6 +21,7 @@ pub mod constraint;
 mod element;
 mod error;
 mod factor;
+mod fit;
 mod joint;
 mod motions;
 mod newton;
@@ -32,9 +33,12 @@ mod structure;
 mod system;
 
 pub use assembly::{Assembly, Start};
-pub use configuration::{Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose};
+pub use configuration::{
+    Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
+};
 pub use element::Element;
 pub use error::{Error, OpenJoint};
+pub use fit::{Misfit, MisfitKind};
 pub use path::{Curve, Path};
 pub use rates::Rates;
 pub use solver::{Pose, Solver};

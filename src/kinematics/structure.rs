@@ -196,7 +196,12 @@ impl Structure {
                     }
                 }
             }
-            for &parameter in &incidences[row].parameters {
+            let equation = &system.equations()[row];
+            for &parameter in incidences[row]
+                .parameters
+                .iter()
+                .chain(&equation.parameters)
+            {
                 dependencies.add_parameter(mechanism, parameter);
             }
             upstream.extend(incidences[row].unknowns.iter().map(|&u| self.block_of[u]));

@@ -116,6 +116,7 @@ macro_rules! codes {
 
 codes! {
     BAD_EXPRESSION = "bad-expression",
+    BAD_PROFILE = "bad-profile",
     BAD_TABLE = "bad-table",
     DRIVER_SOURCE = "driver-source",
     DUPLICATE_KEY = "duplicate-key",

@@ -13,6 +13,7 @@ mod lower;
 mod motion;
 mod names;
 mod parameter;
+mod profile;
 mod source;
 mod spline;
 mod syntax;
@@ -20,10 +21,11 @@ mod table;
 mod unit;
 
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use expression::{Expression, ExpressionError, Jet, Number, Partials};
+pub use expression::{Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 pub use parameter::Parameter;
+pub use profile::{Profile, ProfileInForce};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 pub use table::{Table, TableFile};
@@ -196,6 +198,27 @@ pub enum JointKind {
         /// On which side of the rack the pinion is.
         side: RackSide,
     },
+    /// A follower, which has marker j, on the contour of a cam, which has marker i.
+    Cam {
+        /// What touches the cam.
+        follower: CamFollower,
+        /// The contour.
+        profile: Profile,
+    },
+}
+
+/// What of a follower touches the cam, on the outer side of its contour.
+#[derive(Clone, Debug)]
+pub enum CamFollower {
+    /// The marker's point.
+    Knife,
+    /// A roller round the marker's point.
+    Roller {
+        /// Its radius \[m\], positive.
+        radius: Expression,
+    },
+    /// The marker's x-axis.
+    Flat,
 }
 
 /// The sizes of two wheels. Their ratio decides how they turn.

@@ -14,7 +14,7 @@ pub enum Ends {
     Periodic,
 }
 
-/// A cubic spline on any kind of [`Number`].
+/// A cubic spline on plain numbers or on numbers with derivatives.
 ///
 /// Made once for a number of points; [`points_mut`](Self::points_mut) and [`fit`](Self::fit) then
 /// change it without allocating.
@@ -30,7 +30,7 @@ pub struct Spline<N> {
     ends: Ends,
 }
 
-impl<N: Number> Spline<N> {
+impl<N: Number<Scalar = f64>> Spline<N> {
     /// A spline through `count` points, at least two, which are still to be given.
     #[must_use]
     pub fn new(count: usize, ends: Ends) -> Self {

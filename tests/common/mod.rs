@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use biela::kinematics::{Curve, Path, Rates, Solver};
-use biela::mechanism::{Jet, Mechanism, Source};
+use biela::mechanism::{Jet, Mechanism, Source, Variable};
 
 /// A shipped mechanism with one driver, and each of its generalized coordinates as a formula in
 /// the driver's value `t`.
@@ -117,13 +117,17 @@ pub(crate) const EXACT: [Exact; 5] = [
 /// Reads a shipped mechanism.
 pub(crate) fn shipped(name: &str) -> Arc<Mechanism> {
     let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).expect("shipped mechanisms can be read");
-    parse(&text)
+    let source = Source::open(name, path.as_ref()).expect("shipped mechanisms can be read");
+    read(&source)
 }
 
 /// Reads a mechanism that has no errors.
 pub(crate) fn parse(text: &str) -> Arc<Mechanism> {
-    match Mechanism::parse(&Source::new("test.toml", text)) {
+    read(&Source::new("test.toml", text))
+}
+
+fn read(source: &Source) -> Arc<Mechanism> {
+    match Mechanism::parse(source) {
         Ok((mechanism, _)) => Arc::new(mechanism),
         Err(diagnostics) => panic!("{diagnostics:#?}"),
     }
@@ -159,7 +163,7 @@ impl Exact {
             .flat_map(|(_, formulas)| formulas)
             .map(|formula| {
                 let expression = mechanism
-                    .parse_expression(&self.expand(formula), true)
+                    .parse_expression(&self.expand(formula), Some(Variable::Time))
                     .expect("the formula is right");
                 expression.evaluate(&|p| Jet::constant(parameters[p.index()]), driver)
             })

@@ -4,6 +4,7 @@
 //! read. What could not be read has left its error, and nothing that refers to it adds another.
 
 mod bodies;
+mod cams;
 mod context;
 mod coordinates;
 mod header;

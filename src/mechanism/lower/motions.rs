@@ -6,7 +6,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::shown;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
-    CoordinateKind, Ends, Interpolation, Jet, Law, Motion, MotionInForce, MotionTable,
+    CoordinateKind, Ends, Interpolation, Jet, Law, Motion, MotionInForce, MotionTable, Variable,
 };
 
 use super::context::{Context, Fields};
@@ -49,7 +49,7 @@ impl<'a> Context<'a> {
                 };
                 Motion::Table(self.motion_table(&fields, kind)?)
             }
-            _ => Motion::Expression(self.expression(value, true)?),
+            _ => Motion::Expression(self.expression(value, Some(Variable::Time))?),
         };
         self.check_start(&motion, value, kind, start_time)?;
         Some(motion)
@@ -82,7 +82,7 @@ impl<'a> Context<'a> {
         }
         let known = self.table(fields, "[t, u]")?;
         if kind == Some(CoordinateKind::Distance) {
-            self.check_ordinates_positive(&known, "a distance");
+            self.check_ordinates_positive(&known, "a distance")?;
         }
         Some(MotionTable {
             table: known.table,

@@ -212,7 +212,11 @@ impl<'a> Context<'a> {
     }
 
     /// The first point whose ordinate is not positive is an error.
-    pub(super) fn check_ordinates_positive(&mut self, known: &KnownTable, what: &str) {
+    pub(super) fn check_ordinates_positive(
+        &mut self,
+        known: &KnownTable,
+        what: &str,
+    ) -> Option<()> {
         for point in &known.points {
             if let Some([_, y]) = point.values.filter(|[_, y]| *y <= 0.0) {
                 let message = format!(
@@ -221,9 +225,10 @@ impl<'a> Context<'a> {
                     shown(y)
                 );
                 self.error(code::ILLEGAL_VALUE, point.span.clone(), message);
-                return;
+                return None;
             }
         }
+        Some(())
     }
 
     /// Makes the table of a closed curve go once round: a last point that repeats the first a

@@ -2,7 +2,7 @@
 
 use crate::mechanism::{
     BodyId, CoordinateKind, DisplayUnit, DriverSource, JointKind, MarkerId, Mechanism, Motion,
-    ParameterId, Source,
+    ParameterId, Source, Variable,
 };
 
 fn read(text: &str) -> Mechanism {
@@ -132,10 +132,14 @@ fn a_motion_is_a_function_of_time() {
     let DriverSource::Motion(Motion::Expression(motion)) = &mechanism.drivers[0].source else {
         panic!("an expression");
     };
-    assert!(motion.uses_time());
+    assert_eq!(motion.variable(), Some(Variable::Time));
     assert_eq!(motion.evaluate(&|_| 2.0, 3.0), 6.0);
-    assert!(mechanism.parse_expression("omega*t", true).is_ok());
-    assert!(mechanism.parse_expression("omega*t", false).is_err());
+    assert!(
+        mechanism
+            .parse_expression("omega*t", Some(Variable::Time))
+            .is_ok()
+    );
+    assert!(mechanism.parse_expression("omega*t", None).is_err());
 }
 
 #[test]

@@ -29,7 +29,7 @@ impl Law {
     /// The part of the stroke done after the part `tau` of its time, both from 0 to 1.
     ///
     /// Each law is symmetric: s(τ) + s(1 − τ) = 1.
-    pub fn stroke<N: Number>(self, tau: N) -> N {
+    pub fn stroke<N: Number<Scalar = f64>>(self, tau: N) -> N {
         let c = N::constant;
         if tau.value() > 0.5 {
             return c(1.0) - self.first_half(c(1.0) - tau);
@@ -37,7 +37,7 @@ impl Law {
         self.first_half(tau)
     }
 
-    fn first_half<N: Number>(self, tau: N) -> N {
+    fn first_half<N: Number<Scalar = f64>>(self, tau: N) -> N {
         let c = N::constant;
         let t = tau.value();
         let cube = tau * tau * tau;

@@ -85,7 +85,9 @@ impl TableFile {
         let mut header = Vec::new();
         // Reading from memory that holds valid UTF-8 does not fail.
         for (index, record) in reader.records().flatten().enumerate() {
-            let line = record.position().map_or(0, |place| line_of_record(text, place));
+            let line = record
+                .position()
+                .map_or(0, |place| line_of_record(text, place));
             if index == 0 {
                 if record.iter().any(|field| field.parse::<f64>().is_err()) {
                     header = record.iter().map(str::to_owned).collect();

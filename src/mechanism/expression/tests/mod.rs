@@ -1,6 +1,9 @@
 //! Values against closed forms, derivatives against differences and against other expressions,
 //! errors with their places.
 
+mod enclosures;
+mod third_derivatives;
+
 use proptest::prelude::*;
 
 use super::*;
@@ -9,6 +12,54 @@ use crate::mechanism::names::NameTable;
 /// The parameters of these tests, in the order of their ids.
 const NAMES: [&str; 3] = ["a", "b", "length"];
 
+/// Their values.
+const VALUES: [f64; 3] = [2.0, 3.0, 0.5];
+
+/// Expressions that use every function and operator, each with a range of `t` in which it is
+/// smooth.
+const SMOOTH: [(&str, f64, f64); 40] = [
+    ("3*t - t*t/b", -2.0, 2.0),
+    ("-t", -2.0, 2.0),
+    ("(1 + t)/(3 - t^2)", -1.5, 1.5),
+    ("sin(a*t + 1)", -5.0, 5.0),
+    ("cos(b*t)", -5.0, 5.0),
+    ("tan(t)", -1.3, 1.3),
+    ("tan(t)", 1.8, 4.4),
+    ("asin(t)", -0.9, 0.9),
+    ("acos(t/2)", -1.8, 1.8),
+    ("atan(b*t)", -3.0, 3.0),
+    ("atan2(t, b)", -5.0, 5.0),
+    ("atan2(t, -b)", 0.1, 5.0),
+    ("atan2(1 + t^2, sin(t))", -5.0, 5.0),
+    ("atan2(-1, t - b)", -5.0, 5.0),
+    ("sinh(t)", -2.0, 2.0),
+    ("cosh(t)", -2.0, 2.0),
+    ("tanh(2*t)", -2.0, 2.0),
+    ("sqrt(t)", 0.2, 9.0),
+    ("hypot(t, b)", -5.0, 5.0),
+    ("hypot(cos(t), 2*sin(t))", -5.0, 5.0),
+    ("exp(-t^2)", -2.0, 2.0),
+    ("ln(t)", 0.2, 9.0),
+    ("log10(t)", 0.2, 9.0),
+    ("t*abs(t - 1)", 1.0, 3.0),
+    ("abs(t)^3*sign(t)", -3.0, -0.1),
+    ("t^2 + floor(t) + ceil(t)", 0.1, 0.9),
+    ("mod(t^2, b)", 2.0, 2.4),
+    ("mod(t, -b)", -2.9, -0.1),
+    ("min(t^2, 9)", -2.9, 2.9),
+    ("max(sin(t), -2, t/4)", -5.0, -2.6),
+    ("t^2", -2.0, 2.0),
+    ("t^3", -2.0, 2.0),
+    ("t^5 - t^4", -2.0, 2.0),
+    ("t^-2", 0.2, 3.0),
+    ("t^-3", -3.0, -0.2),
+    ("t^3.5", 0.0, 2.0),
+    ("t^-0.7", 0.2, 3.0),
+    ("t^(1/b)", 0.2, 3.0),
+    ("b^t", -2.0, 2.0),
+    ("(1.5 + sin(t))^cos(t)", -2.0, 2.0),
+];
+
 fn parse(text: &str) -> Result<Expression, ExpressionError> {
     let parameters: NameTable<'_, ParameterId> =
         NAMES.into_iter().zip((0..).map(ParameterId)).collect();
@@ -16,15 +67,22 @@ fn parse(text: &str) -> Result<Expression, ExpressionError> {
         text,
         Scope {
             parameters: &parameters,
-            time_allowed: true,
+            variable: Some(Variable::Time),
         },
     )
+}
+
+/// The value and three derivatives at time `t` for the same parameters.
+fn jet3(text: &str, t: f64) -> Jet3 {
+    let expression = parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+    let parameter = |id: ParameterId| Jet3::constant(VALUES[id.index()]);
+    expression.evaluate(&parameter, Jet3::variable(t))
 }
 
 /// The triple at time `t` for the parameters 2, 3 and 0.5.
 fn jet(text: &str, t: f64) -> Jet {
     let expression = parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
-    let parameter = |id: ParameterId| Jet::constant([2.0, 3.0, 0.5][id.index()]);
+    let parameter = |id: ParameterId| Jet::constant(VALUES[id.index()]);
     expression.evaluate(&parameter, Jet::variable(t))
 }
 
@@ -238,8 +296,8 @@ fn the_parameters_used_are_each_listed_once() {
     let expression = parse("length*a + a*t^2").expect("legal");
     let used: Vec<ParameterId> = expression.parameters().collect();
     assert_eq!(used, [ParameterId(0), ParameterId(2)]);
-    assert!(expression.uses_time());
-    assert!(!parse("a").expect("legal").uses_time());
+    assert_eq!(expression.variable(), Some(Variable::Time));
+    assert_eq!(parse("a").expect("legal").variable(), None);
     assert_eq!(expression.literal(), None);
     assert_eq!(parse("2*3 - 1").expect("legal").literal(), Some(5.0));
     assert_eq!(parse("0*a").expect("legal").literal(), None);
@@ -313,11 +371,72 @@ fn time_is_refused_where_it_has_no_place() {
     let parameters = NameTable::new();
     let scope = Scope {
         parameters: &parameters,
-        time_allowed: false,
+        variable: None,
     };
     let error = Expression::parse("2*t", scope).expect_err("no time here");
     assert_eq!(error.span, 2..3);
     assert_eq!(error.message, "only a `motion` may use time `t`");
+    assert_eq!(error.help, None);
+}
+
+#[test]
+fn the_polar_angle_has_its_place_in_a_profile() {
+    let parse = |text, names: &[&'static str], variable| {
+        let ids = (0..).map(ParameterId);
+        let parameters: NameTable<'_, ParameterId> = names.iter().copied().zip(ids).collect();
+        let scope = Scope {
+            parameters: &parameters,
+            variable,
+        };
+        Expression::parse(text, scope)
+    };
+    let profile = Some(Variable::PolarAngle);
+    let cam = parse("2 + cos(theta)", &[], profile).expect("legal");
+    assert_eq!(cam.variable(), profile);
+    assert_eq!(cam.display(|_| "").to_string(), "2.0 + cos(theta)");
+    assert_near(cam.evaluate(&|_| 0.0, PI), 1.0, 0.0, "a cam");
+
+    // Elsewhere a parameter may bear the name.
+    let tilted = parse("2*theta", &["theta"], Some(Variable::Time)).expect("legal");
+    assert_eq!(tilted.variable(), None);
+    assert!(parse("1", &["theta"], profile).is_ok());
+
+    let failing: [(&str, &[&str], _, &str, &str); 4] = [
+        (
+            "2*theta",
+            &["theta"],
+            profile,
+            "`theta` is both a parameter and the variable here",
+            "rename the parameter",
+        ),
+        (
+            "2*theta",
+            &[],
+            None,
+            "no parameter `theta`",
+            "only a cam's `profile` may use `theta`, its polar angle",
+        ),
+        (
+            "2*theta",
+            &["thet"],
+            Some(Variable::Time),
+            "no parameter `theta`",
+            "only a cam's `profile` may use `theta`, its polar angle",
+        ),
+        (
+            "2*t",
+            &[],
+            profile,
+            "only a `motion` may use time `t`",
+            "here the variable is `theta`",
+        ),
+    ];
+    for (text, names, variable, message, help) in failing {
+        let error = parse(text, names, variable).expect_err(text);
+        assert_eq!(error.span, 2..text.len(), "{text}");
+        assert_eq!(error.message, message);
+        assert_eq!(error.help.as_deref(), Some(help));
+    }
 }
 
 #[test]
@@ -420,7 +539,7 @@ proptest! {
     #[test]
     fn numbers_and_triples_have_the_same_value(text in any_text(), t in -2.0..2.0_f64) {
         if let Ok(expression) = parse(&text) {
-            let number = expression.evaluate(&|id| [2.0, 3.0, 0.5][id.index()], t);
+            let number = expression.evaluate(&|id| VALUES[id.index()], t);
             prop_assert_eq!(number.to_bits(), jet(&text, t).value.to_bits());
         }
     }
