@@ -51,7 +51,6 @@ test: setup ## run all tests: Rust, documentation, FMPy
 
 bench: build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
 	$(CARGO) bench --package yardstick --locked
-	$(CARGO) build --release --package yardstick --locked
 	target/release/ratios $(if $(RENEW),benches/README.md)
 
 lint: setup ## check formatting, lints and documentation

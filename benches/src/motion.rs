@@ -12,7 +12,7 @@ use crate::generated::{BAR, BAR_ANGLE};
 #[derive(Clone, Debug)]
 pub struct Sweep {
     from: f64,
-    by: f64,
+    step: f64,
     steps: u32,
     speed: f64,
     at: u32,
@@ -24,7 +24,7 @@ impl Sweep {
     pub fn turn(steps: u32) -> Self {
         Self {
             from: FRAC_PI_3,
-            by: TAU,
+            step: TAU / f64::from(steps),
             steps,
             speed: 10.0,
             at: 0,
@@ -37,7 +37,7 @@ impl Sweep {
         let height = |angle: f64| cells as f64 * BAR * angle.sin();
         Self {
             from: height(BAR_ANGLE),
-            by: height(2.0 * BAR_ANGLE) - height(BAR_ANGLE),
+            step: (height(2.0 * BAR_ANGLE) - height(BAR_ANGLE)) / 10_000.0,
             steps: 10_000,
             speed: 1.0,
             at: 0,
@@ -47,7 +47,11 @@ impl Sweep {
     /// The driver's next value and its rates.
     #[must_use]
     pub fn step(&mut self) -> Jet {
-        self.at = (self.at + 1) % (2 * self.steps);
+        // Little work: the yardsticks pay for it, too.
+        self.at += 1;
+        if self.at == 2 * self.steps {
+            self.at = 0;
+        }
         let back = self.at > self.steps;
         let done = if back {
             2 * self.steps - self.at
@@ -55,7 +59,7 @@ impl Sweep {
             self.at
         };
         Jet {
-            value: self.from + self.by * f64::from(done) / f64::from(self.steps),
+            value: self.from + self.step * f64::from(done),
             first: if back { -self.speed } else { self.speed },
             second: 3.0,
         }

@@ -268,8 +268,8 @@ impl Drop for Cycle {
     }
 }
 
-/// Biela's library in the folder of this program, or in the one above: where `cargo build` and
-/// `cargo test` leave it.
+/// Biela's library in the folder of this program, or in the one above: `cargo test` and
+/// `cargo bench` leave it beside their programs, `cargo build` too.
 ///
 /// # Panics
 ///
@@ -287,7 +287,6 @@ pub fn library() -> PathBuf {
         .skip(1)
         .take(2)
         .map(|folder| folder.join(&name))
-        .filter(|library| library.exists())
-        .last();
+        .find(|library| library.exists());
     found.unwrap_or_else(|| panic!("{name} is built: `cargo build`"))
 }

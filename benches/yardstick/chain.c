@@ -12,8 +12,9 @@
  * body that drives it. */
 struct loop {
     double crank, coupler, rocker; /* a, b, l */
-    double dx, dy;                 /* between the pivots */
-    double pivot_x, pivot_y;       /* of the body that drives it */
+    double per_coupler, per_rocker; /* 1/b, 1/l */
+    double dx, dy;                 /* d; dy is 0, as all pivots are at one height */
+    double pivot_x, pivot_y;       /* of the body that drives it; likewise */
     double c, r;                   /* coupler's and rocker's angle */
     /* Derivatives of c and r with respect to the angle of the chain's crank. */
     double c1, r1, c2, r2;
@@ -56,6 +57,8 @@ struct chain *chain_new(size_t loops, double spacing, int zigzag, double angle)
         loop->crank = k == 0 ? FOUR_BAR.crank : FOUR_BAR.rocker;
         loop->coupler = k == 0 ? FOUR_BAR.coupler : spacing;
         loop->rocker = FOUR_BAR.rocker;
+        loop->per_coupler = 1.0 / loop->coupler;
+        loop->per_rocker = 1.0 / loop->rocker;
         loop->dx = k == 0 ? FOUR_BAR.base : back ? -spacing : spacing;
         loop->pivot_x = pivot;
         loop->c = k == 0 ? first[11] : back ? acos(-1.0) : 0.0;
@@ -81,6 +84,9 @@ void chain_free(struct chain *chain)
 static const double CONVERGED = 1e-9;
 enum { MOST_ITERATIONS = 20 };
 
+/* `fmax` would be a call. */
+static inline double larger(double a, double b) { return a > b ? a : b; }
+
 static inline unsigned step(struct chain *chain, int updated, int condition, double angle,
                             double velocity, double acceleration)
 {
@@ -88,7 +94,7 @@ static inline unsigned step(struct chain *chain, int updated, int condition, dou
     const double velocity2 = velocity * velocity;
     double *restrict q = chain->q, *restrict v = chain->v, *restrict a = chain->a;
     unsigned iterations = 0;
-    double least = 1.0;
+    double worst = 1.0;
 
     /* The driving body: its vector to the next pin, and its angle's derivatives. */
     double sp, cp, p1 = 1.0, p2 = 0.0;
@@ -98,6 +104,7 @@ static inline unsigned step(struct chain *chain, int updated, int condition, dou
 
     for (struct loop *loop = chain->loop, *end = loop + chain->loops; loop < end; loop++) {
         const double b = loop->coupler, l = loop->rocker;
+        const double per_b = loop->per_coupler, per_l = loop->per_rocker;
         const double ax = loop->crank * cp, ay = loop->crank * sp;
 
         /* Along the path of the crank to second order. */
@@ -113,8 +120,8 @@ static inline unsigned step(struct chain *chain, int updated, int condition, dou
             const double fx = ax + b * cc - l * cr - loop->dx;
             const double fy = ay + b * sc - l * sr - loop->dy;
             const double inverse = 1.0 / (sr * cc - cr * sc);
-            dc = -(fx * cr + fy * sr) * inverse / b;
-            dr = -(fx * cc + fy * sc) * inverse / l;
+            dc = -(fx * cr + fy * sr) * (inverse * per_b);
+            dr = -(fx * cc + fy * sc) * (inverse * per_l);
             c += dc;
             r += dr;
         } while (!(fabs(dc) <= CONVERGED && fabs(dr) <= CONVERGED));
@@ -130,9 +137,8 @@ static inline unsigned step(struct chain *chain, int updated, int condition, dou
 
         /* First and second derivative with respect to the crank's angle, with the Jacobian at the
          * accepted angles. */
-        const double sine = sr * cc - cr * sc;
-        const double inverse = 1.0 / sine;
-        const double to_c = inverse / b, to_r = inverse / l;
+        const double inverse = 1.0 / (sr * cc - cr * sc);
+        const double to_c = inverse * per_b, to_r = inverse * per_l;
         const double vx = -ay * p1, vy = ax * p1;
         const double c1 = -(vx * cr + vy * sr) * to_c;
         const double r1 = -(vx * cc + vy * sc) * to_r;
@@ -144,10 +150,10 @@ static inline unsigned step(struct chain *chain, int updated, int condition, dou
 
         if (condition) {
             /* 1-norm of the block and of its inverse. */
-            const double norm = fmax(b * (fabs(sc) + fabs(cc)), l * (fabs(sr) + fabs(cr)));
-            const double inverse_norm = fmax(fabs(cr * to_c) + fabs(cc * to_r),
-                                             fabs(sr * to_c) + fabs(sc * to_r));
-            least = fmin(least, 1.0 / (norm * inverse_norm));
+            const double norm = larger(b * (fabs(sc) + fabs(cc)), l * (fabs(sr) + fabs(cr)));
+            const double inverse_norm = larger(fabs(cr * to_c) + fabs(cc * to_r),
+                                               fabs(sr * to_c) + fabs(sc * to_r));
+            worst = larger(worst, norm * inverse_norm);
         }
 
         loop->c = c, loop->r = r;
@@ -172,7 +178,7 @@ static inline unsigned step(struct chain *chain, int updated, int condition, dou
 
         sp = sr, cp = cr, p1 = r1, p2 = r2;
     }
-    chain->rcond = least;
+    chain->rcond = 1.0 / worst;
     return iterations;
 }
 
