@@ -9,7 +9,8 @@ pub const SET_UP: [usize; 4] = [1, 10, 100, 1_000];
 /// Cells of the scissor lift that is set up: ten bodies.
 pub const TEN_BODIES: usize = 5;
 
-/// The largest sizes that biela is asked for: a dense solver takes minutes beyond.
+/// The largest sizes that biela is asked for: a dense solver's time
+/// grows as the cube.
 const LARGEST: Largest = Largest {
     chain: 10,
     lift: 8,
