@@ -24,7 +24,10 @@ BIN_DIR = $(DESTDIR)$(PREFIX)/bin
 LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 
-.PHONY: help demo test lint build setup install uninstall refresh lock clean
+# The shipped mechanisms with the tables that they name.
+MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
+
+.PHONY: help demo test bench lint build setup install uninstall refresh lock clean
 .NOTPARALLEL:
 
 help: ## show this list
@@ -41,17 +44,21 @@ demo: build ## export, validate and run the example mechanisms
 demo test: export BIELA_BIN := $(CURDIR)/target/release/biela
 test: setup ## run all tests: Rust, documentation, FMPy
 	@if $(CARGO) nextest --version >/dev/null 2>&1; then \
-	    echo '$(CARGO) nextest run --locked' && $(CARGO) nextest run --locked && \
+	    echo '$(CARGO) nextest run --workspace --locked' && $(CARGO) nextest run --workspace --locked && \
 	    echo '$(CARGO) test --doc --locked' && $(CARGO) test --doc --locked; \
 	else \
-	    echo '$(CARGO) test --locked' && $(CARGO) test --locked; \
+	    echo '$(CARGO) test --workspace --locked' && $(CARGO) test --workspace --locked; \
 	fi
 	$(CARGO) build --release --locked
 	$(PYTHON) -m pytest tests/fmpy
 
+bench: build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
+	$(CARGO) bench --package yardstick --locked
+	target/release/ratios $(if $(RENEW),benches/README.md)
+
 lint: setup ## check formatting, lints and documentation
-	$(CARGO) fmt --check
-	$(CARGO) clippy --locked --all-targets -- -D warnings
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --locked --all-targets -- -D warnings
 	RUSTDOCFLAGS=-Dwarnings $(CARGO) doc --no-deps --locked
 
 build: setup ## build the program and the library that goes into an FMU (release)
@@ -64,11 +71,11 @@ install: build ## install under PREFIX (default: ~/.local)
 	install -d "$(BIN_DIR)" "$(LIB_DIR)/$(LIBRARY_DIR)" "$(SHARE_DIR)/mechanisms"
 	install -m 755 target/release/biela "$(BIN_DIR)/biela"
 	install -m 755 target/release/$(BUILT_LIBRARY) "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
-	install -m 644 mechanisms/*.toml "$(SHARE_DIR)/mechanisms"
+	install -m 644 $(MECHANISMS) "$(SHARE_DIR)/mechanisms"
 
 uninstall: ## remove what `make install` put under PREFIX
 	rm -f "$(BIN_DIR)/biela" "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
-	for file in mechanisms/*.toml; do rm -f "$(SHARE_DIR)/$$file"; done
+	for file in $(MECHANISMS); do rm -f "$(SHARE_DIR)/$$file"; done
 	@rmdir "$(LIB_DIR)/$(LIBRARY_DIR)" "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
 
 refresh: build ## regenerate modelDescription/*.xml from mechanisms/*.toml
