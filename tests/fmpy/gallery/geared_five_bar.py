@@ -31,15 +31,8 @@ def truth(_time, drivers):
     )
 
 
-def properties(motion):
-    """The pin's curve closes after two turns."""
-    pin = motion["left_link.C.x"] + 1j * motion["left_link.C.y"]
-    return {"the curve closed": np.array([pin[-1] - pin[0]]) / LINK}
-
-
 CASE = Case(
     source="closed form: gear ratio −1/2, circle intersection",
     drivers=drivers,
     truth=truth,
-    properties=properties,
 )

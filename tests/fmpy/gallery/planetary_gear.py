@@ -1,4 +1,4 @@
-"""Planetary gear: Willis' equation over twenty turns of the sun."""
+"""Planetary gear: Willis' equation over four turns of the sun, one of the arm."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def truth(_time, drivers):
 
 
 CASE = Case(
-    source="Willis' equation, 20 turns",
-    drivers=lambda time: {"sun_angle": 20 * (np.pi * time - (np.pi * time).sin())},
+    source="Willis' equation, four turns",
+    drivers=lambda time: {"sun_angle": 4 * (np.pi * time - (np.pi * time).sin())},
     truth=truth,
 )
