@@ -232,6 +232,10 @@ impl Scalar for Interval {
         }
     }
 
+    fn at_least(self, other: Self) -> Option<bool> {
+        other.at_most(self)
+    }
+
     fn smaller(self, other: Self) -> Self {
         if self.is_undefined() || other.is_undefined() {
             return Self::UNDEFINED;
