@@ -166,19 +166,13 @@ fn level<N: Number>(x: N, f: impl Fn(N::Scalar) -> N::Scalar) -> N {
     }
 }
 
-/// The argument that is the smaller one, the first at a tie.
-fn smaller<N: Number>(x: N, y: N) -> N {
-    match x.value().at_most(y.value()) {
+/// `x` or `y`, as `first` says, or `value` where that differs from point to point.
+fn either<N: Number>(x: N, y: N, first: Option<bool>, value: impl FnOnce() -> N::Scalar) -> N {
+    match first {
         Some(true) => x,
         Some(false) => y,
-        None => {
-            let value = x.value().smaller(y.value());
-            if x.varies() || y.varies() {
-                N::undecided(value)
-            } else {
-                N::fixed(value)
-            }
-        }
+        None if x.varies() || y.varies() => N::undecided(value()),
+        None => N::fixed(value()),
     }
 }
 
@@ -191,12 +185,15 @@ impl Binary {
     /// The function's value. `min`, `max` and `mod` take their slope from the branch in force;
     /// at a tie of `min` and `max` that is the first argument's.
     pub(super) fn apply<N: Number>(self, x: N, y: N) -> N {
+        let (x_value, y_value) = (x.value(), y.value());
         match self {
             Self::Atan2 => N::atan2(x, y),
             Self::Hypot => N::hypot(x, y),
             Self::Mod => x - y * level(x / y, Scalar::floor),
-            Self::Min => smaller(x, y),
-            Self::Max => -smaller(-x, -y),
+            Self::Min => either(x, y, x_value.at_most(y_value), || x_value.smaller(y_value)),
+            Self::Max => either(x, y, x_value.at_least(y_value), || {
+                -(-x_value).smaller(-y_value)
+            }),
         }
     }
 }

@@ -36,6 +36,10 @@ pub trait Scalar:
     /// at most anything, so that it comes through a minimum.
     fn at_most(self, other: Self) -> Option<bool>;
 
+    /// Whether it is at least `other`, `None` where that differs from point to point. A NaN is
+    /// at least anything, so that it comes through a maximum.
+    fn at_least(self, other: Self) -> Option<bool>;
+
     /// The smaller of two, whichever that is from point to point.
     fn smaller(self, other: Self) -> Self;
 
@@ -149,6 +153,10 @@ impl Scalar for f64 {
 
     fn at_most(self, other: Self) -> Option<bool> {
         Some(self <= other || self.is_nan())
+    }
+
+    fn at_least(self, other: Self) -> Option<bool> {
+        Some(self >= other || self.is_nan())
     }
 
     fn smaller(self, other: Self) -> Self {
