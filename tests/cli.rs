@@ -348,6 +348,34 @@ fn draw_writes_what_the_extension_says() {
 }
 
 #[test]
+fn draw_shows_the_pose_that_is_asked_for() {
+    let draw = |more: &[&str]| {
+        let mut arguments = vec!["draw", "mechanisms/four_bar.toml", "-o", "-"];
+        arguments.extend(more);
+        stdout(&biela(&arguments).success())
+    };
+    let home = draw(&[]);
+    // The file's own values, as a motion that keeps still, change nothing.
+    assert_eq!(home, draw(&["--drive", "crank_angle = 60*deg"]));
+    assert_eq!(home, draw(&["--set", "crank_length = 100*mm"]));
+    let turned = draw(&["--drive", "crank_angle = 120*deg"]);
+    assert_ne!(home, turned);
+    // The crank turns fully from there too.
+    assert!(turned.contains("class=\"traces\""));
+    assert_ne!(home, draw(&["--set", "crank_length = 80*mm"]));
+    assert_ne!(home, draw(&["--drive", "crank_angle = 60*deg + t/10"]));
+    biela(&[
+        "draw",
+        "mechanisms/four_bar.toml",
+        "-o",
+        "-",
+        "--drive",
+        "crank = 1",
+    ])
+    .code(2);
+}
+
+#[test]
 fn export_is_reproducible_and_dated_only_on_demand() {
     let folder = tempfile::tempdir().unwrap();
     let export = |name: &str, epoch: Option<&str>| {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
+use super::conditions::{self, Conditions};
 use super::error::Error;
 use super::input::Input;
 use super::output::write;
@@ -12,14 +13,17 @@ use crate::drawing::{Scene, Sheet, png, svg};
 
 /// Draw a mechanism as a kinematic diagram, in SVG or PNG.
 ///
-/// Shown is the assembled pose at the drivers' start values: bodies, joints, ground, the drivers
-/// with their names, and the points of interest (`[outputs] markers`) with the paths that they
-/// take: over the prescribed motions or, without any, over one turn of the first driver that is
-/// an angle, as far as it gets both ways.
+/// Shown is the pose at the start: at the drivers' start values, or where --drive and --set say.
+/// There are bodies, joints, ground, the drivers with their names, and the points of interest
+/// (`[outputs] markers`) with the paths that they take: over the prescribed motions until the
+/// file's stop time or, if none moves, over one turn of the first driver that is an angle, as far
+/// as it gets both ways.
 ///
 /// The same file gives the same picture.
 #[derive(Args, Debug)]
-#[command(after_help = "Example: biela draw four_bar.toml -o four_bar.svg")]
+#[command(
+    after_help = "Example: biela draw four_bar.toml --drive 'crank_angle = 120*deg' -o four_bar.svg"
+)]
 pub(super) struct Draw {
     /// The mechanism file.
     file: PathBuf,
@@ -27,6 +31,8 @@ pub(super) struct Draw {
     /// [default: the mechanism's name with .svg in the current folder].
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    conditions: Conditions,
     /// Width of the picture in pixels; lines and letters grow with it.
     #[arg(
         long,
@@ -54,7 +60,12 @@ impl Draw {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.format()?;
         let input = Input::read(&self.file)?;
-        let (mut solver, _) = input.assemble()?;
+        let parameters = self.conditions.parameters(&input.mechanism)?;
+        let driven = self.conditions.driven(&input.mechanism)?;
+        let (home_solver, _) = input.assemble()?;
+        let time = input.mechanism.simulation.start;
+        let mut solver = conditions::start(home_solver, &driven, &parameters, time)
+            .map_err(|error| input.error(error))?;
         let scene = Scene::new(&mut solver, !self.no_traces);
         let sheet = Sheet::new(&scene, &solver.pose().q);
         let picture = match format {

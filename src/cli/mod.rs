@@ -10,6 +10,7 @@
 )]
 
 mod check;
+mod conditions;
 mod draw;
 mod error;
 mod export;

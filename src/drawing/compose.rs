@@ -25,6 +25,8 @@ const BELT_WHEELS: f64 = 0.6;
 
 /// Two paths this part of a path's extent from each other look like one.
 const NEAR_TRACE: f64 = 2e-3;
+/// Room for open paths around a mechanism, as a part of its size.
+const TRACE_ROOM: f64 = 0.25;
 /// How far apart along a path, in such distances, two of its points are for this to mean anything.
 const FAR_ALONG: f64 = 6.0;
 /// So many points in a row are a way back.
@@ -58,12 +60,13 @@ pub(super) fn symbols(
         composer.body(BodyId(body));
     }
     composer.fixtures();
+    let frame = composer.frame();
     for marker in &mechanism.outputs.markers {
         let name = mechanism.markers[marker.index()].name.clone();
         let at = composer.anchor(*marker);
         composer.symbols.push(Symbol::Point { name, at });
         if traces {
-            composer.trace(at);
+            composer.trace(at, frame);
         }
     }
     composer.symbols
@@ -442,8 +445,20 @@ impl Composer<'_> {
             .collect()
     }
 
-    /// The path of a point, unless it keeps its place.
-    fn trace(&mut self, at: Anchor) {
+    /// The rectangle around the mechanism, with some room for open paths.
+    fn frame(&self) -> [Vector2<f64>; 2] {
+        let markers = self.mechanism.markers.iter().enumerate();
+        let used = markers.filter(|(_, marker)| marker.body.is_some());
+        let points = used.map(|(id, _)| self.anchor(MarkerId(id)).placed(self.q).point);
+        let none = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
+        let [low, high] = points.fold(none, |[low, high], p| [low.inf(&p), high.sup(&p)]);
+        let room = Vector2::repeat(TRACE_ROOM * (high - low).max());
+        [low - room, high + room]
+    }
+
+    /// The path of a point, unless it keeps its place. A path that does not close is cut off
+    /// far outside the mechanism, which it would make too small to see.
+    fn trace(&mut self, at: Anchor, [low, high]: [Vector2<f64>; 2]) {
         let path: Vec<Vector2<f64>> = self.motion.iter().map(|q| at.placed(q).point).collect();
         let extent = path
             .iter()
@@ -451,12 +466,17 @@ impl Composer<'_> {
         if extent <= 1e-9 * path.iter().fold(0.0, |far: f64, p| far.max(p.norm())) {
             return;
         }
-        let pieces = without_ways_back(&path, NEAR_TRACE * extent);
-        self.symbols
-            .extend(pieces.into_iter().map(|piece| Symbol::Trace {
-                body: at.body,
-                points: piece.iter().map(|&p| p.into()).collect(),
-            }));
+        let near = NEAR_TRACE * extent;
+        let closed = (path[path.len() - 1] - path[0]).norm() < near;
+        let seen = |p: &Vector2<f64>| closed || (low.inf(p) == low && high.sup(p) == high);
+        let pieces = without_ways_back(&path, near)
+            .into_iter()
+            .flat_map(|piece| piece.split(|p| !seen(p)))
+            .filter(|piece| piece.len() > 1);
+        self.symbols.extend(pieces.map(|piece| Symbol::Trace {
+            body: at.body,
+            points: piece.iter().map(|&p| p.into()).collect(),
+        }));
     }
 }
 

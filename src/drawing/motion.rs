@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::kinematics::{Curve, Path, Solver};
-use crate::mechanism::{CoordinateKind, DriverSource};
+use crate::mechanism::{CoordinateKind, Expression};
 
 /// Poses along a whole motion: fine enough for curves to look smooth.
 const STEPS: usize = 240;
@@ -23,12 +23,16 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
             *position = *value;
         }
     }
-    let crank = mechanism.drivers.iter().position(|driver| {
-        driver.coordinate.kind == CoordinateKind::Angle
-            && matches!(driver.source, DriverSource::Input { .. })
-    });
+    let moves = mechanism
+        .drivers
+        .iter()
+        .any(|driver| driver.motion().is_some_and(Expression::uses_time));
+    let crank = mechanism
+        .drivers
+        .iter()
+        .position(|driver| driver.coordinate.kind == CoordinateKind::Angle);
     let mut poses = vec![home.q.clone()];
-    if path.has_motions() {
+    if moves {
         let duration = (mechanism.simulation.stop - home.time).max(0.0);
         path.duration = duration / STEPS as f64;
         for _ in 0..STEPS {

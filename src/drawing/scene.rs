@@ -185,8 +185,8 @@ impl Scene {
     /// The scene of a mechanism that stands at a pose, to which the solver returns.
     ///
     /// Ways and slots are as long as the motion needs, along which points of interest leave
-    /// their traces: that of the prescribed motions until the file's stop time or, without any,
-    /// one turn of the first input that is an angle, as far as it gets both ways. Other inputs
+    /// their traces: that of the prescribed motions until the file's stop time or, if none moves,
+    /// one turn of the first driver that is an angle, as far as it gets both ways. Other drivers
     /// keep their values. With `traces` false the traces are left out.
     #[must_use]
     pub fn new(solver: &mut Solver, traces: bool) -> Self {

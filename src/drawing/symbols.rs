@@ -268,7 +268,8 @@ impl<'a> Pen<'a> {
         }
         for corner in hull {
             places.extend(around(*corner, BAR + 1.0).map(|mut candidate| {
-                candidate.cost += 4.0;
+                // Several bodies meet there: the name could be any one's.
+                candidate.cost += 10.0;
                 candidate
             }));
         }
@@ -559,9 +560,11 @@ impl<'a> Pen<'a> {
                 });
             }
         }
-        // If all around the arc is taken, anywhere near.
-        candidates.extend(around(center, ARC + 6.0).map(|mut candidate| {
-            candidate.cost += 6.0;
+        // If all along the arc is taken, near it.
+        let middle = on_sheet_direction(start + 0.5 * turn);
+        candidates.extend(around(center, ARC + 2.0).map(|mut candidate| {
+            let off = candidate.side.map_or(0.0, |side| 1.0 - side.dot(&middle));
+            candidate.cost += 2.0 + 4.0 * off;
             candidate
         }));
         self.driver_labels.push(Label {
