@@ -1,5 +1,9 @@
 //! A sheet as PNG.
 
+use std::io::Write;
+
+use flate2::write::ZlibEncoder;
+use flate2::{Compression, Crc};
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, StrokeDash, Transform,
 };
@@ -74,7 +78,49 @@ pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
             pixels.stroke_path(&path, &paint, &letters, transform, None);
         }
     }
-    pixels.encode_png().ok()
+    Some(encode(&pixels))
+}
+
+/// The pixels as a PNG file: 8 bits a channel with opacity, each row as its difference from the
+/// one above, which compresses lines and empty paper well.
+fn encode(pixels: &Pixmap) -> Vec<u8> {
+    const UP: u8 = 2;
+    let row_length = 4 * pixels.width() as usize;
+    let mut above = vec![0_u8; row_length];
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
+    let mut line = Vec::with_capacity(row_length + 1);
+    for row in pixels.pixels().chunks_exact(pixels.width() as usize) {
+        let straight: Vec<u8> = row
+            .iter()
+            .map(|pixel| pixel.demultiply())
+            .flat_map(|c| [c.red(), c.green(), c.blue(), c.alpha()])
+            .collect();
+        line.clear();
+        line.push(UP);
+        line.extend(straight.iter().zip(&above).map(|(x, b)| x.wrapping_sub(*b)));
+        packed
+            .write_all(&line)
+            .expect("writing to memory does not fail");
+        above = straight;
+    }
+    let data = packed.finish().expect("writing to memory does not fail");
+    let mut header = Vec::new();
+    header.extend(pixels.width().to_be_bytes());
+    header.extend(pixels.height().to_be_bytes());
+    // Bits a channel; red, green, blue, opacity; the only compression, filters, no interlacing.
+    header.extend([8, 6, 0, 0, 0]);
+    let mut file = b"\x89PNG\r\n\x1a\n".to_vec();
+    for (kind, content) in [(b"IHDR", &header), (b"IDAT", &data), (b"IEND", &Vec::new())] {
+        let mut checked = kind.to_vec();
+        checked.extend_from_slice(content);
+        let mut sum = Crc::new();
+        sum.update(&checked);
+        // At most `MOST_PIXELS` squared pixels: far less than the format's 2 GiB.
+        file.extend((content.len() as u32).to_be_bytes());
+        file.extend(checked);
+        file.extend(sum.sum().to_be_bytes());
+    }
+    file
 }
 
 fn paint(colour: Colour, opacity: f64) -> Paint<'static> {
