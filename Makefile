@@ -41,7 +41,7 @@ help: ## show this list
 demo: build ## export, validate and run the example mechanisms
 	@$(PYTHON) demo/demo.py
 
-demo test: export BIELA_BIN := $(CURDIR)/target/release/biela
+demo test refresh: export BIELA_BIN := $(CURDIR)/target/release/biela
 test: setup ## run all tests: Rust, documentation, FMPy
 	@if $(CARGO) nextest --version >/dev/null 2>&1; then \
 	    echo '$(CARGO) nextest run --workspace --locked' && $(CARGO) nextest run --workspace --locked && \
@@ -78,12 +78,13 @@ uninstall: ## remove what `make install` put under PREFIX
 	for file in $(MECHANISMS); do rm -f "$(SHARE_DIR)/$$file"; done
 	@rmdir "$(LIB_DIR)/$(LIBRARY_DIR)" "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
 
-refresh: build ## regenerate modelDescription/*.xml from mechanisms/*.toml
+refresh: build ## regenerate modelDescription/*.xml and the gallery from mechanisms/*.toml
 	@set -e; for file in mechanisms/*.toml; do \
 	    name=$$(basename "$$file" .toml); \
 	    echo "modelDescription/$$name.xml"; \
 	    target/release/biela export "$$file" --model-description "modelDescription/$$name.xml"; \
 	done
+	cd tests/fmpy && ../../$(PYTHON) -m gallery --page
 
 lock: setup ## renew tests/fmpy/requirements.txt from requirements.in
 	@bash scripts/lock.sh

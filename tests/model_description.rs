@@ -2,28 +2,8 @@
 
 mod common;
 
-use std::path::PathBuf;
-
 use biela::fmi::model_description;
-use common::{assembled, shipped};
-
-fn folder(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
-}
-
-fn stems(name: &str, extension: &str) -> Vec<String> {
-    let mut stems: Vec<_> = std::fs::read_dir(folder(name))
-        .expect("the folder is part of the project")
-        .map(|entry| entry.expect("the folder can be read").path())
-        .filter(|path| path.extension().is_some_and(|found| found == extension))
-        .map(|path| {
-            let stem = path.file_stem().expect("files have names");
-            stem.to_str().expect("names are ASCII").to_owned()
-        })
-        .collect();
-    stems.sort();
-    stems
-}
+use common::{assembled, folder, shipped, stems};
 
 /// The generation tool's version changes with every release and is no part of the contract.
 fn masked(xml: &str) -> String {

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses a part of this")]
 
+use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
 use biela::kinematics::{Curve, Path, Rates, Solver};
@@ -113,6 +114,26 @@ pub(crate) const EXACT: [Exact; 5] = [
         range: (-3.0, 9.0),
     },
 ];
+
+/// A folder of the project.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    FilePath::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The names, without their extension, of the files of a folder that have it, in order.
+pub(crate) fn stems(name: &str, extension: &str) -> Vec<String> {
+    let mut stems: Vec<_> = std::fs::read_dir(folder(name))
+        .expect("the folder is part of the project")
+        .map(|entry| entry.expect("the folder can be read").path())
+        .filter(|path| path.extension().is_some_and(|found| found == extension))
+        .map(|path| {
+            let stem = path.file_stem().expect("files have names");
+            stem.to_str().expect("names are ASCII").to_owned()
+        })
+        .collect();
+    stems.sort();
+    stems
+}
 
 /// Reads a shipped mechanism.
 pub(crate) fn shipped(name: &str) -> Arc<Mechanism> {

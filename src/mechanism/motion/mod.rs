@@ -36,6 +36,15 @@ pub enum Interpolation {
 }
 
 impl Motion {
+    /// Whether it moves at all.
+    #[must_use]
+    pub fn uses_time(&self) -> bool {
+        match self {
+            Self::Expression(expression) => expression.variable().is_some(),
+            Self::Table(_) => true,
+        }
+    }
+
     /// The parameters that it uses; one may come twice.
     pub fn parameters(&self) -> Box<dyn Iterator<Item = ParameterId> + '_> {
         match self {
