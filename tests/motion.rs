@@ -65,7 +65,6 @@ fn rates_are_the_derivatives_of_the_value() {
 }
 
 #[test]
-#[expect(clippy::float_cmp, reason = "held values are exact")]
 fn ends_are_as_asked_for() {
     let rest = |value| Jet::constant(value);
     for law in LAWS {
