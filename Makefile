@@ -24,7 +24,10 @@ BIN_DIR = $(DESTDIR)$(PREFIX)/bin
 LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 
-.PHONY: help demo test lint build setup install uninstall refresh lock clean
+# The shipped mechanisms with the tables that they name.
+MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
+
+.PHONY: help demo test bench lint build setup install uninstall refresh lock clean
 .NOTPARALLEL:
 
 help: ## show this list
@@ -38,20 +41,24 @@ help: ## show this list
 demo: build ## export, validate and run the example mechanisms
 	@$(PYTHON) demo/demo.py
 
-demo test: export BIELA_BIN := $(CURDIR)/target/release/biela
+demo test refresh: export BIELA_BIN := $(CURDIR)/target/release/biela
 test: setup ## run all tests: Rust, documentation, FMPy
 	@if $(CARGO) nextest --version >/dev/null 2>&1; then \
-	    echo '$(CARGO) nextest run --locked' && $(CARGO) nextest run --locked && \
+	    echo '$(CARGO) nextest run --workspace --locked' && $(CARGO) nextest run --workspace --locked && \
 	    echo '$(CARGO) test --doc --locked' && $(CARGO) test --doc --locked; \
 	else \
-	    echo '$(CARGO) test --locked' && $(CARGO) test --locked; \
+	    echo '$(CARGO) test --workspace --locked' && $(CARGO) test --workspace --locked; \
 	fi
 	$(CARGO) build --release --locked
 	$(PYTHON) -m pytest tests/fmpy
 
+bench: build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
+	$(CARGO) bench --package yardstick --locked
+	target/release/ratios $(if $(RENEW),benches/README.md)
+
 lint: setup ## check formatting, lints and documentation
-	$(CARGO) fmt --check
-	$(CARGO) clippy --locked --all-targets -- -D warnings
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --locked --all-targets -- -D warnings
 	RUSTDOCFLAGS=-Dwarnings $(CARGO) doc --no-deps --locked
 
 build: setup ## build the program and the library that goes into an FMU (release)
@@ -64,19 +71,20 @@ install: build ## install under PREFIX (default: ~/.local)
 	install -d "$(BIN_DIR)" "$(LIB_DIR)/$(LIBRARY_DIR)" "$(SHARE_DIR)/mechanisms"
 	install -m 755 target/release/biela "$(BIN_DIR)/biela"
 	install -m 755 target/release/$(BUILT_LIBRARY) "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
-	install -m 644 mechanisms/*.toml "$(SHARE_DIR)/mechanisms"
+	install -m 644 $(MECHANISMS) "$(SHARE_DIR)/mechanisms"
 
 uninstall: ## remove what `make install` put under PREFIX
 	rm -f "$(BIN_DIR)/biela" "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
-	for file in mechanisms/*.toml; do rm -f "$(SHARE_DIR)/$$file"; done
+	for file in $(MECHANISMS); do rm -f "$(SHARE_DIR)/$$file"; done
 	@rmdir "$(LIB_DIR)/$(LIBRARY_DIR)" "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
 
-refresh: build ## regenerate modelDescription/*.xml from mechanisms/*.toml
+refresh: build ## regenerate modelDescription/*.xml and the gallery from mechanisms/*.toml
 	@set -e; for file in mechanisms/*.toml; do \
 	    name=$$(basename "$$file" .toml); \
 	    echo "modelDescription/$$name.xml"; \
 	    target/release/biela export "$$file" --model-description "modelDescription/$$name.xml"; \
 	done
+	cd tests/fmpy && ../../$(PYTHON) -m gallery --page
 
 lock: setup ## renew tests/fmpy/requirements.txt from requirements.in
 	@bash scripts/lock.sh

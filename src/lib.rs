@@ -13,6 +13,7 @@
 //! |---|---|
 //! | [`mechanism`] | the file: bodies, markers, joints, drivers, expressions, and what is wrong with them |
 //! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
+//! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
 //! | [`fmi`] | the FMU: variables, co-simulation instance, C interface, model description, archive |
 //! | `cli` | the commands of the program `biela` |
 //!
@@ -54,6 +55,8 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "drawing")]
+pub mod drawing;
 pub mod fmi;
 pub mod kinematics;
 pub mod mechanism;

@@ -72,7 +72,7 @@ fn a_bad_file_exits_with_1_and_shows_the_line() {
         "four_bar",
         &[("\"crank.O\"]", "\"cranck.O\"]")],
     );
-    for command in ["check", "run", "export"] {
+    for command in ["check", "run", "draw", "export"] {
         let assert = biela(&[command, &file]).code(1);
         assert_eq!(stdout(&assert), "");
         let message = stderr(&assert);
@@ -90,7 +90,7 @@ fn a_mechanism_that_does_not_close_exits_with_1_and_names_the_joint() {
         "four_bar",
         &[("value = 0.10", "value = 0.80")],
     );
-    for command in ["check", "run", "export"] {
+    for command in ["check", "run", "draw", "export"] {
         let assert = biela(&[command, &file]).code(1);
         let message = stderr(&assert);
         assert!(
@@ -156,6 +156,22 @@ fn bad_usage_exits_with_2() {
         ),
         (&["run", "mechanisms/tlv.toml", "--set", "base=t"], "--set"),
         (
+            &["draw", "mechanisms/tlv.toml", "-o", "tlv.pdf"],
+            "`tlv.pdf` has neither the extension .svg nor .png",
+        ),
+        (
+            &["draw", "mechanisms/tlv.toml", "-o", "svg"],
+            "neither the extension",
+        ),
+        (
+            &["draw", "mechanisms/tlv.toml", "-o", "no_such_folder/x.svg"],
+            "cannot write `no_such_folder/x.svg`",
+        ),
+        (
+            &["draw", "mechanisms/tlv.toml", "--width", "0"],
+            "invalid value '0' for '--width <PIXELS>'",
+        ),
+        (
             &["export", "mechanisms/tlv.toml", "--runtime", "mechanisms"],
             "no runtime library",
         ),
@@ -182,6 +198,7 @@ fn help_goes_to_stdout() {
         &["--help"],
         &["check", "-h"],
         &["run", "--help"],
+        &["draw", "--help"],
         &["export", "-h"],
     ] {
         let assert = biela(arguments).success();
@@ -292,6 +309,70 @@ fn run_stops_at_a_dead_point_and_keeps_the_rows_before() {
     let message = stderr(&assert);
     assert!(message.contains("dead point"), "{message}");
     assert!(message.contains("`side_length` at 0.65"), "{message}");
+}
+
+#[test]
+fn draw_writes_what_the_extension_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |name: &str, more: &[&str]| {
+        let path = folder.path().join(name);
+        let mut arguments = vec!["draw", "mechanisms/four_bar.toml", "-o"];
+        arguments.push(path.to_str().unwrap());
+        arguments.extend(more);
+        let assert = biela(&arguments).success();
+        assert_eq!(stdout(&assert) + &stderr(&assert), "");
+        std::fs::read(path).unwrap()
+    };
+    let svg = draw("a.svg", &[]);
+    let text = String::from_utf8(svg.clone()).unwrap();
+    assert!(text.starts_with("<?xml") && text.contains("width=\"640\""));
+    assert!(text.contains("class=\"traces\"") && text.contains("<rect"));
+    assert!(svg == draw("b.SVG", &[]));
+    let bare = draw("c.svg", &["--no-traces", "--transparent", "--width", "320"]);
+    let bare = String::from_utf8(bare).unwrap();
+    assert!(!bare.contains("class=\"traces\"") && !bare.contains("<rect"));
+    assert!(bare.contains("width=\"320\"") && bare.contains("viewBox=\"0 0 640 "));
+    assert!(draw("d.png", &[]).starts_with(b"\x89PNG"));
+    let printed = biela(&["draw", "mechanisms/four_bar.toml", "-o", "-"]).success();
+    assert_eq!(stdout(&printed), text);
+    // Without -o, under the mechanism's own name where one is.
+    Command::new(env!("CARGO_BIN_EXE_biela"))
+        .current_dir(folder.path())
+        .args([
+            "draw",
+            concat!(env!("CARGO_MANIFEST_DIR"), "/mechanisms/four_bar.toml"),
+        ])
+        .assert()
+        .success();
+    assert!(svg == std::fs::read(folder.path().join("four_bar.svg")).unwrap());
+}
+
+#[test]
+fn draw_shows_the_pose_that_is_asked_for() {
+    let draw = |more: &[&str]| {
+        let mut arguments = vec!["draw", "mechanisms/four_bar.toml", "-o", "-"];
+        arguments.extend(more);
+        stdout(&biela(&arguments).success())
+    };
+    let home = draw(&[]);
+    // The file's own values, as a motion that keeps still, change nothing.
+    assert_eq!(home, draw(&["--drive", "crank_angle = 60*deg"]));
+    assert_eq!(home, draw(&["--set", "crank_length = 100*mm"]));
+    let turned = draw(&["--drive", "crank_angle = 120*deg"]);
+    assert_ne!(home, turned);
+    // The crank turns fully from there too.
+    assert!(turned.contains("class=\"traces\""));
+    assert_ne!(home, draw(&["--set", "crank_length = 80*mm"]));
+    assert_ne!(home, draw(&["--drive", "crank_angle = 60*deg + t/10"]));
+    biela(&[
+        "draw",
+        "mechanisms/four_bar.toml",
+        "-o",
+        "-",
+        "--drive",
+        "crank = 1",
+    ])
+    .code(2);
 }
 
 #[test]

@@ -15,9 +15,9 @@ fn directory(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The TOML files of a directory by name, in order, with their text.
-fn files(name: &str) -> Vec<(String, String)> {
-    let mut files: Vec<(String, String)> = fs::read_dir(directory(name))
+/// The TOML files of a directory by name, in order.
+fn files(name: &str) -> Vec<(String, Source)> {
+    let mut files: Vec<(String, Source)> = fs::read_dir(directory(name))
         .expect("the directory is there")
         .map(|entry| entry.expect("it can be read").path())
         .filter(|path| {
@@ -26,11 +26,11 @@ fn files(name: &str) -> Vec<(String, String)> {
         })
         .map(|path| {
             let stem = path.file_stem().expect("it has a name").to_string_lossy();
-            let text = fs::read_to_string(&path).expect("it is text");
-            (stem.into_owned(), text)
+            let source = Source::open(format!("{stem}.toml"), &path).expect("it is text");
+            (stem.into_owned(), source)
         })
         .collect();
-    files.sort();
+    files.sort_by(|(a, _), (b, _)| a.cmp(b));
     files
 }
 
@@ -51,8 +51,7 @@ fn diagnostics(source: &Source) -> Vec<Diagnostic> {
 
 #[test]
 fn each_bad_file_is_answered_as_reviewed() {
-    for (stem, text) in files("tests/diagnostics") {
-        let source = Source::new(format!("{stem}.toml"), text);
+    for (stem, source) in files("tests/diagnostics") {
         let diagnostics = diagnostics(&source);
         let code = stem.split('_').next().unwrap_or_default();
         assert!(
@@ -81,8 +80,7 @@ fn each_code_has_a_file() {
 
 #[test]
 fn no_problem_is_told_twice() {
-    for (stem, text) in files("tests/diagnostics") {
-        let source = Source::new(stem, text);
+    for (_, source) in files("tests/diagnostics") {
         let lines: Vec<String> = diagnostics(&source)
             .iter()
             .map(|diagnostic| diagnostic.one_line(&source))
@@ -94,8 +92,7 @@ fn no_problem_is_told_twice() {
 
 #[test]
 fn the_shipped_mechanisms_have_no_problem() {
-    for (stem, text) in files("mechanisms") {
-        let source = Source::new(stem, text);
+    for (_, source) in files("mechanisms") {
         let diagnostics = diagnostics(&source);
         assert!(
             diagnostics.is_empty(),
@@ -192,7 +189,7 @@ proptest! {
         ),
     ) {
         let files = files("mechanisms");
-        let mut bytes = files[file % files.len()].1.clone().into_bytes();
+        let mut bytes = files[file % files.len()].1.text().as_bytes().to_vec();
         for (at, to, kind, byte) in slips {
             let (at, to) = (at.index(bytes.len()), to.index(bytes.len()));
             match kind {

@@ -2,27 +2,8 @@
 
 mod common;
 
-use std::path::PathBuf;
-
 use biela::fmi::model_description;
-use common::{assembled, shipped};
-
-fn folder(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
-}
-
-fn stems(name: &str) -> Vec<String> {
-    let mut stems: Vec<_> = std::fs::read_dir(folder(name))
-        .expect("the folder is part of the project")
-        .map(|entry| {
-            let path = entry.expect("the folder can be read").path();
-            let stem = path.file_stem().expect("files have names");
-            stem.to_str().expect("names are ASCII").to_owned()
-        })
-        .collect();
-    stems.sort();
-    stems
-}
+use common::{assembled, folder, shipped, stems};
 
 /// The generation tool's version changes with every release and is no part of the contract.
 fn masked(xml: &str) -> String {
@@ -40,12 +21,15 @@ fn unversioned(xml: &str) -> String {
 
 #[test]
 fn every_shipped_mechanism_has_its_contract() {
-    assert_eq!(stems("modelDescription"), stems("mechanisms"));
+    assert_eq!(
+        stems("modelDescription", "xml"),
+        stems("mechanisms", "toml")
+    );
 }
 
 #[test]
 fn interfaces_do_not_drift() {
-    for name in stems("mechanisms") {
+    for name in stems("mechanisms", "toml") {
         let (solver, _) = assembled(&shipped(&name));
         let xml = model_description::write(solver.mechanism(), solver.structure(), None);
         let xml = String::from_utf8(xml).expect("XML is text");

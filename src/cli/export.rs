@@ -1,12 +1,13 @@
 //! `biela export`
 
-use std::io::{Cursor, Write};
-use std::path::{Path, PathBuf};
+use std::io::Cursor;
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::error::Error;
 use super::input::Input;
+use super::output::write;
 use super::runtime;
 use crate::fmi::{model_description, write_fmu};
 
@@ -63,19 +64,6 @@ impl Export {
         eprintln!("wrote {} ({})", path.display(), platforms.join(", "));
         Ok(())
     }
-}
-
-/// Writes a file, or to stdout for `-`.
-fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
-    let written = if path.as_os_str() == "-" {
-        std::io::stdout().write_all(content)
-    } else {
-        std::fs::write(path, content)
-    };
-    written.map_err(|source| Error::Write {
-        path: path.to_owned(),
-        source,
-    })
 }
 
 /// The time that `SOURCE_DATE_EPOCH` gives, as the schema's `dateTime`.

@@ -19,11 +19,11 @@ pub(super) struct Input {
 impl Input {
     /// Reads a file; errors and warnings are shown on stderr.
     pub(super) fn read(path: &FilePath) -> Result<Self, Error> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        let source = Source::new(path.display().to_string(), text);
+        let source =
+            Source::open(path.display().to_string(), path).map_err(|source| Error::Read {
+                path: path.to_owned(),
+                source,
+            })?;
         match Mechanism::parse(&source) {
             Ok((mechanism, warnings)) => {
                 show(&source, &warnings);
@@ -47,13 +47,17 @@ impl Input {
         }
     }
 
-    /// A solver at the file's own assembled pose, and how it got there.
+    /// A solver at the file's own assembled pose, and how it got there. Joints that do not fit
+    /// their own numbers there are warned of on stderr.
     pub(super) fn assemble(&self) -> Result<(Solver, crate::kinematics::Assembly), Error> {
         let mut solver =
             Solver::new(Arc::clone(&self.mechanism)).map_err(|error| self.error(error))?;
         let assembly = solver
             .assemble(&Path::new(&self.mechanism))
             .map_err(|error| self.error(error))?;
+        for misfit in solver.misfits() {
+            anstream::eprintln!("warning: {}: {misfit}\n", self.source.name());
+        }
         Ok((solver, assembly))
     }
 }

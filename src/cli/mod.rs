@@ -10,9 +10,12 @@
 )]
 
 mod check;
+mod conditions;
+mod draw;
 mod error;
 mod export;
 mod input;
+mod output;
 pub mod render;
 mod run;
 mod runtime;
@@ -39,6 +42,7 @@ struct Arguments {
 enum Command {
     Check(check::Check),
     Run(run::Run),
+    Draw(draw::Draw),
     Export(export::Export),
 }
 
@@ -55,6 +59,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let outcome = match arguments.command {
         Command::Check(command) => command.run(),
         Command::Run(command) => command.run(),
+        Command::Draw(command) => command.run(),
         Command::Export(command) => command.run(),
     };
     match outcome {

@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use clap::Args;
 
+use super::conditions::{self, Conditions};
 use super::error::Error;
 use super::input::Input;
 use crate::fmi::{Causality, Order, Quantity, Variables};
-use crate::kinematics::{Curve, Path, Pose, Rates, Reason, Solver, Start};
-use crate::mechanism::{DriverId, DriverSource, ExpressionError, Jet, Mechanism, ParameterId};
+use crate::kinematics::{Curve, Path, Rates, Reason, Solver};
+use crate::mechanism::{DriverId, Jet, Mechanism};
 
 /// Run a mechanism and print its motion as CSV.
 ///
@@ -28,13 +29,8 @@ use crate::mechanism::{DriverId, DriverSource, ExpressionError, Jet, Mechanism, 
 pub(super) struct Run {
     /// The mechanism file.
     file: PathBuf,
-    /// Move a driver by an expression in t and the parameters, such as
-    /// 'crank_angle=60*deg + 10*t'; may be given for several drivers.
-    #[arg(short, long, value_name = "DRIVER=MOTION")]
-    drive: Vec<String>,
-    /// Change a parameter for this run, such as 'crank_length=120*mm'; may be given for several.
-    #[arg(short, long, value_name = "PARAMETER=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    conditions: Conditions,
     /// Start time in seconds [default: the file's].
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     start: Option<f64>,
@@ -56,8 +52,8 @@ impl Run {
     pub(super) fn run(self) -> Result<(), Error> {
         let input = Input::read(&self.file)?;
         let times = self.times(&input.mechanism)?;
-        let parameters = self.parameters(&input.mechanism)?;
-        let driven = self.driven(&input.mechanism)?;
+        let parameters = self.conditions.parameters(&input.mechanism)?;
+        let driven = self.conditions.driven(&input.mechanism)?;
         let (home_solver, _) = input.assemble()?;
         let mut table = Table::new(&driven, self.writer()?, self.output.clone());
         let mut motion = Motion::start(home_solver, driven, parameters, times.start)
@@ -100,55 +96,6 @@ impl Run {
         })
     }
 
-    /// The parameters in force.
-    fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
-        let mut values = mechanism.default_parameters();
-        for assignment in &self.set {
-            let (name, text) = split(assignment, "--set", "crank_length=120*mm")?;
-            let id = mechanism.parameter_id(name).ok_or_else(|| {
-                let names = mechanism.parameters.iter().map(|p| p.name.as_str());
-                unknown("parameter", name, names)
-            })?;
-            let parameter = &mechanism.parameters[id.index()];
-            if parameter.derived {
-                return Err(Error::Usage(format!(
-                    "--set: `{name}` is derived from other parameters; set those"
-                )));
-            }
-            let value = mechanism
-                .parse_expression(text, false)
-                .map_err(|error| in_argument("--set", text, &error))?
-                .evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
-            let too_low = parameter.min.is_some_and(|min| value < min);
-            let too_high = parameter.max.is_some_and(|max| value > max);
-            if !value.is_finite() || too_low || too_high {
-                return Err(Error::Usage(format!(
-                    "--set: {value} is not a permitted value of `{name}`"
-                )));
-            }
-            values[id.index()] = value;
-        }
-        mechanism.derive_parameters(&mut values);
-        Ok(values)
-    }
-
-    /// The mechanism with the motions of --drive prescribed.
-    fn driven(&self, mechanism: &Mechanism) -> Result<Arc<Mechanism>, Error> {
-        let mut driven = mechanism.clone();
-        for assignment in &self.drive {
-            let (name, text) = split(assignment, "--drive", "crank_angle=60*deg + 10*t")?;
-            let id = mechanism.driver_id(name).ok_or_else(|| {
-                let names = mechanism.drivers.iter().map(|d| d.name.as_str());
-                unknown("driver", name, names)
-            })?;
-            let motion = mechanism
-                .parse_expression(text, true)
-                .map_err(|error| in_argument("--drive", text, &error))?;
-            driven.drivers[id.index()].source = DriverSource::Motion(motion);
-        }
-        Ok(Arc::new(driven))
-    }
-
     fn writer(&self) -> Result<Box<dyn Write>, Error> {
         let file = self.output.as_ref().filter(|path| path.as_os_str() != "-");
         Ok(match file {
@@ -182,42 +129,6 @@ impl Times {
     }
 }
 
-fn split<'a>(
-    assignment: &'a str,
-    option: &str,
-    example: &str,
-) -> Result<(&'a str, &'a str), Error> {
-    assignment
-        .split_once('=')
-        .map(|(name, text)| (name.trim(), text.trim()))
-        .ok_or_else(|| {
-            Error::Usage(format!(
-                "{option}: `{assignment}` has no `=`; expected for example '{example}'"
-            ))
-        })
-}
-
-fn unknown<'a>(what: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Error {
-    let names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
-    let help = match names[..] {
-        [] => "the mechanism has none".to_owned(),
-        _ => format!("expected {}", names.join(", ")),
-    };
-    Error::Usage(format!("no {what} `{name}`; {help}"))
-}
-
-fn in_argument(option: &str, text: &str, error: &ExpressionError) -> Error {
-    let column = text[..error.span.start].chars().count();
-    let help = error
-        .help
-        .as_ref()
-        .map_or_else(String::new, |help| format!("; {help}"));
-    Error::Usage(format!(
-        "{option}: {}{help}\n  {text}\n  {:column$}^",
-        error.message, ""
-    ))
-}
-
 /// A mechanism on its way along the motions of its drivers.
 struct Motion {
     solver: Solver,
@@ -229,30 +140,13 @@ struct Motion {
 impl Motion {
     /// Moves from the file's pose to the values at the start, in the file's assembly mode.
     fn start(
-        mut home_solver: Solver,
+        home_solver: Solver,
         driven: Arc<Mechanism>,
         parameters: Vec<f64>,
         time: f64,
     ) -> Result<Self, crate::kinematics::Error> {
-        let home = home_solver.pose().clone();
-        let mut path = Path::new(home_solver.mechanism());
-        path.duration = time - home.time;
-        path.to.clone_from(&parameters);
-        for (index, (curve, driver)) in path.curves.iter_mut().zip(&driven.drivers).enumerate() {
-            if let (Curve::Input { position, jump, .. }, Some(motion)) = (curve, driver.motion()) {
-                *position = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);
-                *jump = home.drivers[index] - *position;
-            }
-        }
-        if let Start::Reassembled(_) = home_solver.start(&home, &path)? {
-            eprintln!(
-                "warning: no continuous motion leads from the file's own pose to the start of \
-                 this run: assembled there from the estimates, possibly in another assembly mode"
-            );
-        }
-        let start: Pose = home_solver.pose().clone();
-        let mut solver = Solver::new(Arc::clone(&driven))?;
-        solver.restore(&start);
+        let solver = conditions::start(home_solver, &driven, &parameters, time)?;
+        let start = solver.pose();
         let mut path = Path::new(&driven);
         path.start = time;
         path.from.clone_from(&parameters);
@@ -302,18 +196,11 @@ impl Motion {
     }
 
     fn solve_rates(&mut self) -> Result<(), crate::kinematics::Error> {
-        let pose = self.solver.pose();
-        let parameters = &pose.parameters;
-        for (rates, driver) in self
-            .driver_rates
-            .iter_mut()
-            .zip(&self.solver.mechanism().drivers)
-        {
-            if let Some(motion) = driver.motion() {
-                *rates = motion.evaluate(
-                    &|p| Jet::constant(parameters[p.index()]),
-                    Jet::variable(pose.time),
-                );
+        let time = self.solver.pose().time;
+        let drivers = self.solver.mechanism().drivers.iter().enumerate();
+        for (rates, (index, driver)) in self.driver_rates.iter_mut().zip(drivers) {
+            if driver.motion().is_some() {
+                *rates = self.solver.motion(DriverId(index), time);
             }
         }
         let driver_rates = &self.driver_rates;

@@ -119,6 +119,10 @@ pub fn write_fmu(
     }
     zip.start_file(format!("resources/{RESOURCE}"), text)?;
     zip.write_all(source.text().as_bytes())?;
+    for file in &mechanism.table_files {
+        zip.start_file(format!("resources/{}", file.name), text)?;
+        zip.write_all(file.text.as_bytes())?;
+    }
     zip.finish()?;
     Ok(())
 }

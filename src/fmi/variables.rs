@@ -503,7 +503,7 @@ pub fn dependencies(
         Quantity::Motion(driver, _) => {
             dependencies.drivers.insert(driver);
             if let Some(motion) = mechanism.drivers[driver.index()].motion() {
-                dependencies.add_expression(mechanism, motion);
+                dependencies.add_motion(mechanism, motion);
             }
         }
         Quantity::Parameter(parameter) => dependencies.add_parameter(mechanism, parameter),

@@ -205,9 +205,10 @@ impl Solver {
         self.pose.turns.copy_from_slice(&self.targets.turns);
     }
 
+    /// The largest distance of a body from its estimate.
     fn scaled_distance(&self, estimate: &[f64]) -> f64 {
-        self.pose
-            .q
+        let bodies = self.system.mechanism().bodies.len();
+        self.pose.q[..3 * bodies]
             .iter()
             .zip(estimate)
             .enumerate()

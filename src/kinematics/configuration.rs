@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::Error;
-use crate::mechanism::{BodyId, Expression, MarkerId, Mechanism};
+use crate::mechanism::{BodyId, Expression, MarkerId, Mechanism, ProfileInForce};
 
 /// A vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
 #[must_use]
@@ -90,6 +90,10 @@ pub struct CoefficientId(pub usize);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JointUnknownId(pub usize);
 
+/// The profile of a cam: index into the system's profiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProfileId(pub usize);
+
 /// What a relation needs besides markers, known when the equations are written down.
 #[derive(Clone, Debug)]
 pub struct Coefficient {
@@ -109,6 +113,7 @@ pub struct Configuration {
     /// The bodies, then ground.
     bodies: Vec<BodyPose>,
     coefficients: Vec<f64>,
+    profiles: Vec<ProfileInForce>,
     /// The unknowns behind those of the bodies, which joints bring with them.
     joint_unknowns: Vec<f64>,
     size: f64,
@@ -118,7 +123,12 @@ impl Configuration {
     /// A configuration of all bodies at the origin, for parameter values still to be set, with
     /// room for what the system's joints need.
     #[must_use]
-    pub fn new(mechanism: &Mechanism, coefficients: usize, joint_unknowns: usize) -> Self {
+    pub fn new(
+        mechanism: &Mechanism,
+        coefficients: usize,
+        profiles: Vec<ProfileInForce>,
+        joint_unknowns: usize,
+    ) -> Self {
         let frames = mechanism
             .markers
             .iter()
@@ -133,6 +143,7 @@ impl Configuration {
             frames,
             bodies: vec![BodyPose::GROUND; mechanism.bodies.len() + 1],
             coefficients: vec![0.0; coefficients],
+            profiles,
             joint_unknowns: vec![0.0; joint_unknowns],
             size: 0.0,
         }
@@ -173,6 +184,9 @@ impl Configuration {
                     what: coefficient.what.clone(),
                 });
             }
+        }
+        for profile in &mut self.profiles {
+            profile.set_parameters(value);
         }
         self.size = size(mechanism, &self.frames);
         Ok(())
@@ -288,6 +302,18 @@ impl Configuration {
     #[must_use]
     pub fn joint_unknown(&self, id: JointUnknownId) -> f64 {
         self.joint_unknowns[id.0]
+    }
+
+    /// The place in q of a joint's own unknown.
+    #[must_use]
+    pub fn joint_unknown_column(&self, id: JointUnknownId) -> usize {
+        3 * (self.bodies.len() - 1) + id.0
+    }
+
+    /// A cam's profile with the parameter values in force.
+    #[must_use]
+    pub fn profile(&self, id: ProfileId) -> &ProfileInForce {
+        &self.profiles[id.0]
     }
 
     /// The mechanism's characteristic length \[m\]: makes metres and radians comparable.

@@ -1,14 +1,21 @@
 //! The equations that each kind of joint stands for.
 
-use super::constraint::{Axis, Coincidence, Constraint, Coupling, RackAndPinion, of_coordinate};
+use super::Element;
+use super::constraint::{
+    Axis, Coincidence, Constraint, Contour, Coupling, FlatContact, FlatFace, KnifeEdge,
+    RackAndPinion, Roller, RollerContact, of_coordinate,
+};
 use super::system::JointParts;
 use crate::mechanism::{
-    BodyId, Coordinate, CoordinateKind, Expression, Joint, JointKind, WheelSizes,
+    BodyId, CamFollower, Coordinate, CoordinateKind, Expression, Joint, JointKind, Mechanism,
+    WheelSizes,
 };
 
 /// The relations of a joint, and what each is held at.
 #[must_use]
 pub(super) fn relations(
+    mechanism: &Mechanism,
+    element: Element,
     joint: &Joint,
     parts: &mut JointParts,
 ) -> Vec<(Box<dyn Constraint>, Expression)> {
@@ -59,6 +66,52 @@ pub(super) fn relations(
                 side: *side,
             };
             vec![(Box::new(rolling), zero())]
+        }
+        JointKind::Cam { follower, profile } => {
+            let profile = parts.profile(profile, mechanism);
+            let contour = Contour {
+                cam: from,
+                profile,
+                contact: parts.next_unknown(),
+            };
+            match follower {
+                CamFollower::Knife => {
+                    let edge = KnifeEdge {
+                        cam: from,
+                        follower: to,
+                        profile,
+                    };
+                    vec![(Box::new(edge), zero())]
+                }
+                CamFollower::Roller { radius } => {
+                    let contact = RollerContact {
+                        contour,
+                        follower: to,
+                    };
+                    parts.unknown(element, Box::new(contact));
+                    let along = |axis| Roller {
+                        contour,
+                        follower: to,
+                        axis,
+                    };
+                    vec![
+                        (Box::new(along(Axis::X)), zero()),
+                        (Box::new(along(Axis::Y)), radius.clone()),
+                    ]
+                }
+                CamFollower::Flat => {
+                    let contact = FlatContact {
+                        contour,
+                        follower: to,
+                    };
+                    parts.unknown(element, Box::new(contact));
+                    let face = FlatFace {
+                        contour,
+                        follower: to,
+                    };
+                    vec![(Box::new(contact), zero()), (Box::new(face), zero())]
+                }
+            }
         }
     }
 }

@@ -64,12 +64,19 @@ impl Part {
         )
     }
 
-    /// Goes to the estimates, or to one of the starts near them.
+    /// Goes to the estimates, or to one of the starts near them. What joints bring with them
+    /// comes last in the list, and starts where it suits the bodies.
     pub(super) fn start(&self, work: &mut Work<'_>, estimate: &[f64], attempt: usize) {
         let size = work.at.size();
         for &column in &self.columns {
-            let shift = shift(attempt, column) * work.system.column_scale(column, size);
-            work.at.set_coordinate(column, estimate[column] + shift);
+            let start = match work.system.estimate_joint_unknown(column, work.at) {
+                Some(start) => start,
+                None => {
+                    let scale = work.system.column_scale(column, size);
+                    estimate[column] + shift(attempt, column) * scale
+                }
+            };
+            work.at.set_coordinate(column, start);
         }
     }
 

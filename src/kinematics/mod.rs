@@ -21,8 +21,10 @@ pub mod constraint;
 mod element;
 mod error;
 mod factor;
+mod fit;
 mod joint;
 mod minimise;
+mod motions;
 mod newton;
 mod path;
 mod plan;
@@ -33,9 +35,12 @@ mod structure;
 mod system;
 
 pub use assembly::{Assembly, Start};
-pub use configuration::{Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose};
+pub use configuration::{
+    Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
+};
 pub use element::Element;
 pub use error::{Error, OpenJoint};
+pub use fit::{Misfit, MisfitKind};
 pub use path::{Curve, Path};
 pub use rates::Rates;
 pub use solver::{Pose, Solver};

@@ -1,6 +1,7 @@
 //! The path over one step of everything that moves a mechanism from outside.
 
-use crate::mechanism::{DriverSource, Jet, Mechanism, ParameterId};
+use super::motions::Motions;
+use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 
 /// How time, parameters and drivers go from one communication point to the next, as functions
 /// of s, which runs from 0 to 1.
@@ -97,35 +98,24 @@ impl Path {
         mechanism.derive_parameters(out);
     }
 
-    /// Writes the drivers' values at s with their derivatives with respect to s; `parameters` are
-    /// those at s.
-    pub(super) fn drivers(
-        &self,
-        mechanism: &Mechanism,
-        s: f64,
-        parameters: &impl Fn(ParameterId) -> Jet,
-        out: &mut [Jet],
-    ) {
+    /// Writes the drivers' values at s with their derivatives with respect to s; `motions` are
+    /// those for the parameters at s.
+    pub(super) fn drivers(&self, s: f64, motions: &Motions, out: &mut [Jet]) {
         let h = self.duration;
-        for ((curve, driver), out) in self.curves.iter().zip(&mechanism.drivers).zip(out) {
-            *out = match (curve, &driver.source) {
-                (Curve::Motion, DriverSource::Motion(motion)) => {
-                    let t = Jet {
-                        value: self.time(s),
-                        first: h,
-                        second: 0.0,
-                    };
-                    motion.evaluate(parameters, t)
-                }
-                (
-                    &Curve::Input {
-                        position,
-                        velocity,
-                        acceleration,
-                        jump,
-                    },
-                    _,
-                ) => {
+        let t = Jet {
+            value: self.time(s),
+            first: h,
+            second: 0.0,
+        };
+        for ((driver, curve), out) in self.curves.iter().enumerate().zip(out) {
+            *out = match *curve {
+                Curve::Motion => motions.evaluate(DriverId(driver), t),
+                Curve::Input {
+                    position,
+                    velocity,
+                    acceleration,
+                    jump,
+                } => {
                     let tau = s * h;
                     Jet {
                         value: position
@@ -134,9 +124,6 @@ impl Path {
                         first: h * (velocity + tau * acceleration) - jump,
                         second: h * h * acceleration,
                     }
-                }
-                (Curve::Motion, DriverSource::Input { .. }) => {
-                    unreachable!("`Path::new` gives inputs their own curve")
                 }
             };
         }

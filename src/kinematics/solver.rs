@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration, point_velocity};
+use super::motions::Motions;
 use super::newton::Rejected;
 use super::plan::{Plan, Work};
 use super::rates::Rates;
@@ -75,7 +76,10 @@ pub struct Solver {
     /// Rates of q: with a single driver the derivatives with respect to its value, from which
     /// all others follow; else those along a path.
     pub(super) flow: Rates,
-    /// Parameters and drivers along a path.
+    /// The prescribed motions for the pose's parameters.
+    pub(super) motions: Motions,
+    /// Prescribed motions, parameters and drivers along a path on which parameters move.
+    pub(super) path_motions: Motions,
     pub(super) path_parameters: Vec<Jet>,
     pub(super) path_drivers: Vec<Jet>,
     /// The drivers where a sub-step starts.
@@ -112,6 +116,7 @@ impl Solver {
             q: vec![0.0; order],
             turns: vec![0; order],
         };
+        let motions = Motions::new(&mechanism);
         let measures = mechanism.measures.iter();
         Ok(Self {
             plan: Plan::new(&system, &structure),
@@ -121,6 +126,8 @@ impl Solver {
                 .collect(),
             targets: system.targets(),
             parameters_taken: false,
+            path_motions: motions.clone(),
+            motions,
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
             path_drivers: vec![Jet::constant(0.0); drivers],
             origin_drivers: vec![Jet::constant(0.0); drivers],
@@ -263,12 +270,23 @@ impl Solver {
         })
     }
 
+    /// Value, velocity and acceleration of a driver with a prescribed motion at a time, for the
+    /// pose's parameters. Parameters contribute nothing to velocities, even while they change.
+    /// Not a number for an input. Allocates nothing.
+    #[must_use]
+    pub fn motion(&self, driver: DriverId, time: f64) -> Jet {
+        self.motions.evaluate(driver, Jet::variable(time))
+    }
+
     /// Recomputes all that depends on the parameters of the pose alone.
     pub(super) fn take_over_parameters(&mut self) -> Result<(), Error> {
         self.parameters_taken = false;
         self.system
             .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
         self.plan.set_parameters(&self.at);
+        let parameters = &self.pose.parameters;
+        self.motions
+            .set_parameters(|p| Jet::constant(parameters[p.index()]));
         self.parameters_taken = true;
         Ok(())
     }

@@ -234,7 +234,8 @@ impl Solver {
     fn drive(&mut self, path: &Path, s: f64) {
         let Self {
             system,
-            pose,
+            motions,
+            path_motions,
             path_parameters,
             path_drivers,
             ..
@@ -242,24 +243,18 @@ impl Solver {
         let mechanism = system.mechanism();
         if path.moves_parameters() {
             path.parameters(mechanism, s, path_parameters);
-            path.drivers(mechanism, s, &|p| path_parameters[p.index()], path_drivers);
+            path_motions.set_parameters(|p| path_parameters[p.index()]);
+            path.drivers(s, path_motions, path_drivers);
         } else {
-            let parameters = &pose.parameters;
-            let constant = |p: crate::mechanism::ParameterId| Jet::constant(parameters[p.index()]);
-            path.drivers(mechanism, s, &constant, path_drivers);
+            path.drivers(s, motions, path_drivers);
         }
     }
 
     /// The drivers' values at the end of a path.
     pub fn drivers_at_end(&mut self, path: &Path) -> Vec<f64> {
-        let mechanism = self.system.mechanism();
-        let parameters = &path.to;
-        path.drivers(
-            mechanism,
-            1.0,
-            &|p| Jet::constant(parameters[p.index()]),
-            &mut self.path_drivers,
-        );
+        self.path_motions
+            .set_parameters(|p| Jet::constant(path.to[p.index()]));
+        path.drivers(1.0, &self.path_motions, &mut self.path_drivers);
         self.path_drivers
             .iter()
             .map(|driver| driver.value)

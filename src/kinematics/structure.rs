@@ -14,7 +14,9 @@ use petgraph::graph::{DiGraph, NodeIndex};
 use super::constraint::Incidence;
 use super::system::{System, Target};
 use super::{Element, Error, constraint};
-use crate::mechanism::{Coordinate, DriverId, Expression, MarkerId, Mechanism, ParameterId};
+use crate::mechanism::{
+    Coordinate, DriverId, Expression, MarkerId, Mechanism, Motion, ParameterId,
+};
 
 /// The block lower triangular structure of a system.
 #[derive(Clone, Debug)]
@@ -62,6 +64,13 @@ impl Dependencies {
     /// Adds what an expression of the mechanism uses.
     pub fn add_expression(&mut self, mechanism: &Mechanism, expression: &Expression) {
         for parameter in expression.parameters() {
+            self.add_parameter(mechanism, parameter);
+        }
+    }
+
+    /// Adds what a prescribed motion uses.
+    pub fn add_motion(&mut self, mechanism: &Mechanism, motion: &Motion) {
+        for parameter in motion.parameters() {
             self.add_parameter(mechanism, parameter);
         }
     }
@@ -205,6 +214,8 @@ impl Structure {
                 }
             }
             block.parameters.extend(&incidences[row].parameters);
+            let equation = &system.equations()[row];
+            block.parameters.extend(&equation.parameters);
             let unknowns = &incidences[row].unknowns;
             let owners = unknowns.iter().map(|&unknown| self.block_of[unknown]);
             block

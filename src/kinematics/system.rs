@@ -6,10 +6,10 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::configuration::{Coefficient, CoefficientId, Configuration};
-use super::constraint::{self, Constraint, Dimension, Gradient, TurnEffect};
+use super::configuration::{Coefficient, CoefficientId, Configuration, JointUnknownId, ProfileId};
+use super::constraint::{self, Constraint, Dimension, Gradient, JointUnknown, TurnEffect};
 use super::{Element, Error, joint};
-use crate::mechanism::{DriverId, Expression, Mechanism};
+use crate::mechanism::{DriverId, Expression, Mechanism, ParameterId, Profile, ProfileInForce};
 
 /// What c(q) is held at.
 #[derive(Clone, Debug)]
@@ -29,6 +29,8 @@ pub struct Equation {
     pub constraint: Box<dyn Constraint>,
     /// What it is held at.
     pub target: Target,
+    /// The parameters that it uses besides those of markers and of the target.
+    pub parameters: Vec<ParameterId>,
 }
 
 /// The equations of a mechanism: kinematic constraints (Ec. 3.6.1), then drivers (Ec. 3.6.2).
@@ -45,8 +47,11 @@ pub struct System {
 #[derive(Debug, Default)]
 pub(super) struct JointParts {
     coefficients: Vec<Coefficient>,
-    /// The joint of each unknown behind those of the bodies.
-    unknowns: Vec<Element>,
+    profiles: Vec<ProfileInForce>,
+    /// The unknowns behind those of the bodies, each with its joint.
+    unknowns: Vec<(Element, Box<dyn JointUnknown>)>,
+    /// The parameters used by the joint that is being written down.
+    parameters: Vec<ParameterId>,
 }
 
 impl JointParts {
@@ -56,11 +61,30 @@ impl JointParts {
         expression: &Expression,
         what: impl Into<String>,
     ) -> CoefficientId {
+        self.parameters.extend(expression.parameters());
         self.coefficients.push(Coefficient {
             expression: expression.clone(),
             what: what.into(),
         });
         CoefficientId(self.coefficients.len() - 1)
+    }
+
+    /// Registers a cam's profile.
+    pub(super) fn profile(&mut self, profile: &Profile, mechanism: &Mechanism) -> ProfileId {
+        self.parameters.extend(profile.parameters());
+        let parameters = mechanism.parameters.len();
+        self.profiles.push(ProfileInForce::new(profile, parameters));
+        ProfileId(self.profiles.len() - 1)
+    }
+
+    /// The id that the next unknown will have.
+    pub(super) fn next_unknown(&self) -> JointUnknownId {
+        JointUnknownId(self.unknowns.len())
+    }
+
+    /// Registers an unknown of a joint's own.
+    pub(super) fn unknown(&mut self, element: Element, unknown: Box<dyn JointUnknown>) {
+        self.unknowns.push((element, unknown));
     }
 }
 
@@ -93,11 +117,16 @@ impl System {
         let mut equations = Vec::new();
         let mut joint_parts = JointParts::default();
         for (index, joint) in mechanism.joints.iter().enumerate() {
-            for (constraint, target) in joint::relations(joint, &mut joint_parts) {
+            let element = Element::Joint(index);
+            joint_parts.parameters.clear();
+            for (constraint, target) in
+                joint::relations(&mechanism, element, joint, &mut joint_parts)
+            {
                 equations.push(Equation {
-                    element: Element::Joint(index),
+                    element,
                     constraint,
                     target: Target::Constant(target),
+                    parameters: joint_parts.parameters.clone(),
                 });
             }
         }
@@ -106,6 +135,7 @@ impl System {
                 element: Element::Constraint(index),
                 constraint: constraint::of_coordinate(&held.coordinate),
                 target: Target::Constant(held.value.clone()),
+                parameters: Vec::new(),
             });
         }
         let mut driver_rows = Vec::with_capacity(mechanism.drivers.len());
@@ -115,6 +145,7 @@ impl System {
                 element: Element::Driver(DriverId(index)),
                 constraint: constraint::of_coordinate(&driver.coordinate),
                 target: Target::Driver(DriverId(index)),
+                parameters: Vec::new(),
             });
         }
         Self {
@@ -150,7 +181,7 @@ impl System {
             Some(body) => format!("body `{}`", body.name),
             None => {
                 let place = column - 3 * self.mechanism.bodies.len();
-                self.joint_parts.unknowns[place].describe(&self.mechanism)
+                self.joint_parts.unknowns[place].0.describe(&self.mechanism)
             }
         }
     }
@@ -161,6 +192,7 @@ impl System {
         Configuration::new(
             &self.mechanism,
             self.joint_parts.coefficients.len(),
+            self.joint_parts.profiles.clone(),
             self.joint_parts.unknowns.len(),
         )
     }
@@ -243,6 +275,15 @@ impl System {
                 targets.turns[row] = (excess / TAU).round() as i32;
             }
         }
+    }
+
+    /// Where to look for the unknown q\[column\] if a joint brought it, the bodies being where
+    /// `at` has them \[rad\].
+    #[must_use]
+    pub fn estimate_joint_unknown(&self, column: usize, at: &Configuration) -> Option<f64> {
+        let place = column.checked_sub(3 * self.mechanism.bodies.len())?;
+        let (_, unknown) = self.joint_parts.unknowns.get(place)?;
+        Some(unknown.estimate(at))
     }
 
     /// What row `row` is held at, `drivers` being the values u of all drivers.

@@ -116,6 +116,8 @@ macro_rules! codes {
 
 codes! {
     BAD_EXPRESSION = "bad-expression",
+    BAD_PROFILE = "bad-profile",
+    BAD_TABLE = "bad-table",
     DRIVER_SOURCE = "driver-source",
     DUPLICATE_KEY = "duplicate-key",
     DUPLICATE_NAME = "duplicate-name",
@@ -134,6 +136,7 @@ codes! {
     RESERVED_NAME = "reserved-name",
     SAME_BODY = "same-body",
     SYNTAX = "syntax",
+    TABLE_FILE = "table-file",
     TOO_MANY_PROBLEMS = "too-many-problems",
     UNKNOWN_BODY = "unknown-body",
     UNKNOWN_COORDINATE = "unknown-coordinate",

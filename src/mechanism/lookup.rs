@@ -2,7 +2,7 @@
 
 use super::expression::Scope;
 use super::names::NameTable;
-use super::{BodyId, DriverId, Expression, ExpressionError, Mechanism, ParameterId};
+use super::{BodyId, DriverId, Expression, ExpressionError, Mechanism, ParameterId, Variable};
 
 impl Mechanism {
     /// The parameter called `name`.
@@ -26,8 +26,8 @@ impl Mechanism {
         Some(DriverId(index))
     }
 
-    /// Parses an expression over this mechanism's parameters, and over time `t` if that is
-    /// allowed.
+    /// Parses an expression over this mechanism's parameters, and over `variable` if there is
+    /// one.
     ///
     /// # Errors
     ///
@@ -36,13 +36,13 @@ impl Mechanism {
     pub fn parse_expression(
         &self,
         text: &str,
-        time_allowed: bool,
+        variable: Option<Variable>,
     ) -> Result<Expression, ExpressionError> {
         let names = self.parameters.iter().map(|p| p.name.as_str());
         let parameters: NameTable<'_, ParameterId> = names.zip((0..).map(ParameterId)).collect();
         let scope = Scope {
             parameters: &parameters,
-            time_allowed,
+            variable,
         };
         Expression::parse(text, scope)
     }

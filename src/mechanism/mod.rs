@@ -10,17 +10,25 @@ mod expression;
 mod id;
 mod lookup;
 mod lower;
+mod motion;
 mod names;
 mod parameter;
+mod profile;
 mod source;
+mod spline;
 mod syntax;
+mod table;
 mod unit;
 
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use expression::{Expression, ExpressionError, Jet, Number, Partials};
+pub use expression::{Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
+pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 pub use parameter::Parameter;
+pub use profile::{Profile, ProfileInForce};
 pub use source::{Position, Source, Span};
+pub use spline::{Ends, Spline};
+pub use table::{Table, TableFile};
 pub use unit::{Dimension, DisplayUnit, Unit};
 
 /// A planar mechanism as its file describes it, checked for names, types and units, not yet for
@@ -63,8 +71,10 @@ pub struct Mechanism {
     pub outputs: Outputs,
     /// Default experiment.
     pub simulation: Simulation,
-    /// The file's content without comments and layout: equal for two files exactly when they
-    /// describe the same mechanism with the same values and tables in the same order.
+    /// The CSV files that the mechanism file names, each once.
+    pub table_files: Vec<TableFile>,
+    /// The content of the file and of its tables without comments and layout: equal for two
+    /// files exactly when they describe the same mechanism with the same values and tables in the same order.
     pub canonical: String,
 }
 
@@ -188,6 +198,27 @@ pub enum JointKind {
         /// On which side of the rack the pinion is.
         side: RackSide,
     },
+    /// A follower, which has marker j, on the contour of a cam, which has marker i.
+    Cam {
+        /// What touches the cam.
+        follower: CamFollower,
+        /// The contour.
+        profile: Profile,
+    },
+}
+
+/// What of a follower touches the cam, on the outer side of its contour.
+#[derive(Clone, Debug)]
+pub enum CamFollower {
+    /// The marker's point.
+    Knife,
+    /// A roller round the marker's point.
+    Roller {
+        /// Its radius \[m\], positive.
+        radius: Expression,
+    },
+    /// The marker's x-axis.
+    Flat,
 }
 
 /// The sizes of two wheels. Their ratio decides how they turn.
@@ -245,7 +276,7 @@ pub struct Driver {
 impl Driver {
     /// The prescribed motion, `None` for an FMI input.
     #[must_use]
-    pub fn motion(&self) -> Option<&Expression> {
+    pub fn motion(&self) -> Option<&Motion> {
         match &self.source {
             DriverSource::Input { .. } => None,
             DriverSource::Motion(motion) => Some(motion),
@@ -262,8 +293,8 @@ pub enum DriverSource {
         /// parameter values.
         start: f64,
     },
-    /// A prescribed motion u(t, parameters).
-    Motion(Expression),
+    /// A prescribed motion.
+    Motion(Motion),
 }
 
 /// A coordinate that is an output.

@@ -1,6 +1,9 @@
 //! The text of a mechanism file, and where in it something is.
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::ops::Range;
+use std::path::{Component, Path, PathBuf};
 
 /// A stretch of the text, in bytes.
 pub type Span = Range<usize>;
@@ -14,11 +17,16 @@ pub struct Position {
     pub column: usize,
 }
 
+/// Files larger than this are not read \[bytes\]: no mechanism or table comes near it.
+const LARGEST_FILE: u64 = 64 << 20;
+
 /// The text of a mechanism file and the name under which people know it.
 #[derive(Clone, Debug)]
 pub struct Source {
     name: String,
     text: String,
+    /// Where the files are that it names.
+    folder: Option<PathBuf>,
     /// Byte offset at which each line starts.
     line_starts: Vec<usize>,
 }
@@ -34,7 +42,44 @@ impl Source {
         Self {
             name: name.into(),
             text,
+            folder: None,
             line_starts,
+        }
+    }
+
+    /// Reads the file at `path`, named `name` in messages. Files that it names are looked for
+    /// beside it.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, is not UTF-8, or is larger than any mechanism.
+    pub fn open(name: impl Into<String>, path: &Path) -> io::Result<Self> {
+        let text = read_bounded(path)?;
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
+        Ok(Self {
+            folder: Some(folder),
+            ..Self::new(name, text)
+        })
+    }
+
+    /// The content of a file that the text names, which is beside it.
+    ///
+    /// # Errors
+    ///
+    /// It cannot be read, or `name` is not the plain name of a file.
+    pub(super) fn read_beside(&self, name: &str) -> io::Result<String> {
+        let refuse = |why| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+        let mut parts = Path::new(name).components();
+        if !matches!(
+            (parts.next(), parts.next()),
+            (Some(Component::Normal(_)), None)
+        ) || name.contains(['/', '\\'])
+        {
+            return refuse("expected the name of a file beside the mechanism file");
+        }
+        match &self.folder {
+            Some(folder) => read_bounded(&folder.join(name)),
+            None => refuse("the mechanism was not read from a file"),
         }
     }
 
@@ -84,6 +129,18 @@ impl Source {
         let line = &self.text[start..end.unwrap_or(self.text.len())];
         line.trim_end_matches(['\r', '\n'])
     }
+}
+
+fn read_bounded(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    let read = File::open(path)?
+        .take(LARGEST_FILE + 1)
+        .read_to_string(&mut text)?;
+    if read as u64 > LARGEST_FILE {
+        let why = format!("it has more than {LARGEST_FILE} bytes");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
+    }
+    Ok(text)
 }
 
 #[cfg(test)]

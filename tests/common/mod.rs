@@ -2,10 +2,11 @@
 
 #![allow(dead_code, reason = "each test file uses a part of this")]
 
+use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
 use biela::kinematics::{Curve, Path, Rates, Solver};
-use biela::mechanism::{Jet, Mechanism, Source};
+use biela::mechanism::{Jet, Mechanism, Source, Variable};
 
 /// A shipped mechanism with one driver, and each of its generalized coordinates as a formula in
 /// the driver's value `t`.
@@ -114,16 +115,40 @@ pub(crate) const EXACT: [Exact; 5] = [
     },
 ];
 
+/// A folder of the project.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    FilePath::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The names, without their extension, of the files of a folder that have it, in order.
+pub(crate) fn stems(name: &str, extension: &str) -> Vec<String> {
+    let mut stems: Vec<_> = std::fs::read_dir(folder(name))
+        .expect("the folder is part of the project")
+        .map(|entry| entry.expect("the folder can be read").path())
+        .filter(|path| path.extension().is_some_and(|found| found == extension))
+        .map(|path| {
+            let stem = path.file_stem().expect("files have names");
+            stem.to_str().expect("names are ASCII").to_owned()
+        })
+        .collect();
+    stems.sort();
+    stems
+}
+
 /// Reads a shipped mechanism.
 pub(crate) fn shipped(name: &str) -> Arc<Mechanism> {
     let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(path).expect("shipped mechanisms can be read");
-    parse(&text)
+    let source = Source::open(name, path.as_ref()).expect("shipped mechanisms can be read");
+    read(&source)
 }
 
 /// Reads a mechanism that has no errors.
 pub(crate) fn parse(text: &str) -> Arc<Mechanism> {
-    match Mechanism::parse(&Source::new("test.toml", text)) {
+    read(&Source::new("test.toml", text))
+}
+
+fn read(source: &Source) -> Arc<Mechanism> {
+    match Mechanism::parse(source) {
         Ok((mechanism, _)) => Arc::new(mechanism),
         Err(diagnostics) => panic!("{diagnostics:#?}"),
     }
@@ -159,7 +184,7 @@ impl Exact {
             .flat_map(|(_, formulas)| formulas)
             .map(|formula| {
                 let expression = mechanism
-                    .parse_expression(&self.expand(formula), true)
+                    .parse_expression(&self.expand(formula), Some(Variable::Time))
                     .expect("the formula is right");
                 expression.evaluate(&|p| Jet::constant(parameters[p.index()]), driver)
             })

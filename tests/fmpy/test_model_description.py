@@ -447,6 +447,8 @@ def test_same_file_same_bytes(tmp_path, name):
     elsewhere = tmp_path / "else where"
     elsewhere.mkdir()
     copy = shutil.copy(mechanism_file(name), elsewhere / "copy of it.toml")
+    for table in mechanism_file(name).parent.glob("*.csv"):
+        shutil.copy(table, elsewhere)
     second = export(copy, elsewhere / "second.fmu", cwd=elsewhere)
     assert first.read_bytes() == second.read_bytes()
 

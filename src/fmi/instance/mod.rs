@@ -18,9 +18,6 @@ use super::{UriError, resource_path};
 use crate::kinematics::{self, Path, Pose, Progress, Rates, Solver};
 use crate::mechanism::{Diagnostic, DriverSource, Jet, Mechanism, Severity, Source};
 
-/// Largest mechanism file that is read: far above any real one.
-const LARGEST_FILE: u64 = 64 << 20;
-
 /// How a call ended, in the order of `fmi2Status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
@@ -539,16 +536,7 @@ fn read_mechanism(guid: &str, resources: &str) -> Result<Arc<Mechanism>, Error> 
         path: path.display().to_string(),
         reason,
     };
-    let length = std::fs::metadata(&path)
-        .map_err(|error| unreadable(error.to_string()))?
-        .len();
-    if length > LARGEST_FILE {
-        return Err(unreadable(format!(
-            "it has {length} bytes, more than {LARGEST_FILE}"
-        )));
-    }
-    let text = std::fs::read_to_string(&path).map_err(|error| unreadable(error.to_string()))?;
-    let source = Source::new(RESOURCE, text);
+    let source = Source::open(RESOURCE, &path).map_err(|error| unreadable(error.to_string()))?;
     let (mechanism, _) = Mechanism::parse(&source).map_err(|diagnostics| Error::Mechanism {
         diagnostics: diagnostics
             .iter()

@@ -6,7 +6,7 @@ use crate::fmi::log::Category;
 use crate::fmi::state::{Call, State};
 use crate::fmi::variables::Order;
 use crate::kinematics::{Blocked, Curve, Progress, Reason, Start};
-use crate::mechanism::{CoordinateKind, DriverSource, Jet};
+use crate::mechanism::{CoordinateKind, DriverId, DriverSource, Jet};
 
 /// Hosts add up step sizes: communication points may be off by this much, relative to the
 /// larger of time and step.
@@ -115,9 +115,8 @@ impl Instance {
             solver,
             ..
         } = self;
-        let parameters = &solver.pose().parameters;
-        for ((rates, driver), input) in driver_rates.iter_mut().zip(&mechanism.drivers).zip(inputs)
-        {
+        let drivers = mechanism.drivers.iter().enumerate();
+        for ((rates, (index, driver)), input) in driver_rates.iter_mut().zip(drivers).zip(inputs) {
             *rates = match &driver.source {
                 DriverSource::Input { .. } => {
                     let DriverRates {
@@ -130,11 +129,7 @@ impl Instance {
                         second: acceleration,
                     }
                 }
-                // Parameters contribute nothing to velocities, even while they change.
-                DriverSource::Motion(motion) => motion.evaluate(
-                    &|p| Jet::constant(parameters[p.index()]),
-                    Jet::variable(start + s * h),
-                ),
+                DriverSource::Motion(_) => solver.motion(DriverId(index), start + s * h),
             };
         }
     }

@@ -9,6 +9,7 @@
 //! it once it is listed in `samples`.
 
 mod angle;
+mod cam;
 mod coincidence;
 mod coupling;
 mod distance;
@@ -18,13 +19,14 @@ mod rack_and_pinion;
 use nalgebra::Vector2;
 
 pub use angle::Angle;
+pub use cam::{Contour, FlatContact, FlatFace, KnifeEdge, Roller, RollerContact};
 pub use coincidence::Coincidence;
 pub use coupling::Coupling;
 pub use distance::Distance;
 pub use projection::Projection;
 pub use rack_and_pinion::RackAndPinion;
 
-use super::configuration::{Configuration, MarkerPose, perp};
+use super::configuration::{Configuration, JointUnknownId, MarkerPose, perp};
 use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, Expression, MarkerId, Mechanism, ParameterId,
 };
@@ -45,6 +47,16 @@ pub enum Axis {
     X,
     /// The y-axis, n.
     Y,
+}
+
+impl Axis {
+    /// This axis of a frame whose x-axis is `u`.
+    fn of(self, u: Vector2<f64>) -> Vector2<f64> {
+        match self {
+            Self::X => u,
+            Self::Y => perp(u),
+        }
+    }
 }
 
 /// What a whole turn of a body does to a relation.
@@ -70,7 +82,7 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     fn gradient(&self, at: &Configuration, row: &mut Gradient);
 
     /// q̇ᵀ (∂²c/∂q²) q̇: what remains of c̈ where q̈ = 0 (Ec. 3.6.11 has it with the opposite
-    /// sign). `q_dot` is `3 * bodies` long.
+    /// sign). `q_dot` is as long as q.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
 
     /// Whether this is one of the relations that special kernels know.
@@ -118,10 +130,16 @@ pub enum Relation {
     Other,
 }
 
+/// An unknown that a joint brings with it, such as where on a cam the contact is.
+pub trait JointUnknown: std::fmt::Debug + Send + Sync {
+    /// Where to look for it when the bodies are at their estimates \[rad\].
+    fn estimate(&self, at: &Configuration) -> f64;
+}
+
 /// A neighbourhood of a pose: each unknown may be off by a radius of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Region<'a> {
-    /// One radius an unknown, \[m, m, rad\] for each body.
+    /// One radius an unknown: \[m, m, rad\] for each body, then the joints' own.
     pub radii: &'a [f64],
 }
 
@@ -255,6 +273,13 @@ impl Gradient {
         }
     }
 
+    /// Adds the entry of a joint's own unknown, of which a relation contains one at most.
+    pub fn add_joint_unknown(&mut self, column: usize, value: f64) {
+        let entry = self.joint_unknown.get_or_insert((column, 0.0));
+        debug_assert_eq!(entry.0, column, "a relation has one unknown of its joint's");
+        entry.1 += value;
+    }
+
     /// The entries as pairs of an index in q and a value, body by body.
     pub fn entries(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.parts[..self.len]
@@ -345,12 +370,32 @@ impl Incidence {
         }
     }
 
+    /// Notes a joint's own unknown.
+    pub fn joint_unknown(&mut self, mechanism: &Mechanism, unknown: JointUnknownId) {
+        self.unknowns.push(3 * mechanism.bodies.len() + unknown.0);
+    }
+
     /// Notes what a marker's direction contains.
     pub fn direction(&mut self, mechanism: &Mechanism, marker: MarkerId) {
         let marker = &mechanism.markers[marker.index()];
         self.unknowns
             .extend(marker.body.map(|body| 3 * body.index() + 2));
         self.expression(&marker.angle);
+    }
+}
+
+/// Whether a marker's axis can have a component along the global x and y.
+fn axis_components(mechanism: &Mechanism, marker: MarkerId, axis: Axis) -> [bool; 2] {
+    let marker = &mechanism.markers[marker.index()];
+    match (marker.body, marker.angle.literal()) {
+        // On ground with a literal angle the axis has a fixed direction, which often runs along
+        // x or y; an angle such as 90*deg is a right angle up to its rounding.
+        (None, Some(angle)) => {
+            let e = axis.of(Vector2::new(angle.cos(), angle.sin()));
+            let rounding = f64::EPSILON * angle.abs().max(1.0);
+            [e.x.abs() > rounding, e.y.abs() > rounding]
+        }
+        _ => [true, true],
     }
 }
 

@@ -4,7 +4,8 @@ use nalgebra::Vector2;
 
 use super::{
     Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation,
-    angular_velocity, centripetal, centripetal_bound, perp, point_velocity, speed_bound,
+    angular_velocity, axis_components, centripetal, centripetal_bound, perp, point_velocity,
+    speed_bound,
 };
 use crate::mechanism::{MarkerId, Mechanism};
 
@@ -23,15 +24,7 @@ pub struct Projection {
 
 impl Projection {
     fn direction(&self, at: &Configuration) -> Vector2<f64> {
-        self.choose(at.marker(self.axes).axis)
-    }
-
-    /// The axis in question, given the x-axis.
-    fn choose(&self, u: Vector2<f64>) -> Vector2<f64> {
-        match self.axis {
-            Axis::X => u,
-            Axis::Y => perp(u),
-        }
+        self.axis.of(at.marker(self.axes).axis)
     }
 }
 
@@ -107,17 +100,7 @@ impl Constraint for Projection {
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
-        let k = &mechanism.markers[self.axes.index()];
-        let components = match (k.body, k.angle.literal()) {
-            // On ground with a literal angle the axis has a fixed direction, which often runs
-            // along x or y; an angle such as 90*deg is a right angle up to its rounding.
-            (None, Some(angle)) => {
-                let e = self.choose(Vector2::new(angle.cos(), angle.sin()));
-                let rounding = f64::EPSILON * angle.abs().max(1.0);
-                [e.x.abs() > rounding, e.y.abs() > rounding]
-            }
-            _ => [true, true],
-        };
+        let components = axis_components(mechanism, self.axes, self.axis);
         incidence.direction(mechanism, self.axes);
         incidence.point(mechanism, self.from, components);
         incidence.point(mechanism, self.to, components);

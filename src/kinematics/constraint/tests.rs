@@ -3,10 +3,11 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::kinematics::{Coefficient, CoefficientId};
-use crate::mechanism::{RackSide, Source};
+use crate::kinematics::{Coefficient, CoefficientId, JointUnknownId, ProfileId};
+use crate::mechanism::{JointKind, ProfileInForce, RackSide, Source};
 
-/// Three bodies and ground with markers in general position, one of them at its body's origin.
+/// Three bodies and ground with markers in general position, one of them at its body's origin,
+/// and a cam's profile.
 const BODIES: &str = r#"
 format = 1
 name = "sample"
@@ -19,7 +20,15 @@ markers = { A = [0.2, 0.1, 0.3], O = [0, 0] }
 markers = { B = [-0.15, 0.25, -0.7] }
 [bodies.c]
 markers = { C = [0.05, -0.3, 1.1] }
+[joints.cam]
+type = "cam"
+markers = ["a.A", "b.B"]
+follower = "flat"
+profile = "0.4 + 0.05*cos(theta) + 0.02*sin(3*theta)"
 "#;
+
+/// Generalized coordinates of the three bodies, and the angle of a cam's contact.
+const UNKNOWNS: usize = 10;
 
 /// Every kind of relation between bodies, with ground on either side, and with axes on a third
 /// body. A new kind belongs here.
@@ -85,6 +94,28 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
             }));
         }
     }
+    for (cam, follower) in [("a.A", "b.B"), ("ground.G", "b.B"), ("c.C", "ground.H")] {
+        let (cam, follower) = (id(cam), id(follower));
+        let contour = Contour {
+            cam,
+            profile: ProfileId(0),
+            contact: JointUnknownId(0),
+        };
+        samples.push(Box::new(KnifeEdge {
+            cam,
+            follower,
+            profile: ProfileId(0),
+        }));
+        for axis in [Axis::X, Axis::Y] {
+            samples.push(Box::new(Roller {
+                contour,
+                follower,
+                axis,
+            }));
+        }
+        samples.push(Box::new(FlatContact { contour, follower }));
+        samples.push(Box::new(FlatFace { contour, follower }));
+    }
     samples
 }
 
@@ -99,7 +130,11 @@ fn coefficients() -> Vec<Coefficient> {
 }
 
 fn configuration(mechanism: &Mechanism) -> Configuration {
-    let mut at = Configuration::new(mechanism, coefficients().len(), 0);
+    let JointKind::Cam { profile, .. } = &mechanism.joints[0].kind else {
+        panic!("the sample has a cam");
+    };
+    let profiles = vec![ProfileInForce::new(profile, 0)];
+    let mut at = Configuration::new(mechanism, coefficients().len(), profiles, 1);
     at.set_parameters(mechanism, &coefficients(), &[])
         .expect("the sample has numbers only");
     at
@@ -115,10 +150,10 @@ fn mechanism() -> Mechanism {
 /// comes near zero, where it is not smooth: markers are up to 0.31 m from the origins.
 fn pose_and_velocity() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
     let body = |x: f64| (x..x + 0.6, -0.3..0.3, -7.0..7.0);
-    let pose = (body(1.5), body(3.5), body(5.5));
-    (pose, prop::collection::vec(-1.0..1.0, 9)).prop_map(|((a, b, c), velocity)| {
-        let pose = [a, b, c].iter().flat_map(|q| [q.0, q.1, q.2]).collect();
-        (pose, velocity)
+    let pose = (body(1.5), body(3.5), body(5.5), -7.0..7.0);
+    (pose, prop::collection::vec(-1.0..1.0, UNKNOWNS)).prop_map(|((a, b, c, contact), velocity)| {
+        let bodies = [a, b, c].into_iter().flat_map(|q| [q.0, q.1, q.2]);
+        (bodies.chain([contact]).collect(), velocity)
     })
 }
 
@@ -165,13 +200,13 @@ proptest! {
     #[test]
     fn nothing_bends_more_than_its_bound(
         (q, v) in pose_and_velocity(),
-        radii in prop::collection::vec(0.0..0.4_f64, 9),
-        places in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 9), 10),
+        radii in prop::collection::vec(0.0..0.4_f64, UNKNOWNS),
+        places in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, UNKNOWNS), 10),
     ) {
         let mechanism = mechanism();
         let mut at = configuration(&mechanism);
         let dense = |row: &Gradient| {
-            let mut dense = [0.0; 9];
+            let mut dense = [0.0; UNKNOWNS];
             row.entries().for_each(|(column, value)| dense[column] += value);
             dense
         };
@@ -191,7 +226,7 @@ proptest! {
                 row.clear();
                 constraint.gradient(&at, &mut row);
                 let here = dense(&row);
-                for k in 0..9 {
+                for k in 0..UNKNOWNS {
                     let changed = (here[k] - centre[k]).abs();
                     // Rounding of values up to 7 m.
                     prop_assert!(
@@ -232,7 +267,7 @@ proptest! {
 fn coinciding_points_have_a_distance_gradient_to_leave_by() {
     let mechanism = mechanism();
     let mut at = configuration(&mechanism);
-    at.set_pose(&mechanism, &[0.0; 9]);
+    at.set_pose(&mechanism, &[0.0; UNKNOWNS]);
     // ground.H is the second marker, a.O the fourth; both are at the origin.
     let distance = Distance {
         from: MarkerId(1),

@@ -71,7 +71,7 @@ fn join<'a>(
         Operation::Number(value) if value.is_sign_negative() => (format!("{value:?}"), Sign),
         Operation::Number(value) => (format!("{value:?}"), Atom),
         Operation::Parameter(id) => (parameter_name(id).to_owned(), Atom),
-        Operation::Time => ("t".to_owned(), Atom),
+        Operation::Variable(variable) => (variable.name().to_owned(), Atom),
         Operation::Unary(function) => {
             let name = Function::Unary(function).name();
             (format!("{name}({})", operand(Sum)), Atom)

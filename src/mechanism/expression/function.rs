@@ -1,8 +1,7 @@
-//! The functions of the expression language, each with its first and second derivative.
+//! The functions of the expression language, each with its first three derivatives.
 
-use std::f64::consts::LN_10;
-
-use super::number::{Number, Partials};
+use super::number::Number;
+use super::scalar::Scalar;
 
 /// A function of one argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,41 +92,87 @@ impl Unary {
     /// The function's value. The branch in force gives the slope where there are two: `abs` rises
     /// at 0; `sign`, `floor` and `ceil` are level everywhere.
     pub(super) fn apply<N: Number>(self, x: N) -> N {
+        let [zero, one] = [0.0, 1.0].map(N::Scalar::constant);
         match self {
-            Self::Sin => x.chain(f64::sin, |x| [x.cos(), -x.sin()]),
-            Self::Cos => x.chain(f64::cos, |x| [-x.sin(), -x.cos()]),
-            Self::Tan => x.chain(f64::tan, |x| {
-                let slope = 1.0 + x.tan().powi(2);
-                [slope, 2.0 * x.tan() * slope]
+            Self::Sin => x.chain(Scalar::sin, |x| [x.cos(), -x.sin(), -x.cos()]),
+            Self::Cos => x.chain(Scalar::cos, |x| [-x.sin(), -x.cos(), x.sin()]),
+            Self::Tan => x.chain(Scalar::tan, |x| {
+                let square = x.tan().square();
+                let slope = one + square;
+                [
+                    slope,
+                    x.tan() * 2.0 * slope,
+                    slope * 2.0 * (one + square * 3.0),
+                ]
             }),
-            Self::Asin => x.chain(f64::asin, asin_derivatives),
-            Self::Acos => x.chain(f64::acos, |x| asin_derivatives(x).map(|d| -d)),
-            Self::Atan => x.chain(f64::atan, |x| {
-                let slope = 1.0 / (1.0 + x * x);
-                [slope, -2.0 * x * slope * slope]
+            Self::Asin => x.chain(Scalar::asin, asin_derivatives),
+            Self::Acos => x.chain(Scalar::acos, |x| asin_derivatives(x).map(|d| -d)),
+            Self::Atan => x.chain(Scalar::atan, |x| {
+                let square = x.square();
+                let slope = one / (one + square);
+                [
+                    slope,
+                    x * -2.0 * slope * slope,
+                    (square * 6.0 - one * 2.0) * slope.cube(),
+                ]
             }),
-            Self::Sinh => x.chain(f64::sinh, |x| [x.cosh(), x.sinh()]),
-            Self::Cosh => x.chain(f64::cosh, |x| [x.sinh(), x.cosh()]),
-            Self::Tanh => x.chain(f64::tanh, |x| {
+            Self::Sinh => x.chain(Scalar::sinh, |x| [x.cosh(), x.sinh(), x.cosh()]),
+            Self::Cosh => x.chain(Scalar::cosh, |x| [x.sinh(), x.cosh(), x.sinh()]),
+            Self::Tanh => x.chain(Scalar::tanh, |x| {
                 // Not 1 − tanh², which cancels where the curve is flat.
-                let slope = x.cosh().powi(-2);
-                [slope, -2.0 * x.tanh() * slope]
+                let slope = one / x.cosh().square();
+                let tanh = x.tanh();
+                [
+                    slope,
+                    tanh * -2.0 * slope,
+                    slope * (tanh.square() * 6.0 - one * 2.0),
+                ]
             }),
-            Self::Sqrt => x.chain(f64::sqrt, |x| {
-                let slope = 0.5 / x.sqrt();
-                [slope, -0.5 * slope / x]
+            Self::Sqrt => x.chain(Scalar::sqrt, |x| {
+                let slope = one * 0.5 / x.sqrt();
+                let second = slope * -0.5 / x;
+                [slope, second, second * -1.5 / x]
             }),
-            Self::Exp => x.chain(f64::exp, |x| [x.exp(), x.exp()]),
-            Self::Ln => x.chain(f64::ln, |x| [1.0 / x, -1.0 / (x * x)]),
-            Self::Log10 => x.chain(f64::log10, |x| {
-                let slope = 1.0 / (x * LN_10);
-                [slope, -slope / x]
+            Self::Exp => x.chain(Scalar::exp, |x| [x.exp(); 3]),
+            Self::Ln => x.chain(Scalar::ln, |x| {
+                [one / x, -one / x.square(), one * 2.0 / x.cube()]
             }),
-            Self::Abs => x.chain(f64::abs, |x| [if x < 0.0 { -1.0 } else { 1.0 }, 0.0]),
-            Self::Sign => x.chain(sign, |_| [0.0, 0.0]),
-            Self::Floor => x.chain(f64::floor, |_| [0.0, 0.0]),
-            Self::Ceil => x.chain(f64::ceil, |_| [0.0, 0.0]),
+            Self::Log10 => x.chain(Scalar::log10, |x| {
+                let slope = one / (x * N::Scalar::ln_10());
+                [slope, -slope / x, slope * 2.0 / x.square()]
+            }),
+            Self::Abs => {
+                let slope = x.value().abs_slope();
+                if slope.is_undefined() && x.varies() {
+                    N::undecided(x.value().abs())
+                } else {
+                    x.chain(Scalar::abs, |_| [slope, zero, zero])
+                }
+            }
+            Self::Sign => level(x, Scalar::sign),
+            Self::Floor => level(x, Scalar::floor),
+            Self::Ceil => level(x, Scalar::ceil),
         }
+    }
+}
+
+/// A function that is level between its jumps.
+fn level<N: Number>(x: N, f: impl Fn(N::Scalar) -> N::Scalar) -> N {
+    let value = f(x.value());
+    if value.is_single() || !x.varies() {
+        N::fixed(value)
+    } else {
+        N::undecided(value)
+    }
+}
+
+/// `x` or `y`, as `first` says, or `value` where that differs from point to point.
+fn either<N: Number>(x: N, y: N, first: Option<bool>, value: impl FnOnce() -> N::Scalar) -> N {
+    match first {
+        Some(true) => x,
+        Some(false) => y,
+        None if x.varies() || y.varies() => N::undecided(value()),
+        None => N::fixed(value()),
     }
 }
 
@@ -140,77 +185,26 @@ impl Binary {
     /// The function's value. `min`, `max` and `mod` take their slope from the branch in force;
     /// at a tie of `min` and `max` that is the first argument's.
     pub(super) fn apply<N: Number>(self, x: N, y: N) -> N {
+        let (x_value, y_value) = (x.value(), y.value());
         match self {
-            Self::Atan2 => x.chain2(y, f64::atan2, |y, x| {
-                // Here the first argument is the ordinate. Divided by r once at a time, lest r²
-                // leave the range of numbers.
-                let r = x.hypot(y);
-                let (cos, sin) = (x / r, y / r);
-                Partials {
-                    x: cos / r,
-                    y: -sin / r,
-                    xx: -2.0 * sin * cos / r / r,
-                    xy: (sin * sin - cos * cos) / r / r,
-                    yy: 2.0 * sin * cos / r / r,
-                }
+            Self::Atan2 => N::atan2(x, y),
+            Self::Hypot => N::hypot(x, y),
+            Self::Mod => x - y * level(x / y, Scalar::floor),
+            Self::Min => either(x, y, x_value.at_most(y_value), || x_value.smaller(y_value)),
+            Self::Max => either(x, y, x_value.at_least(y_value), || {
+                -(-x_value).smaller(-y_value)
             }),
-            Self::Hypot => x.chain2(y, f64::hypot, |x, y| {
-                let r = x.hypot(y);
-                let (cos, sin) = (x / r, y / r);
-                Partials {
-                    x: cos,
-                    y: sin,
-                    xx: sin * sin / r,
-                    xy: -sin * cos / r,
-                    yy: cos * cos / r,
-                }
-            }),
-            Self::Mod => x - y * N::constant((x.value() / y.value()).floor()),
-            // A comparison with a NaN is false: written so that it comes through.
-            Self::Min if x.value() <= y.value() || x.value().is_nan() => x,
-            Self::Max if x.value() >= y.value() || x.value().is_nan() => x,
-            Self::Min | Self::Max => y,
         }
     }
 }
 
-/// x^y. Where y does not vary this is right for any x that has a power, negative and zero too:
-/// x² has the derivatives 0 and 2 at 0. A varying exponent needs x > 0.
-pub(super) fn power<N: Number>(x: N, y: N) -> N {
-    x.chain2(y, f64::powf, |x, y| {
-        // A factor of zero ends the derivatives of a polynomial, before a negative power of zero
-        // can make 0 · ∞ of them.
-        let falling = |factor: f64, exponent: f64| {
-            if factor == 0.0 {
-                0.0
-            } else {
-                factor * x.powf(exponent)
-            }
-        };
-        let value = x.powf(y);
-        let (ln, value_ln) = if x == 0.0 && y > 0.0 {
-            (0.0, 0.0) // the limit of x^y ln x
-        } else {
-            (x.ln(), value * x.ln())
-        };
-        Partials {
-            x: falling(y, y - 1.0),
-            y: value_ln,
-            xx: falling(y * (y - 1.0), y - 2.0),
-            xy: x.powf(y - 1.0) * (1.0 + y * ln),
-            yy: value_ln * ln,
-        }
-    })
-}
-
-/// d/dx and d²/dx² of the arc sine.
-fn asin_derivatives(x: f64) -> [f64; 2] {
-    // Not 1 − x², which cancels near the ends.
-    let slope = 1.0 / ((1.0 - x) * (1.0 + x)).sqrt();
-    [slope, x * slope * slope * slope]
-}
-
-/// −1, 0 or 1; unlike `f64::signum`, 0 at 0.
-fn sign(x: f64) -> f64 {
-    if x == 0.0 { x } else { x.signum() }
+/// The derivatives of the arc sine.
+fn asin_derivatives<S: Scalar>(x: S) -> [S; 3] {
+    let one = S::constant(1.0);
+    let slope = one / x.one_minus_square().sqrt();
+    [
+        slope,
+        x * slope * slope * slope,
+        slope.cube() * (one + (x * slope).square() * 3.0),
+    ]
 }

@@ -2,14 +2,17 @@
 //!
 //! The language is small: numbers (`1`, `.5`, `2.`, `1e-3`), `+ - * / ^` and parentheses, the
 //! constants `pi deg mm cm`, parameters, the functions `sin cos tan asin acos atan atan2 sinh
-//! cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and time `t` in a motion.
-//! Powers bind tighter than a sign and associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is
-//! `2^9`.
+//! cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and one variable: time `t`
+//! in a motion, the polar angle `theta` in a cam's profile. Powers bind tighter than a sign and
+//! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod display;
 mod function;
+mod interval;
+mod jet3;
 mod number;
 mod parse;
+mod scalar;
 mod token;
 
 #[cfg(test)]
@@ -19,9 +22,12 @@ use std::f64::consts::PI;
 
 use function::{Binary, Unary};
 
-pub use number::{Jet, Number, Partials};
+pub use interval::Interval;
+pub use jet3::Jet3;
+pub use number::{Jet, Number};
 pub use parse::ExpressionError;
 pub(super) use parse::Scope;
+pub use scalar::Scalar;
 
 use super::ParameterId;
 
@@ -34,11 +40,41 @@ pub(super) fn function_names() -> impl Iterator<Item = &'static str> {
     function::FUNCTIONS.iter().map(|(name, _)| *name)
 }
 
+/// The sine, on any kind of number.
+pub(super) fn sin<N: Number>(x: N) -> N {
+    Unary::Sin.apply(x)
+}
+
+/// The cosine, on any kind of number.
+pub(super) fn cos<N: Number>(x: N) -> N {
+    Unary::Cos.apply(x)
+}
+
+/// What an expression may be a function of besides the parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variable {
+    /// Time \[s\], `t` in a motion.
+    Time,
+    /// The polar angle \[rad\], `theta` in a cam's profile.
+    PolarAngle,
+}
+
+impl Variable {
+    /// Its name in the language.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "t",
+            Self::PolarAngle => "theta",
+        }
+    }
+}
+
 /// Operands that may wait for their operator at one time: what evaluation keeps on the stack.
 /// Far more than anyone writes by hand.
 const MAX_STACK: usize = 32;
 
-/// A number as a function of the parameters, and in a motion of time.
+/// A number as a function of the parameters, and in a motion or a profile of one [`Variable`].
 ///
 /// Kept as a flat postfix program with constant parts computed, so that evaluation neither
 /// allocates nor recurs.
@@ -55,7 +91,7 @@ pub struct Expression {
 enum Operation {
     Number(f64),
     Parameter(ParameterId),
-    Time,
+    Variable(Variable),
     Negate,
     Add,
     Subtract,
@@ -70,7 +106,7 @@ impl Operation {
     /// How many operands it takes.
     fn arity(self) -> usize {
         match self {
-            Self::Number(_) | Self::Parameter(_) | Self::Time => 0,
+            Self::Number(_) | Self::Parameter(_) | Self::Variable(_) => 0,
             Self::Negate | Self::Unary(_) => 1,
             Self::Add
             | Self::Subtract
@@ -87,19 +123,19 @@ impl Operation {
         stack: &mut [N; MAX_STACK],
         height: &mut usize,
         parameter: &impl Fn(ParameterId) -> N,
-        t: N,
+        variable: N,
     ) {
         let first = *height - self.arity();
         let result = match self {
             Self::Number(value) => N::constant(value),
             Self::Parameter(id) => parameter(id),
-            Self::Time => t,
+            Self::Variable(_) => variable,
             Self::Negate => -stack[first],
             Self::Add => stack[first] + stack[first + 1],
             Self::Subtract => stack[first] - stack[first + 1],
             Self::Multiply => stack[first] * stack[first + 1],
             Self::Divide => stack[first] / stack[first + 1],
-            Self::Power => function::power(stack[first], stack[first + 1]),
+            Self::Power => stack[first].power(stack[first + 1]),
             Self::Unary(function) => function.apply(stack[first]),
             Self::Binary(function) => function.apply(stack[first], stack[first + 1]),
         };
@@ -131,16 +167,56 @@ impl Expression {
         }
     }
 
-    /// The value for the given parameters and time, on plain numbers or on [`Jet`]s.
+    /// The value for the given parameters and variable, on plain numbers, on [`Jet`]s or on
+    /// [`Jet3`]s.
     ///
     /// Outside the domain of a function the result is not finite. Allocates nothing.
-    pub fn evaluate<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, t: N) -> N {
+    pub fn evaluate<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, variable: N) -> N {
         match *self.program {
             // Most numbers of a mechanism are one of these two.
             [Operation::Number(value)] => N::constant(value),
             [Operation::Parameter(id)] => parameter(id),
-            _ => run(&self.program, parameter, t),
+            _ => run(&self.program, parameter, variable),
         }
+    }
+
+    /// Encloses the value and its first three derivatives over a range of the variable, for the
+    /// given parameters.
+    ///
+    /// The expression is taken as a function of real numbers, of which the parameters are exact;
+    /// the enclosures hold in every point of the range, rounding included. `None` where the
+    /// function cannot be shown to be three times differentiable with finite derivatives in the
+    /// whole range: it leaves its domain, or has a kink or a jump within. A part that does not
+    /// vary needs a value only. The narrower the range, the nearer are the bounds to the true
+    /// ones: their excess is of first order in its width for the third derivative, of higher
+    /// order for the others. Allocates nothing.
+    pub fn enclose(
+        &self,
+        parameter: &impl Fn(ParameterId) -> f64,
+        variable: Interval,
+    ) -> Option<Jet3<Interval>> {
+        let evaluate = |variable| {
+            let parameter = |id| Jet3::constant(parameter(id));
+            Some(self.evaluate(&parameter, Jet3::variable(variable)))
+                .filter(|jet: &Jet3<Interval>| jet.is_finite())
+        };
+        // Only the whole range shows a kink between two parts.
+        evaluate(variable)?;
+        let middle = variable.midpoint();
+        let ends = [
+            variable.low,
+            variable.low.midpoint(middle),
+            middle,
+            middle.midpoint(variable.high),
+            variable.high,
+        ];
+        let mut parts = evaluate(Interval::new(ends[0], ends[1]))?;
+        for pair in ends[1..].windows(2) {
+            parts = parts.hull(evaluate(Interval::new(pair[0], pair[1]))?);
+        }
+        let middle = Interval::point(middle);
+        let narrowed = parts.narrowed(evaluate(middle)?, variable - middle);
+        Some(narrowed).filter(|jet| jet.is_finite())
     }
 
     /// The parameters that it uses, ascending, each once.
@@ -148,13 +224,16 @@ impl Expression {
         self.parameters.iter().copied()
     }
 
-    /// Whether it uses time.
+    /// The variable that it uses, if any.
     #[must_use]
-    pub fn uses_time(&self) -> bool {
-        self.program.contains(&Operation::Time)
+    pub fn variable(&self) -> Option<Variable> {
+        self.program.iter().find_map(|operation| match operation {
+            Operation::Variable(variable) => Some(*variable),
+            _ => None,
+        })
     }
 
-    /// Its value if it uses neither parameters nor time.
+    /// Its value if it uses neither parameters nor a variable.
     #[must_use]
     pub fn literal(&self) -> Option<f64> {
         match *self.program {
@@ -165,11 +244,11 @@ impl Expression {
 }
 
 /// Runs a program that leaves one operand and never has more than [`MAX_STACK`] waiting.
-fn run<N: Number>(program: &[Operation], parameter: &impl Fn(ParameterId) -> N, t: N) -> N {
+fn run<N: Number>(program: &[Operation], parameter: &impl Fn(ParameterId) -> N, variable: N) -> N {
     let mut stack = [N::constant(0.0); MAX_STACK];
     let mut height = 0;
     for operation in program {
-        operation.apply(&mut stack, &mut height, parameter, t);
+        operation.apply(&mut stack, &mut height, parameter, variable);
     }
     stack[0]
 }

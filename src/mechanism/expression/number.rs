@@ -2,9 +2,12 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::scalar::Scalar;
+
 /// A number that expressions can be evaluated on.
 ///
-/// Besides arithmetic it needs the chain rule, from which all functions of the language follow.
+/// Besides arithmetic it needs the chain rule, from which the functions of one argument follow,
+/// and the few functions that are smooth in two.
 pub trait Number:
     Copy
     + Add<Output = Self>
@@ -13,41 +16,52 @@ pub trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// The type of its value and of each of its derivatives.
+    type Scalar: Scalar;
+
     /// A number that does not vary.
-    fn constant(value: f64) -> Self;
+    fn fixed(value: Self::Scalar) -> Self;
+
+    /// A number whose derivatives are not known.
+    fn undecided(value: Self::Scalar) -> Self;
 
     /// Its value, without derivatives.
-    fn value(self) -> f64;
+    fn value(self) -> Self::Scalar;
 
-    /// f(x), where `derivatives` gives \[f′, f″\] at x.
-    fn chain(self, f: impl Fn(f64) -> f64, derivatives: impl Fn(f64) -> [f64; 2]) -> Self;
+    /// Whether it has a derivative that is not zero; never so for a plain number.
+    fn varies(self) -> bool;
 
-    /// f(x, y), where `derivatives` gives the partial derivatives of first and second order.
-    fn chain2(
+    /// f(x), where `derivatives` gives \[f′, f″, f‴\] at x.
+    fn chain(
         self,
-        y: Self,
-        f: impl Fn(f64, f64) -> f64,
-        derivatives: impl Fn(f64, f64) -> Partials,
+        f: impl Fn(Self::Scalar) -> Self::Scalar,
+        derivatives: impl Fn(Self::Scalar) -> [Self::Scalar; 3],
     ) -> Self;
-}
 
-/// The partial derivatives of a function of x and y, up to second order.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Partials {
-    /// ∂f/∂x.
-    pub x: f64,
-    /// ∂f/∂y.
-    pub y: f64,
-    /// ∂²f/∂x².
-    pub xx: f64,
-    /// ∂²f/∂x∂y.
-    pub xy: f64,
-    /// ∂²f/∂y².
-    pub yy: f64,
+    /// √(x² + y²).
+    fn hypot(self, y: Self) -> Self;
+
+    /// The angle of the point (`x`, `self`).
+    fn atan2(self, x: Self) -> Self;
+
+    /// x^`exponent`. Where the exponent does not vary this is right for any x that has a power,
+    /// negative and zero too: x² has the derivatives 0 and 2 at 0. A varying exponent needs x > 0.
+    fn power(self, exponent: Self) -> Self;
+
+    /// The number `value`, which does not vary.
+    fn constant(value: f64) -> Self {
+        Self::fixed(Self::Scalar::constant(value))
+    }
 }
 
 impl Number for f64 {
-    fn constant(value: f64) -> Self {
+    type Scalar = f64;
+
+    fn fixed(value: f64) -> Self {
+        value
+    }
+
+    fn undecided(value: f64) -> Self {
         value
     }
 
@@ -55,18 +69,39 @@ impl Number for f64 {
         self
     }
 
-    fn chain(self, f: impl Fn(f64) -> f64, _: impl Fn(f64) -> [f64; 2]) -> Self {
+    fn varies(self) -> bool {
+        false
+    }
+
+    fn chain(self, f: impl Fn(f64) -> f64, _: impl Fn(f64) -> [f64; 3]) -> Self {
         f(self)
     }
 
-    fn chain2(
-        self,
-        y: Self,
-        f: impl Fn(f64, f64) -> f64,
-        _: impl Fn(f64, f64) -> Partials,
-    ) -> Self {
-        f(self, y)
+    fn hypot(self, y: Self) -> Self {
+        f64::hypot(self, y)
     }
+
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
+
+    fn power(self, exponent: Self) -> Self {
+        self.powf(exponent)
+    }
+}
+
+/// The partial derivatives of a function of x and y, up to second order.
+struct Partials {
+    /// ∂f/∂x.
+    x: f64,
+    /// ∂f/∂y.
+    y: f64,
+    /// ∂²f/∂x².
+    xx: f64,
+    /// ∂²f/∂x∂y.
+    xy: f64,
+    /// ∂²f/∂y².
+    yy: f64,
 }
 
 /// A value with its first and second derivative with respect to one variable, most often time.
@@ -117,42 +152,30 @@ impl Jet {
 
 /// One term of the chain rule. A derivative of zero makes it vanish even where the outer
 /// function's slope is infinite: √a has no slope at a = 0, but does not vary if a does not.
-fn term(slope: f64, derivative: f64) -> f64 {
-    if derivative == 0.0 {
-        0.0
+pub(super) fn term<S: Scalar>(slope: S, derivative: S) -> S {
+    if derivative.is_zero() {
+        S::constant(0.0)
     } else {
         slope * derivative
     }
 }
 
-impl Number for Jet {
-    fn constant(value: f64) -> Self {
-        Jet::constant(value)
+/// `factor` · x^`exponent`. A factor of zero ends the derivatives of a polynomial, before a
+/// negative power of zero can make 0 · ∞ of them.
+pub(super) fn falling<S: Scalar>(factor: S, x: S, exponent: S) -> S {
+    if factor.is_zero() {
+        S::constant(0.0)
+    } else {
+        factor * x.powf(exponent)
     }
+}
 
-    fn value(self) -> f64 {
-        self.value
-    }
-
-    fn chain(self, f: impl Fn(f64) -> f64, derivatives: impl Fn(f64) -> [f64; 2]) -> Self {
-        let [f_x, f_xx] = derivatives(self.value);
-        Self {
-            value: f(self.value),
-            first: term(f_x, self.first),
-            second: term(f_x, self.second) + term(f_xx, self.first * self.first),
-        }
-    }
-
-    fn chain2(
-        self,
-        y: Self,
-        f: impl Fn(f64, f64) -> f64,
-        derivatives: impl Fn(f64, f64) -> Partials,
-    ) -> Self {
+impl Jet {
+    /// f(x, y) of that value, with its partial derivatives.
+    fn compose(self, y: Self, value: f64, d: &Partials) -> Self {
         let x = self;
-        let d = derivatives(x.value, y.value);
         Self {
-            value: f(x.value, y.value),
+            value,
             first: term(d.x, x.first) + term(d.y, y.first),
             second: term(d.x, x.second)
                 + term(d.y, y.second)
@@ -160,6 +183,85 @@ impl Number for Jet {
                 + term(2.0 * d.xy, x.first * y.first)
                 + term(d.yy, y.first * y.first),
         }
+    }
+}
+
+impl Number for Jet {
+    type Scalar = f64;
+
+    fn fixed(value: f64) -> Self {
+        Jet::constant(value)
+    }
+
+    fn undecided(value: f64) -> Self {
+        Self {
+            value,
+            first: f64::NAN,
+            second: f64::NAN,
+        }
+    }
+
+    fn value(self) -> f64 {
+        self.value
+    }
+
+    fn varies(self) -> bool {
+        self.first != 0.0 || self.second != 0.0
+    }
+
+    fn chain(self, f: impl Fn(f64) -> f64, derivatives: impl Fn(f64) -> [f64; 3]) -> Self {
+        let [f_x, f_xx, _] = derivatives(self.value);
+        Self {
+            value: f(self.value),
+            first: term(f_x, self.first),
+            second: term(f_x, self.second) + term(f_xx, self.first * self.first),
+        }
+    }
+
+    fn hypot(self, y: Self) -> Self {
+        let r = self.value.hypot(y.value);
+        let (cos, sin) = (self.value / r, y.value / r);
+        let partials = Partials {
+            x: cos,
+            y: sin,
+            xx: sin * sin / r,
+            xy: -sin * cos / r,
+            yy: cos * cos / r,
+        };
+        self.compose(y, r, &partials)
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        // Here the first argument is the ordinate. Divided by r once at a time, lest r² leave
+        // the range of numbers.
+        let r = self.value.hypot(x.value);
+        let (cos, sin) = (x.value / r, self.value / r);
+        let partials = Partials {
+            x: cos / r,
+            y: -sin / r,
+            xx: -2.0 * sin * cos / r / r,
+            xy: (sin * sin - cos * cos) / r / r,
+            yy: 2.0 * sin * cos / r / r,
+        };
+        self.compose(x, self.value.atan2(x.value), &partials)
+    }
+
+    fn power(self, exponent: Self) -> Self {
+        let (x, y) = (self.value, exponent.value);
+        let value = x.powf(y);
+        let (ln, value_ln) = if x == 0.0 && y > 0.0 {
+            (0.0, 0.0) // the limit of x^y ln x
+        } else {
+            (x.ln(), value * x.ln())
+        };
+        let partials = Partials {
+            x: falling(y, x, y - 1.0),
+            y: value_ln,
+            xx: falling(y * (y - 1.0), x, y - 2.0),
+            xy: x.powf(y - 1.0) * (1.0 + y * ln),
+            yy: value_ln * ln,
+        };
+        self.compose(exponent, value, &partials)
     }
 }
 

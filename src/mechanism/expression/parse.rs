@@ -2,7 +2,7 @@
 
 use super::function::{FUNCTIONS, Function};
 use super::token::{Token, TokenKind, scan};
-use super::{CONSTANTS, Expression, MAX_STACK, Operation, run};
+use super::{CONSTANTS, Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::{self, NameTable, quoted};
 use crate::mechanism::{ParameterId, Span};
 
@@ -42,8 +42,8 @@ impl ExpressionError {
 pub(in crate::mechanism) struct Scope<'a> {
     /// The parameters.
     pub(in crate::mechanism) parameters: &'a NameTable<'a, ParameterId>,
-    /// Whether the expression may use `t`.
-    pub(in crate::mechanism) time_allowed: bool,
+    /// The variable that the expression may use.
+    pub(in crate::mechanism) variable: Option<Variable>,
 }
 
 impl Expression {
@@ -181,7 +181,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// A constant, a parameter, time, or a function with its arguments.
+    /// A constant, a parameter, the variable, or a function with its arguments.
     fn parse_name(&mut self, name: &str, span: Span) -> Result<Span, ExpressionError> {
         let called = self.token.kind == TokenKind::Symbol(b'(');
         let constant = CONSTANTS.iter().find(|(constant, _)| *constant == name);
@@ -195,14 +195,12 @@ impl<'a> Parser<'a> {
             );
         } else if let Some((_, value)) = constant {
             Operation::Number(*value)
-        } else if name == "t" {
-            if !self.scope.time_allowed {
-                return Err(ExpressionError::new(
-                    span,
-                    "only a `motion` may use time `t`",
-                ));
+        } else if let Some(variable) = self.scope.variable.filter(|v| v.name() == name) {
+            if self.scope.parameters.get(name).is_some() {
+                let message = format!("`{name}` is both a parameter and the variable here");
+                return Err(ExpressionError::new(span, message).help("rename the parameter"));
             }
-            Operation::Time
+            Operation::Variable(variable)
         } else if let Some(id) = self.scope.parameters.get(name) {
             Operation::Parameter(id)
         } else {
@@ -365,7 +363,17 @@ impl<'a> Parser<'a> {
                 None => error,
             };
         }
+        if name == Variable::Time.name() {
+            let error = ExpressionError::new(span, "only a `motion` may use time `t`");
+            return match self.scope.variable {
+                Some(own) => error.help(format!("here the variable is `{}`", own.name())),
+                None => error,
+            };
+        }
         let error = ExpressionError::new(span, format!("no parameter {}", quoted(name)));
+        if name == Variable::PolarAngle.name() {
+            return error.help("only a cam's `profile` may use `theta`, its polar angle");
+        }
         let constants = CONSTANTS.map(|(constant, _)| constant);
         let help = self
             .unit_help(name)

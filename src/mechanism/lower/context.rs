@@ -9,7 +9,8 @@ use crate::mechanism::expression::Scope;
 use crate::mechanism::names::{self, NameTable, quoted, shown};
 use crate::mechanism::syntax::{self, Key, Table, Value};
 use crate::mechanism::{
-    BodyId, Diagnostic, Expression, Jet, MarkerId, ParameterId, Severity, Source, Span,
+    BodyId, Diagnostic, Expression, Jet, MarkerId, ParameterId, Severity, Source, Span, TableFile,
+    Variable,
 };
 
 /// More problems than this are counted, not shown: nobody reads them, and a file of garbage would
@@ -76,6 +77,10 @@ pub(super) struct Context<'a> {
     pub(super) owners: HashMap<&'a str, &'a str>,
     /// What each marker is fixed on.
     pub(super) carriers: Vec<Option<BodyId>>,
+    /// The CSV files read so far.
+    pub(super) table_files: Vec<TableFile>,
+    /// The numbers taken from them, for the canonical form.
+    pub(super) file_tables: String,
 }
 
 /// A number of the file: an expression, with its value for the file's parameters.
@@ -136,6 +141,8 @@ impl<'a> Context<'a> {
             body_names: Vec::new(),
             owners: HashMap::new(),
             carriers: Vec::new(),
+            table_files: Vec::new(),
+            file_tables: String::new(),
         };
         for problem in problems {
             context.problems.push(problem);
@@ -310,7 +317,7 @@ impl<'a> Context<'a> {
 
     /// A number or an expression over the parameters, finite with the file's values.
     pub(super) fn quantity(&mut self, value: &'a Value<'a>) -> Option<Quantity> {
-        let expression = self.expression(value, false)?;
+        let expression = self.expression(value, None)?;
         let mut quantity = Quantity {
             expression,
             value: None,
@@ -333,8 +340,8 @@ impl<'a> Context<'a> {
         None
     }
 
-    /// The value at time `t` for the file's parameters, `None` if one of them has no value.
-    pub(super) fn value_at(&self, expression: &Expression, t: f64) -> Option<Jet> {
+    /// The value at `variable` for the file's parameters, `None` if one of them has no value.
+    pub(super) fn value_at(&self, expression: &Expression, variable: f64) -> Option<Jet> {
         let values = &self.parameter_values;
         expression
             .parameters()
@@ -343,7 +350,7 @@ impl<'a> Context<'a> {
                 let parameter = |id: ParameterId| {
                     Jet::constant(values[id.index()].expect("just seen to have a value"))
                 };
-                expression.evaluate(&parameter, Jet::variable(t))
+                expression.evaluate(&parameter, Jet::variable(variable))
             })
     }
 
@@ -361,7 +368,7 @@ impl<'a> Context<'a> {
     pub(super) fn expression(
         &mut self,
         value: &'a Value<'a>,
-        time_allowed: bool,
+        variable: Option<Variable>,
     ) -> Option<Expression> {
         if let Some(number) = syntax::number(value.get_ref()) {
             if number.is_finite() {
@@ -376,7 +383,7 @@ impl<'a> Context<'a> {
         };
         let scope = Scope {
             parameters: &self.parameters,
-            time_allowed,
+            variable,
         };
         match Expression::parse(text, scope) {
             Ok(expression) => {

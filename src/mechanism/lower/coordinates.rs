@@ -1,10 +1,9 @@
 //! Coordinates between two markers: constraints, drivers and measures.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::{quoted, shown};
-use crate::mechanism::syntax::Value;
+use crate::mechanism::names::quoted;
 use crate::mechanism::{
-    Constraint, Coordinate, CoordinateKind, Driver, DriverSource, Expression, MarkerId, Measure,
+    Constraint, Coordinate, CoordinateKind, Driver, DriverSource, MarkerId, Measure,
 };
 
 use super::context::{Context, Entry, Fields, Quantity};
@@ -106,40 +105,6 @@ impl<'a> Context<'a> {
                 None
             }
         }
-    }
-
-    /// A function of time, checked at the start time.
-    fn motion(
-        &mut self,
-        value: &'a Value<'a>,
-        kind: Option<CoordinateKind>,
-        start_time: f64,
-    ) -> Option<Expression> {
-        let expression = self.expression(value, true)?;
-        let Some(start) = self.value_at(&expression, start_time) else {
-            return Some(expression);
-        };
-        let derivatives = [
-            (start.value, "the value"),
-            (start.first, "the velocity"),
-            (start.second, "the acceleration"),
-        ];
-        if let Some((_, what)) = derivatives.iter().find(|(value, _)| !value.is_finite()) {
-            self.not_finite(
-                value.span(),
-                &format!("at t = {}, {what}", shown(start_time)),
-            );
-            return None;
-        }
-        if kind == Some(CoordinateKind::Distance) {
-            let at_start = Quantity {
-                expression: Expression::constant(start.value),
-                value: Some(start.value),
-                span: value.span(),
-            };
-            self.check_positive(&at_start, "a distance, at the start time too,");
-        }
-        Some(expression)
     }
 
     pub(super) fn lower_measures(&mut self, entries: &[Entry<'a>]) -> Vec<Measure> {

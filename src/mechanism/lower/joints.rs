@@ -18,7 +18,7 @@ struct JointType {
 type Read = for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<JointKind>;
 
 /// Every type of joint; a new one is a line here and a variant of [`JointKind`].
-static JOINT_TYPES: [JointType; 9] = [
+static JOINT_TYPES: [JointType; 10] = [
     plain("revolute", |_, _| Some(JointKind::Revolute)),
     plain("translational", |_, _| Some(JointKind::Translational)),
     plain("slot", |_, _| Some(JointKind::Slot)),
@@ -58,6 +58,11 @@ static JOINT_TYPES: [JointType; 9] = [
         name: "rack_and_pinion",
         keys: &["radius", "side"],
         read: |context, fields| context.rack_and_pinion(fields),
+    },
+    JointType {
+        name: "cam",
+        keys: &["follower", "radius", "profile"],
+        read: |context, fields| context.cam(fields),
     },
 ];
 

@@ -4,13 +4,16 @@
 //! read. What could not be read has left its error, and nothing that refers to it adds another.
 
 mod bodies;
+mod cams;
 mod context;
 mod coordinates;
 mod header;
 mod joints;
+mod motions;
 mod names;
 mod parameters;
 mod settings;
+mod tables;
 mod usage;
 mod wheels;
 
@@ -94,7 +97,8 @@ impl<'a> Context<'a> {
             measures,
             outputs,
             simulation,
-            canonical: syntax::canonical(document),
+            canonical: syntax::canonical(document) + &self.file_tables,
+            table_files: std::mem::take(&mut self.table_files),
         };
         if !self.problems.has_errors() {
             self.warn_of_unused(&mechanism, &sections);

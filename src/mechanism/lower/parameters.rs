@@ -70,12 +70,12 @@ impl<'a> Context<'a> {
                 self.check_keys(&fields, &KEYS);
                 if let Some(value) = self.required(&fields, "value", "0.1") {
                     draft.value = value;
-                    draft.expression = self.expression(value, false);
+                    draft.expression = self.expression(value, None);
                 }
                 draft.attributes = Some(fields);
             }
         } else {
-            draft.expression = self.expression(entry.value, false);
+            draft.expression = self.expression(entry.value, None);
         }
         draft
     }

@@ -1,8 +1,8 @@
 //! What a right file is read as; `tests/diagnostics.rs` has the wrong ones.
 
 use crate::mechanism::{
-    BodyId, CoordinateKind, DisplayUnit, DriverSource, JointKind, MarkerId, Mechanism, ParameterId,
-    Source,
+    BodyId, CoordinateKind, DisplayUnit, DriverSource, JointKind, MarkerId, Mechanism, Motion,
+    ParameterId, Source, Variable,
 };
 
 fn read(text: &str) -> Mechanism {
@@ -129,13 +129,17 @@ fn a_motion_is_a_function_of_time() {
         "[parameters]\nomega = 2\n[drivers]\n\
          swing = { coordinate = 'angle', markers = ['ground.O', 'rod.O'], motion = 'omega*t' }\n",
     );
-    let DriverSource::Motion(motion) = &mechanism.drivers[0].source else {
-        panic!("a motion");
+    let DriverSource::Motion(Motion::Expression(motion)) = &mechanism.drivers[0].source else {
+        panic!("an expression");
     };
-    assert!(motion.uses_time());
+    assert_eq!(motion.variable(), Some(Variable::Time));
     assert_eq!(motion.evaluate(&|_| 2.0, 3.0), 6.0);
-    assert!(mechanism.parse_expression("omega*t", true).is_ok());
-    assert!(mechanism.parse_expression("omega*t", false).is_err());
+    assert!(
+        mechanism
+            .parse_expression("omega*t", Some(Variable::Time))
+            .is_ok()
+    );
+    assert!(mechanism.parse_expression("omega*t", None).is_err());
 }
 
 #[test]

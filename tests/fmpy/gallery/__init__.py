@@ -2,7 +2,7 @@
 
 A file `tests/fmpy/gallery/NAME.py` belongs to `mechanisms/NAME.toml` and defines `CASE`. The five
 whose closed form the demo shows are in `closed_forms.py`. `python -m gallery`, run in this
-folder's parent, prints the table of all of them.
+folder's parent, prints the table of all of them, and with `--page` writes `mechanisms/README.md`.
 """
 
 from __future__ import annotations

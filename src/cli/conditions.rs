@@ -1,0 +1,140 @@
+//! Parameters and drivers as the command line sets them.
+
+use std::sync::Arc;
+
+use clap::Args;
+
+use super::error::Error;
+use crate::kinematics::{Curve, Path, Solver, Start};
+use crate::mechanism::{DriverSource, ExpressionError, Mechanism, Motion, ParameterId, Variable};
+
+/// Options of all commands that move a mechanism away from its file's values.
+#[derive(Args, Debug)]
+pub(super) struct Conditions {
+    /// Move a driver by an expression in t and the parameters, such as
+    /// 'crank_angle=60*deg + 10*t'; may be given for several drivers.
+    #[arg(short, long, value_name = "DRIVER=MOTION")]
+    drive: Vec<String>,
+    /// Change a parameter for this run, such as 'crank_length=120*mm'; may be given for several.
+    #[arg(short, long, value_name = "PARAMETER=VALUE")]
+    set: Vec<String>,
+}
+
+impl Conditions {
+    /// The parameters in force.
+    pub(super) fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
+        let mut values = mechanism.default_parameters();
+        for assignment in &self.set {
+            let (name, text) = split(assignment, "--set", "crank_length=120*mm")?;
+            let id = mechanism.parameter_id(name).ok_or_else(|| {
+                let names = mechanism.parameters.iter().map(|p| p.name.as_str());
+                unknown("parameter", name, names)
+            })?;
+            let parameter = &mechanism.parameters[id.index()];
+            if parameter.derived {
+                return Err(Error::Usage(format!(
+                    "--set: `{name}` is derived from other parameters; set those"
+                )));
+            }
+            let value = mechanism
+                .parse_expression(text, None)
+                .map_err(|error| in_argument("--set", text, &error))?
+                .evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
+            let too_low = parameter.min.is_some_and(|min| value < min);
+            let too_high = parameter.max.is_some_and(|max| value > max);
+            if !value.is_finite() || too_low || too_high {
+                return Err(Error::Usage(format!(
+                    "--set: {value} is not a permitted value of `{name}`"
+                )));
+            }
+            values[id.index()] = value;
+        }
+        mechanism.derive_parameters(&mut values);
+        Ok(values)
+    }
+
+    /// The mechanism with the motions of --drive prescribed.
+    pub(super) fn driven(&self, mechanism: &Mechanism) -> Result<Arc<Mechanism>, Error> {
+        let mut driven = mechanism.clone();
+        for assignment in &self.drive {
+            let (name, text) = split(assignment, "--drive", "crank_angle=60*deg + 10*t")?;
+            let id = mechanism.driver_id(name).ok_or_else(|| {
+                let names = mechanism.drivers.iter().map(|d| d.name.as_str());
+                unknown("driver", name, names)
+            })?;
+            let motion = mechanism
+                .parse_expression(text, Some(Variable::Time))
+                .map_err(|error| in_argument("--drive", text, &error))?;
+            driven.drivers[id.index()].source = DriverSource::Motion(Motion::Expression(motion));
+        }
+        Ok(Arc::new(driven))
+    }
+}
+
+/// A solver of the driven mechanism at the start, in the file's assembly mode: moved there from
+/// the file's pose, where `home_solver` stands.
+pub(super) fn start(
+    mut home_solver: Solver,
+    driven: &Arc<Mechanism>,
+    parameters: &[f64],
+    time: f64,
+) -> Result<Solver, crate::kinematics::Error> {
+    let home = home_solver.pose().clone();
+    let mut path = Path::new(home_solver.mechanism());
+    path.duration = time - home.time;
+    path.to.copy_from_slice(parameters);
+    for (index, (curve, driver)) in path.curves.iter_mut().zip(&driven.drivers).enumerate() {
+        // What is an input in the file has got an expression.
+        if let (Curve::Input { position, jump, .. }, Some(Motion::Expression(motion))) =
+            (curve, driver.motion())
+        {
+            *position = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);
+            *jump = home.drivers[index] - *position;
+        }
+    }
+    if let Start::Reassembled(_) = home_solver.start(&home, &path)? {
+        eprintln!(
+            "warning: no continuous motion leads from the file's own pose to these values: \
+             assembled there from the estimates, possibly in another assembly mode"
+        );
+    }
+    let mut solver = Solver::new(Arc::clone(driven))?;
+    solver.restore(home_solver.pose());
+    Ok(solver)
+}
+
+fn split<'a>(
+    assignment: &'a str,
+    option: &str,
+    example: &str,
+) -> Result<(&'a str, &'a str), Error> {
+    assignment
+        .split_once('=')
+        .map(|(name, text)| (name.trim(), text.trim()))
+        .ok_or_else(|| {
+            Error::Usage(format!(
+                "{option}: `{assignment}` has no `=`; expected for example '{example}'"
+            ))
+        })
+}
+
+fn unknown<'a>(what: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Error {
+    let names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
+    let help = match names[..] {
+        [] => "the mechanism has none".to_owned(),
+        _ => format!("expected {}", names.join(", ")),
+    };
+    Error::Usage(format!("no {what} `{name}`; {help}"))
+}
+
+fn in_argument(option: &str, text: &str, error: &ExpressionError) -> Error {
+    let column = text[..error.span.start].chars().count();
+    let help = error
+        .help
+        .as_ref()
+        .map_or_else(String::new, |help| format!("; {help}"));
+    Error::Usage(format!(
+        "{option}: {}{help}\n  {text}\n  {:column$}^",
+        error.message, ""
+    ))
+}

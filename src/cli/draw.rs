@@ -1,0 +1,101 @@
+//! `biela draw`
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
+
+use super::conditions::{self, Conditions};
+use super::error::Error;
+use super::input::Input;
+use super::output::write;
+use crate::drawing::{Scene, Sheet, png, svg};
+
+/// Draw a mechanism as a kinematic diagram, in SVG or PNG.
+///
+/// Shown is the pose at the start: at the drivers' start values, or where --drive and --set say.
+/// There are bodies, joints, ground, the drivers with their names, and the points of interest
+/// (`[outputs] markers`) with the paths that they take: over the prescribed motions until the
+/// file's stop time or, if none moves, over one turn of the first driver that is an angle, as far
+/// as it gets both ways.
+///
+/// The same file gives the same picture.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: biela draw four_bar.toml --drive 'crank_angle = 120*deg' -o four_bar.svg"
+)]
+pub(super) struct Draw {
+    /// The mechanism file.
+    file: PathBuf,
+    /// The picture to write; its extension, .svg or .png, decides, and `-` is SVG to stdout
+    /// [default: the mechanism's name with .svg in the current folder].
+    #[arg(short, long, value_name = "PICTURE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    conditions: Conditions,
+    /// Width of the picture in pixels; lines and letters grow with it.
+    #[arg(
+        long,
+        value_name = "PIXELS",
+        default_value_t = 640,
+        value_parser = RangedU64ValueParser::<u32>::new().range(16..=8192)
+    )]
+    width: u32,
+    /// Leave out the paths of the points of interest.
+    #[arg(long)]
+    no_traces: bool,
+    /// Leave out the white background.
+    #[arg(long)]
+    transparent: bool,
+}
+
+/// What to write.
+#[derive(Clone, Copy)]
+enum Format {
+    Svg,
+    Png,
+}
+
+impl Draw {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let format = self.format()?;
+        let input = Input::read(&self.file)?;
+        let parameters = self.conditions.parameters(&input.mechanism)?;
+        let driven = self.conditions.driven(&input.mechanism)?;
+        let (home_solver, _) = input.assemble()?;
+        let time = input.mechanism.simulation.start;
+        let mut solver = conditions::start(home_solver, &driven, &parameters, time)
+            .map_err(|error| input.error(error))?;
+        let scene = Scene::new(&mut solver, !self.no_traces);
+        let sheet = Sheet::new(&scene, &solver.pose().q);
+        let picture = match format {
+            Format::Svg => svg::write(&sheet, self.width, self.transparent).into_bytes(),
+            Format::Png => png::write(&sheet, self.width, self.transparent)
+                .ok_or_else(|| Error::Usage(format!("no PNG is {} pixels wide", self.width)))?,
+        };
+        let path = self
+            .output
+            .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
+        write(&path, &picture)
+    }
+
+    fn format(&self) -> Result<Format, Error> {
+        let Some(path) = self.output.as_ref().filter(|path| path.as_os_str() != "-") else {
+            return Ok(Format::Svg);
+        };
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_ascii_lowercase());
+        match extension
+            .as_deref()
+            .and_then(|extension| extension.to_str())
+        {
+            Some("svg") => Ok(Format::Svg),
+            Some("png") => Ok(Format::Png),
+            _ => Err(Error::Usage(format!(
+                "`{}` has neither the extension .svg nor .png",
+                path.display()
+            ))),
+        }
+    }
+}

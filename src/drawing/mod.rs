@@ -1,0 +1,39 @@
+//! Drawings of mechanisms: kinematic diagrams as engineers draw them.
+//!
+//! A [`Scene`] says what there is to draw, in the frames of the bodies: links, joints, drivers,
+//! ground. It is the same for every pose. A [`Sheet`] has it on paper at one pose, with lines and
+//! letters as large as the reader needs them whatever the mechanism's size. [`svg`] and [`png`]
+//! write a sheet.
+//!
+//! ```
+//! use biela::drawing::{Scene, Sheet, svg};
+//! use biela::kinematics::{Path, Solver};
+//! use biela::mechanism::{Mechanism, Source};
+//!
+//! let text = include_str!("../../mechanisms/four_bar.toml");
+//! let (mechanism, _) = Mechanism::parse(&Source::new("four_bar.toml", text)).unwrap();
+//! let mut solver = Solver::new(mechanism.into()).unwrap();
+//! let path = Path::new(solver.mechanism());
+//! solver.assemble(&path).unwrap();
+//!
+//! let scene = Scene::new(&mut solver, true);
+//! let sheet = Sheet::new(&scene, &solver.pose().q);
+//! let picture = svg::write(&sheet, 640, false);
+//! assert!(picture.contains("coupler"));
+//! ```
+
+mod compose;
+mod labels;
+mod lettering;
+mod motion;
+mod outline;
+mod palette;
+pub mod png;
+mod scene;
+mod sheet;
+pub mod svg;
+mod symbols;
+
+pub use palette::Colour;
+pub use scene::{Anchor, Frame, Scene, Symbol, WaySide};
+pub use sheet::Sheet;

@@ -1,0 +1,84 @@
+//! The motion that a picture shows: poses of a mechanism along it.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use crate::kinematics::{Curve, Path, Solver};
+use crate::mechanism::{CoordinateKind, Motion};
+
+/// Poses along a whole motion: fine enough for curves to look smooth.
+const STEPS: usize = 240;
+
+/// The generalized coordinates along the motion that starts, or passes, where the solver stands;
+/// at least those. The solver is back there in the end.
+pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
+    let home = solver.pose().clone();
+    let mechanism = Arc::clone(solver.mechanism());
+    let mut path = Path::new(&mechanism);
+    path.start = home.time;
+    path.from.clone_from(&home.parameters);
+    path.to.clone_from(&home.parameters);
+    for (curve, value) in path.curves.iter_mut().zip(&home.drivers) {
+        if let Curve::Input { position, .. } = curve {
+            *position = *value;
+        }
+    }
+    let moves = mechanism
+        .drivers
+        .iter()
+        .any(|driver| driver.motion().is_some_and(Motion::uses_time));
+    let crank = mechanism
+        .drivers
+        .iter()
+        .position(|driver| driver.coordinate.kind == CoordinateKind::Angle);
+    let mut poses = vec![home.q.clone()];
+    if moves {
+        let duration = (mechanism.simulation.stop - home.time).max(0.0);
+        path.duration = duration / STEPS as f64;
+        for _ in 0..STEPS {
+            path.start = solver.pose().time;
+            if !advance(solver, &path, &mut poses) {
+                break;
+            }
+        }
+    } else if let Some(crank) = crank
+        && !turn(solver, &mut path, crank, TAU, &mut poses)
+    {
+        solver.restore(&home);
+        let mut back = Vec::new();
+        turn(solver, &mut path, crank, -TAU, &mut back);
+        back.reverse();
+        back.append(&mut poses);
+        poses = back;
+    }
+    solver.restore(&home);
+    poses
+}
+
+/// Turns a driver by an angle; false if something is in the way.
+fn turn(
+    solver: &mut Solver,
+    path: &mut Path,
+    driver: usize,
+    by: f64,
+    poses: &mut Vec<Vec<f64>>,
+) -> bool {
+    let step = by / STEPS as f64;
+    (0..STEPS).all(|_| {
+        let value = solver.pose().drivers[driver];
+        path.curves[driver] = Curve::Input {
+            position: value + step,
+            velocity: 0.0,
+            acceleration: 0.0,
+            jump: -step,
+        };
+        advance(solver, path, poses)
+    })
+}
+
+/// Goes along a path as far as possible; false if that is not to its end.
+fn advance(solver: &mut Solver, path: &Path, poses: &mut Vec<Vec<f64>>) -> bool {
+    let followed = solver.follow(path);
+    poses.push(solver.pose().q.clone());
+    followed.is_ok()
+}

@@ -1,0 +1,151 @@
+//! A sheet as PNG.
+
+use std::io::Write;
+
+use flate2::write::ZlibEncoder;
+use flate2::{Compression, Crc};
+use tiny_skia::{
+    FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, StrokeDash, Transform,
+};
+
+use super::lettering;
+use super::outline::{Outline, Segment};
+use super::palette::Colour;
+use super::sheet::{CAPITALS, Sheet, WIDTH};
+
+/// Width of the strokes of letters.
+const LETTER_STROKE: f64 = 1.15;
+
+/// The largest picture, in pixels along a side.
+pub const MOST_PIXELS: u32 = 16_384;
+
+/// The drawing as a PNG file `width` pixels wide, on white or on nothing; `None` for a picture
+/// without pixels or with more than [`MOST_PIXELS`] along a side.
+///
+/// Letters are made of strokes: no font is needed.
+#[must_use]
+pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
+    let scale = f64::from(width) / WIDTH;
+    let height = (scale * sheet.height).round() as u32;
+    if width.max(height) > MOST_PIXELS {
+        return None;
+    }
+    let mut pixels = Pixmap::new(width, height)?;
+    if !transparent {
+        pixels.fill(tiny_skia::Color::WHITE);
+    }
+    let transform = Transform::from_scale(scale as f32, scale as f32);
+    for mark in &sheet.marks {
+        // An outline without extent has nothing to fill or to draw.
+        let Some(path) = path(&mark.outline) else {
+            continue;
+        };
+        if let Some((colour, opacity)) = mark.fill {
+            let paint = paint(colour, opacity);
+            pixels.fill_path(&path, &paint, FillRule::Winding, transform, None);
+        }
+        if let Some(stroke) = mark.stroke {
+            let dashes = stroke.dashes.iter().map(|length| *length as f32).collect();
+            let dash = (!stroke.dashes.is_empty())
+                .then(|| StrokeDash::new(dashes, 0.0))
+                .flatten();
+            let cap = if dash.is_some() {
+                LineCap::Butt
+            } else {
+                LineCap::Round
+            };
+            let stroke_style = tiny_skia::Stroke {
+                width: stroke.width as f32,
+                line_cap: cap,
+                line_join: LineJoin::Round,
+                dash,
+                ..tiny_skia::Stroke::default()
+            };
+            let paint = paint(stroke.colour, 1.0);
+            pixels.stroke_path(&path, &paint, &stroke_style, transform, None);
+        }
+    }
+    let letters = tiny_skia::Stroke {
+        width: LETTER_STROKE as f32,
+        line_cap: LineCap::Round,
+        line_join: LineJoin::Round,
+        ..tiny_skia::Stroke::default()
+    };
+    for text in &sheet.texts {
+        let strokes = lettering::strokes(&text.content, text.start, CAPITALS);
+        if let Some(path) = path(&strokes) {
+            let paint = paint(text.colour, 1.0);
+            pixels.stroke_path(&path, &paint, &letters, transform, None);
+        }
+    }
+    Some(encode(&pixels))
+}
+
+/// The pixels as a PNG file: 8 bits a channel with opacity, each row as its difference from the
+/// one above, which compresses lines and empty paper well.
+fn encode(pixels: &Pixmap) -> Vec<u8> {
+    const UP: u8 = 2;
+    let row_length = 4 * pixels.width() as usize;
+    let mut above = vec![0_u8; row_length];
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
+    let mut line = Vec::with_capacity(row_length + 1);
+    for row in pixels.pixels().chunks_exact(pixels.width() as usize) {
+        let straight: Vec<u8> = row
+            .iter()
+            .map(|pixel| pixel.demultiply())
+            .flat_map(|c| [c.red(), c.green(), c.blue(), c.alpha()])
+            .collect();
+        line.clear();
+        line.push(UP);
+        line.extend(straight.iter().zip(&above).map(|(x, b)| x.wrapping_sub(*b)));
+        packed
+            .write_all(&line)
+            .expect("writing to memory does not fail");
+        above = straight;
+    }
+    let data = packed.finish().expect("writing to memory does not fail");
+    let mut header = Vec::new();
+    header.extend(pixels.width().to_be_bytes());
+    header.extend(pixels.height().to_be_bytes());
+    // Bits a channel; red, green, blue, opacity; the only compression, filters, no interlacing.
+    header.extend([8, 6, 0, 0, 0]);
+    let mut file = b"\x89PNG\r\n\x1a\n".to_vec();
+    for (kind, content) in [(b"IHDR", &header), (b"IDAT", &data), (b"IEND", &Vec::new())] {
+        let mut checked = kind.to_vec();
+        checked.extend_from_slice(content);
+        let mut sum = Crc::new();
+        sum.update(&checked);
+        // At most `MOST_PIXELS` squared pixels: far less than the format's 2 GiB.
+        file.extend((content.len() as u32).to_be_bytes());
+        file.extend(checked);
+        file.extend(sum.sum().to_be_bytes());
+    }
+    file
+}
+
+fn paint(colour: Colour, opacity: f64) -> Paint<'static> {
+    let Colour([red, green, blue]) = colour;
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(red, green, blue, (255.0 * opacity).round() as u8);
+    paint
+}
+
+fn path(outline: &Outline) -> Option<Path> {
+    let mut path = PathBuilder::new();
+    for segment in &outline.0 {
+        match segment {
+            Segment::Move(to) => path.move_to(to.x as f32, to.y as f32),
+            Segment::Line(to) => path.line_to(to.x as f32, to.y as f32),
+            Segment::Curve([c, d, to]) => path.cubic_to(
+                c.x as f32,
+                c.y as f32,
+                d.x as f32,
+                d.y as f32,
+                to.x as f32,
+                to.y as f32,
+            ),
+            Segment::Close => path.close(),
+        }
+    }
+    path.finish()
+}

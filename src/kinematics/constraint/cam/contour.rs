@@ -1,0 +1,196 @@
+//! The contour of a cam at the contact, as roller and flat face use it.
+
+use nalgebra::{Rotation2, Vector2};
+
+use super::super::{Configuration, Incidence, MarkerPose, Region};
+use crate::kinematics::configuration::{JointUnknownId, ProfileId, perp};
+use crate::mechanism::{Jet3, MarkerId, Mechanism, ProfileInForce};
+
+/// A cam's contour with a point of contact on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Contour {
+    /// The cam's marker: its point is the pole, its x-axis the polar axis.
+    pub cam: MarkerId,
+    /// R(θ).
+    pub profile: ProfileId,
+    /// The polar angle θ of the contact \[rad\].
+    pub contact: JointUnknownId,
+}
+
+/// A contour at one polar angle.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::kinematics) struct Shape {
+    /// From the pole to the contact \[m\].
+    pub(in crate::kinematics) arm: Vector2<f64>,
+    /// Unit tangent, counter-clockwise round the cam.
+    pub(in crate::kinematics) tangent: Vector2<f64>,
+    /// Arc length per angle, v = √(R² + R′²), and its derivative \[m/rad, m/rad²\].
+    pub(in crate::kinematics) speed: [f64; 2],
+    /// First and second derivative of the tangent's direction: v times the curvature, positive
+    /// where the contour is convex.
+    pub(in crate::kinematics) turn: [f64; 2],
+}
+
+/// Upper bounds, in magnitude, over the part of the contour that lies in a region.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ContourBounds {
+    pub(super) radius: f64,
+    pub(super) speed: [f64; 2],
+    pub(super) turn: [f64; 2],
+    /// How far the contact's angle can be off \[rad\].
+    pub(super) slide: f64,
+    /// How far the vector from the pole to the contact can change \[m\].
+    pub(super) arm: f64,
+    /// How far the tangent can turn \[rad\].
+    pub(super) tangent: f64,
+}
+
+/// How the contact moves for given rates, were all second derivatives of q zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ContactMotion {
+    /// Velocity and acceleration of the point of contact relative to the pole.
+    pub(super) arm: [Vector2<f64>; 2],
+    /// First and second derivative in time of the tangent's direction.
+    pub(super) tangent: [f64; 2],
+}
+
+impl Contour {
+    /// From the pole to the contour's point at the polar angle `theta`.
+    pub(super) fn arm(cam: MarkerPose, theta: f64, radius: f64) -> Vector2<f64> {
+        radius * (Rotation2::new(theta) * cam.axis)
+    }
+
+    /// The outward normal that belongs to a tangent.
+    pub(in crate::kinematics) fn normal(tangent: Vector2<f64>) -> Vector2<f64> {
+        -perp(tangent)
+    }
+
+    /// The contour at the polar angle `theta`, `axis` being the polar axis.
+    pub(in crate::kinematics) fn shape(
+        profile: &ProfileInForce,
+        theta: f64,
+        axis: Vector2<f64>,
+    ) -> Shape {
+        let Jet3 {
+            value: r,
+            first: r1,
+            second: r2,
+            third: r3,
+        } = profile.radius(theta);
+        let radial = Rotation2::new(theta) * axis;
+        let square = r * r + r1 * r1;
+        let v = square.sqrt();
+        // The tangent is ahead of the radial direction by the angle whose tangent is R/R′; so
+        // its direction's derivative is (R² + 2R′² − R R″)/(R² + R′²).
+        let turn = (square + r1 * r1 - r * r2) / square;
+        let numerator_rate = 2.0 * r * r1 + 3.0 * r1 * r2 - r * r3;
+        let turn_rate = (numerator_rate - 2.0 * turn * (r * r1 + r1 * r2)) / square;
+        Shape {
+            arm: r * radial,
+            tangent: (r1 * radial + r * perp(radial)) / v,
+            speed: [v, (r * r1 + r1 * r2) / v],
+            turn: [turn, turn_rate],
+        }
+    }
+
+    /// The cam's marker, and the contour at the contact.
+    pub(super) fn at<'a>(&self, at: &'a Configuration) -> (MarkerPose, Shape) {
+        let cam = at.marker(self.cam);
+        let theta = at.joint_unknown(self.contact);
+        (cam, Self::shape(at.profile(self.profile), theta, cam.axis))
+    }
+
+    /// Place of the contact's angle in q.
+    pub(super) fn column(&self, at: &Configuration) -> usize {
+        at.joint_unknown_column(self.contact)
+    }
+
+    /// `None` where the contour is not smooth.
+    pub(super) fn bounds(&self, at: &Configuration, region: &Region<'_>) -> Option<ContourBounds> {
+        let theta = at.joint_unknown(self.contact);
+        let slide = region.radii[self.column(at)];
+        let radius = at.profile(self.profile).bounds(theta, slide)?;
+        let lowest = radius.value.low;
+        if lowest <= 0.0 {
+            return None;
+        }
+        let (r1, r2, r3) = (
+            radius.first.magnitude(),
+            radius.second.magnitude(),
+            radius.third.magnitude(),
+        );
+        let radius = radius.value.magnitude();
+        let square = radius * radius + r1 * r1;
+        let least_square = lowest * lowest;
+        let v = square.sqrt();
+        let v1 = r1 * (radius + r2) / lowest;
+        let turn = (square + r1 * r1 + radius * r2) / least_square;
+        let numerator_rate = 2.0 * radius * r1 + 3.0 * r1 * r2 + radius * r3;
+        let turn_rate = (numerator_rate + 2.0 * turn * r1 * (radius + r2)) / least_square;
+        let cam = at.marker(self.cam);
+        Some(ContourBounds {
+            radius,
+            speed: [v, v1],
+            turn: [turn, turn_rate],
+            slide,
+            arm: radius * region.sway(cam) + v * slide,
+            tangent: region.turn(cam) + turn * slide,
+        })
+    }
+
+    /// Notes the unknowns in the contact's point, as far as `components` asks for them, and in
+    /// its tangent.
+    pub(super) fn incidence(
+        &self,
+        mechanism: &Mechanism,
+        components: [bool; 2],
+        incidence: &mut Incidence,
+    ) {
+        incidence.point(mechanism, self.cam, components);
+        incidence.direction(mechanism, self.cam);
+        incidence.joint_unknown(mechanism, self.contact);
+    }
+}
+
+impl Shape {
+    pub(super) fn normal(&self) -> Vector2<f64> {
+        Contour::normal(self.tangent)
+    }
+
+    /// How the contact moves on a cam that turns at `omega`: d/dθ of it is v along the tangent,
+    /// whose direction turns by ψ′.
+    pub(super) fn motion(&self, omega: f64, contact_rate: f64) -> ContactMotion {
+        let ([v, v1], [turn, turn_rate]) = (self.speed, self.turn);
+        let slip = v * contact_rate * self.tangent;
+        let across = perp(self.tangent);
+        ContactMotion {
+            arm: [
+                omega * perp(self.arm) + slip,
+                -omega * omega * self.arm
+                    + 2.0 * omega * perp(slip)
+                    + contact_rate * contact_rate * (v1 * self.tangent + v * turn * across),
+            ],
+            tangent: [
+                omega + turn * contact_rate,
+                turn_rate * contact_rate * contact_rate,
+            ],
+        }
+    }
+}
+
+impl ContourBounds {
+    /// Bounds of what [`Shape::motion`] gives, as magnitudes: velocity and acceleration of
+    /// the contact relative to the pole, then first and second derivative of the tangent.
+    pub(super) fn motion(&self, omega: f64, contact_rate: f64) -> [f64; 4] {
+        let (omega, contact_rate) = (omega.abs(), contact_rate.abs());
+        let ([v, v1], [turn, turn_rate]) = (self.speed, self.turn);
+        [
+            omega * self.radius + v * contact_rate,
+            omega * omega * self.radius
+                + 2.0 * omega * v * contact_rate
+                + contact_rate * contact_rate * (v1 + v * turn),
+            omega + turn * contact_rate,
+            turn_rate * contact_rate * contact_rate,
+        ]
+    }
+}

@@ -1,0 +1,222 @@
+//! A flat-faced follower.
+
+use nalgebra::Vector2;
+
+use super::super::{
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, JointUnknown, MarkerPose,
+    Region, angular_velocity, axis_components, centripetal, centripetal_bound, perp,
+    point_velocity, speed_bound,
+};
+use super::contour::{Contour, Shape};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// The contour's tangent runs along the face: c = sin δ, δ being the angle from the face, the
+/// x-axis of the follower's marker, to the tangent at the contact. Held at zero.
+///
+/// The sine leaves open on which side of the face the cam is; the estimates decide.
+#[derive(Clone, Copy, Debug)]
+pub struct FlatContact {
+    /// The cam's contour.
+    pub contour: Contour,
+    /// The marker whose x-axis is the face.
+    pub follower: MarkerId,
+}
+
+/// The contact lies in the face: c = n · g, n being the y-axis of the follower's marker and g the
+/// vector from that marker to the contact. Held at zero.
+#[derive(Clone, Copy, Debug)]
+pub struct FlatFace {
+    /// The cam's contour.
+    pub contour: Contour,
+    /// The marker whose x-axis is the face.
+    pub follower: MarkerId,
+}
+
+/// Sine and cosine of δ.
+fn lean(follower: MarkerPose, contact: &Shape) -> (f64, f64) {
+    (
+        follower.axis.perp(&contact.tangent),
+        follower.axis.dot(&contact.tangent),
+    )
+}
+
+impl Constraint for FlatContact {
+    fn dimension(&self) -> Dimension {
+        Dimension::Angle
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        lean(at.marker(self.follower), &self.contour.at(at).1).0
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        let follower = at.marker(self.follower);
+        let (cam, contact) = self.contour.at(at);
+        let (_, cosine) = lean(follower, &contact);
+        row.add_direction(cam, cosine);
+        row.add_direction(follower, -cosine);
+        row.add_joint_unknown(self.contour.column(at), cosine * contact.turn[0]);
+    }
+
+    /// cos δ δ̈ − sin δ δ̇².
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let follower = at.marker(self.follower);
+        let (cam, contact) = self.contour.at(at);
+        let (sine, cosine) = lean(follower, &contact);
+        let motion = contact.motion(angular_velocity(cam, q_dot), q_dot[self.contour.column(at)]);
+        let rate = motion.tangent[0] - angular_velocity(follower, q_dot);
+        cosine * motion.tangent[1] - sine * rate * rate
+    }
+
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let follower = at.marker(self.follower);
+        let (cam, contact) = self.contour.at(at);
+        let bounds = self.contour.bounds(at, region)?;
+        // The cosine changes by no more than its angle, and by two at the most.
+        let cosine = (bounds.tangent + region.turn(follower)).min(2.0);
+        row.add_direction(cam, cosine);
+        row.add_direction(follower, cosine);
+        let column = self.contour.column(at);
+        let turn = contact.turn[0].abs() * cosine + bounds.turn[1] * bounds.slide;
+        row.add_joint_unknown(column, turn);
+        let [_, _, rate, bend] = bounds.motion(angular_velocity(cam, v), v[column]);
+        let rate = rate + angular_velocity(follower, v).abs();
+        Some(bend + rate * rate)
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        incidence.direction(mechanism, self.contour.cam);
+        incidence.direction(mechanism, self.follower);
+        incidence.joint_unknown(mechanism, self.contour.contact);
+    }
+}
+
+/// The face at one pose.
+struct Face {
+    cam: MarkerPose,
+    follower: MarkerPose,
+    contact: Shape,
+    /// From the follower's marker to the contact.
+    g: Vector2<f64>,
+    normal: Vector2<f64>,
+}
+
+impl FlatFace {
+    fn face<'a>(&self, at: &'a Configuration) -> Face {
+        let (cam, contact) = self.contour.at(at);
+        let follower = at.marker(self.follower);
+        Face {
+            cam,
+            follower,
+            g: cam.point + contact.arm - follower.point,
+            normal: perp(follower.axis),
+            contact,
+        }
+    }
+}
+
+impl Constraint for FlatFace {
+    fn dimension(&self) -> Dimension {
+        Dimension::Length
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        let face = self.face(at);
+        face.g.dot(&face.normal)
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        let Face {
+            cam,
+            follower,
+            contact,
+            g,
+            normal,
+        } = self.face(at);
+        row.add_point(cam, normal);
+        row.add_point(follower, -normal);
+        row.add_direction(cam, perp(contact.arm).dot(&normal));
+        row.add_direction(follower, -g.dot(&follower.axis));
+        let along = contact.speed[0] * contact.tangent.dot(&normal);
+        row.add_joint_unknown(self.contour.column(at), along);
+    }
+
+    /// g̈ · n − 2 omega ġ · u − omega² g · n, omega being that of the follower.
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let Face {
+            cam,
+            follower,
+            contact,
+            g,
+            normal,
+        } = self.face(at);
+        let motion = contact.motion(angular_velocity(cam, q_dot), q_dot[self.contour.column(at)]);
+        let g_dot = point_velocity(cam, q_dot) + motion.arm[0] - point_velocity(follower, q_dot);
+        let g_ddot = centripetal(cam, q_dot) + motion.arm[1] - centripetal(follower, q_dot);
+        let omega = angular_velocity(follower, q_dot);
+        g_ddot.dot(&normal)
+            - 2.0 * omega * g_dot.dot(&follower.axis)
+            - omega * omega * g.dot(&normal)
+    }
+
+    /// The same terms with each factor at its bound.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let Face {
+            cam,
+            follower,
+            contact,
+            g,
+            ..
+        } = self.face(at);
+        let bounds = self.contour.bounds(at, region)?;
+        let sway = region.sway(follower);
+        for marker in [cam, follower] {
+            let swing = marker.arm.norm() * (sway + region.sway(marker));
+            row.add_point_bound(marker, sway, swing);
+        }
+        let moved = region.reach(follower) + region.reach(cam) + bounds.arm;
+        row.add_direction(cam, bounds.arm + contact.arm.norm() * sway);
+        row.add_direction(follower, moved + g.norm() * sway);
+        let column = self.contour.column(at);
+        let leaned = (bounds.tangent + region.turn(follower)).min(2.0);
+        let along = bounds.speed[1] * bounds.slide + contact.speed[0] * leaned;
+        row.add_joint_unknown(column, along);
+
+        let omega = angular_velocity(follower, v).abs();
+        let [arm_speed, arm_bend, ..] = bounds.motion(angular_velocity(cam, v), v[column]);
+        let speed = speed_bound(cam, follower, v) + arm_speed;
+        let bend = centripetal_bound(cam, follower, v) + arm_bend;
+        Some(bend + 2.0 * omega * speed + omega * omega * (g.norm() + moved))
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        let components = axis_components(mechanism, self.follower, Axis::Y);
+        self.contour.incidence(mechanism, components, incidence);
+        incidence.point(mechanism, self.follower, components);
+        incidence.direction(mechanism, self.follower);
+    }
+}
+
+impl JointUnknown for FlatContact {
+    /// The point of the contour that reaches furthest towards the face.
+    fn estimate(&self, at: &Configuration) -> f64 {
+        let (cam, follower) = (at.marker(self.contour.cam), at.marker(self.follower));
+        let normal = perp(follower.axis);
+        let side = normal.dot(&(follower.point - cam.point));
+        let towards = if side < 0.0 { -normal } else { normal };
+        at.profile(self.contour.profile)
+            .angle_of_least(|theta, radius| -Contour::arm(cam, theta, radius).dot(&towards))
+    }
+}

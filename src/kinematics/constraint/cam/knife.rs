@@ -1,0 +1,150 @@
+//! A knife-edge follower.
+
+use nalgebra::Vector2;
+
+use super::super::{
+    Configuration, Constraint, Dimension, Gradient, Incidence, Region, angular_velocity,
+    centripetal, centripetal_bound, chord, perp, point_velocity, speed_bound,
+};
+use crate::kinematics::configuration::ProfileId;
+use crate::mechanism::{Jet3, MarkerId, Mechanism};
+
+/// c = ρ − R(θ), ρ and θ being the polar coordinates of the edge in the cam marker's frame.
+///
+/// Not smooth where the edge is at the pole; there the gradient is taken along the x-axis.
+#[derive(Clone, Copy, Debug)]
+pub struct KnifeEdge {
+    /// The cam's marker: its point is the pole, its x-axis the polar axis.
+    pub cam: MarkerId,
+    /// The marker at the edge.
+    pub follower: MarkerId,
+    /// R(θ).
+    pub profile: ProfileId,
+}
+
+/// The edge in polar coordinates, and the contour there.
+struct Polar {
+    distance: f64,
+    /// From the pole to the edge.
+    radial: Vector2<f64>,
+    /// θ \[rad\].
+    angle: f64,
+    /// R and its derivatives at θ.
+    contour: Jet3,
+}
+
+impl Polar {
+    /// How c changes with the edge's place: radial − R′/ρ across.
+    fn direction(&self) -> Vector2<f64> {
+        self.radial - self.steepness() * perp(self.radial)
+    }
+
+    /// R′/ρ.
+    fn steepness(&self) -> f64 {
+        if self.distance > 0.0 {
+            self.contour.first / self.distance
+        } else {
+            0.0
+        }
+    }
+}
+
+impl KnifeEdge {
+    fn polar(&self, at: &Configuration) -> Polar {
+        let (cam, follower) = (at.marker(self.cam), at.marker(self.follower));
+        let d = follower.point - cam.point;
+        let distance = d.norm();
+        let radial = if distance > 0.0 {
+            d / distance
+        } else {
+            Vector2::x()
+        };
+        let angle = cam.axis.perp(&radial).atan2(cam.axis.dot(&radial));
+        Polar {
+            distance,
+            radial,
+            angle,
+            contour: at.profile(self.profile).radius(angle),
+        }
+    }
+}
+
+impl Constraint for KnifeEdge {
+    fn dimension(&self) -> Dimension {
+        Dimension::Length
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        let polar = self.polar(at);
+        polar.distance - polar.contour.value
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        let polar = self.polar(at);
+        let direction = polar.direction();
+        row.add_point(at.marker(self.follower), direction);
+        row.add_point(at.marker(self.cam), -direction);
+        row.add_direction(at.marker(self.cam), polar.contour.first);
+    }
+
+    /// ρ̈ − R″ θ̇² − R′ θ̈, where ρ̈ and θ̈ are those of polar coordinates for q̈ = 0.
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let polar = self.polar(at);
+        let (cam, follower) = (at.marker(self.cam), at.marker(self.follower));
+        let d_dot = point_velocity(follower, q_dot) - point_velocity(cam, q_dot);
+        let d_ddot = centripetal(follower, q_dot) - centripetal(cam, q_dot);
+        let across = perp(polar.radial);
+        let swing = across.dot(&d_dot) / polar.distance;
+        let rate = swing - angular_velocity(cam, q_dot);
+        let (r1, r2) = (polar.contour.first, polar.contour.second);
+        let radial = swing * swing * polar.distance + polar.radial.dot(&d_ddot);
+        let angular =
+            (across.dot(&d_ddot) - 2.0 * polar.radial.dot(&d_dot) * swing) / polar.distance;
+        radial - r2 * rate * rate - r1 * angular
+    }
+
+    /// The same terms with each factor at its bound; ρ shrinks by the reach of both points, and
+    /// the radial direction turns by asin(reach/ρ) at the most.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let polar = self.polar(at);
+        let (cam, follower) = (at.marker(self.cam), at.marker(self.follower));
+        let reach = region.reach(cam) + region.reach(follower);
+        if reach >= polar.distance {
+            return None;
+        }
+        let least = polar.distance - reach;
+        let swung = (reach / polar.distance).asin();
+        let off = swung + region.turn(cam);
+        let radius = at.profile(self.profile).bounds(polar.angle, off)?;
+        let (r1, r2) = (radius.first.magnitude(), radius.second.magnitude());
+
+        let steepness = polar.steepness().abs();
+        let steepened = (r2 * off + steepness * reach) / least;
+        let direction = chord(swung) * (1.0 + steepness) + steepened;
+        let longest = polar.direction().norm() + direction;
+        for marker in [follower, cam] {
+            let swing = marker.arm.norm() * (direction + longest * region.sway(marker));
+            row.add_point_bound(marker, direction, swing);
+        }
+        row.add_direction(cam, r2 * off);
+
+        let speed = speed_bound(cam, follower, v);
+        let bend = centripetal_bound(cam, follower, v);
+        let swing = speed / least;
+        let rate = swing + angular_velocity(cam, v).abs();
+        let angular = (bend + 2.0 * speed * swing) / least;
+        Some(speed * swing + bend + r2 * rate * rate + r1 * angular)
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        incidence.point(mechanism, self.cam, [true, true]);
+        incidence.direction(mechanism, self.cam);
+        incidence.point(mechanism, self.follower, [true, true]);
+    }
+}

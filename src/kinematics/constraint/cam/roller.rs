@@ -1,0 +1,163 @@
+//! A roller follower.
+
+use nalgebra::Vector2;
+
+use super::super::{
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, JointUnknown, MarkerPose,
+    Region, angular_velocity, centripetal, centripetal_bound, chord, perp, point_velocity,
+    speed_bound,
+};
+use super::contour::{Contour, Shape};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// c = e · w, e being the vector from the contact to the roller's centre, w the contour's
+/// tangent (axis X) or outward normal (axis Y) there: the first is held at zero, the second at
+/// the roller's radius.
+#[derive(Clone, Copy, Debug)]
+pub struct Roller {
+    /// The cam's contour.
+    pub contour: Contour,
+    /// The marker at the roller's centre.
+    pub follower: MarkerId,
+    /// Along which axis of the contact's frame.
+    pub axis: Axis,
+}
+
+/// The contact of a roller, for assembly.
+#[derive(Clone, Copy, Debug)]
+pub struct RollerContact {
+    /// The cam's contour.
+    pub contour: Contour,
+    /// The marker at the roller's centre.
+    pub follower: MarkerId,
+}
+
+/// The contact at one pose.
+struct Touch {
+    cam: MarkerPose,
+    follower: MarkerPose,
+    contact: Shape,
+    /// From the contact to the roller's centre.
+    e: Vector2<f64>,
+    w: Vector2<f64>,
+    /// w turned by a quarter turn.
+    across: Vector2<f64>,
+}
+
+impl Roller {
+    fn touch<'a>(&self, at: &'a Configuration) -> Touch {
+        let (cam, contact) = self.contour.at(at);
+        let follower = at.marker(self.follower);
+        let w = match self.axis {
+            Axis::X => contact.tangent,
+            Axis::Y => contact.normal(),
+        };
+        Touch {
+            cam,
+            follower,
+            e: follower.point - cam.point - contact.arm,
+            w,
+            across: perp(w),
+            contact,
+        }
+    }
+}
+
+impl Constraint for Roller {
+    fn dimension(&self) -> Dimension {
+        Dimension::Length
+    }
+
+    fn value(&self, at: &Configuration) -> f64 {
+        let touch = self.touch(at);
+        touch.e.dot(&touch.w)
+    }
+
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        let Touch {
+            cam,
+            follower,
+            contact,
+            e,
+            w,
+            across,
+        } = self.touch(at);
+        row.add_point(follower, w);
+        row.add_point(cam, -w);
+        row.add_direction(cam, e.dot(&across) - perp(contact.arm).dot(&w));
+        let along = e.dot(&across) * contact.turn[0] - contact.speed[0] * contact.tangent.dot(&w);
+        row.add_joint_unknown(self.contour.column(at), along);
+    }
+
+    /// With Ω the rate of w's direction: ë · w + 2 Ω ė · w⊥ + Ω̇ e · w⊥ − Ω² e · w.
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
+        let Touch {
+            cam,
+            follower,
+            contact,
+            e,
+            w,
+            across,
+        } = self.touch(at);
+        let motion = contact.motion(angular_velocity(cam, q_dot), q_dot[self.contour.column(at)]);
+        let e_dot = point_velocity(follower, q_dot) - point_velocity(cam, q_dot) - motion.arm[0];
+        let e_ddot = centripetal(follower, q_dot) - centripetal(cam, q_dot) - motion.arm[1];
+        let [turn, turn_rate] = motion.tangent;
+        e_ddot.dot(&w) + 2.0 * turn * e_dot.dot(&across) + turn_rate * e.dot(&across)
+            - turn * turn * e.dot(&w)
+    }
+
+    /// The same terms with each factor at its bound.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64> {
+        let Touch {
+            cam,
+            follower,
+            contact,
+            e,
+            ..
+        } = self.touch(at);
+        let bounds = self.contour.bounds(at, region)?;
+        let turned = chord(bounds.tangent);
+        for marker in [follower, cam] {
+            let swing = marker.arm.norm() * (turned + region.sway(marker));
+            row.add_point_bound(marker, turned, swing);
+        }
+        let moved = region.reach(follower) + region.reach(cam) + bounds.arm;
+        let e_change = moved + e.norm() * turned;
+        let arm_change = bounds.arm + contact.arm.norm() * turned;
+        row.add_direction(cam, e_change + arm_change);
+        let furthest = e.norm() + moved;
+        let along = bounds.speed[1] * bounds.slide
+            + bounds.turn[1] * bounds.slide * furthest
+            + contact.turn[0].abs() * e_change;
+        row.add_joint_unknown(self.contour.column(at), along);
+
+        let omega = angular_velocity(cam, v);
+        let [arm_speed, arm_bend, turn, turn_rate] =
+            bounds.motion(omega, v[self.contour.column(at)]);
+        let speed = speed_bound(cam, follower, v) + arm_speed;
+        let bend = centripetal_bound(cam, follower, v) + arm_bend;
+        Some(bend + 2.0 * turn * speed + (turn_rate + turn * turn) * furthest)
+    }
+
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
+        self.contour.incidence(mechanism, [true, true], incidence);
+        incidence.point(mechanism, self.follower, [true, true]);
+    }
+}
+
+impl JointUnknown for RollerContact {
+    /// The point of the contour that is nearest the roller's centre.
+    fn estimate(&self, at: &Configuration) -> f64 {
+        let cam = at.marker(self.contour.cam);
+        let centre = at.marker(self.follower).point - cam.point;
+        at.profile(self.contour.profile)
+            .angle_of_least(|theta, radius| (Contour::arm(cam, theta, radius) - centre).norm())
+    }
+}

@@ -1,0 +1,38 @@
+//! The prescribed motions of a mechanism with parameter values in force.
+
+use crate::mechanism::{DriverId, Jet, Mechanism, MotionInForce, ParameterId};
+
+/// The motions of all drivers that have one.
+#[derive(Clone, Debug)]
+pub(super) struct Motions {
+    /// One a driver, `None` for an input.
+    in_force: Vec<Option<MotionInForce>>,
+}
+
+impl Motions {
+    /// The motions for parameter values still to be given.
+    pub(super) fn new(mechanism: &Mechanism) -> Self {
+        let parameters = mechanism.parameters.len();
+        let drivers = mechanism.drivers.iter();
+        Self {
+            in_force: drivers
+                .map(|driver| Some(MotionInForce::new(driver.motion()?, parameters)))
+                .collect(),
+        }
+    }
+
+    /// Takes over parameter values, with their derivatives with respect to the variable along
+    /// which the motions are to be evaluated. Allocates nothing.
+    pub(super) fn set_parameters(&mut self, parameter: impl Fn(ParameterId) -> Jet) {
+        for motion in self.in_force.iter_mut().flatten() {
+            motion.set_parameters(&parameter);
+        }
+    }
+
+    /// A driver's prescribed value at time `t`; not a number for an input.
+    pub(super) fn evaluate(&self, driver: DriverId, t: Jet) -> Jet {
+        self.in_force[driver.index()]
+            .as_ref()
+            .map_or(Jet::constant(f64::NAN), |motion| motion.evaluate(t))
+    }
+}

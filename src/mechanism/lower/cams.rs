@@ -1,0 +1,153 @@
+//! Cam pairs: the follower and the cam's profile.
+
+use std::f64::consts::TAU;
+
+use toml::de::DeValue;
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::names::shown;
+use crate::mechanism::syntax::Value;
+use crate::mechanism::{
+    CamFollower, Jet, JointKind, ParameterId, Profile, ProfileInForce, Variable,
+};
+
+use super::context::{Context, Fields};
+use super::tables::TABLE_KEYS;
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Follower {
+    Knife,
+    Roller,
+    Flat,
+}
+
+const FOLLOWERS: [(&str, Follower); 3] = [
+    ("knife", Follower::Knife),
+    ("roller", Follower::Roller),
+    ("flat", Follower::Flat),
+];
+
+/// Where a contour closes, its radius and slope have to meet up to this part of the radius.
+const SEAM: f64 = 1e-9;
+
+impl<'a> Context<'a> {
+    pub(super) fn cam(&mut self, fields: &Fields<'a>) -> Option<JointKind> {
+        let follower = self
+            .required(fields, "follower", "\"roller\"")
+            .and_then(|value| self.choice(value, &FOLLOWERS, code::ILLEGAL_VALUE, "follower"));
+        let radius = match follower {
+            Some(Follower::Roller) => {
+                let radius = self.required_quantity(fields, "radius", "0.01");
+                if let Some(radius) = &radius {
+                    self.check_positive(radius, "`radius`");
+                }
+                radius
+            }
+            _ => None,
+        };
+        if let (Some(Follower::Knife | Follower::Flat), Some(span)) =
+            (follower, fields.key_span("radius"))
+        {
+            self.error_with_help(
+                code::UNKNOWN_KEY,
+                span,
+                format!("{} has `radius`, but no roller", fields.subject),
+                "only `follower = \"roller\"` has a radius".to_owned(),
+            );
+        }
+        let profile = self
+            .required(fields, "profile", "\"0.04 + 0.01*(1 - cos(theta))\"")
+            .and_then(|value| self.profile(value));
+        let follower = match follower? {
+            Follower::Knife => CamFollower::Knife,
+            Follower::Flat => CamFollower::Flat,
+            Follower::Roller => CamFollower::Roller {
+                radius: radius?.expression,
+            },
+        };
+        Some(JointKind::Cam {
+            follower,
+            profile: profile?,
+        })
+    }
+
+    fn profile(&mut self, value: &'a Value<'a>) -> Option<Profile> {
+        let profile = match value.get_ref() {
+            DeValue::Table(table) => {
+                let fields = Fields {
+                    table,
+                    place: value.span(),
+                    subject: "the profile".to_owned(),
+                };
+                self.check_keys(&fields, &TABLE_KEYS);
+                let mut known = self.table(&fields, "[theta, R]")?;
+                self.check_ordinates_positive(&known, "the radius of a contour")?;
+                self.close_turn(&mut known)?;
+                if known.len() < 3 {
+                    let message = "a closed contour has three points at least";
+                    self.error(code::BAD_TABLE, value.span(), message);
+                    return None;
+                }
+                Profile::Table(known.table)
+            }
+            _ => Profile::Expression(self.expression(value, Some(Variable::PolarAngle))?),
+        };
+        self.check_contour(&profile, value)?;
+        Some(profile)
+    }
+
+    /// Refuses a contour that for the file's parameters is not finite or positive all round, or
+    /// does not close without a corner.
+    fn check_contour(&mut self, profile: &Profile, value: &'a Value<'a>) -> Option<()> {
+        let values = &self.parameter_values;
+        if profile.parameters().any(|id| values[id.index()].is_none()) {
+            return Some(());
+        }
+        let mut in_force = ProfileInForce::new(profile, values.len());
+        in_force.set_parameters(|id| values[id.index()].unwrap_or(0.0));
+        for theta in ProfileInForce::sample_angles() {
+            let radius = in_force.radius(theta);
+            let finite = radius.value + radius.first + radius.second;
+            let finite = finite.is_finite();
+            if finite && radius.value > 0.0 {
+                continue;
+            }
+            let at = shown((theta.to_degrees() * 10.0).round() / 10.0);
+            let what = if finite {
+                format!(
+                    "the radius of a contour must be positive; it is {}",
+                    shown(radius.value)
+                )
+            } else {
+                "radius, slope and curvature of a contour must be finite; they are not".to_owned()
+            };
+            let message = format!("{what} at theta = {at} deg with the file's parameters");
+            self.error(code::BAD_PROFILE, value.span(), message);
+            return None;
+        }
+        if let Profile::Expression(expression) = profile {
+            let parameter = |id: ParameterId| Jet::constant(values[id.index()].unwrap_or(0.0));
+            let [start, end] = [0.0, TAU].map(|theta| {
+                let jet = expression.evaluate(&parameter, Jet::variable(theta));
+                [jet.value, jet.first, jet.second]
+            });
+            let size = start[0].abs();
+            let what = ["radius", "slope", "second derivative"];
+            let jump = (0..3).find(|&k| (start[k] - end[k]).abs() > SEAM * size);
+            if let Some(k) = jump {
+                let message = format!(
+                    "the contour does not close: its {} is {} at theta = 0 and {} at 2*pi",
+                    what[k],
+                    shown(start[k]),
+                    shown(end[k])
+                );
+                let help = "a contour goes once round without corners: use `theta` in sines and \
+                            cosines of whole multiples, or give points"
+                    .to_owned();
+                self.error_with_help(code::BAD_PROFILE, value.span(), message, help);
+                return None;
+            }
+        }
+        Some(())
+    }
+}

@@ -1,0 +1,157 @@
+//! Prescribed motions: a driver's value as a function of time and the parameters.
+
+mod law;
+
+pub use law::Law;
+
+use super::{Ends, Expression, Jet, ParameterId, Spline, Table};
+
+/// A prescribed motion u(t, parameters) \[m or rad\].
+#[derive(Clone, Debug)]
+pub enum Motion {
+    /// An expression in `t` and the parameters.
+    Expression(Expression),
+    /// Points of the motion, and how it runs through them.
+    Table(MotionTable),
+}
+
+/// A motion through given points.
+#[derive(Clone, Debug)]
+pub struct MotionTable {
+    /// Times \[s\], rising, and values \[m or rad\].
+    pub table: Table,
+    /// How it runs from one point to the next.
+    pub interpolation: Interpolation,
+    /// What it does before the first and after the last point.
+    pub ends: Ends,
+}
+
+/// How a motion runs from one point of its table to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// A cubic spline through all points.
+    Spline,
+    /// From rest to rest between neighbours.
+    Law(Law),
+}
+
+impl Motion {
+    /// Whether it moves at all.
+    #[must_use]
+    pub fn uses_time(&self) -> bool {
+        match self {
+            Self::Expression(expression) => expression.variable().is_some(),
+            Self::Table(_) => true,
+        }
+    }
+
+    /// The parameters that it uses; one may come twice.
+    pub fn parameters(&self) -> Box<dyn Iterator<Item = ParameterId> + '_> {
+        match self {
+            Self::Expression(expression) => Box::new(expression.parameters()),
+            Self::Table(motion) => Box::new(motion.table.parameters()),
+        }
+    }
+}
+
+/// A prescribed motion with parameter values in force: ready to be evaluated at any time.
+///
+/// Made once; [`set_parameters`](Self::set_parameters) then changes it without allocating.
+#[derive(Clone, Debug)]
+pub struct MotionInForce {
+    motion: Motion,
+    parameters: Vec<Jet>,
+    /// Through the table's points, on [`Jet`]s for parameters that move.
+    spline: Option<Spline<Jet>>,
+    /// Whether the table's times rise.
+    valid: bool,
+}
+
+impl MotionInForce {
+    /// The motion for parameters still to be given, `parameters` of them.
+    #[must_use]
+    pub fn new(motion: &Motion, parameters: usize) -> Self {
+        let spline = match motion {
+            Motion::Expression(_) => None,
+            Motion::Table(motion) => Some(Spline::new(motion.table.points.len(), motion.ends)),
+        };
+        Self {
+            motion: motion.clone(),
+            parameters: vec![Jet::default(); parameters],
+            spline,
+            valid: false,
+        }
+    }
+
+    /// Takes over parameter values, with their derivatives with respect to the variable along
+    /// which the motion is to be evaluated.
+    pub fn set_parameters(&mut self, parameter: impl Fn(ParameterId) -> Jet) {
+        for (index, value) in self.parameters.iter_mut().enumerate() {
+            *value = parameter(ParameterId(index));
+        }
+        if let (Motion::Table(motion), Some(spline)) = (&self.motion, &mut self.spline) {
+            let (times, values) = spline.points_mut();
+            motion.table.write(&parameter, times, values);
+            self.valid = spline.is_valid();
+            if self.valid && motion.interpolation == Interpolation::Spline {
+                spline.fit();
+            }
+        }
+    }
+
+    /// The value and its derivatives at time `t`, itself a function of the variable along which
+    /// the motion is evaluated. Allocates nothing.
+    ///
+    /// Not finite where an expression leaves its domain or the times of a table do not rise.
+    #[must_use]
+    pub fn evaluate(&self, t: Jet) -> Jet {
+        match (&self.motion, &self.spline) {
+            (Motion::Expression(expression), _) => {
+                expression.evaluate(&|p| self.parameters[p.index()], t)
+            }
+            (Motion::Table(motion), Some(spline)) if self.valid => motion.evaluate(spline, t),
+            (Motion::Table(_), _) => Jet::constant(f64::NAN),
+        }
+    }
+}
+
+impl MotionTable {
+    fn evaluate(&self, spline: &Spline<Jet>, t: Jet) -> Jet {
+        let (times, values) = (spline.knots(), spline.values());
+        let last = times.len() - 1;
+        let (start, end) = (times[0], times[last]);
+        match self.ends {
+            Ends::Periodic => {
+                let period = end - start;
+                let laps = ((t.value - start.value) / period.value).floor();
+                let laps = Jet::constant(laps);
+                let gained = laps * (values[last] - values[0]);
+                gained + self.between(spline, t - laps * period)
+            }
+            _ if t.value < start.value => self.beyond(spline, 0, t),
+            _ if t.value > end.value => self.beyond(spline, last, t),
+            _ => self.between(spline, t),
+        }
+    }
+
+    /// Before the first or after the last point.
+    fn beyond(&self, spline: &Spline<Jet>, point: usize, t: Jet) -> Jet {
+        let (from, value) = (spline.knots()[point], spline.values()[point]);
+        if self.ends == Ends::Natural {
+            let segment = point.saturating_sub(1);
+            value + spline.slope_on_segment(segment, from) * (t - from)
+        } else {
+            value
+        }
+    }
+
+    fn between(&self, spline: &Spline<Jet>, t: Jet) -> Jet {
+        let segment = spline.segment(t.value);
+        let Interpolation::Law(law) = self.interpolation else {
+            return spline.on_segment(segment, t);
+        };
+        let [from, to] = [segment, segment + 1].map(|k| spline.knots()[k]);
+        let [low, high] = [segment, segment + 1].map(|k| spline.values()[k]);
+        low + (high - low) * law.stroke((t - from) / (to - from))
+    }
+}

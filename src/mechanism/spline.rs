@@ -1,0 +1,321 @@
+//! Cubic splines through given points: twice continuously differentiable.
+
+use super::Number;
+
+/// What a spline, and the motion that it stands for, does at its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// At rest: the slope is zero at both ends, the end values hold outside.
+    Clamped,
+    /// The second derivative is zero at both ends; outside it goes on straight.
+    Natural,
+    /// It repeats. Where the last value differs from the first, each period starts from where
+    /// the one before ended.
+    Periodic,
+}
+
+/// A cubic spline on plain numbers or on numbers with derivatives.
+///
+/// Made once for a number of points; [`points_mut`](Self::points_mut) and [`fit`](Self::fit) then
+/// change it without allocating.
+#[derive(Clone, Debug)]
+pub struct Spline<N> {
+    knots: Vec<N>,
+    values: Vec<N>,
+    /// Second derivatives at the knots.
+    moments: Vec<N>,
+    /// Work space of the elimination.
+    upper: Vec<N>,
+    corner: Vec<N>,
+    ends: Ends,
+}
+
+impl<N: Number<Scalar = f64>> Spline<N> {
+    /// A spline through `count` points, at least two, which are still to be given.
+    #[must_use]
+    pub fn new(count: usize, ends: Ends) -> Self {
+        assert!(count >= 2, "a spline has two points at least");
+        let zeros = vec![N::constant(0.0); count];
+        Self {
+            knots: zeros.clone(),
+            values: zeros.clone(),
+            moments: zeros.clone(),
+            upper: zeros.clone(),
+            corner: zeros,
+            ends,
+        }
+    }
+
+    /// The abscissas and the ordinates. [`fit`](Self::fit) has to follow a change of them.
+    pub fn points_mut(&mut self) -> (&mut [N], &mut [N]) {
+        (&mut self.knots, &mut self.values)
+    }
+
+    /// The abscissas.
+    #[must_use]
+    pub fn knots(&self) -> &[N] {
+        &self.knots
+    }
+
+    /// The ordinates.
+    #[must_use]
+    pub fn values(&self) -> &[N] {
+        &self.values
+    }
+
+    /// Whether each abscissa is larger than the one before, and every number finite.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        let rises = |pair: &[N]| pair[0].value() < pair[1].value();
+        self.knots.windows(2).all(rises)
+            && (self.knots.iter().chain(&self.values)).all(|number| number.value().is_finite())
+    }
+
+    /// Finds the second derivatives for which the first is continuous.
+    ///
+    /// With h the widths and d the slopes of the chords, each inner knot gives
+    /// `h₋ M₋ + 2 (h₋ + h) M + h M₊ = 6 (d − d₋)`. The matrix is diagonally dominant, so that
+    /// elimination needs no pivots.
+    pub fn fit(&mut self) {
+        match self.ends {
+            Ends::Clamped | Ends::Natural => self.fit_between_ends(),
+            Ends::Periodic => self.fit_periodic(),
+        }
+    }
+
+    fn width(&self, segment: usize) -> N {
+        self.knots[segment + 1] - self.knots[segment]
+    }
+
+    fn slope(&self, segment: usize) -> N {
+        (self.values[segment + 1] - self.values[segment]) / self.width(segment)
+    }
+
+    fn fit_between_ends(&mut self) {
+        let (zero, two, six) = (N::constant(0.0), N::constant(2.0), N::constant(6.0));
+        let last = self.knots.len() - 1;
+        for row in 0..=last {
+            let inner = (row > 0, row < last);
+            let left = if inner.0 { self.width(row - 1) } else { zero };
+            let right = if inner.1 { self.width(row) } else { zero };
+            let (lower, diagonal, upper, side) =
+                if self.ends == Ends::Natural && inner != (true, true) {
+                    (zero, N::constant(1.0), zero, zero)
+                } else {
+                    // The slope beyond a clamped end is zero.
+                    let after = if inner.1 { self.slope(row) } else { zero };
+                    let before = if inner.0 { self.slope(row - 1) } else { zero };
+                    (left, two * (left + right), right, six * (after - before))
+                };
+            let (pivot, side) = if row == 0 {
+                (diagonal, side)
+            } else {
+                (
+                    diagonal - lower * self.upper[row - 1],
+                    side - lower * self.moments[row - 1],
+                )
+            };
+            self.upper[row] = upper / pivot;
+            self.moments[row] = side / pivot;
+        }
+        for row in (0..last).rev() {
+            self.moments[row] = self.moments[row] - self.upper[row] * self.moments[row + 1];
+        }
+    }
+
+    /// As between ends, but the first row and the last unknown meet in the corners of the matrix:
+    /// the last unknown's column is carried along, the last row eliminated step by step.
+    fn fit_periodic(&mut self) {
+        let (zero, two, six) = (N::constant(0.0), N::constant(2.0), N::constant(6.0));
+        let count = self.knots.len() - 1;
+        let last = count - 1;
+        let left = |spline: &Self, row: usize| spline.width(if row > 0 { row - 1 } else { last });
+        let side = |spline: &Self, row: usize| {
+            let before = spline.slope(if row > 0 { row - 1 } else { last });
+            six * (spline.slope(row) - before)
+        };
+        let diagonal = |spline: &Self, row: usize| two * (left(spline, row) + spline.width(row));
+        let mut last_diagonal = diagonal(self, last);
+        let mut last_side = side(self, last);
+        // The last row's entry in the column under elimination.
+        let mut last_entry = self.width(last);
+        for row in 0..last {
+            let lower = if row > 0 { left(self, row) } else { zero };
+            let mut corner = if row == 0 { self.width(last) } else { zero };
+            let mut upper = self.width(row);
+            if row + 1 == last {
+                corner = corner + upper;
+                upper = zero;
+                last_entry = last_entry + left(self, last);
+            }
+            let mut pivot = diagonal(self, row);
+            let mut side = side(self, row);
+            if row > 0 {
+                pivot = pivot - lower * self.upper[row - 1];
+                corner = corner - lower * self.corner[row - 1];
+                side = side - lower * self.moments[row - 1];
+            }
+            self.upper[row] = upper / pivot;
+            self.corner[row] = corner / pivot;
+            self.moments[row] = side / pivot;
+            last_diagonal = last_diagonal - last_entry * self.corner[row];
+            last_side = last_side - last_entry * self.moments[row];
+            last_entry = zero - last_entry * self.upper[row];
+        }
+        // A single segment repeats as a straight line.
+        self.moments[last] = if last == 0 {
+            zero
+        } else {
+            last_side / last_diagonal
+        };
+        for row in (0..last).rev() {
+            self.moments[row] = self.moments[row]
+                - self.upper[row] * self.moments[row + 1]
+                - self.corner[row] * self.moments[last];
+        }
+        self.moments[count] = self.moments[0];
+    }
+
+    /// The segment that contains `x`, which lies between the ends; the nearest outside.
+    #[must_use]
+    pub fn segment(&self, x: f64) -> usize {
+        let inner = &self.knots[1..self.knots.len() - 1];
+        inner.partition_point(|knot| knot.value() <= x)
+    }
+
+    /// The value at `x`, by the cubic of a segment.
+    #[must_use]
+    pub fn on_segment(&self, segment: usize, x: N) -> N {
+        let k = segment;
+        let width = self.width(k);
+        let b = (x - self.knots[k]) / width;
+        let a = (self.knots[k + 1] - x) / width;
+        let bend = (a * a * a - a) * self.moments[k] + (b * b * b - b) * self.moments[k + 1];
+        a * self.values[k] + b * self.values[k + 1] + bend * width * width / N::constant(6.0)
+    }
+
+    /// The first derivative at `x`, by the cubic of a segment.
+    #[must_use]
+    pub fn slope_on_segment(&self, segment: usize, x: N) -> N {
+        let k = segment;
+        let (half, sixth) = (N::constant(0.5), N::constant(1.0 / 6.0));
+        let width = self.width(k);
+        let (left, right) = (x - self.knots[k], self.knots[k + 1] - x);
+        let bend = left * left * self.moments[k + 1] - right * right * self.moments[k];
+        self.slope(k) + half * bend / width
+            - sixth * width * (self.moments[k + 1] - self.moments[k])
+    }
+
+    /// Second and third derivative at `x`, by the cubic of a segment.
+    #[must_use]
+    pub fn curvature_on_segment(&self, segment: usize, x: N) -> [N; 2] {
+        let k = segment;
+        let third = (self.moments[k + 1] - self.moments[k]) / self.width(k);
+        [self.moments[k] + (x - self.knots[k]) * third, third]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn spline(points: &[(f64, f64)], ends: Ends) -> Spline<f64> {
+        let mut spline = Spline::new(points.len(), ends);
+        let (knots, values) = spline.points_mut();
+        for (k, (x, y)) in points.iter().enumerate() {
+            (knots[k], values[k]) = (*x, *y);
+        }
+        spline.fit();
+        spline
+    }
+
+    /// Points with widths between 0.1 and 2 and values up to 3.
+    fn points(count: usize) -> impl Strategy<Value = Vec<(f64, f64)>> {
+        prop::collection::vec((0.1..2.0_f64, -3.0..3.0_f64), count).prop_map(|steps| {
+            let mut x = -1.0;
+            steps
+                .into_iter()
+                .map(|(width, y)| {
+                    x += width;
+                    (x, y)
+                })
+                .collect()
+        })
+    }
+
+    fn all(spline: &Spline<f64>, segment: usize, x: f64) -> [f64; 3] {
+        [
+            spline.on_segment(segment, x),
+            spline.slope_on_segment(segment, x),
+            spline.curvature_on_segment(segment, x)[0],
+        ]
+    }
+
+    // Widths of 0.1 and values of 3 make slopes of 60 and second derivatives of some 6 · 60/0.1,
+    // which carry 1e-16 relative each; the conditions hold to some thousand ulp of those.
+    const ROUNDING: f64 = 1e-10;
+
+    proptest! {
+        /// Value, slope and second derivative meet at each knot, and the ends are as asked for:
+        /// these conditions determine the spline.
+        #[test]
+        fn pieces_meet(
+            points in (2_usize..9).prop_flat_map(points),
+            ends in prop::sample::select(vec![Ends::Clamped, Ends::Natural, Ends::Periodic]),
+        ) {
+            let spline = spline(&points, ends);
+            prop_assert!(spline.is_valid());
+            let last = points.len() - 2;
+            for (k, (x, y)) in points.iter().enumerate() {
+                prop_assert!((spline.on_segment(k.min(last), *x) - y).abs() < ROUNDING);
+                prop_assert_eq!(spline.segment(*x), k.min(last));
+                if 0 < k && k <= last {
+                    let (before, after) = (all(&spline, k - 1, *x), all(&spline, k, *x));
+                    for (before, after) in before.iter().zip(after) {
+                        prop_assert!((before - after).abs() < ROUNDING, "{before} {after}");
+                    }
+                }
+            }
+            let first = all(&spline, 0, points[0].0);
+            let end = all(&spline, last, points[last + 1].0);
+            match ends {
+                Ends::Clamped => {
+                    prop_assert!(first[1].abs() < ROUNDING && end[1].abs() < ROUNDING);
+                }
+                Ends::Natural => {
+                    prop_assert!(first[2].abs() < ROUNDING && end[2].abs() < ROUNDING);
+                }
+                Ends::Periodic => {
+                    prop_assert!((first[1] - end[1]).abs() < ROUNDING);
+                    prop_assert!((first[2] - end[2]).abs() < ROUNDING);
+                }
+            }
+        }
+
+        /// The derivatives are those of the value: on a cubic, central differences of third
+        /// order are exact up to the cubic's own term, here by comparing with its expansion.
+        #[test]
+        fn derivatives_agree(points in points(4), part in 0.0..1.0_f64, step in -0.5..0.5_f64) {
+            let spline = spline(&points, Ends::Natural);
+            for segment in 0..3 {
+                let (low, high) = (points[segment].0, points[segment + 1].0);
+                let x = low + part * (high - low);
+                let h = step * (high - low);
+                let [value, first, second] = all(&spline, segment, x);
+                let third = spline.curvature_on_segment(segment, x)[1];
+                let expanded = value + h * (first + h * (0.5 * second + h * third / 6.0));
+                let there = spline.on_segment(segment, x + h);
+                prop_assert!((expanded - there).abs() < ROUNDING, "{expanded} {there}");
+            }
+        }
+    }
+
+    #[test]
+    fn order_and_finite_numbers_make_it_valid() {
+        assert!(!spline(&[(0.0, 1.0), (0.0, 2.0)], Ends::Natural).is_valid());
+        assert!(!spline(&[(1.0, 1.0), (0.0, 2.0)], Ends::Clamped).is_valid());
+        assert!(!spline(&[(0.0, 1.0), (1.0, f64::NAN)], Ends::Periodic).is_valid());
+        assert!(!spline(&[(f64::NAN, 1.0), (1.0, 1.0)], Ends::Periodic).is_valid());
+    }
+}

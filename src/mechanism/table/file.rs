@@ -1,0 +1,221 @@
+//! Tables in CSV files.
+
+use std::fmt::Write as _;
+
+/// A CSV file beside the mechanism file, which travels with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TableFile {
+    /// Its name, without a folder.
+    pub name: String,
+    /// Its content.
+    pub text: String,
+}
+
+/// What is wrong in a CSV file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(in crate::mechanism) enum TableFileError {
+    /// It has no rows of numbers.
+    #[error("it has no numbers")]
+    Empty,
+    /// A row is too short.
+    #[error("line {line} has {found} columns, expected {expected}")]
+    Columns {
+        /// The line, from 1.
+        line: u64,
+        /// How many columns it has.
+        found: usize,
+        /// How many it should have at least.
+        expected: usize,
+    },
+    /// Something other than a finite number.
+    #[error("line {line}: `{found}` is not a finite number")]
+    Number {
+        /// The line, from 1.
+        line: u64,
+        /// What stands there.
+        found: String,
+    },
+    /// No column of that name.
+    #[error("{}", no_column(.name, .header))]
+    Column {
+        /// The name asked for.
+        name: String,
+        /// The names that the file gives.
+        header: Vec<String>,
+    },
+}
+
+fn no_column(name: &str, header: &[String]) -> String {
+    if header.is_empty() {
+        return format!("it has no line of column names, so no column `{name}`");
+    }
+    let mut message = format!("it has no column `{name}`; its columns are");
+    for (index, known) in header.iter().enumerate() {
+        let _ = write!(message, "{} `{known}`", if index > 0 { "," } else { "" });
+    }
+    message
+}
+
+/// A row of two numbers, with the line where it stands.
+pub(in crate::mechanism) type Row = (u64, [f64; 2]);
+
+impl TableFile {
+    /// Reads two columns: those called `columns`, or the first two.
+    ///
+    /// Columns are separated by commas, semicolons or tabs. Lines that start with `#` are
+    /// skipped; a first line that is not all numbers has the columns' names.
+    ///
+    /// # Errors
+    ///
+    /// The first thing wrong with it.
+    pub(in crate::mechanism) fn rows(
+        &self,
+        columns: Option<[&str; 2]>,
+    ) -> Result<Vec<Row>, TableFileError> {
+        let text = self.text.trim_start_matches('\u{feff}');
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .comment(Some(b'#'))
+            .delimiter(delimiter(text))
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .from_reader(text.as_bytes());
+        let mut places = [0, 1];
+        let mut rows = Vec::new();
+        let mut header = Vec::new();
+        // Reading from memory that holds valid UTF-8 does not fail.
+        for (index, record) in reader.records().flatten().enumerate() {
+            let line = record
+                .position()
+                .map_or(0, |place| line_of_record(text, place));
+            if index == 0 {
+                if record.iter().any(|field| field.parse::<f64>().is_err()) {
+                    header = record.iter().map(str::to_owned).collect();
+                }
+                if let Some(names) = columns {
+                    places = find_columns(names, &header)?;
+                }
+                if !header.is_empty() {
+                    continue;
+                }
+            }
+            let mut row = [0.0; 2];
+            for (value, place) in row.iter_mut().zip(places) {
+                let field = record.get(place).ok_or(TableFileError::Columns {
+                    line,
+                    found: record.len(),
+                    expected: place + 1,
+                })?;
+                *value = field
+                    .parse()
+                    .ok()
+                    .filter(|number: &f64| number.is_finite())
+                    .ok_or_else(|| TableFileError::Number {
+                        line,
+                        found: field.to_owned(),
+                    })?;
+            }
+            rows.push((line, row));
+        }
+        if rows.is_empty() {
+            return Err(TableFileError::Empty);
+        }
+        Ok(rows)
+    }
+}
+
+/// The line on which a record stands; its place is before the lines that the reader skipped.
+fn line_of_record(text: &str, place: &csv::Position) -> u64 {
+    let rest = usize::try_from(place.byte()).map_or("", |byte| text.get(byte..).unwrap_or(""));
+    let skipped = rest
+        .lines()
+        .take_while(|line| line.is_empty() || line.starts_with('#'))
+        .count();
+    place.line() + skipped as u64
+}
+
+fn find_columns(names: [&str; 2], header: &[String]) -> Result<[usize; 2], TableFileError> {
+    let mut places = [0; 2];
+    for (place, name) in places.iter_mut().zip(names) {
+        *place = header
+            .iter()
+            .position(|known| known == name)
+            .ok_or_else(|| TableFileError::Column {
+                name: name.to_owned(),
+                header: header.to_vec(),
+            })?;
+    }
+    Ok(places)
+}
+
+/// What separates the columns: whichever the first line that is no comment has.
+fn delimiter(text: &str) -> u8 {
+    let first = text
+        .lines()
+        .find(|line| !line.starts_with('#') && !line.trim().is_empty())
+        .unwrap_or_default();
+    [b'\t', b';']
+        .into_iter()
+        .find(|delimiter| first.as_bytes().contains(delimiter))
+        .unwrap_or(b',')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(text: &str, columns: Option<[&str; 2]>) -> Result<Vec<Row>, TableFileError> {
+        let file = TableFile {
+            name: "table.csv".to_owned(),
+            text: text.to_owned(),
+        };
+        file.rows(columns)
+    }
+
+    #[test]
+    fn usual_files_are_read() {
+        let expected = vec![[0.0, 1.0], [0.5, -2e-3]];
+        for text in [
+            "0,1\n0.5,-2e-3\n",
+            "\u{feff}0,1\r\n0.5,-2e-3",
+            "# comment\ntime,value\n0, 1\n\n 0.5 ,-2e-3,9\n",
+            "t;u\n0;1\n# between\n0.5;-2e-3\n",
+            "0\t1\n0.5\t-2e-3\n",
+            "\"t\",\"u\"\n\"0\",1\n0.5,\"-2e-3\"\n",
+        ] {
+            let read = rows(text, None).expect(text);
+            let numbers: Vec<_> = read.into_iter().map(|(_, row)| row).collect();
+            assert_eq!(numbers, expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn columns_are_found_by_name() {
+        let text = "angle,time,force\n1,0,7\n2,1,8\n";
+        let read = rows(text, Some(["time", "angle"])).expect("both are there");
+        assert_eq!(read, [(2, [0.0, 1.0]), (3, [1.0, 2.0])]);
+        let error = rows(text, Some(["time", "anlge"])).expect_err("misspelt");
+        assert_eq!(
+            error.to_string(),
+            "it has no column `anlge`; its columns are `angle`, `time`, `force`"
+        );
+        let error = rows("0,1\n", Some(["t", "u"])).expect_err("no names");
+        assert_eq!(
+            error.to_string(),
+            "it has no line of column names, so no column `t`"
+        );
+    }
+
+    #[test]
+    fn what_is_wrong_has_its_line() {
+        for (text, message) in [
+            ("", "it has no numbers"),
+            ("t,u\n# nothing\n", "it has no numbers"),
+            ("t,u\n0,1\n\n1,x\n", "line 4: `x` is not a finite number"),
+            ("0,1\n1,inf\n", "line 2: `inf` is not a finite number"),
+            ("0,1\n1\n", "line 2 has 1 columns, expected 2"),
+        ] {
+            assert_eq!(rows(text, None).expect_err(text).to_string(), message);
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Tables of points, whose numbers are expressions over the parameters.
+
+mod file;
+
+pub use file::TableFile;
+
+use super::{Expression, Number, ParameterId};
+
+/// Points of a function, given in the mechanism file or in a CSV file beside it.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Abscissa and ordinate of each point, before scaling; two points at least.
+    pub points: Vec<[Expression; 2]>,
+    /// What abscissas and ordinates are multiplied with to give SI units.
+    pub scale: [Expression; 2],
+}
+
+impl Table {
+    /// Writes the points in SI units, for the given parameters. Both slices are at least as long
+    /// as the table.
+    pub(super) fn write<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        abscissas: &mut [N],
+        ordinates: &mut [N],
+    ) {
+        let evaluate = |expression: &Expression| expression.evaluate(parameter, N::constant(0.0));
+        let [across, up] = self.scale.each_ref().map(evaluate);
+        for (([x, y], abscissa), ordinate) in self.points.iter().zip(abscissas).zip(ordinates) {
+            *abscissa = evaluate(x) * across;
+            *ordinate = evaluate(y) * up;
+        }
+    }
+
+    /// The parameters that it uses; one may come twice.
+    pub fn parameters(&self) -> impl Iterator<Item = ParameterId> {
+        let expressions = self.points.iter().flatten().chain(&self.scale);
+        expressions.flat_map(Expression::parameters)
+    }
+}

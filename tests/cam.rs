@@ -1,0 +1,248 @@
+//! Cams: the contact over many turns and large steps, and contours that a follower cannot follow.
+
+mod common;
+
+use std::f64::consts::TAU;
+
+use biela::kinematics::{MisfitKind, Rates, Solver};
+use biela::mechanism::{Jet, Mechanism};
+use common::{assembled, parse, shipped, straight_to};
+use proptest::prelude::*;
+
+/// The place of a follower as a function of the cam angle.
+type Law = fn(f64) -> f64;
+
+/// Each translating cam of the gallery with the place of its follower in closed form; disc
+/// 40 mm, eccentricity 15 mm, roller 10 mm, offset 8 mm.
+const LAWS: [(&str, Law); 3] = [
+    ("cam_knife", |u| 0.030 + 0.010 * (1.0 - u.sin())),
+    ("cam_roller", |u| {
+        0.015 * u.sin() + (0.05_f64.powi(2) - (0.008 - 0.015 * u.cos()).powi(2)).sqrt()
+    }),
+    ("cam_flat", |u| 0.040 + 0.015 * u.sin()),
+];
+
+fn follower_height(solver: &Solver, mechanism: &Mechanism) -> f64 {
+    let follower = mechanism.body_id("follower").expect("it has one");
+    solver.pose().q[3 * follower.index() + 1]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(50))]
+
+    /// The cam may jump by up to half a turn; the contact goes along. Heights are right to some
+    /// eps of the 0.1 m that the mechanism measures, for rounding of the angle up to 100 rad.
+    #[test]
+    fn large_steps_keep_the_contact(steps in prop::collection::vec(-3.1..3.1_f64, 1..20)) {
+        for (name, law) in LAWS {
+            let mechanism = shipped(name);
+            let (mut solver, mut path) = assembled(&mechanism);
+            let mut angle = solver.pose().drivers[0];
+            for step in &steps {
+                angle += step;
+                straight_to(&solver, &mut path, angle);
+                prop_assert!(solver.follow(&path).is_ok(), "{name} at {angle}");
+                let off = follower_height(&solver, &mechanism) - law(angle);
+                prop_assert!(off.abs() < 1e-14, "{name}: {off:e}");
+            }
+        }
+    }
+}
+
+/// The contact of a flat face on a circle stays at the top of the circle: seen from the cam, its
+/// tangent turns by −1 for each turn of the cam.
+#[test]
+fn the_contact_counts_turns() {
+    let mechanism = shipped("cam_flat");
+    let (mut solver, mut path) = assembled(&mechanism);
+    let contact = 3 * mechanism.bodies.len();
+    let (start, first) = (solver.pose().drivers[0], solver.pose().q[contact]);
+    for turn in 1..=1000 {
+        let angle = start + TAU * f64::from(turn);
+        straight_to(&solver, &mut path, angle);
+        solver.follow(&path).expect("the cam turns on for ever");
+        let off = solver.pose().q[contact] - (first - TAU * f64::from(turn));
+        // The angle itself has been rounded to half an ulp of up to 6,283 rad.
+        assert!(off.abs() < 2e-12, "{turn}: {off:e}");
+    }
+}
+
+/// On a circle round the axle nothing moves but the contact; this is where the equations of the
+/// contact are alone with their unknown.
+#[test]
+fn a_round_cam_moves_nothing() {
+    for name in ["cam_roller", "cam_flat", "cam_roller_arm", "cam_flat_arm"] {
+        let mechanism = shipped(name);
+        let (mut solver, mut path) = assembled(&mechanism);
+        let eccentricity = mechanism.parameter_id("eccentricity").expect("it has one");
+        path.to[eccentricity.index()] = 0.0;
+        solver.follow(&path).expect("eccentricities between fit");
+        path.from.clone_from(&path.to);
+        let height = solver.pose().q[4];
+        straight_to(&solver, &mut path, 4.0);
+        solver.follow(&path).expect("a round cam turns");
+        assert!((solver.pose().q[4] - height).abs() < 1e-16, "{name}");
+        let mut rates = Rates::new(solver.pose().q.len());
+        let turning = Jet {
+            value: 4.0,
+            first: 10.0,
+            second: 5.0,
+        };
+        solver
+            .solve_rates(|_| turning, &mut rates)
+            .expect("regular");
+        let (contact, follower) = (3 * mechanism.bodies.len(), 3..6);
+        assert!(
+            rates.velocity()[follower.clone()]
+                .iter()
+                .all(|v| v.abs() < 1e-14)
+        );
+        assert!(
+            rates.acceleration()[follower]
+                .iter()
+                .all(|a| a.abs() < 1e-12)
+        );
+        assert!((rates.velocity()[contact] + 10.0).abs() < 1e-13, "{name}");
+        assert!(
+            (rates.acceleration()[contact] + 5.0).abs() < 1e-12,
+            "{name}"
+        );
+    }
+}
+
+/// A shipped cam with another contour.
+fn with_profile(name: &str, profile: &str) -> Solver {
+    let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("shipped mechanisms can be read");
+    let start = text.find("profile = ").expect("it has a profile");
+    let end = start + text[start..].find('\n').expect("it is a line");
+    let text = text.replace(&text[start..end], &format!("profile = {profile}"));
+    assembled(&parse(&text)).0
+}
+
+/// At θ = 60° of R = 0.05 + 0.01 cos 3θ the contour is hollow: R = 0.04, R″ = 0.09, so that the
+/// curvature (R² − R R″)/R³ is −31.25/m and the radius of curvature 32 mm.
+#[test]
+fn a_roller_too_large_for_a_hollow_is_reported() {
+    for (roller, fits) in [(0.0319, true), (0.0321, false)] {
+        let mut solver = with_profile("cam_roller", "'0.05 + 0.01*cos(3*theta)'");
+        let mechanism = solver.mechanism().clone();
+        let mut path = biela::kinematics::Path::new(&mechanism);
+        let radius = mechanism.parameter_id("roller_radius").expect("it has one");
+        path.to[radius.index()] = roller;
+        solver.assemble(&path).expect("it closes");
+        match &solver.misfits()[..] {
+            [] => assert!(fits),
+            [misfit] => {
+                assert!(!fits);
+                let MisfitKind::NarrowHollow {
+                    range, curvature, ..
+                } = misfit.kind
+                else {
+                    panic!("{misfit}");
+                };
+                assert!((curvature - 0.032).abs() < 1e-9);
+                // One of the three hollows.
+                let middle = 0.5 * (range[0] + range[1]);
+                assert!(((3.0 * middle).cos() + 1.0).abs() < 1e-9);
+            }
+            more => panic!("{more:?}"),
+        }
+    }
+}
+
+/// R = 0.05 + 0.005 cos 3θ turns hollow where R² + 2R′² − R R″ = 0; at θ = 60° it is
+/// 0.045² − 0.045·0.045 = 0 exactly: convex up to an amplitude of 5 mm.
+#[test]
+fn a_flat_face_over_a_hollow_is_reported() {
+    for (amplitude, hollow) in [("0.0049", false), ("0.0051", true)] {
+        let profile = format!("'0.05 + {amplitude}*cos(3*theta)'");
+        let misfits = with_profile("cam_flat", &profile).misfits();
+        let reported = misfits
+            .iter()
+            .any(|misfit| matches!(misfit.kind, MisfitKind::HollowUnderFace { .. }));
+        assert_eq!(
+            (reported, misfits.len()),
+            (hollow, usize::from(hollow)),
+            "{misfits:?}"
+        );
+    }
+}
+
+#[test]
+fn the_gallery_fits() {
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/mechanisms"))
+        .expect("the folder is there")
+    {
+        let path = entry.expect("it can be read").path();
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+        {
+            let name = path.file_stem().expect("it has a name").to_string_lossy();
+            let misfits = assembled(&shipped(&name)).0.misfits();
+            assert!(misfits.is_empty(), "{name}: {misfits:?}");
+        }
+    }
+}
+
+/// Gears, belts and racks whose places do not fit their radii, each with the figures.
+#[test]
+fn wheels_that_do_not_fit_are_reported() {
+    let pair = |joint: &str| {
+        let mechanism = parse(&format!(
+            "format = 1\nname = 'pair'\n[ground.markers]\nA = [0, 0]\nB = [0.3, 0.4]\n\
+             [bodies.a]\nmarkers = {{ O = [0, 0] }}\n[bodies.b]\nmarkers = {{ O = [0, 0] }}\n\
+             estimate = [0.3, 0.4, 0]\n[joints]\n\
+             A = {{ type = 'revolute', markers = ['ground.A', 'a.O'] }}\n\
+             B = {{ type = 'revolute', markers = ['ground.B', 'b.O'] }}\n{joint}\n[drivers]\n\
+             u = {{ coordinate = 'angle', markers = ['ground.A', 'a.O'], start = 0 }}\n"
+        ));
+        let misfits = assembled(&mechanism).0.misfits();
+        misfits.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let wheels = |kind: &str, radii: &str, more: &str| {
+        pair(&format!(
+            "W = {{ type = '{kind}', markers = ['a.O', 'b.O'], radii = {radii}{more} }}"
+        ))
+    };
+    let fits: [String; 0] = [];
+    assert_eq!(wheels("gear", "[0.2, 0.3]", ""), fits);
+    assert_eq!(wheels("gear", "[0.7, 0.2]", ", internal = true"), fits);
+    assert_eq!(
+        wheels("gear", "[0.2, 0.31]", ""),
+        ["joint `W`: the centres are 0.500000 m apart; the radii ask for 0.510000 m"]
+    );
+    assert_eq!(
+        wheels("gear", "[0.2, 0.3]", ", internal = true"),
+        ["joint `W`: the centres are 0.500000 m apart; the radii ask for 0.100000 m"]
+    );
+    assert_eq!(wheels("belt", "[0.2, 0.6]", ""), fits);
+    assert_eq!(
+        wheels("belt", "[0.2, 0.4]", ", crossed = true"),
+        [
+            "joint `W`: the centres are 0.500000 m apart; wheels of these radii need more than \
+             0.600000 m"
+        ]
+    );
+    let rack = |side: &str| {
+        let mechanism = parse(&format!(
+            "format = 1\nname = 'rack'\n[ground.markers]\nO = [0, 0.05]\nway = [0, 0]\n\
+             [bodies.pinion]\nmarkers = {{ O = [0, 0] }}\n[bodies.rack]\nmarkers = {{ R = [0, 0] }}\n\
+             [joints]\nO = {{ type = 'revolute', markers = ['ground.O', 'pinion.O'] }}\n\
+             way = {{ type = 'translational', markers = ['ground.way', 'rack.R'] }}\n\
+             W = {{ type = 'rack_and_pinion', markers = ['pinion.O', 'rack.R'], radius = 0.05, side = '{side}' }}\n\
+             [drivers]\nu = {{ coordinate = 'angle', markers = ['ground.O', 'pinion.O'], start = 0 }}\n"
+        ));
+        let misfits = assembled(&mechanism).0.misfits();
+        misfits.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(rack("above"), fits);
+    assert_eq!(
+        rack("below"),
+        [
+            "joint `W`: the pinion's centre is at y = 0.050000 m of the rack; its radius and \
+             side ask for -0.050000 m"
+        ]
+    );
+}

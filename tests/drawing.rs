@@ -1,0 +1,432 @@
+//! Drawings of mechanisms: what is in the scene, and that the pictures are whole.
+
+mod common;
+
+use biela::drawing::{Anchor, Scene, Sheet, Symbol, WaySide, png, svg};
+use biela::mechanism::BodyId;
+use common::{assembled, folder, parse, shipped, stems};
+use quick_xml::Reader;
+use quick_xml::events::Event;
+
+const WIDTH: u32 = 640;
+
+fn scene_of(text: &str) -> Scene {
+    Scene::new(&mut assembled(&parse(text)).0, true)
+}
+
+fn picture(name: &str) -> String {
+    let (mut solver, _) = assembled(&shipped(name));
+    let scene = Scene::new(&mut solver, true);
+    svg::write(&Sheet::new(&scene, &solver.pose().q), WIDTH, false)
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-12
+}
+
+#[test]
+fn a_four_bar_has_its_bars_pins_and_pivots() {
+    let (mut solver, _) = assembled(&shipped("four_bar"));
+    let home = solver.pose().clone();
+    let scene = Scene::new(&mut solver, true);
+    assert_eq!(*solver.pose(), home, "the solver is back where it was");
+    assert_eq!(scene.bodies, ["crank", "coupler", "rocker"]);
+
+    let count =
+        |wanted: &dyn Fn(&Symbol) -> bool| scene.symbols.iter().filter(|s| wanted(s)).count();
+    for (body, corners) in [(0, 2), (1, 3), (2, 2)] {
+        let link = |symbol: &Symbol| matches!(symbol, Symbol::Link { body: of, points } if *of == BodyId(body) && points.len() == corners);
+        assert_eq!(count(&link), 1, "body {body}");
+    }
+    assert_eq!(count(&|s| matches!(s, Symbol::Pin { .. })), 4);
+    assert_eq!(count(&|s| matches!(s, Symbol::Fixture { .. })), 2);
+    assert_eq!(
+        count(&|s| matches!(s, Symbol::AngleDriver { name, .. } if name == "crank_angle")),
+        1
+    );
+    assert_eq!(
+        count(&|s| matches!(s, Symbol::Point { name, .. } if name == "P")),
+        1
+    );
+    assert_eq!(count(&|s| matches!(s, Symbol::Trace { .. })), 1);
+    assert_eq!(scene.symbols.len(), 3 + 4 + 2 + 1 + 1 + 1);
+}
+
+#[test]
+fn a_trace_is_the_path_of_the_point() {
+    let (mut solver, _) = assembled(&shipped("four_bar"));
+    let scene = Scene::new(&mut solver, true);
+    let traces: Vec<_> = scene
+        .symbols
+        .iter()
+        .filter_map(|s| match s {
+            Symbol::Trace {
+                body: Some(BodyId(1)),
+                points,
+            } => Some(points),
+            _ => None,
+        })
+        .collect();
+    let [points] = traces[..] else {
+        panic!("{traces:?}")
+    };
+    // The crank turns fully, so the curve closes.
+    let (first, last) = (points[0], points[points.len() - 1]);
+    assert!(near(first[0], last[0]) && near(first[1], last[1]));
+    // P is hypot(125, 50) mm from both ends of the coupler, one of which is on the crank's circle
+    // of 100 mm about O2, the other on the rocker's of 300 mm about O4.
+    let reach = f64::hypot(0.125, 0.05);
+    for [x, y] in points {
+        assert!((f64::hypot(*x, *y) - 0.1).abs() <= reach + 1e-12);
+        assert!((f64::hypot(x - 0.4, *y) - 0.3).abs() <= reach + 1e-12);
+    }
+    let without = Scene::new(&mut solver, false);
+    assert_eq!(without.symbols.len(), scene.symbols.len() - 1);
+}
+
+#[test]
+fn a_rocking_point_draws_its_arc_once() {
+    // The left rocker's end moves on a circle about O2, forth and back.
+    let (mut solver, _) = assembled(&shipped("chebyshev"));
+    let length = |points: &[[f64; 2]]| -> f64 {
+        points
+            .windows(2)
+            .map(|p| f64::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]))
+            .sum()
+    };
+    let drawn: f64 = Scene::new(&mut solver, true)
+        .symbols
+        .iter()
+        .map(|s| match s {
+            Symbol::Trace {
+                body: Some(BodyId(0)),
+                points,
+            } => length(points),
+            _ => 0.0,
+        })
+        .sum();
+    // Turning points: coupler and right rocker in line, stretched (7 parts) and folded (3), on a
+    // base of 4 with a left rocker of 5. The arc is the rocker's length times the difference.
+    let angle = |far: f64| ((25.0 + 16.0 - far * far) / 40.0_f64).acos();
+    let arc = 0.25 * (angle(7.0) - angle(3.0));
+    assert!((drawn / arc - 1.0).abs() < 0.03, "{drawn} {arc}");
+}
+
+#[test]
+fn ways_are_as_long_as_the_motion() {
+    // The slider goes between sqrt((rod -+ crank)^2 - offset^2).
+    let (mut solver, _) = assembled(&shipped("slider_crank"));
+    let scene = Scene::new(&mut solver, true);
+    let way = scene.symbols.iter().find_map(|s| match s {
+        Symbol::SlideWay { range, side, .. } => Some((*range, *side)),
+        _ => None,
+    });
+    let ([low, high], side) = way.expect("the slider is guided");
+    let end = |length: f64| f64::sqrt(length * length - 0.01 * 0.01);
+    // The nearest of 240 poses a turn is within 0.75° of the end: 50 mm (1 - cos 0.75°).
+    assert!((low - end(0.1)).abs() < 1e-5 && (high - end(0.2)).abs() < 1e-5);
+    assert_eq!(side, WaySide::Below);
+}
+
+#[test]
+fn a_block_on_a_moving_body_stretches_it() {
+    // The arm's end is between 0.15 m and 0.65 m from the barrel's pivot.
+    let (mut solver, _) = assembled(&shipped("tlv_crank"));
+    let scene = Scene::new(&mut solver, true);
+    let barrel = scene.symbols.iter().find_map(|s| match s {
+        Symbol::Link {
+            body: BodyId(1),
+            points,
+        } => Some(points.clone()),
+        _ => None,
+    });
+    let longest = barrel
+        .expect("it is drawn")
+        .iter()
+        .fold(0.0, |x: f64, p| x.max(p[0]));
+    assert!((longest - 0.65).abs() < 1e-4);
+    assert!(scene.symbols.iter().any(|s| matches!(
+        s,
+        Symbol::Block {
+            at: Anchor {
+                body: Some(BodyId(2)),
+                ..
+            },
+            on: Some(BodyId(1))
+        }
+    )));
+}
+
+const WHEELS: &str = r#"
+    format = 1
+    name = "wheels"
+    [ground.markers]
+    A = [0, 0]
+    B = [0.09, 0]
+    C = [0.25, 0.02]
+    [bodies.pinion]
+    markers = { C = [0, 0] }
+    [bodies.wheel]
+    markers = { C = [0, 0] }
+    estimate = [0.09, 0, 0]
+    [bodies.pulley]
+    markers = { C = [0, 0] }
+    estimate = [0.25, 0.02, 0]
+    [bodies.rack]
+    markers = { R = [0, 0] }
+    estimate = [0, -0.03, 0]
+    [joints]
+    A = { type = "revolute", markers = ["ground.A", "pinion.C"] }
+    B = { type = "revolute", markers = ["ground.B", "wheel.C"] }
+    C = { type = "revolute", markers = ["ground.C", "pulley.C"] }
+    mesh = { type = "gear", markers = ["pinion.C", "wheel.C"], teeth = [12, 24] }
+    belt = { type = "belt", markers = ["wheel.C", "pulley.C"], radii = [0.05, 0.03], crossed = true }
+    drive = { type = "rack_and_pinion", markers = ["pinion.C", "rack.R"], radius = 0.03 }
+    lift = { type = "revolute_translational", markers = ["ground.A", "rack.R"], offset = -0.03 }
+    [constraints]
+    level = { coordinate = "angle", markers = ["ground.A", "rack.R"], value = 0 }
+    [drivers]
+    turn = { coordinate = "angle", markers = ["ground.A", "pinion.C"], start = 0 }
+"#;
+
+#[test]
+fn wheels_have_their_pitch_circles() {
+    let scene = scene_of(WHEELS);
+    let wheels: Vec<_> = scene
+        .symbols
+        .iter()
+        .filter_map(|s| match s {
+            Symbol::Wheel {
+                at,
+                radius,
+                ring: false,
+            } => Some((at.body.map(BodyId::index), *radius)),
+            _ => None,
+        })
+        .collect();
+    // By teeth the pitch circles share the distance of the centres, 90 mm, as 12 : 24.
+    let expected = [(0, 0.03), (1, 0.06), (1, 0.05), (2, 0.03)];
+    assert_eq!(wheels.len(), expected.len());
+    for (body, radius) in expected {
+        assert!(
+            wheels
+                .iter()
+                .any(|w| w.0 == Some(body) && near(w.1, radius)),
+            "{wheels:?}"
+        );
+    }
+    // A wheel or a rack is all there is of its body.
+    assert!(
+        !scene
+            .symbols
+            .iter()
+            .any(|s| matches!(s, Symbol::Link { .. }))
+    );
+    // One turn moves the pinion's centre by 2 pi r along the rack.
+    let rack = scene.symbols.iter().find_map(|s| match s {
+        Symbol::Rack {
+            range, above: true, ..
+        } => Some(range[1] - range[0]),
+        _ => None,
+    });
+    assert!(rack.expect("it is drawn") > std::f64::consts::TAU * 0.03);
+    let (mut solver, _) = assembled(&parse(WHEELS));
+    let scene = Scene::new(&mut solver, true);
+    check_picture(
+        "wheels",
+        &svg::write(&Sheet::new(&scene, &solver.pose().q), WIDTH, true),
+    );
+}
+
+#[test]
+fn prescribed_motions_are_followed_until_the_stop_time() {
+    let text = r#"
+        format = 1
+        name = "cart"
+        [ground.markers]
+        O = [0, 0]
+        [bodies.cart]
+        markers = { C = [0, 0] }
+        [joints]
+        way = { type = "translational", markers = ["ground.O", "cart.C"] }
+        [drivers]
+        travel = { coordinate = "x", markers = ["ground.O", "cart.C"], motion = "0.1*t" }
+        [outputs]
+        markers = ["cart.C"]
+        [simulation]
+        stop = 3.0
+    "#;
+    let scene = scene_of(text);
+    let way = scene.symbols.iter().find_map(|s| match s {
+        Symbol::SlideWay { range, .. } => Some(*range),
+        _ => None,
+    });
+    let [low, high] = way.expect("the cart is guided");
+    assert!(near(low, 0.0) && near(high, 0.3));
+}
+
+/// A text on the sheet: where its box begins and ends.
+struct Label {
+    text: String,
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+/// Reads a picture; fails unless it is well-formed and everything is on the sheet.
+fn check_picture(name: &str, svg: &str) -> Vec<Label> {
+    let mut reader = Reader::from_str(svg);
+    let (mut size, mut labels, mut open): ([f64; 2], Vec<Label>, bool) =
+        ([0.0; 2], Vec::new(), false);
+    loop {
+        match reader.read_event().expect("the picture is well-formed") {
+            Event::Eof => break,
+            Event::Start(element) | Event::Empty(element) => {
+                let attribute = |key: &str| {
+                    element
+                        .try_get_attribute(key)
+                        .expect("attributes are well-formed")
+                        .map(|a| a.value.into_owned())
+                };
+                let value = |key: &str| attribute(key).map(|v| v.parse::<f64>().expect("a number"));
+                open = element.name().as_ref() == "text";
+                match element.name().as_ref() {
+                    "svg" => {
+                        let view = attribute("viewBox").expect("there is one");
+                        let numbers: Vec<f64> = view
+                            .split(' ')
+                            .map(|n| n.parse().expect("a number"))
+                            .collect();
+                        size = [numbers[2], numbers[3]];
+                    }
+                    "path" => {
+                        let data = attribute("d").expect("paths have data");
+                        let numbers = data
+                            .split(|c: char| c.is_ascii_alphabetic() || c == ' ')
+                            .filter(|n| !n.is_empty());
+                        for (index, number) in numbers.enumerate() {
+                            let number: f64 = number.parse().expect("a number");
+                            // Control points of curves may lie outside them, by less than the margin.
+                            assert!(number >= 0.0 && number <= size[index % 2], "{name}: {data}");
+                        }
+                    }
+                    "text" => {
+                        let [x, y] = ["x", "y"].map(|key| value(key).expect("it has a place"));
+                        let width = value("textLength").expect("it has a width");
+                        // Capitals are 8.6 high.
+                        labels.push(Label {
+                            text: String::new(),
+                            x: [x, x + width],
+                            y: [y - 8.6, y],
+                        });
+                        assert!(
+                            x >= 0.0 && x + width <= size[0] && y >= 8.6 && y <= size[1],
+                            "{name}"
+                        );
+                    }
+                    _ => {}
+                }
+            }
+            Event::Text(text) if open => {
+                labels.last_mut().expect("a text is open").text = text.to_string();
+                open = false;
+            }
+            _ => {}
+        }
+    }
+    labels
+}
+
+#[test]
+fn pictures_are_whole_and_labels_apart() {
+    for name in stems("mechanisms", "toml") {
+        let labels = check_picture(&name, &picture(&name));
+        let mechanism = shipped(&name);
+        let bodies = mechanism.bodies.iter().map(|body| &body.name);
+        let drivers = mechanism.drivers.iter().map(|driver| &driver.name);
+        for wanted in bodies.chain(drivers) {
+            assert!(
+                labels.iter().any(|label| label.text == *wanted),
+                "{name}: {wanted}"
+            );
+        }
+        for (index, a) in labels.iter().enumerate() {
+            for b in &labels[..index] {
+                let apart = [(a.x, b.x), (a.y, b.y)]
+                    .iter()
+                    .any(|(p, q)| p[1] <= q[0] || q[1] <= p[0]);
+                assert!(apart, "{name}: {} and {}", a.text, b.text);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_gallery_shows_what_is_drawn() {
+    let names = stems("mechanisms", "toml");
+    assert_eq!(
+        stems("mechanisms/pictures", "svg"),
+        names,
+        "run `make refresh`"
+    );
+    let page = std::fs::read_to_string(folder("mechanisms/README.md")).unwrap_or_default();
+    for name in names {
+        let path = folder("mechanisms/pictures").join(format!("{name}.svg"));
+        let kept = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(
+            picture(&name) == kept,
+            "the picture of {name} has changed: run `make refresh` and look at mechanisms/pictures/{name}.svg"
+        );
+        assert!(
+            page.contains(&format!("]({name}.toml)"))
+                && page.contains(&format!("(pictures/{name}.svg)")),
+            "{name}: run `make refresh`"
+        );
+    }
+}
+
+#[test]
+fn the_gallery_lists_nothing_else() {
+    let names = stems("mechanisms", "toml");
+    let page = std::fs::read_to_string(folder("mechanisms/README.md")).unwrap_or_default();
+    let listed: Vec<&str> = page
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next())
+        .filter_map(|link| link.strip_suffix(".toml"))
+        .collect();
+    assert_eq!(listed, names, "run `make refresh`");
+}
+
+#[test]
+fn large_and_small_mechanisms_look_alike() {
+    let text = std::fs::read_to_string(folder("mechanisms/pendulum.toml")).expect("it is shipped");
+    assert!(text.contains("value = 0.5") && text.contains("[0.1, -0.2"));
+    let large = text
+        .replace("value = 0.5", "value = 500")
+        .replace("[0.1, -0.2", "[100, -200");
+    let draw = |text: &str| {
+        let (mut solver, _) = assembled(&parse(text));
+        let scene = Scene::new(&mut solver, true);
+        svg::write(&Sheet::new(&scene, &solver.pose().q), WIDTH, false)
+    };
+    let (small, large) = (draw(&text), draw(&large));
+    // The two lengths have units of different width.
+    let body = |svg: &str| svg[..svg.rfind("<text").expect("the scale is last")].to_owned();
+    assert_eq!(body(&small), body(&large));
+    assert!(small.contains(">200 mm<") && large.contains(">200 m<"));
+}
+
+#[test]
+fn pngs_have_their_size_and_are_the_same_each_time() {
+    let (mut solver, _) = assembled(&shipped("four_bar"));
+    let scene = Scene::new(&mut solver, true);
+    let sheet = Sheet::new(&scene, &solver.pose().q);
+    let picture = png::write(&sheet, 320, false).expect("it has a size");
+    assert_eq!(&picture[..8], b"\x89PNG\r\n\x1a\n");
+    let width = u32::from_be_bytes(picture[16..20].try_into().expect("four bytes"));
+    assert_eq!(width, 320);
+    assert!(picture == png::write(&sheet, 320, false).expect("it has a size"));
+    assert!(picture != png::write(&sheet, 320, true).expect("it has a size"));
+    assert_eq!(png::write(&sheet, 0, false), None);
+    assert_eq!(png::write(&sheet, png::MOST_PIXELS + 1, false), None);
+}
