@@ -29,6 +29,8 @@ mod newton;
 mod path;
 mod plan;
 mod rates;
+#[cfg(test)]
+mod reference;
 mod solver;
 mod stepping;
 mod structure;

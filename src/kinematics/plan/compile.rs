@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::coupled::{Coupled, Place};
 use super::dyad::{self, Dyad, SideParts};
+use super::elimination;
 use super::pinned::{self, Pinned};
 use super::{Kernel, Plan};
 use crate::kinematics::constraint::{Axis, Relation};
@@ -323,15 +324,19 @@ impl Search<'_> {
             local: 0,
         };
         let mut places = vec![none; self.system.unknowns()];
+        let mut orders = Vec::new();
         for (kernel, &group) in order.iter().enumerate() {
             let group = &self.groups[group];
             if let Recipe::Coupled = group.recipe {
                 let block = &self.structure.blocks()[group.blocks[0]];
-                for (local, &column) in block.columns.iter().enumerate() {
+                let order = elimination::Order::new(self.system, block);
+                for (local, &column) in order.columns.iter().enumerate() {
                     places[column] = Place { kernel, local };
                 }
+                orders.push(order);
             }
         }
+        let mut orders = orders.into_iter();
         let places: Arc<[Place]> = places.into();
         let mut groups: Vec<_> = self.groups.into_iter().map(Some).collect();
         let in_order = order.iter().map(|&group| groups[group].take());
@@ -344,10 +349,11 @@ impl Search<'_> {
                 }
                 Recipe::Dyad(parts) => Kernel::Dyad(Dyad::new(self.mechanism, parts)),
                 Recipe::Coupled => {
-                    let block = &self.structure.blocks()[group.blocks[0]];
-                    let (rows, columns) = (block.rows.clone(), block.columns.clone());
+                    let order = orders.next().expect("each group of this kind has one");
+                    let lu = order.matrix(self.system);
                     let places = Arc::clone(&places);
-                    Kernel::Coupled(Box::new(Coupled::new(index, rows, columns, 0, places)))
+                    let (rows, columns) = (order.rows, order.columns);
+                    Kernel::Coupled(Box::new(Coupled::new(index, rows, columns, lu, places)))
                 }
             })
             .collect()

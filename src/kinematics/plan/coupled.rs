@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use nalgebra::DVector;
-
 use super::{Advance, Work};
-use crate::kinematics::factor::DenseLu;
+use crate::kinematics::factor::{Condition, Factors, Lu};
 use crate::kinematics::newton::{
     AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
     SMALL, STALLED,
@@ -28,26 +26,26 @@ pub(in crate::kinematics) struct Coupled {
     rows: Vec<usize>,
     columns: Vec<usize>,
     places: Arc<[Place]>,
-    lu: DenseLu,
+    lu: Lu,
+    condition: Condition,
     /// Whether the determinant is negative at the pose last factorised.
     negative: bool,
     /// Entries of the rows at unknowns found before: row of the block, column, scaled value.
     upstream: Vec<(usize, usize, f64)>,
-    residual: DVector<f64>,
+    residual: Vec<f64>,
     /// The largest residual in multiples of its rounding error.
     excess: f64,
-    correction: DVector<f64>,
+    correction: Vec<f64>,
     predicted: Vec<f64>,
 }
 
 impl Coupled {
-    /// The block with these rows and unknowns, in the order of elimination; the first `fixed`
-    /// pivots are ±1.
+    /// The block with these rows and unknowns, in the order in which `lu` has them.
     pub(super) fn new(
         index: usize,
         rows: Vec<usize>,
         columns: Vec<usize>,
-        fixed: usize,
+        lu: Lu,
         places: Arc<[Place]>,
     ) -> Self {
         let order = rows.len();
@@ -55,12 +53,13 @@ impl Coupled {
         const ENTRIES: usize = 10;
         Self {
             index,
-            lu: DenseLu::new(order, fixed),
+            lu,
+            condition: Condition::new(order),
             negative: false,
             upstream: Vec::with_capacity(ENTRIES * order),
-            residual: DVector::zeros(order),
+            residual: vec![0.0; order],
             excess: 0.0,
-            correction: DVector::zeros(order),
+            correction: vec![0.0; order],
             predicted: vec![0.0; order],
             rows,
             columns,
@@ -152,7 +151,7 @@ impl Coupled {
         let kept = correction.contraction <= CONTRACTION
             && largest <= LARGEST_CORRECTION
             && self.negative == before
-            && !self.lu.is_singular(SINGULAR);
+            && !self.lu.is_singular(SINGULAR, &mut self.condition);
         if kept { Ok(correction) } else { Err(Rejected) }
     }
 
@@ -187,7 +186,7 @@ impl Coupled {
             if outcome.iterations == max_iterations {
                 return Err(Rejected);
             }
-            self.correction.copy_from(&self.residual);
+            self.correction.copy_from_slice(&self.residual);
             self.lu.solve(&mut self.correction);
             let size = work.at.size();
             for (&column, scaled) in self.columns.iter().zip(&self.correction) {
@@ -195,7 +194,8 @@ impl Coupled {
                 let value = work.at.coordinate(column) - step;
                 work.at.set_coordinate(column, value);
             }
-            let correction = self.correction.amax();
+            let steps = self.correction.iter().map(|step| step.abs());
+            let correction = steps.fold(0.0, nan_or_larger);
             outcome.contraction = outcome.contraction.max(correction / last_correction);
             last_correction = correction.max(SMALL);
             last_excess = excess;
@@ -238,6 +238,6 @@ impl Coupled {
     }
 
     pub(super) fn rcond(&mut self) -> f64 {
-        self.lu.rcond()
+        self.condition.rcond(&mut self.lu)
     }
 }

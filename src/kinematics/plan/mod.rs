@@ -14,6 +14,7 @@ mod anchor;
 mod compile;
 mod coupled;
 mod dyad;
+mod elimination;
 mod pinned;
 
 use super::configuration::Configuration;

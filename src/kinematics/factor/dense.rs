@@ -1,10 +1,9 @@
-//! Linear algebra of the solver: one square matrix, factorised and solved in place.
-//!
-//! This is the other side of the seam to the equations: it knows numbers only. Storage is made
-//! once; nothing here allocates afterwards.
+//! A dense matrix and its LU factorisation.
 
 use nalgebra::linalg::{gauss_step, gauss_step_swap};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVectorViewMut};
+
+use super::{Factors, Singular};
 
 /// A dense matrix and its LU factorisation with partial pivoting.
 ///
@@ -19,14 +18,7 @@ pub struct DenseLu {
     fixed: usize,
     /// 1-norm of the matrix before factorisation, or what it is measured against if larger.
     norm: f64,
-    /// Work space of the condition estimate.
-    probe: DVector<f64>,
-    signs: Vec<f64>,
 }
-
-/// The matrix has a pivot of exactly zero or a value that is not finite.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Singular;
 
 impl DenseLu {
     /// Storage for a matrix of order `order`, whose first `fixed` diagonal entries are ±1
@@ -39,8 +31,6 @@ impl DenseLu {
             matrix: DMatrix::zeros(order, order),
             pivots: vec![0; order],
             norm: 0.0,
-            probe: DVector::zeros(order),
-            signs: vec![0.0; order],
         }
     }
 
@@ -54,13 +44,12 @@ impl DenseLu {
         self.matrix[(row, column)] += value;
     }
 
-    /// Replaces the matrix by its factors. [`rcond`](Self::rcond) counts the matrix as at least
-    /// `least_norm` large.
+    /// Replaces the matrix by its factors. Its norm counts as at least `least_norm`.
     ///
     /// # Errors
     ///
     /// [`Singular`] on a pivot that is zero or not finite. A matrix that is singular only up to
-    /// rounding passes; [`rcond`](Self::rcond) tells.
+    /// rounding passes; its condition tells.
     pub fn factorise(&mut self, least_norm: f64) -> Result<(), Singular> {
         self.norm = self
             .matrix
@@ -109,28 +98,6 @@ impl DenseLu {
         Ok(())
     }
 
-    /// Solves A x = b, `b` becoming x.
-    pub fn solve(&self, b: &mut DVector<f64>) {
-        for (k, &pivot_row) in self.pivots.iter().enumerate() {
-            b.swap_rows(k, pivot_row);
-        }
-        self.matrix.solve_lower_triangular_with_diag_mut(b, 1.0);
-        self.matrix.solve_upper_triangular_mut(b);
-    }
-
-    /// Solves Aᵀ x = b, `b` becoming x.
-    pub fn solve_transposed(&self, b: &mut DVector<f64>) {
-        self.matrix.tr_solve_upper_triangular_mut(b);
-        for k in (0..b.len()).rev() {
-            let below = self.matrix.view_range(k + 1.., k);
-            let known = below.dot(&b.rows_range(k + 1..));
-            b[k] -= known;
-        }
-        for (k, &pivot_row) in self.pivots.iter().enumerate().rev() {
-            b.swap_rows(k, pivot_row);
-        }
-    }
-
     /// Whether the determinant is negative.
     #[must_use]
     pub fn determinant_is_negative(&self) -> bool {
@@ -142,62 +109,56 @@ impl DenseLu {
             })
     }
 
-    /// Whether the reciprocal condition is below `limit`. Cheap where it clearly is not.
-    pub fn is_singular(&mut self, limit: f64) -> bool {
+    /// The magnitudes of the smallest and the largest pivot.
+    #[must_use]
+    pub fn pivot_range(&self) -> (f64, f64) {
         let pivots = (0..self.pivots.len()).map(|k| self.matrix[(k, k)].abs());
-        let (low, high) = pivots.fold((f64::INFINITY, self.norm), |(low, high), pivot| {
+        pivots.fold((f64::INFINITY, 0.0_f64), |(low, high), pivot| {
             (low.min(pivot), high.max(pivot))
-        });
-        // With rows and columns scaled, pivots of similar size mean a good condition; the factor
-        // leaves room for the cases where they hide a bad one.
-        low < 1e3 * limit * high && self.rcond() < limit
+        })
+    }
+}
+
+impl Factors for DenseLu {
+    fn order(&self) -> usize {
+        self.matrix.nrows()
     }
 
-    /// Estimate of 1 / (‖A‖₁ ‖A⁻¹‖₁), by Hager's method with Higham's extra vector
-    /// (N. J. Higham, ACM Trans. Math. Softw. 14 (1988) 381–396). Never below the true value.
-    pub fn rcond(&mut self) -> f64 {
-        let order = self.matrix.nrows();
-        if order == 0 {
-            return 1.0;
+    fn norm(&self) -> f64 {
+        self.norm
+    }
+
+    fn solve(&mut self, b: &mut [f64]) {
+        let order = b.len();
+        let mut b = DVectorViewMut::from_slice(b, order);
+        for (k, &pivot_row) in self.pivots.iter().enumerate() {
+            b.swap_rows(k, pivot_row);
         }
-        let n = order as f64;
-        let mut probe = std::mem::replace(&mut self.probe, DVector::zeros(0));
-        probe.fill(1.0 / n);
-        let mut inverse_norm = 0.0_f64;
-        let mut previous = usize::MAX;
-        // Higham: more than five rounds are never needed in practice.
-        for _ in 0..5 {
-            self.solve(&mut probe);
-            inverse_norm = inverse_norm.max(probe.lp_norm(1));
-            for (sign, value) in self.signs.iter_mut().zip(&probe) {
-                *sign = 1.0_f64.copysign(*value);
-            }
-            probe.copy_from_slice(&self.signs);
-            self.solve_transposed(&mut probe);
-            let steepest = probe.icamax();
-            if steepest == previous {
-                break;
-            }
-            previous = steepest;
-            probe.fill(0.0);
-            probe[steepest] = 1.0;
+        self.matrix
+            .solve_lower_triangular_with_diag_mut(&mut b, 1.0);
+        self.matrix.solve_upper_triangular_mut(&mut b);
+    }
+
+    fn solve_transposed(&mut self, b: &mut [f64]) {
+        let order = b.len();
+        let mut b = DVectorViewMut::from_slice(b, order);
+        self.matrix.tr_solve_upper_triangular_mut(&mut b);
+        for k in (0..order).rev() {
+            let below = self.matrix.view_range(k + 1.., k);
+            let known = below.dot(&b.rows_range(k + 1..));
+            b[k] -= known;
         }
-        // A vector of alternating, growing entries catches what the iteration may miss.
-        for (k, value) in probe.iter_mut().enumerate() {
-            let grown = 1.0 + k as f64 / (n - 1.0).max(1.0);
-            *value = if k % 2 == 0 { grown } else { -grown };
+        for (k, &pivot_row) in self.pivots.iter().enumerate().rev() {
+            b.swap_rows(k, pivot_row);
         }
-        self.solve(&mut probe);
-        inverse_norm = inverse_norm.max(2.0 * probe.lp_norm(1) / (3.0 * n));
-        self.probe = probe;
-        let rcond = 1.0 / (self.norm * inverse_norm);
-        if rcond.is_finite() { rcond } else { 0.0 }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::Condition;
     use super::*;
+    use nalgebra::DVector;
     use proptest::prelude::*;
 
     fn filled(order: usize, values: &[f64]) -> (DenseLu, DMatrix<f64>) {
@@ -226,16 +187,16 @@ mod tests {
             let b = DVector::from_fn(order, |k, _| values[63 - k]);
             let tolerance = 100.0 * order as f64 * f64::EPSILON / rcond;
             let mut x = b.clone();
-            lu.solve(&mut x);
+            lu.solve(x.as_mut_slice());
             let truth = &inverse * &b;
             prop_assert!((&x - &truth).amax() <= tolerance * truth.amax().max(b.amax()));
             let mut x = b.clone();
-            lu.solve_transposed(&mut x);
+            lu.solve_transposed(x.as_mut_slice());
             let truth = inverse.transpose() * &b;
             prop_assert!((&x - &truth).amax() <= tolerance * truth.amax().max(b.amax()));
             prop_assert_eq!(lu.determinant_is_negative(), matrix.determinant() < 0.0);
             // Hager's estimate is an upper bound of rcond and seldom off by more than three.
-            let estimate = lu.rcond();
+            let estimate = Condition::new(order).rcond(&mut lu);
             prop_assert!(estimate >= rcond * (1.0 - 1e-6), "{estimate} {rcond}");
             prop_assert!(estimate <= rcond * 10.0, "{estimate} {rcond}");
         }
