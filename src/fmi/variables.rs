@@ -58,6 +58,16 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    fn place(self) -> Place {
+        match self {
+            Self::Body(body, component, order) => {
+                let column = u32::try_from(3 * body.index() + component);
+                column.map_or(Place::Elsewhere, |column| Place::Coordinate(order, column))
+            }
+            _ => Place::Elsewhere,
+        }
+    }
+
     /// The value of an output: of a body, a marker, a measure or a prescribed motion. Rates
     /// count only where the output is one. Allocates nothing.
     ///
@@ -208,6 +218,17 @@ pub static EXTRAPOLATIONS: Enumeration = Enumeration {
 #[derive(Clone, Debug)]
 pub struct Variables {
     list: Vec<Variable>,
+    /// Where each value stands, side by side: hosts read many at a time.
+    places: Vec<Place>,
+}
+
+/// Where the value of a variable stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In q, its first or its second derivative, at this index.
+    Coordinate(Order, u32),
+    /// Anywhere else, or nowhere before it is computed.
+    Elsewhere,
 }
 
 impl Variables {
@@ -215,7 +236,10 @@ impl Variables {
     /// solver, time; in file order within each.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
-        let mut table = Self { list: Vec::new() };
+        let mut table = Self {
+            list: Vec::new(),
+            places: Vec::new(),
+        };
         table.add_inputs(mechanism);
         table.add_parameters(mechanism);
         if has_inputs(mechanism) {
@@ -232,6 +256,8 @@ impl Variables {
             (Causality::Independent, Variability::Continuous),
             real(Some(Unit::SECOND), None),
         );
+        let quantities = table.list.iter().map(|variable| variable.quantity);
+        table.places = quantities.map(Quantity::place).collect();
         table
     }
 
@@ -245,6 +271,14 @@ impl Variables {
     #[must_use]
     pub fn get(&self, value_reference: u32) -> Option<&Variable> {
         self.list.get(usize::try_from(value_reference).ok()?)
+    }
+
+    /// Where the value of a variable stands; elsewhere for a variable that there is not.
+    #[must_use]
+    pub fn place(&self, value_reference: u32) -> Place {
+        let index = usize::try_from(value_reference).ok();
+        let place = index.and_then(|index| self.places.get(index));
+        place.copied().unwrap_or(Place::Elsewhere)
     }
 
     fn add(

@@ -53,6 +53,7 @@ impl Solver {
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
         self.pose.parameters.copy_from_slice(&path.to);
         self.take_over_parameters()?;
+        self.parameters_move = path.moves_parameters();
         self.set_path(path, 1.0)?;
         self.pose.drivers.copy_from_slice(&self.next_drivers);
         let estimate = self.estimate()?;

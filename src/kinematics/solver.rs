@@ -81,6 +81,8 @@ pub struct Solver {
     /// Prescribed motions, parameters and drivers along a path on which parameters move.
     pub(super) path_motions: Motions,
     pub(super) path_parameters: Vec<Jet>,
+    /// Whether they differ between the ends of the path that is followed.
+    pub(super) parameters_move: bool,
     pub(super) path_drivers: Vec<Jet>,
     /// The drivers where a sub-step starts.
     pub(super) origin_drivers: Vec<Jet>,
@@ -129,6 +131,7 @@ impl Solver {
             path_motions: motions.clone(),
             motions,
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
+            parameters_move: false,
             path_drivers: vec![Jet::constant(0.0); drivers],
             origin_drivers: vec![Jet::constant(0.0); drivers],
             next_drivers: vec![0.0; drivers],

@@ -80,6 +80,7 @@ impl Solver {
             return blocked(s, Reason::DeadPoint, progress);
         }
         self.pose.time = path.time(0.0);
+        self.parameters_move = path.moves_parameters();
         self.drive(path, 0.0);
         while s < 1.0 {
             self.predict();
@@ -220,7 +221,7 @@ impl Solver {
         for (value, jet) in self.next_drivers.iter_mut().zip(&self.path_drivers) {
             *value = jet.value;
         }
-        if path.moves_parameters() {
+        if self.parameters_move {
             let parameters = self.pose.parameters.iter_mut();
             for (value, jet) in parameters.zip(&self.path_parameters) {
                 *value = jet.value;
@@ -237,11 +238,12 @@ impl Solver {
             motions,
             path_motions,
             path_parameters,
+            parameters_move,
             path_drivers,
             ..
         } = self;
         let mechanism = system.mechanism();
-        if path.moves_parameters() {
+        if *parameters_move {
             path.parameters(mechanism, s, path_parameters);
             path_motions.set_parameters(|p| path_parameters[p.index()]);
             path.drivers(s, path_motions, path_drivers);

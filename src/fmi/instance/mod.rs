@@ -199,8 +199,8 @@ struct Settings {
     extrapolation: Extrapolation,
 }
 
-/// What the solver's pose and rates are worth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What the solver's pose and rates are worth, from nothing to all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Freshness {
     /// Values were set since: the pose has to be found anew.
     Stale,

@@ -3,7 +3,7 @@
 use super::{Error, Freshness, Instance, check_finite};
 use crate::fmi::inputs::{Extrapolation, RateSource};
 use crate::fmi::state::{Call, State};
-use crate::fmi::variables::{Causality, Kind, Order, Quantity, Variability, Variable};
+use crate::fmi::variables::{Causality, Kind, Order, Place, Quantity, Variability, Variable};
 
 impl Instance {
     /// `fmi2SetReal`. Either all values are taken or none.
@@ -148,6 +148,10 @@ impl Instance {
     pub fn get_real(&mut self, value_references: &[u32], values: &mut [f64]) -> Result<(), Error> {
         self.allow(Call::GetReal)?;
         for (&value_reference, value) in value_references.iter().zip(values) {
+            if let Some(known) = self.known(value_reference) {
+                *value = known;
+                continue;
+            }
             let variable = self.variable(value_reference)?;
             if !matches!(variable.kind, Kind::Real { .. }) {
                 return Err(Error::Type {
@@ -197,6 +201,20 @@ impl Instance {
             };
         }
         Ok(())
+    }
+
+    /// The value of a coordinate or of a rate, if that has been computed.
+    #[inline]
+    fn known(&self, value_reference: u32) -> Option<f64> {
+        let Place::Coordinate(order, column) = self.variables.place(value_reference) else {
+            return None;
+        };
+        let (from, since) = match order {
+            Order::Position => (&self.solver.pose().q[..], Freshness::Pose),
+            Order::Velocity => (self.rates.velocity(), Freshness::Rates),
+            Order::Acceleration => (self.rates.acceleration(), Freshness::Rates),
+        };
+        (self.freshness >= since).then(|| from[column as usize])
     }
 
     fn variable(&self, value_reference: u32) -> Result<&Variable, Error> {

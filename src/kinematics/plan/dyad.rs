@@ -65,35 +65,37 @@ pub(super) struct SideParts {
 
 /// Turns of up to this are taken from the sine and cosine at hand by their series.
 const SHORT_TURN: f64 = 0.1;
+/// After a correction of more than this there is likely to be another one: the sines in between
+/// need not be exact to the last bit.
+const LIKELY_ANOTHER: f64 = 1e-7;
 
-/// Cosine and sine of phi + turn, given those of phi: to some eps for a short turn.
+/// A frame turned on to the angle phi: to some eps, for a short turn without a sine.
 #[inline(always)]
-fn turned_on(frame: &BodyPose, turn: f64, phi: f64) -> (f64, f64) {
-    if turn.abs() <= SHORT_TURN {
-        let square = turn * turn;
-        // Up to the tenth power: what is left of the series is below 3e-19.
-        let cos = 1.0
-            - square
-                * (1.0 / 2.0
-                    - square
-                        * (1.0 / 24.0
-                            - square
-                                * (1.0 / 720.0
-                                    - square * (1.0 / 40_320.0 - square * (1.0 / 3_628_800.0)))));
-        let sin = turn
-            * (1.0
+fn turned_on(frame: &BodyPose, turn: f64, phi: f64) -> BodyPose {
+    if turn.abs() > SHORT_TURN {
+        return BodyPose::turned(phi);
+    }
+    let square = turn * turn;
+    // Up to the tenth power: what is left of the series is below 3e-19.
+    let cos = 1.0
+        - square
+            * (1.0 / 2.0
                 - square
-                    * (1.0 / 6.0
+                    * (1.0 / 24.0
                         - square
-                            * (1.0 / 120.0
-                                - square * (1.0 / 5_040.0 - square * (1.0 / 362_880.0)))));
-        (
-            frame.cos * cos - frame.sin * sin,
-            frame.sin * cos + frame.cos * sin,
-        )
-    } else {
-        let (sin, cos) = phi.sin_cos();
-        (cos, sin)
+                            * (1.0 / 720.0
+                                - square * (1.0 / 40_320.0 - square * (1.0 / 3_628_800.0)))));
+    let sin = turn
+        * (1.0
+            - square
+                * (1.0 / 6.0
+                    - square
+                        * (1.0 / 120.0 - square * (1.0 / 5_040.0 - square * (1.0 / 362_880.0)))));
+    BodyPose {
+        phi,
+        cos: frame.cos * cos - frame.sin * sin,
+        sin: frame.sin * cos + frame.cos * sin,
+        ..*frame
     }
 }
 
@@ -190,17 +192,17 @@ impl Dyad {
         advance: Advance,
     ) -> Result<Correction, Rejected> {
         let [a, b] = &self.sides;
-        let frame_a = work.at.frames()[a.place as usize];
-        let frame_b = work.at.frames()[b.place as usize];
+        let frames = work.at.frames();
+        let (frame_a, frame_b) = (&frames[a.place as usize], &frames[b.place as usize]);
         let (turn_a, turn_b) = (a.turn(work, advance), b.turn(work, advance));
         let (phi_a, phi_b) = (frame_a.phi + turn_a, frame_b.phi + turn_b);
-        let (cos_a, sin_a) = turned_on(&frame_a, turn_a, phi_a);
-        let (cos_b, sin_b) = turned_on(&frame_b, turn_b, phi_b);
         let before = self.determinant;
         let start = Turned {
-            phi: [phi_a, phi_b],
-            links: [rotate(cos_a, sin_a, a.l), rotate(cos_b, sin_b, b.l)],
-            exact: None,
+            frames: [
+                turned_on(frame_a, turn_a, phi_a),
+                turned_on(frame_b, turn_b, phi_b),
+            ],
+            exact: false,
         };
         let found = self.correct(work, start, MAX_ITERATIONS)?;
         // An angle that is not a number fails all of these.
@@ -234,55 +236,65 @@ impl Dyad {
         let mut last = f64::INFINITY;
         let mut last_gap = f64::INFINITY;
         loop {
-            let gap = base + now.links[0] - now.links[1];
-            let determinant = now.links[0].perp(&now.links[1]);
+            let [frame_a, frame_b] = &now.frames;
+            let links = [frame_a.rotate(a.l), frame_b.rotate(b.l)];
+            let gap = base + links[0] - links[1];
+            let determinant = links[0].perp(&links[1]);
             // The rounding of the points, and that of the angles times the links.
             let rounding = f64::EPSILON
                 * (reach
-                    + a.length * (1.0 + now.phi[0].abs())
-                    + b.length * (1.0 + now.phi[1].abs()));
+                    + a.length * (1.0 + frame_a.phi.abs())
+                    + b.length * (1.0 + frame_b.phi.abs()));
             let open = largest(gap);
             let closed = open <= AT_ROUNDING * rounding
                 || (open <= STALLED * rounding && open >= 0.5 * last_gap);
-            match now.exact {
-                Some([turned_a, turned_b]) if closed => {
+            let (mut phi_a, mut phi_b) = (frame_a.phi, frame_b.phi);
+            let mut size = 0.0;
+            if closed {
+                if now.exact {
                     frames[a.place as usize] = BodyPose {
-                        origin: point_a - turned_a.rotate(a.s),
-                        ..turned_a
+                        origin: point_a - frame_a.rotate(a.s),
+                        ..*frame_a
                     };
                     frames[b.place as usize] = BodyPose {
-                        origin: point_b - turned_b.rotate(b.s),
-                        ..turned_b
+                        origin: point_b - frame_b.rotate(b.s),
+                        ..*frame_b
                     };
-                    [a.link, b.link] = now.links;
+                    [a.link, b.link] = links;
                     self.determinant = determinant;
                     return Ok(Found {
-                        phi: now.phi,
+                        phi: [phi_a, phi_b],
                         correction,
                     });
                 }
-                // At rest, say: nothing to correct.
-                None if closed => {}
-                _ if correction.iterations == max_iterations => return Err(Rejected),
-                _ => {
-                    let inverse = -1.0 / determinant;
-                    let step_a = gap.dot(&now.links[1]) * inverse;
-                    let step_b = gap.dot(&now.links[0]) * inverse;
-                    if !(step_a + step_b).is_finite() {
-                        return Err(Rejected);
-                    }
-                    now.phi[0] += step_a;
-                    now.phi[1] += step_b;
-                    let size = larger(step_a.abs(), step_b.abs());
-                    correction.contraction = larger(correction.contraction, size / last);
-                    last = larger(size, SMALL);
-                    last_gap = open;
-                    correction.iterations += 1;
+            } else if correction.iterations == max_iterations {
+                return Err(Rejected);
+            } else {
+                let inverse = -1.0 / determinant;
+                let step_a = gap.dot(&links[1]) * inverse;
+                let step_b = gap.dot(&links[0]) * inverse;
+                if !(step_a + step_b).is_finite() {
+                    return Err(Rejected);
+                }
+                phi_a += step_a;
+                phi_b += step_b;
+                size = larger(step_a.abs(), step_b.abs());
+                correction.contraction = larger(correction.contraction, size / last);
+                last = larger(size, SMALL);
+                last_gap = open;
+                correction.iterations += 1;
+                if size > LIKELY_ANOTHER {
+                    now.frames = [
+                        turned_on(frame_a, step_a, phi_a),
+                        turned_on(frame_b, step_b, phi_b),
+                    ];
+                    now.exact = false;
                 }
             }
-            let (turned_a, turned_b) = (BodyPose::turned(now.phi[0]), BodyPose::turned(now.phi[1]));
-            now.links = [turned_a.rotate(a.l), turned_b.rotate(b.l)];
-            now.exact = Some([turned_a, turned_b]);
+            if size <= LIKELY_ANOTHER {
+                now.frames = [BodyPose::turned(phi_a), BodyPose::turned(phi_b)];
+                now.exact = true;
+            }
         }
     }
 
@@ -293,15 +305,9 @@ impl Dyad {
         phi: [f64; 2],
         max_iterations: u32,
     ) -> Result<Correction, Rejected> {
-        let exact = phi.map(BodyPose::turned);
-        let links = [
-            exact[0].rotate(self.sides[0].l),
-            exact[1].rotate(self.sides[1].l),
-        ];
         let start = Turned {
-            phi,
-            links,
-            exact: Some(exact),
+            frames: phi.map(BodyPose::turned),
+            exact: true,
         };
         Ok(self.correct(work, start, max_iterations)?.correction)
     }
@@ -433,13 +439,11 @@ impl Dyad {
     }
 }
 
-/// Two angles with what they turn.
+/// Two bodies at their angles, origins apart.
 struct Turned {
-    phi: [f64; 2],
-    /// d of each side.
-    links: [Vector2<f64>; 2],
-    /// The bodies' frames, origins apart, where sines and cosines are exact.
-    exact: Option<[BodyPose; 2]>,
+    frames: [BodyPose; 2],
+    /// Whether sines and cosines are exact.
+    exact: bool,
 }
 
 /// Where Newton ended.

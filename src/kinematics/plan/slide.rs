@@ -1,0 +1,607 @@
+//! A body with a revolute to something already found and a point on a line, alone or with a
+//! second body that slides.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
+
+use super::anchor::{Anchor, Moving, compact};
+use super::{Advance, Work};
+use crate::kinematics::configuration::{BodyPose, Configuration, perp};
+use crate::kinematics::constraint::{Axis, Projection};
+use crate::kinematics::newton::{
+    AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
+    SMALL, STALLED,
+};
+use crate::kinematics::system::Target;
+use crate::mechanism::{Jet, MarkerId, Mechanism};
+
+/// x, y and phi of body a, and of body b if there is one. Everything follows from the angle of
+/// a, for which one equation is left: with what is known gathered in κ and w, and the rest fixed
+/// to body a as g,
+///
+/// f = e · (P_j − P_i) − target = κ + w · A_a g.
+///
+/// Where the axis e is known, w = e and g is the turning part of P_j − P_i; where it turns with
+/// a, g = e in a's frame and w is the known part of P_j − P_i, as the rest turns with e.
+#[derive(Debug)]
+pub(in crate::kinematics) struct Slide {
+    place: u32,
+    anchor: Anchor,
+    /// s of a's point in the revolute.
+    s: Vector2<f64>,
+    second: Second,
+    /// Of i and j.
+    points: [Point; 2],
+    axis: Line,
+    /// A_a g at the pose last factorised, and ∂f/∂phi.
+    g: Vector2<f64>,
+    slope: f64,
+    /// |w| |g|, what the slope is measured against.
+    scale: f64,
+    parts: Box<Parts>,
+}
+
+/// The second body, b.
+#[derive(Debug)]
+enum Second {
+    None,
+    /// Pinned to a, its angle held against something known.
+    Carried {
+        place: u32,
+        /// The body that its angle is held against, `None` for ground.
+        reference: Option<usize>,
+        /// phi_b less that body's angle and the target.
+        zero: f64,
+        /// l, from a's outer to its inner point, and the inner point in b's frame.
+        l: Vector2<f64>,
+        s: Vector2<f64>,
+    },
+    /// Pinned to something known, its angle held against a.
+    Parallel {
+        place: u32,
+        anchor: Anchor,
+        zero: f64,
+        s: Vector2<f64>,
+        /// phi_b − phi_a without whole turns, as a frame.
+        turn: BodyPose,
+    },
+}
+
+/// Where a point stands: a part that is known and one that turns with a.
+#[derive(Clone, Copy, Debug)]
+enum Point {
+    Known(Anchor),
+    /// On a: from its outer point, in a's frame.
+    First(Vector2<f64>),
+    /// On b that is carried: from its inner point, in b's frame.
+    Carried(Vector2<f64>),
+    /// On b that is parallel to a: from its outer point, in a's frame.
+    Parallel(Vector2<f64>),
+}
+
+/// Where the axis is.
+#[derive(Clone, Copy, Debug)]
+enum Line {
+    /// On a body found before (`None` for ground), in its frame.
+    Known(Option<usize>, Vector2<f64>),
+    /// On b, which is carried.
+    Carried(Vector2<f64>),
+    /// Turning with a, in its frame.
+    Turning(Vector2<f64>),
+}
+
+/// What a slide is made of.
+#[derive(Debug)]
+pub(super) struct Parts {
+    pub(super) rows: Vec<usize>,
+    pub(super) columns: Vec<usize>,
+    /// Body a with its point in the revolute, and that point's partner.
+    pub(super) body: usize,
+    pub(super) pin: MarkerId,
+    pub(super) anchor: MarkerId,
+    pub(super) second: Option<SecondParts>,
+    /// The row of the projection, and what it is.
+    pub(super) row: usize,
+    pub(super) projection: Projection,
+}
+
+/// What the second body is made of.
+#[derive(Debug)]
+pub(super) struct SecondParts {
+    pub(super) body: usize,
+    /// Whether its revolute is to body a; else it is to something known.
+    pub(super) carried: bool,
+    /// Its point in that revolute, and that point's partner.
+    pub(super) pin: MarkerId,
+    pub(super) partner: MarkerId,
+    /// The row of the angle: its marker of body b, the other, and +1 where the angle counts from
+    /// the other to b, else −1.
+    pub(super) row: usize,
+    pub(super) angle: MarkerId,
+    pub(super) reference: MarkerId,
+    pub(super) sense: f64,
+}
+
+/// What is known before the angle of a is.
+struct Known {
+    /// The revolute of a.
+    point: Vector2<f64>,
+    /// b, all but its origin if that depends on the angle; ground where there is none.
+    second: BodyPose,
+    /// For a parallel b: its revolute, and by how much it is turned against a.
+    second_point: Vector2<f64>,
+    second_turn: f64,
+    w: Vector2<f64>,
+    /// g in a's frame.
+    g: Vector2<f64>,
+    kappa: f64,
+    /// What the rounding of f comes from besides the angle.
+    reach: f64,
+}
+
+impl Slide {
+    pub(super) fn new(mechanism: &Mechanism, parts: Parts) -> Self {
+        let zero = Vector2::zeros();
+        let body_of = |marker: MarkerId| {
+            let body = mechanism.markers[marker.index()].body;
+            body.map(|body| body.index())
+        };
+        let second = match &parts.second {
+            None => Second::None,
+            Some(b) if b.carried => Second::Carried {
+                place: compact(b.body),
+                reference: body_of(b.reference),
+                zero: 0.0,
+                l: zero,
+                s: zero,
+            },
+            Some(b) => Second::Parallel {
+                place: compact(b.body),
+                anchor: Anchor::new(mechanism, b.partner),
+                zero: 0.0,
+                s: zero,
+                turn: BodyPose::turned(0.0),
+            },
+        };
+        let on = |marker| match (body_of(marker), &parts.second) {
+            (Some(body), _) if body == parts.body => Point::First(zero),
+            (Some(body), Some(b)) if body == b.body && b.carried => Point::Carried(zero),
+            (Some(body), Some(b)) if body == b.body => Point::Parallel(zero),
+            _ => Point::Known(Anchor::new(mechanism, marker)),
+        };
+        let axes = parts.projection.axes;
+        let axis = match on(axes) {
+            Point::Known(_) => Line::Known(body_of(axes), zero),
+            Point::Carried(_) => Line::Carried(zero),
+            Point::First(_) | Point::Parallel(_) => Line::Turning(zero),
+        };
+        Self {
+            place: compact(parts.body),
+            anchor: Anchor::new(mechanism, parts.anchor),
+            s: zero,
+            points: [on(parts.projection.from), on(parts.projection.to)],
+            axis,
+            second,
+            g: zero,
+            slope: 0.0,
+            scale: 0.0,
+            parts: Box::new(parts),
+        }
+    }
+
+    pub(super) fn rows(&self) -> &[usize] {
+        &self.parts.rows
+    }
+
+    pub(super) fn columns(&self) -> &[usize] {
+        &self.parts.columns
+    }
+
+    /// Takes over what depends on the parameters alone; `constant` is what each row is held at.
+    pub(super) fn set_parameters(
+        &mut self,
+        at: &Configuration,
+        constant: impl Fn(usize) -> f64,
+    ) {
+        let parts = &self.parts;
+        self.anchor.set_parameters(at, parts.anchor);
+        self.s = at.local(parts.pin).0;
+        let mut between = BodyPose::turned(0.0);
+        let mut inner = Vector2::zeros();
+        if let Some(b) = &parts.second {
+            let offset = at.local(b.reference).1 - at.local(b.angle).1;
+            inner = at.local(b.pin).0;
+            match &mut self.second {
+                Second::None => {}
+                Second::Carried { zero, l, s, .. } => {
+                    *zero = offset;
+                    *l = at.local(b.partner).0 - self.s;
+                    *s = inner;
+                }
+                Second::Parallel {
+                    anchor,
+                    zero,
+                    s,
+                    turn,
+                    ..
+                } => {
+                    anchor.set_parameters(at, b.partner);
+                    *zero = offset;
+                    *s = inner;
+                    between = BodyPose::turned(offset + b.sense * constant(b.row));
+                    *turn = between;
+                }
+            }
+        }
+        let Projection {
+            from,
+            to,
+            axes,
+            axis,
+        } = parts.projection;
+        for (point, marker) in self.points.iter_mut().zip([from, to]) {
+            let s = at.local(marker).0;
+            match point {
+                Point::Known(anchor) => anchor.set_parameters(at, marker),
+                Point::First(arm) => *arm = s - self.s,
+                Point::Carried(arm) => *arm = s - inner,
+                Point::Parallel(arm) => *arm = between.rotate(s - inner),
+            }
+        }
+        let (sin, cos) = at.local(axes).1.sin_cos();
+        let direction = match axis {
+            Axis::X => Vector2::new(cos, sin),
+            Axis::Y => Vector2::new(-sin, cos),
+        };
+        let on_second = parts
+            .second
+            .as_ref()
+            .is_some_and(|b| at.marker(axes).body.is_some_and(|body| body.index() == b.body));
+        match &mut self.axis {
+            Line::Known(_, e) | Line::Carried(e) => *e = direction,
+            Line::Turning(e) if on_second => *e = between.rotate(direction),
+            Line::Turning(e) => *e = direction,
+        }
+    }
+
+    /// Gathers what is known.
+    #[inline(always)]
+    fn known(&self, work: &Work<'_>) -> Known {
+        let frames = work.at.frames();
+        let point = self.anchor.point(frames);
+        let target = |row: usize| work.system.target(row, work.targets, work.drivers);
+        let held = |sense: f64, row: usize| sense * target(row);
+        let mut known = Known {
+            point,
+            second: BodyPose::turned(0.0),
+            second_point: Vector2::zeros(),
+            second_turn: 0.0,
+            w: Vector2::zeros(),
+            g: Vector2::zeros(),
+            kappa: 0.0,
+            reach: 0.0,
+        };
+        let mut link = Vector2::zeros();
+        if let Some(b) = &self.parts.second {
+            match &self.second {
+                Second::None => {}
+                Second::Carried {
+                    reference, zero, l, ..
+                } => {
+                    let reference = reference.map_or(0.0, |body| frames[body].phi);
+                    known.second = BodyPose::turned(reference + held(b.sense, b.row) + zero);
+                    link = *l;
+                }
+                Second::Parallel { anchor, zero, .. } => {
+                    known.second_point = anchor.point(frames);
+                    known.second_turn = held(b.sense, b.row) + zero;
+                }
+            }
+        }
+        let part = |point: &Point| match *point {
+            Point::Known(anchor) => (anchor.point(frames), Vector2::zeros()),
+            Point::First(arm) => (known.point, arm),
+            Point::Carried(arm) => (known.point + known.second.rotate(arm), link),
+            Point::Parallel(arm) => (known.second_point, arm),
+        };
+        let (known_i, turning_i) = part(&self.points[0]);
+        let (known_j, turning_j) = part(&self.points[1]);
+        let (still, turning) = (known_j - known_i, turning_j - turning_i);
+        let held_at = target(self.parts.row);
+        (known.w, known.g, known.kappa) = match self.axis {
+            Line::Known(body, e) => {
+                let e = body.map_or(e, |body| frames[body].rotate(e));
+                (e, turning, e.dot(&still) - held_at)
+            }
+            Line::Carried(e) => {
+                let e = known.second.rotate(e);
+                (e, turning, e.dot(&still) - held_at)
+            }
+            Line::Turning(e) => (still, e, e.dot(&turning) - held_at),
+        };
+        known.reach = known_i.amax() + known_j.amax() + turning.norm() + held_at.abs();
+        known
+    }
+
+    /// Puts both bodies where they belong for an angle of a.
+    #[inline(always)]
+    fn put(&self, frames: &mut [BodyPose], known: &Known, first: BodyPose) {
+        let first = BodyPose {
+            origin: known.point - first.rotate(self.s),
+            ..first
+        };
+        match &self.second {
+            Second::None => {}
+            Second::Carried { place, l, s, .. } => {
+                let origin = known.point + first.rotate(*l) - known.second.rotate(*s);
+                frames[*place as usize] = BodyPose {
+                    origin,
+                    ..known.second
+                };
+            }
+            Second::Parallel { place, s, .. } => {
+                let second = BodyPose::turned(first.phi + known.second_turn);
+                frames[*place as usize] = BodyPose {
+                    origin: known.second_point - second.rotate(*s),
+                    ..second
+                };
+            }
+        }
+        frames[self.place as usize] = first;
+    }
+
+    /// Predicts the angle of a and corrects it until the point is on its line to rounding.
+    pub(super) fn advance(
+        &mut self,
+        work: &mut Work<'_>,
+        advance: Advance,
+    ) -> Result<Correction, Rejected> {
+        let column = 3 * self.place as usize + 2;
+        let phi = work.at.frames()[self.place as usize].phi;
+        let predicted = advance.predict(column, phi, work.flow);
+        let before = self.slope;
+        let (phi, correction) = self.correct(work, predicted, MAX_ITERATIONS)?;
+        let kept = correction.contraction <= CONTRACTION
+            && (phi - predicted).abs() <= LARGEST_CORRECTION
+            && self.slope * before > 0.0
+            && self.slope.abs() >= SINGULAR * self.scale;
+        if kept { Ok(correction) } else { Err(Rejected) }
+    }
+
+    /// Newton–Raphson on the angle of a.
+    fn correct(
+        &mut self,
+        work: &mut Work<'_>,
+        mut phi: f64,
+        max_iterations: u32,
+    ) -> Result<(f64, Correction), Rejected> {
+        let known = self.known(work);
+        let scale = known.w.norm() * known.g.norm();
+        let mut correction = Correction::default();
+        let mut last = f64::INFINITY;
+        let mut last_gap = f64::INFINITY;
+        loop {
+            let frame = BodyPose::turned(phi);
+            let g = frame.rotate(known.g);
+            let f = known.kappa + known.w.dot(&g);
+            let slope = known.w.dot(&perp(g));
+            let rounding = f64::EPSILON * (known.reach + scale * (1.0 + phi.abs()));
+            let open = f.abs();
+            if open <= AT_ROUNDING * rounding
+                || (open <= STALLED * rounding && open >= 0.5 * last_gap)
+            {
+                self.put(work.at.frames_mut(), &known, frame);
+                (self.g, self.slope, self.scale) = (g, slope, scale);
+                return Ok((phi, correction));
+            }
+            let step = -f / slope;
+            if correction.iterations == max_iterations || !step.is_finite() {
+                return Err(Rejected);
+            }
+            phi += step;
+            correction.contraction = correction.contraction.max(step.abs() / last);
+            last = step.abs().max(SMALL);
+            last_gap = open;
+            correction.iterations += 1;
+        }
+    }
+
+    /// Closes from where body a is.
+    pub(in crate::kinematics) fn close(
+        &mut self,
+        work: &mut Work<'_>,
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        let phi = work.at.frames()[self.place as usize].phi;
+        Ok(self.correct(work, phi, max_iterations)?.1)
+    }
+
+    /// Notes the slope at the pose.
+    pub(super) fn factorise(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
+        let known = self.known(work);
+        self.g = work.at.frames()[self.place as usize].rotate(known.g);
+        self.slope = known.w.dot(&perp(self.g));
+        self.scale = known.w.norm() * known.g.norm();
+        if self.slope == 0.0 || !self.slope.is_finite() {
+            return Err(Rejected);
+        }
+        Ok(())
+    }
+
+    /// ḟ and f̈ for a resting angle of a, the slope making up for them.
+    pub(super) fn solve_rates(&self, work: &mut Work<'_>, drivers: &[Jet]) {
+        let frames = work.at.frames();
+        let (velocity, acceleration) = work.flow.both_mut();
+        let driver = |row: usize| match work.system.equations()[row].target {
+            Target::Constant(_) => Jet::constant(0.0),
+            Target::Driver(driver) => drivers[driver.index()],
+        };
+        let first = &frames[self.place as usize];
+        let outer = self.anchor.rates(frames, velocity, acceleration);
+        // Of b: its frame, the rates of its own angle where that is known, and its revolute.
+        let (mut b, mut spin, mut pinned) = (first, Spin::default(), outer);
+        if let Some(parts) = &self.parts.second {
+            let held = driver(parts.row);
+            match &self.second {
+                Second::None => {}
+                Second::Carried {
+                    place, reference, ..
+                } => {
+                    b = &frames[*place as usize];
+                    spin = Spin::of(*reference, velocity, acceleration);
+                    spin.omega += parts.sense * held.first;
+                    spin.alpha += parts.sense * held.second;
+                }
+                Second::Parallel { place, anchor, .. } => {
+                    b = &frames[*place as usize];
+                    pinned = anchor.rates(frames, velocity, acceleration);
+                }
+            }
+        }
+        // The known part of a point; what turns with a is left out.
+        let still = |point: &Point| match *point {
+            Point::Known(anchor) => {
+                let moving = anchor.rates(frames, velocity, acceleration);
+                (anchor.point(frames), moving)
+            }
+            Point::First(_) => (self.anchor.point(frames), outer),
+            Point::Carried(arm) => {
+                let arm = b.rotate(arm);
+                let moving = spin.carry(outer, arm);
+                (self.anchor.point(frames) + arm, moving)
+            }
+            Point::Parallel(_) => {
+                let Second::Parallel { anchor, .. } = &self.second else {
+                    return (Vector2::zeros(), pinned);
+                };
+                (anchor.point(frames), pinned)
+            }
+        };
+        let (point_i, moving_i) = still(&self.points[0]);
+        let (point_j, moving_j) = still(&self.points[1]);
+        let d = point_j - point_i;
+        let d_dot = moving_j.velocity - moving_i.velocity;
+        let d_ddot = moving_j.acceleration - moving_i.acceleration;
+        let target = driver(self.parts.row);
+        let (omega, alpha) = match self.axis {
+            Line::Turning(_) => {
+                // g is the axis: f = g · d + constant.
+                let omega = (target.first - self.g.dot(&d_dot)) / self.slope;
+                let bias = self.g.dot(&d_ddot) + 2.0 * omega * perp(self.g).dot(&d_dot)
+                    - omega * omega * self.g.dot(&d);
+                (omega, (target.second - bias) / self.slope)
+            }
+            Line::Known(..) | Line::Carried(_) => {
+                let (e, turn) = match self.axis {
+                    Line::Known(body, e) => (
+                        body.map_or(e, |body| frames[body].rotate(e)),
+                        Spin::of(body, velocity, acceleration),
+                    ),
+                    Line::Carried(e) | Line::Turning(e) => (b.rotate(e), spin),
+                };
+                let e_dot = perp(e) * turn.omega;
+                let e_ddot = perp(e) * turn.alpha - e * (turn.omega * turn.omega);
+                let whole = d + self.g;
+                let rate = e_dot.dot(&whole) + e.dot(&d_dot);
+                let omega = (target.first - rate) / self.slope;
+                let whole_dot = d_dot + perp(self.g) * omega;
+                let bias = e_ddot.dot(&whole)
+                    + 2.0 * e_dot.dot(&whole_dot)
+                    + e.dot(&(d_ddot - self.g * (omega * omega)));
+                (omega, (target.second - bias) / self.slope)
+            }
+        };
+        let own = Spin { omega, alpha };
+        let mut write = |place: usize, spin: Spin, moving: Moving, arm: Vector2<f64>| {
+            let origin = spin.carry(moving, -arm);
+            let (v, a) = (origin.velocity, origin.acceleration);
+            velocity[3 * place..3 * place + 3].copy_from_slice(&[v.x, v.y, spin.omega]);
+            acceleration[3 * place..3 * place + 3].copy_from_slice(&[a.x, a.y, spin.alpha]);
+        };
+        match &self.second {
+            Second::None => {}
+            Second::Carried { place, l, s, .. } => {
+                let inner = own.carry(outer, first.rotate(*l));
+                write(*place as usize, spin, inner, b.rotate(*s));
+            }
+            Second::Parallel { place, s, .. } => {
+                write(*place as usize, own, pinned, b.rotate(*s));
+            }
+        }
+        write(self.place as usize, own, outer, first.rotate(self.s));
+    }
+
+    /// |∂f/∂phi| over the largest that it can be.
+    pub(super) fn rcond(&self) -> f64 {
+        let rcond = self.slope.abs() / self.scale;
+        if rcond.is_finite() { rcond } else { 0.0 }
+    }
+
+    /// Closes the way that is nearest the estimates: the minimum of Ec. 3.6.9 for r → ∞, which a
+    /// circle and a line have in two places.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] if they do not reach each other.
+    pub(in crate::kinematics) fn assemble(
+        &mut self,
+        work: &mut Work<'_>,
+        estimate: &[f64],
+    ) -> Result<Correction, Rejected> {
+        let known = self.known(work);
+        let size = work.at.size();
+        let ratio = -known.kappa / (known.w.norm() * known.g.norm());
+        // A gap that no one could measure is left to the corrections.
+        if ratio.is_nan() || ratio.abs() > 1.0 + 1e-12 {
+            return Err(Rejected);
+        }
+        let middle = known.w.y.atan2(known.w.x) - known.g.y.atan2(known.g.x);
+        let away = ratio.clamp(-1.0, 1.0).acos();
+        let guess = estimate[3 * self.place as usize + 2];
+        let mut best: Option<(f64, f64)> = None;
+        for angle in [middle + away, middle - away] {
+            let phi = angle + TAU * ((guess - angle) / TAU).round();
+            self.put(work.at.frames_mut(), &known, BodyPose::turned(phi));
+            let columns = self.parts.columns.iter();
+            let distance = columns
+                .map(|&column| {
+                    let off = work.at.coordinate(column) - estimate[column];
+                    (off / work.system.column_scale(column, size)).powi(2)
+                })
+                .sum::<f64>();
+            // The first of two that are equally far.
+            if best.is_none_or(|(least, _)| distance < least * (1.0 - 1e-9)) {
+                best = Some((distance, phi));
+            }
+        }
+        let (_, phi) = best.ok_or(Rejected)?;
+        Ok(self.correct(work, phi, MAX_ITERATIONS)?.1)
+    }
+}
+
+/// First and second derivative of an angle.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spin {
+    omega: f64,
+    alpha: f64,
+}
+
+impl Spin {
+    /// That of a body, none for ground.
+    fn of(body: Option<usize>, velocity: &[f64], acceleration: &[f64]) -> Self {
+        body.map_or_else(Self::default, |body| Self {
+            omega: velocity[3 * body + 2],
+            alpha: acceleration[3 * body + 2],
+        })
+    }
+
+    /// The rates of a point that is `arm` away from a moving one.
+    fn carry(self, from: Moving, arm: Vector2<f64>) -> Moving {
+        Moving {
+            velocity: from.velocity + perp(arm) * self.omega,
+            acceleration: from.acceleration + perp(arm) * self.alpha
+                - arm * (self.omega * self.omega),
+        }
+    }
+}
