@@ -286,7 +286,7 @@ impl Solver {
         self.parameters_taken = false;
         self.system
             .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
-        self.plan.set_parameters(&self.at);
+        self.plan.set_parameters(&self.at, &self.targets);
         let parameters = &self.pose.parameters;
         self.motions
             .set_parameters(|p| Jet::constant(parameters[p.index()]));

@@ -97,6 +97,13 @@ pub struct Targets {
     pub turns: Vec<i32>,
 }
 
+impl Targets {
+    /// What a row that no driver moves is held at, whole turns apart.
+    pub(super) fn constant(&self, row: usize) -> f64 {
+        self.constants[row]
+    }
+}
+
 /// One entry of Phi, scaled, with the rounding error that it carries anyhow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RowValue {

@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | [`Pinned`] | x, y, phi of a body | straight from a revolute and an angle |
 //! | [`Dyad`] | x, y, phi of two bodies | Newton on two angles, 2×2 in closed form |
+//! | [`Slide`] | x, y, phi of one or two bodies, one point on a line | Newton on one angle |
 //! | [`Coupled`] | any block | Newton on its rows, whatever they are |
 
 mod anchor;
@@ -16,6 +17,7 @@ mod coupled;
 mod dyad;
 mod elimination;
 mod pinned;
+mod slide;
 
 use super::configuration::Configuration;
 use super::newton::{Correction, Rejected};
@@ -26,6 +28,7 @@ use crate::mechanism::Jet;
 pub(super) use coupled::Coupled;
 use dyad::Dyad;
 use pinned::Pinned;
+use slide::Slide;
 
 /// The kernels in the order in which they run.
 #[derive(Debug)]
@@ -38,6 +41,7 @@ pub(super) struct Plan {
 pub(super) enum Kernel {
     Pinned(Box<Pinned>),
     Dyad(Dyad),
+    Slide(Box<Slide>),
     Coupled(Box<Coupled>),
 }
 
@@ -69,11 +73,12 @@ impl Advance {
 
 impl Plan {
     /// Takes over what depends on the parameters alone. Allocates nothing.
-    pub(super) fn set_parameters(&mut self, at: &Configuration) {
+    pub(super) fn set_parameters(&mut self, at: &Configuration, targets: &Targets) {
         for kernel in &mut self.kernels {
             match kernel {
                 Kernel::Pinned(kernel) => kernel.set_parameters(at),
                 Kernel::Dyad(kernel) => kernel.set_parameters(at),
+                Kernel::Slide(kernel) => kernel.set_parameters(at, targets),
                 Kernel::Coupled(_) => {}
             }
         }
@@ -111,6 +116,13 @@ impl Plan {
                     }
                     correction
                 }
+                Kernel::Slide(kernel) => {
+                    let correction = kernel.advance(work, advance)?;
+                    if let Some(unit) = unit {
+                        kernel.solve_rates(work, unit);
+                    }
+                    correction
+                }
                 Kernel::Coupled(kernel) => {
                     let correction = kernel.advance(work, advance)?;
                     if let Some(unit) = unit {
@@ -134,6 +146,7 @@ impl Plan {
             match kernel {
                 Kernel::Pinned(_) => {}
                 Kernel::Dyad(kernel) => kernel.factorise(work)?,
+                Kernel::Slide(kernel) => kernel.factorise(work)?,
                 Kernel::Coupled(kernel) => kernel.factorise(work)?,
             }
         }
@@ -147,6 +160,7 @@ impl Plan {
             match kernel {
                 Kernel::Pinned(kernel) => kernel.solve_rates(work, drivers),
                 Kernel::Dyad(kernel) => kernel.solve_rates(work),
+                Kernel::Slide(kernel) => kernel.solve_rates(work, drivers),
                 Kernel::Coupled(kernel) => kernel.solve_rates(work, drivers),
             }
         }
@@ -165,6 +179,7 @@ impl Kernel {
         match self {
             Self::Pinned(kernel) => kernel.rows(),
             Self::Dyad(kernel) => kernel.rows(),
+            Self::Slide(kernel) => kernel.rows(),
             Self::Coupled(kernel) => kernel.rows(),
         }
     }
@@ -174,6 +189,7 @@ impl Kernel {
         match self {
             Self::Pinned(kernel) => kernel.columns(),
             Self::Dyad(kernel) => kernel.columns(),
+            Self::Slide(kernel) => kernel.columns(),
             Self::Coupled(kernel) => kernel.columns(),
         }
     }
@@ -183,7 +199,53 @@ impl Kernel {
         match self {
             Self::Pinned(_) => 1.0,
             Self::Dyad(kernel) => kernel.rcond(),
+            Self::Slide(kernel) => kernel.rcond(),
             Self::Coupled(kernel) => kernel.rcond(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::Kernel;
+    use crate::kinematics::Solver;
+    use crate::mechanism::{Mechanism, Source};
+
+    /// A letter a kernel, `C` with the number of its unknowns.
+    fn kernels(name: &str) -> String {
+        let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).expect("it is shipped");
+        let (mechanism, _) =
+            Mechanism::parse(&Source::new("test.toml", text)).expect("it has no errors");
+        let solver = Solver::new(Arc::new(mechanism)).expect("the drivers match");
+        let letters = solver.plan.kernels.iter().map(|kernel| match kernel {
+            Kernel::Pinned(_) => "P".to_owned(),
+            Kernel::Dyad(_) => "D".to_owned(),
+            Kernel::Slide(_) => "S".to_owned(),
+            Kernel::Coupled(coupled) => format!("C{}", coupled.columns().len()),
+        });
+        letters.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Work is a result, too: a mechanism that falls to a slower kernel shows here.
+    #[test]
+    fn each_part_has_the_kernel_that_suits_it() {
+        for (name, expected) in [
+            ("four_bar", "P D"),
+            ("slider_crank", "P S"),
+            ("tlv_crank", "P S"),
+            ("slotted_lever", "P S S"),
+            ("jansen_leg", "P D D D"),
+            ("toggle_press", "P D S"),
+            ("watt_six_bar", "P D D"),
+            ("five_bar_robot", "P P D"),
+            ("hart_inversor", "P D D"),
+            // Driven between coupler and rocker: all three angles at once.
+            ("double_rocker", "C1 C1 C1 C1 C5"),
+        ] {
+            assert_eq!(kernels(name), expected, "{name}");
         }
     }
 }
