@@ -107,7 +107,11 @@ impl Plan {
                     if let Some(unit) = unit {
                         kernel.solve_rates(work, unit);
                     }
-                    continue;
+                    // Linear equations are solved by one.
+                    Correction {
+                        iterations: 1,
+                        contraction: 0.0,
+                    }
                 }
                 Kernel::Dyad(kernel) => {
                     let correction = kernel.advance(work, advance)?;
