@@ -84,6 +84,38 @@ impl Plan {
         }
     }
 
+    /// Chooses the pivots of sparse matrices, at a pose that has nothing to do with any motion:
+    /// so they do not depend on where the mechanism has been.
+    pub(super) fn choose_pivots(&mut self, system: &System, at: &Configuration, targets: &Targets) {
+        let kernels = self.kernels.iter_mut();
+        let sparse = kernels.filter_map(|kernel| match kernel {
+            Kernel::Coupled(kernel) if kernel.is_sparse() => Some(kernel),
+            _ => None,
+        });
+        let mut sparse = sparse.peekable();
+        if sparse.peek().is_none() {
+            return;
+        }
+        // Spread evenly by the golden ratio: nothing is in line or at right angles there.
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let q: Vec<_> = (1..=system.unknowns())
+            .map(|k| at.size() * (GOLDEN * k as f64).fract() + (k % 3) as f64)
+            .collect();
+        let mut anywhere = at.clone();
+        anywhere.set_pose(system.mechanism(), &q);
+        let work = Work {
+            system,
+            targets,
+            drivers: &vec![1.0; system.mechanism().drivers.len()],
+            at: &mut anywhere,
+            flow: &mut Rates::new(0),
+        };
+        for kernel in sparse {
+            // Should the pose be singular, the pivots are chosen at the first one that is not.
+            let _ = kernel.factorise(&work);
+        }
+    }
+
     /// Goes from the pose at which all kernels are factorised to the one that belongs to new
     /// values of the drivers: predicts along the flow, then corrects, kernel by kernel. With
     /// `unit`, the flow becomes the one for these rates of the drivers at the new pose on the
@@ -103,15 +135,11 @@ impl Plan {
         for kernel in &mut self.kernels {
             let correction = match kernel {
                 Kernel::Pinned(kernel) => {
-                    kernel.locate(work);
+                    let correction = kernel.advance(work, advance)?;
                     if let Some(unit) = unit {
                         kernel.solve_rates(work, unit);
                     }
-                    // Linear equations are solved by one.
-                    Correction {
-                        iterations: 1,
-                        contraction: 0.0,
-                    }
+                    correction
                 }
                 Kernel::Dyad(kernel) => {
                     let correction = kernel.advance(work, advance)?;
