@@ -23,6 +23,55 @@ pub(super) struct Moving {
     pub(super) acceleration: Vector2<f64>,
 }
 
+/// A point in two parts. Far from ground's origin the difference of two origins is all but
+/// exact, while that of two points has the rounding of each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) origin: Vector2<f64>,
+    pub(super) arm: Vector2<f64>,
+}
+
+impl Place {
+    /// The point.
+    #[inline(always)]
+    pub(super) fn point(self) -> Vector2<f64> {
+        self.origin + self.arm
+    }
+
+    /// The point that is further by `arm`.
+    #[inline(always)]
+    pub(super) fn plus(self, arm: Vector2<f64>) -> Self {
+        Self {
+            origin: self.origin,
+            arm: self.arm + arm,
+        }
+    }
+
+    /// From another point to this one.
+    #[inline(always)]
+    pub(super) fn from(self, other: Self) -> Vector2<f64> {
+        (self.origin - other.origin) + (self.arm - other.arm)
+    }
+
+    /// What the rounding of that difference comes from.
+    #[inline(always)]
+    pub(super) fn reach_from(self, other: Self) -> f64 {
+        largest(self.origin - other.origin) + largest(self.arm) + largest(other.arm)
+    }
+}
+
+/// The magnitude of the larger component.
+#[inline(always)]
+pub(super) fn largest(v: Vector2<f64>) -> f64 {
+    larger(v.x.abs(), v.y.abs())
+}
+
+/// The larger of two numbers; the first where one is none. Unlike `f64::max` a single instruction.
+#[inline(always)]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
 /// The place of a body as kernels keep it.
 ///
 /// # Panics
@@ -49,11 +98,23 @@ impl Anchor {
     /// P.
     #[inline(always)]
     pub(super) fn point(self, frames: &[BodyPose]) -> Vector2<f64> {
+        self.place(frames).point()
+    }
+
+    /// P as the sum of the body's origin and the arm from there.
+    #[inline(always)]
+    pub(super) fn place(self, frames: &[BodyPose]) -> Place {
         if self.place == GROUND {
-            return self.s;
+            return Place {
+                origin: self.s,
+                arm: Vector2::zeros(),
+            };
         }
         let frame = &frames[self.place as usize];
-        frame.origin + frame.rotate(self.s)
+        Place {
+            origin: frame.origin,
+            arm: frame.rotate(self.s),
+        }
     }
 
     /// Ṗ and P̈.

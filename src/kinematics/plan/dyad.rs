@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::anchor::{Anchor, Moving, compact};
+use super::anchor::{Anchor, Moving, compact, larger, largest};
 use super::{Advance, Work};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
 use crate::kinematics::newton::{
@@ -146,18 +146,6 @@ impl Side {
     }
 }
 
-/// The magnitude of the larger component.
-#[inline(always)]
-fn largest(v: Vector2<f64>) -> f64 {
-    larger(v.x.abs(), v.y.abs())
-}
-
-/// The larger of two numbers; the first where one is none. Unlike `f64::max` a single instruction.
-#[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
-}
-
 impl Dyad {
     pub(super) fn new(mechanism: &Mechanism, parts: Parts) -> Self {
         Self {
@@ -229,9 +217,9 @@ impl Dyad {
     ) -> Result<Found, Rejected> {
         let [a, b] = &mut self.sides;
         let frames = work.at.frames_mut();
-        let (point_a, point_b) = (a.anchor.point(frames), b.anchor.point(frames));
-        let base = point_a - point_b;
-        let reach = largest(point_a) + largest(point_b);
+        let (outer_a, outer_b) = (a.anchor.place(frames), b.anchor.place(frames));
+        let base = outer_a.from(outer_b);
+        let reach = outer_a.reach_from(outer_b);
         let mut correction = Correction::default();
         let mut last = f64::INFINITY;
         let mut last_gap = f64::INFINITY;
@@ -253,11 +241,11 @@ impl Dyad {
             if closed {
                 if now.exact {
                     frames[a.place as usize] = BodyPose {
-                        origin: point_a - frame_a.rotate(a.s),
+                        origin: outer_a.origin + (outer_a.arm - frame_a.rotate(a.s)),
                         ..*frame_a
                     };
                     frames[b.place as usize] = BodyPose {
-                        origin: point_b - frame_b.rotate(b.s),
+                        origin: outer_b.origin + (outer_b.arm - frame_b.rotate(b.s)),
                         ..*frame_b
                     };
                     [a.link, b.link] = links;
@@ -417,7 +405,7 @@ impl Dyad {
     fn meet(&mut self, work: &Work<'_>, estimate: &[f64], side: f64) -> Option<[Vector2<f64>; 2]> {
         let [a, b] = &self.sides;
         let frames = work.at.frames();
-        let span = b.anchor.point(frames) - a.anchor.point(frames);
+        let span = b.anchor.place(frames).from(a.anchor.place(frames));
         let distance = span.norm();
         let along = 0.5 * (distance + (a.length - b.length) * (a.length + b.length) / distance);
         let across = (a.length - along) * (a.length + along);

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::anchor::{Anchor, Moving, compact};
+use super::anchor::{Anchor, Moving, Place, compact};
 use super::{Advance, Work};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::constraint::{Axis, Projection};
@@ -124,11 +124,11 @@ pub(super) struct SecondParts {
 /// What is known before the angle of a is.
 struct Known {
     /// The revolute of a.
-    point: Vector2<f64>,
+    point: Place,
     /// b, all but its origin if that depends on the angle; ground where there is none.
     second: BodyPose,
     /// For a parallel b: its revolute, and by how much it is turned against a.
-    second_point: Vector2<f64>,
+    second_point: Place,
     second_turn: f64,
     w: Vector2<f64>,
     /// g in a's frame.
@@ -258,13 +258,13 @@ impl Slide {
     #[inline(always)]
     fn known(&self, work: &Work<'_>) -> Known {
         let frames = work.at.frames();
-        let point = self.anchor.point(frames);
+        let point = self.anchor.place(frames);
         let target = |row: usize| work.system.target(row, work.targets, work.drivers);
         let held = |sense: f64, row: usize| sense * target(row);
         let mut known = Known {
             point,
             second: BodyPose::turned(0.0),
-            second_point: Vector2::zeros(),
+            second_point: point,
             second_turn: 0.0,
             w: Vector2::zeros(),
             g: Vector2::zeros(),
@@ -283,20 +283,20 @@ impl Slide {
                     link = *l;
                 }
                 Second::Parallel { anchor, zero, .. } => {
-                    known.second_point = anchor.point(frames);
+                    known.second_point = anchor.place(frames);
                     known.second_turn = held(b.sense, b.row) + zero;
                 }
             }
         }
         let part = |point: &Point| match *point {
-            Point::Known(anchor) => (anchor.point(frames), Vector2::zeros()),
+            Point::Known(anchor) => (anchor.place(frames), Vector2::zeros()),
             Point::First(arm) => (known.point, arm),
-            Point::Carried(arm) => (known.point + known.second.rotate(arm), link),
+            Point::Carried(arm) => (known.point.plus(known.second.rotate(arm)), link),
             Point::Parallel(arm) => (known.second_point, arm),
         };
         let (known_i, turning_i) = part(&self.points[0]);
         let (known_j, turning_j) = part(&self.points[1]);
-        let (still, turning) = (known_j - known_i, turning_j - turning_i);
+        let (still, turning) = (known_j.from(known_i), turning_j - turning_i);
         let held_at = target(self.parts.row);
         (known.w, known.g, known.kappa) = match self.axis {
             Line::Known(body, e) => {
@@ -309,7 +309,7 @@ impl Slide {
             }
             Line::Turning(e) => (still, e, e.dot(&turning) - held_at),
         };
-        known.reach = known_i.amax() + known_j.amax() + turning.norm() + held_at.abs();
+        known.reach = known_j.reach_from(known_i) + turning.norm() + held_at.abs();
         known
     }
 
@@ -317,13 +317,14 @@ impl Slide {
     #[inline(always)]
     fn put(&self, frames: &mut [BodyPose], known: &Known, first: BodyPose) {
         let first = BodyPose {
-            origin: known.point - first.rotate(self.s),
+            origin: known.point.plus(-first.rotate(self.s)).point(),
             ..first
         };
         match &self.second {
             Second::None => {}
             Second::Carried { place, l, s, .. } => {
-                let origin = known.point + first.rotate(*l) - known.second.rotate(*s);
+                let arm = first.rotate(*l) - known.second.rotate(*s);
+                let origin = known.point.plus(arm).point();
                 frames[*place as usize] = BodyPose {
                     origin,
                     ..known.second
@@ -332,7 +333,7 @@ impl Slide {
             Second::Parallel { place, s, .. } => {
                 let second = BodyPose::turned(first.phi + known.second_turn);
                 frames[*place as usize] = BodyPose {
-                    origin: known.second_point - second.rotate(*s),
+                    origin: known.second_point.plus(-second.rotate(*s)).point(),
                     ..second
                 };
             }
@@ -430,6 +431,7 @@ impl Slide {
         let outer = self.anchor.rates(frames, velocity, acceleration);
         // Of b: its frame, the rates of its own angle where that is known, and its revolute.
         let (mut b, mut spin, mut pinned) = (first, Spin::default(), outer);
+        let mut second = self.anchor.place(frames);
         if let Some(parts) = &self.parts.second {
             let held = driver(parts.row);
             match &self.second {
@@ -445,6 +447,7 @@ impl Slide {
                 Second::Parallel { place, anchor, .. } => {
                     b = &frames[*place as usize];
                     pinned = anchor.rates(frames, velocity, acceleration);
+                    second = anchor.place(frames);
                 }
             }
         }
@@ -452,24 +455,19 @@ impl Slide {
         let still = |point: &Point| match *point {
             Point::Known(anchor) => {
                 let moving = anchor.rates(frames, velocity, acceleration);
-                (anchor.point(frames), moving)
+                (anchor.place(frames), moving)
             }
-            Point::First(_) => (self.anchor.point(frames), outer),
+            Point::First(_) => (self.anchor.place(frames), outer),
             Point::Carried(arm) => {
                 let arm = b.rotate(arm);
                 let moving = spin.carry(outer, arm);
-                (self.anchor.point(frames) + arm, moving)
+                (self.anchor.place(frames).plus(arm), moving)
             }
-            Point::Parallel(_) => {
-                let Second::Parallel { anchor, .. } = &self.second else {
-                    return (Vector2::zeros(), pinned);
-                };
-                (anchor.point(frames), pinned)
-            }
+            Point::Parallel(_) => (second, pinned),
         };
         let (point_i, moving_i) = still(&self.points[0]);
         let (point_j, moving_j) = still(&self.points[1]);
-        let d = point_j - point_i;
+        let d = point_j.from(point_i);
         let d_dot = moving_j.velocity - moving_i.velocity;
         let d_ddot = moving_j.acceleration - moving_i.acceleration;
         let target = driver(self.parts.row);
