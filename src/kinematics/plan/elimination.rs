@@ -10,7 +10,7 @@ use crate::kinematics::structure::Block;
 use crate::kinematics::system::System;
 
 /// With more unknowns left than this a sparse matrix is quicker.
-const DENSE: usize = 8;
+const DENSE: usize = 4;
 
 /// Rows and unknowns of a block in the order of elimination.
 pub(super) struct Order {
