@@ -415,17 +415,24 @@ impl Composer<'_> {
             }
         }
         let covers = &self.covered[body.index()];
+        let mut flat = false;
         for cover in covers {
             if let Cover::Face { along, range } = cover {
                 points = self.behind_face(*along, *range, &points);
+                flat = true;
             }
         }
         let covered = |point: &[f64; 2]| covers.iter().any(|c| c.has(Vector2::from(*point)));
         if covers.is_empty() && points.len() <= 1 && !points.contains(&[0.0; 2]) {
             points.push([0.0; 2]);
         }
-        // A single point of what has a symbol already needs no other.
-        if covers.is_empty() || points.len() > 1 && !points.iter().all(covered) {
+        let drawn = if flat {
+            !points.is_empty()
+        } else {
+            // A single point of what has a symbol already needs no other.
+            covers.is_empty() || points.len() > 1 && !points.iter().all(covered)
+        };
+        if drawn {
             self.symbols.push(Symbol::Link { body, points });
         }
     }

@@ -330,6 +330,22 @@ impl<'a> Pen<'a> {
         }
     }
 
+    /// Places for a body's name on one side of a line.
+    fn places_beside(&mut self, body: Option<BodyId>, [start, end]: [Point; 2], side: Point) {
+        let Some(body) = body else { return };
+        let places = &mut self.body_places[body.index()];
+        for part in [0.5, 0.3, 0.7, 0.1, 0.9] {
+            for (gap, far) in [(5.0, 0.0), (13.0, 5.0), (24.0, 12.0)] {
+                places.push(Candidate {
+                    anchor: start + part * (end - start),
+                    side: Some(side),
+                    gap,
+                    cost: far + 4.0 * f64::abs(part - 0.5),
+                });
+            }
+        }
+    }
+
     fn block(&mut self, at: Anchor, on: Option<BodyId>) {
         let (center, along) = self.place(at);
         let colour = colour_of(at.body);
@@ -540,6 +556,7 @@ impl<'a> Pen<'a> {
             profile.extend([at(length) + back, at(0.0) + back]);
             let outline = Outline::polygon(&profile);
             self.area(Layer::Slot, outline, (colour.tint(0.45), 1.0), Some(colour));
+            self.places_beside(along.body, [start + back, end + back], -towards);
         } else {
             self.line(Layer::Ground, Outline::line(&profile), Colour::GROUND, LINE);
             let under = -(0.5 * height + 4.0) * towards;

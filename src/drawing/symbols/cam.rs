@@ -95,18 +95,7 @@ impl Pen<'_> {
         self.area(Layer::Slot, outline, (colour.tint(0.45), 1.0), Some(colour));
         let face = Outline::line(&[start, end]);
         self.line(Layer::Slot, face, colour.shade(0.8), FACE[1]);
-        let Some(body) = along.body else { return };
-        let places = &mut self.body_places[body.index()];
-        for part in [0.5, 0.3, 0.7, 0.1, 0.9] {
-            for (gap, far) in [(5.0, 0.0), (13.0, 5.0), (24.0, 12.0)] {
-                places.push(Candidate {
-                    anchor: start + part * (end - start),
-                    side: Some(back),
-                    gap: FACE[0] + gap,
-                    cost: far + 4.0 * f64::abs(part - 0.5),
-                });
-            }
-        }
+        self.places_beside(along.body, [start + depth, end + depth], back);
     }
 
     /// The direction from a face into its follower, which is where the cam is not.
