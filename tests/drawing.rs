@@ -243,10 +243,10 @@ fn scene(name: &str) -> Scene {
     Scene::new(&mut assembled(&shipped(name)).0, true)
 }
 
-/// The cam's contour, about its axle.
+/// The cam's contour.
 fn contour(scene: &Scene) -> Vec<[f64; 2]> {
     let cam = scene.symbols.iter().find_map(|s| match s {
-        Symbol::Cam { at, contour } if at.position == [0.0; 2] => Some(contour.clone()),
+        Symbol::Cam { contour, .. } => Some(contour.clone()),
         _ => None,
     });
     cam.expect("the cam is drawn")

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Composer, Cover};
+use super::{Composer, Cover, is_same_point};
 use crate::drawing::outline::{across, angle, direction};
 use crate::drawing::scene::{Anchor, Symbol};
 use crate::mechanism::{CamFollower, JointKind, Profile, ProfileInForce};
@@ -132,13 +132,14 @@ impl Composer<'_> {
         points: &[[f64; 2]],
     ) -> Vec<[f64; 2]> {
         let face = Cover::Face { along, range };
-        let is_pivot = |point: &[f64; 2]| {
+        let is_pivot = |&position: &[f64; 2]| {
+            let point = Anchor { position, ..along };
             self.mechanism.joints.iter().any(|joint| {
                 let ends = [joint.from, joint.to].map(|marker| self.anchor(marker));
                 matches!(joint.kind, JointKind::Revolute | JointKind::Link { .. })
                     && ends
                         .iter()
-                        .any(|end| end.body == along.body && end.position == *point)
+                        .any(|end| end.body == along.body && is_same_point(end, &point))
             })
         };
         let on_face = |point: &[f64; 2]| face.has(Vector2::from(*point));
