@@ -59,17 +59,16 @@ impl Composer<'_> {
     /// A cam's contour in the frame of its body.
     fn contour(&self, cam: Anchor, profile: &Profile) -> Vec<[f64; 2]> {
         let mut in_force = ProfileInForce::new(profile, self.parameters.len());
-        in_force.set_parameters(|p| self.parameters[p.index()]);
+        in_force
+            .set_parameters(|p| self.parameters[p.index()])
+            .expect("the mechanism was assembled with these parameters");
         let center = Vector2::from(cam.position);
         let point = |theta: f64| {
             let radius = in_force.radius(theta).value;
             center + radius * direction(cam.angle + theta)
         };
         let angles = ProfileInForce::sample_angles().step_by(CONTOUR_STRIDE);
-        // An expression may leave its domain where the follower never is.
-        let seen = |p: &Vector2<f64>| p.iter().all(|x| x.is_finite());
-        let points = angles.map(point).filter(seen);
-        points.map(Into::into).collect()
+        angles.map(|theta| point(theta).into()).collect()
     }
 
     /// The direction, in its body's frame, from a follower's marker into the follower: towards
