@@ -6,12 +6,18 @@
 )]
 
 mod common;
+#[path = "common/generated.rs"]
+#[allow(dead_code, reason = "also used by `benches/`")]
+mod generated;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use biela::fmi::{Category, Instance, Sink, Status};
-use common::shipped;
+use biela::kinematics::Rates;
+use biela::mechanism::{Jet, MarkerId};
+use common::{assembled, parse, shipped, straight_to};
+use generated::{Ground, chain, scissor_lift};
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
@@ -133,4 +139,57 @@ fn a_tunable_table_allocates_nothing() {
         }
     });
     assert_eq!(count, 0);
+}
+
+/// The same for the solver by itself, on mechanisms of every kind of block: dyads and slides,
+/// blocks small enough for dense matrices, and large ones, driven by one or more drivers.
+#[test]
+fn a_step_of_the_solver_allocates_nothing() {
+    let generated = [
+        ("chain", chain(20, Ground::Zigzag)),
+        ("small lift", scissor_lift(2)),
+        ("large lift", scissor_lift(12)),
+    ];
+    let shipped = [
+        "slider_crank",
+        "double_rocker",
+        "five_bar_robot",
+        "excavator_arm",
+        "cam_roller_arm",
+    ]
+    .map(|name| (name, shipped(name)));
+    let generated = generated.map(|(name, text)| (name, parse(&text)));
+    for (name, mechanism) in shipped.into_iter().chain(generated) {
+        let (mut solver, mut path) = assembled(&mechanism);
+        let mut rates = Rates::new(solver.pose().q.len());
+        let mut saved = solver.pose().clone();
+        let home = solver.pose().drivers[0];
+        let count = allocations(|| {
+            for step in 1..=50 {
+                straight_to(&solver, &mut path, home + 1e-4 * f64::from(step));
+                solver.follow(&path).expect("nothing is in the way");
+                let driver = Jet {
+                    value: 0.0,
+                    first: 1.0,
+                    second: 0.5,
+                };
+                solver
+                    .solve_rates(|_| driver, &mut rates)
+                    .expect("the pose is regular");
+                let mut sum = solver.residual() + solver.rcond();
+                for marker in 0..mechanism.markers.len() {
+                    sum += solver.marker(MarkerId(marker), &rates)[0].second;
+                }
+                for measure in 0..mechanism.measures.len() {
+                    sum += solver.measure(measure, &rates).second;
+                }
+                assert!(sum.is_finite());
+                if step % 10 == 0 {
+                    solver.save(&mut saved);
+                    solver.restore(&saved);
+                }
+            }
+        });
+        assert_eq!(count, 0, "{name}");
+    }
 }

@@ -1,10 +1,14 @@
 //! Position, velocity and acceleration of every body against closed forms.
 
 mod common;
+#[path = "common/generated.rs"]
+#[allow(dead_code, reason = "also used by `benches/`")]
+mod generated;
 
 use biela::kinematics::{Curve, Rates};
 use biela::mechanism::Jet;
-use common::{EXACT, Errors, assembled, shipped, straight_to};
+use common::{EXACT, Errors, assembled, parse, shipped, straight_to};
+use generated::{Ground, chain};
 
 /// The solution is right to the rounding of the equations (some eps of the size) times the
 /// condition of the Jacobian, which stays above 0.02 over these motions: 1e-14 for positions;
@@ -55,6 +59,40 @@ fn the_four_systems_move_as_their_closed_forms_say() {
                 "{}, order {order}: {relative:?}",
                 exact.file
             );
+        }
+    }
+}
+
+/// Every rocker of a chain turns like the first. Rounding adds up from loop to loop, each passing
+/// on what it got and some eps of its own: 1e-13 for each of a thousand loops at the most.
+#[test]
+fn a_long_chain_moves_as_its_first_loop() {
+    const LOOPS: usize = 1000;
+    let mechanism = parse(&chain(LOOPS, Ground::Zigzag));
+    let (mut solver, mut path) = assembled(&mechanism);
+    let mut rates = Rates::new(solver.pose().q.len());
+    for _ in 0..20 {
+        let now = solver.pose().drivers[0];
+        straight_to(&solver, &mut path, now + 0.05);
+        let progress = solver.follow(&path).expect("the crank turns fully");
+        assert_eq!(progress.substeps, 1);
+        let driver = Jet {
+            value: 0.0,
+            first: 10.0,
+            second: 3.0,
+        };
+        solver
+            .solve_rates(|_| driver, &mut rates)
+            .expect("the pose is regular");
+        for values in [&solver.pose().q[..], rates.velocity(), rates.acceleration()] {
+            let first = values[8];
+            for loop_ in 1..LOOPS {
+                let off = (values[6 * loop_ + 8] - first).abs();
+                assert!(
+                    off <= 1e-10 * first.abs(),
+                    "loop {loop_}: {off:e} of {first}"
+                );
+            }
         }
     }
 }

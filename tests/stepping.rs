@@ -1,12 +1,16 @@
 //! Steps of any size keep to the continuous motion, and stop where it ends.
 
 mod common;
+#[path = "common/generated.rs"]
+#[allow(dead_code, reason = "also used by `benches/`")]
+mod generated;
 
 use std::f64::consts::{PI, TAU};
 
 use biela::kinematics::{Path, Reason, Solver};
 use biela::mechanism::Jet;
 use common::{EXACT, assembled, parse, shipped, straight_to};
+use generated::scissor_lift;
 use proptest::prelude::*;
 
 /// q at rounding level: some eps times the condition, 1e-14, in metres and radians below ten.
@@ -352,24 +356,33 @@ fn parameters_move_the_mechanism_continuously() {
 
 #[test]
 fn a_restored_pose_goes_on_with_the_same_bits() {
-    let mechanism = shipped("four_bar");
-    let (mut solver, mut path) = assembled(&mechanism);
-    let home = solver.pose().clone();
-    let run = |solver: &mut Solver, path: &mut Path| {
-        (1..50)
-            .map(|step| {
-                straight_to(solver, path, home.drivers[0] + 0.3 * f64::from(step));
-                solver.follow(path).expect("the crank turns fully");
-                solver.pose().clone()
-            })
-            .collect::<Vec<_>>()
-    };
-    let first = run(&mut solver, &mut path);
-    solver.restore(&home);
-    assert_eq!(run(&mut solver, &mut path), first);
-    let mut other = Solver::new(mechanism).expect("the drivers match");
-    other.restore(&home);
-    assert_eq!(run(&mut other, &mut path), first);
+    let mechanisms = [
+        (shipped("four_bar"), 0.3),
+        (shipped("slider_crank"), 0.3),
+        (shipped("five_bar_robot"), 0.01),
+        (shipped("double_rocker"), 0.01),
+        // One block with a sparse matrix.
+        (parse(&scissor_lift(12)), 0.01),
+    ];
+    for (mechanism, step) in mechanisms {
+        let (mut solver, mut path) = assembled(&mechanism);
+        let home = solver.pose().clone();
+        let run = |solver: &mut Solver, path: &mut Path| {
+            (1..50)
+                .map(|k| {
+                    straight_to(solver, path, home.drivers[0] + step * f64::from(k));
+                    solver.follow(path).expect("nothing is in the way");
+                    solver.pose().clone()
+                })
+                .collect::<Vec<_>>()
+        };
+        let first = run(&mut solver, &mut path);
+        solver.restore(&home);
+        assert_eq!(run(&mut solver, &mut path), first, "{}", mechanism.name);
+        let mut other = Solver::new(mechanism).expect("the drivers match");
+        other.restore(&home);
+        assert_eq!(run(&mut other, &mut path), first);
+    }
 }
 
 #[test]

@@ -9,43 +9,29 @@ pub const SET_UP: [usize; 4] = [1, 10, 100, 1_000];
 /// Cells of the scissor lift that is set up: ten bodies.
 pub const TEN_BODIES: usize = 5;
 
-/// The largest sizes that biela is asked for: a dense solver's time
-/// grows as the cube.
-const LARGEST: Largest = Largest {
-    chain: 10,
-    lift: 8,
-    set_up: 10,
-};
-
-struct Largest {
-    chain: usize,
-    lift: usize,
-    set_up: usize,
-}
-
-/// The environment variable `BIELA_BENCH_LARGEST` replaces all three.
-fn up_to(sizes: &[usize], largest: usize) -> Vec<usize> {
+/// Those that biela is asked for: all of them, or up to the number in the environment variable
+/// `BIELA_BENCH_LARGEST`.
+fn up_to_largest(sizes: &[usize]) -> Vec<usize> {
     let given = std::env::var("BIELA_BENCH_LARGEST").ok();
-    let largest = given
-        .map(|text| text.parse().expect("BIELA_BENCH_LARGEST is a number"))
-        .unwrap_or(largest);
-    sizes.iter().copied().filter(|n| *n <= largest).collect()
+    let largest = given.map(|text| text.parse().expect("BIELA_BENCH_LARGEST is a number"));
+    let within = |n: &usize| largest.is_none_or(|largest| *n <= largest);
+    sizes.iter().copied().filter(within).collect()
 }
 
 /// Chains that biela steps.
 #[must_use]
 pub fn chain() -> Vec<usize> {
-    up_to(&CHAIN, LARGEST.chain)
+    up_to_largest(&CHAIN)
 }
 
 /// Scissor lifts that biela steps.
 #[must_use]
 pub fn lift() -> Vec<usize> {
-    up_to(&LIFT, LARGEST.lift)
+    up_to_largest(&LIFT)
 }
 
 /// Chains that biela sets up.
 #[must_use]
 pub fn set_up() -> Vec<usize> {
-    up_to(&SET_UP, LARGEST.set_up)
+    up_to_largest(&SET_UP)
 }

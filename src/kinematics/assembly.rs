@@ -93,6 +93,7 @@ impl Solver {
                     Ok(Correction::default())
                 }
                 Kernel::Dyad(kernel) => kernel.assemble(&mut work, estimate),
+                Kernel::Slide(kernel) => kernel.assemble(&mut work, estimate),
                 Kernel::Coupled(kernel) => Part::new(kernel.rows(), kernel.columns()).assemble(
                     &mut work,
                     estimate,
@@ -161,6 +162,7 @@ impl Solver {
                     continue;
                 }
                 Kernel::Dyad(kernel) => kernel.close(&mut work, MAX_ITERATIONS),
+                Kernel::Slide(kernel) => kernel.close(&mut work, MAX_ITERATIONS),
                 Kernel::Coupled(kernel) => kernel.correct(&mut work, MAX_ITERATIONS),
             };
             iterations = iterations.max(correction.ok()?.iterations);

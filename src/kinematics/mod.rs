@@ -11,6 +11,11 @@
 //! | acceleration | Phi_q q̈ = −(Phi_q q̇)_q q̇ − 2 Phi_qt q̇ − Phi_tt = γ | Ec. 3.6.11 |
 //! | assembly | min (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi, r growing | Ec. 3.6.9 |
 //!
+//! The system is solved block by block: [`Structure`] finds which equations determine which
+//! unknowns and in which order, and a plan compiled from it has a kernel for each block, straight
+//! code for the dyads of which most mechanisms consist. The work of a step is proportional to the
+//! number of bodies. Position, velocity and acceleration share one factorisation a block.
+//!
 //! [`System`] has the equations and their rows, [`Solver`] a mechanism at one pose, which it can
 //! [assemble](Solver::assemble), [move along a path](Solver::follow) and give
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.

@@ -4,6 +4,10 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+#[path = "../../tests/common/generated.rs"]
+#[allow(dead_code, reason = "also used by `benches/`")]
+mod generated;
+
 use super::constraint::Gradient;
 use super::system::Target;
 use super::{Curve, Path, Rates, Solver};
@@ -134,6 +138,32 @@ fn every_shipped_mechanism_agrees() {
         seen += 1;
     }
     assert!(seen > 20);
+}
+
+/// Chains, and lifts whose loops are one block: of dense and of sparse matrices.
+#[test]
+fn generated_mechanisms_agree() {
+    use generated::{Ground, chain, scissor_lift};
+    let texts = [
+        chain(10, Ground::Straight),
+        scissor_lift(1),
+        scissor_lift(3),
+        scissor_lift(6),
+        scissor_lift(12),
+    ];
+    for (index, text) in texts.iter().enumerate() {
+        let name = format!("mechanism {index}");
+        let (mut solver, mut path) = assembled(text, &name);
+        let driver = Jet {
+            value: 0.0,
+            first: 1.3,
+            second: -0.7,
+        };
+        for _ in 0..10 {
+            check(&mut solver, &[driver], &name);
+            move_on(&mut solver, &mut path, 0.05);
+        }
+    }
 }
 
 /// A mechanism that grows part by part on points that already move.

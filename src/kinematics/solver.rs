@@ -70,6 +70,8 @@ pub struct Solver {
     pub(super) targets: Targets,
     /// Whether `at`, `targets` and the plan are those of the pose's parameters.
     parameters_taken: bool,
+    /// Whether the plan has the pivots of its sparse matrices.
+    pivots_chosen: bool,
     /// Whether the plan is factorised at the pose, and, with a single driver, `flow` belongs to
     /// the pose.
     pub(super) factorised: bool,
@@ -128,6 +130,7 @@ impl Solver {
                 .collect(),
             targets: system.targets(),
             parameters_taken: false,
+            pivots_chosen: false,
             path_motions: motions.clone(),
             motions,
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
@@ -286,7 +289,12 @@ impl Solver {
         self.parameters_taken = false;
         self.system
             .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
-        self.plan.set_parameters(&self.at);
+        self.plan.set_parameters(&self.at, &self.targets);
+        if !self.pivots_chosen {
+            self.plan
+                .choose_pivots(&self.system, &self.at, &self.targets);
+            self.pivots_chosen = true;
+        }
         let parameters = &self.pose.parameters;
         self.motions
             .set_parameters(|p| Jet::constant(parameters[p.index()]));

@@ -220,7 +220,7 @@ impl Instance {
     fn variable(&self, value_reference: u32) -> Result<&Variable, Error> {
         self.variables
             .get(value_reference)
-            .ok_or(Error::ValueReference {
+            .ok_or_else(|| Error::ValueReference {
                 value_reference,
                 last: self.variables.list().len() - 1,
             })

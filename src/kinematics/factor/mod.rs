@@ -107,7 +107,7 @@ pub enum Lu {
     /// For few unknowns.
     Dense(DenseLu),
     /// For many.
-    Sparse(SparseLu),
+    Sparse(Box<SparseLu>),
 }
 
 impl Lu {

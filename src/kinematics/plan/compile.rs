@@ -4,10 +4,14 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
+use petgraph::algo::kosaraju_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+
 use super::coupled::{Coupled, Place};
 use super::dyad::{self, Dyad, SideParts};
 use super::elimination;
 use super::pinned::{self, Pinned};
+use super::slide::{self, SecondParts, Slide};
 use super::{Kernel, Plan};
 use crate::kinematics::constraint::{Axis, Relation};
 use crate::kinematics::structure::Structure;
@@ -25,6 +29,7 @@ struct Group {
 enum Recipe {
     Pinned(pinned::Parts),
     Dyad(dyad::Parts),
+    Slide(slide::Parts),
     Coupled,
 }
 
@@ -68,6 +73,26 @@ impl Plan {
     }
 }
 
+/// Whether each group is part of a knot: it reads what reads it, directly or through others.
+fn knots(reads: &[Vec<usize>]) -> Vec<bool> {
+    let mut graph = DiGraph::<(), (), usize>::with_capacity(reads.len(), reads.len());
+    for _ in reads {
+        graph.add_node(());
+    }
+    for (group, reads) in reads.iter().enumerate() {
+        for &read in reads {
+            graph.add_edge(NodeIndex::new(group), NodeIndex::new(read), ());
+        }
+    }
+    let mut knots = vec![false; reads.len()];
+    for component in kosaraju_scc(&graph) {
+        for group in component.iter().filter(|_| component.len() > 1) {
+            knots[group.index()] = true;
+        }
+    }
+    knots
+}
+
 /// Pairs the rows that hold two points together.
 fn revolutes(system: &System) -> Vec<Option<Revolute>> {
     let equations = system.equations();
@@ -107,8 +132,11 @@ impl Search<'_> {
             }
             let bodies = self.turning(block);
             let group = match bodies[..] {
-                [body] => self.pinned(body),
-                [a, b] => self.dyad(a, b),
+                [body] => self.pinned(body).or_else(|| self.slide_from(block, body)),
+                [a, b] => self
+                    .dyad(a, b)
+                    .or_else(|| self.slide(a, Some(b)))
+                    .or_else(|| self.slide(b, Some(a))),
                 _ => None,
             };
             if let Some(group) = group {
@@ -261,21 +289,132 @@ impl Search<'_> {
         })
     }
 
-    /// An order of the groups in which each comes after those it reads, the earliest block
-    /// first. Grouping may have tied a knot, where a group reads what another one finds from a
-    /// part of it; such groups are taken apart again.
+    /// A slide whose angle is that of body `a`, in `block`: with a body that meets it in the
+    /// block, or alone.
+    fn slide_from(&self, block: usize, a: usize) -> Option<Group> {
+        let rows = &self.structure.blocks()[block].rows;
+        let met = rows.iter().flat_map(|&row| {
+            let markers = match self.system.equations()[row].constraint.relation() {
+                Relation::Coincidence(c) => [Some(c.from), Some(c.to), None],
+                Relation::Projection(p) => [Some(p.from), Some(p.to), Some(p.axes)],
+                Relation::Angle(_) | Relation::Other => [None; 3],
+            };
+            markers.into_iter().flatten()
+        });
+        met.filter_map(|marker| self.body_of(marker))
+            .filter(|&b| b != a)
+            .find_map(|b| self.slide(a, Some(b)))
+            .or_else(|| self.slide(a, None))
+    }
+
+    /// Body `a` with a revolute to a point found before, and a point on a line; `b`, if any,
+    /// slides along with it.
+    fn slide(&self, a: usize, b: Option<usize>) -> Option<Group> {
+        let bodies: Vec<_> = std::iter::once(a).chain(b).collect();
+        let (blocks, rows) = self.determining(&bodies)?;
+        let mut revolutes: Vec<Revolute> = Vec::new();
+        let (mut angle, mut projection) = (None, None);
+        for &row in &rows {
+            match (
+                self.revolutes[row],
+                self.system.equations()[row].constraint.relation(),
+            ) {
+                (Some(revolute), _)
+                    if rows.contains(&revolute.rows[1]) && revolute.rows[0] == row =>
+                {
+                    revolutes.push(revolute);
+                }
+                (Some(revolute), _) => {
+                    revolutes.last().filter(|r| r.rows == revolute.rows)?;
+                }
+                (None, Relation::Angle(measured)) if angle.is_none() => {
+                    angle = Some((row, measured));
+                }
+                (None, Relation::Projection(measured)) if projection.is_none() => {
+                    projection = Some((row, measured));
+                }
+                _ => return None,
+            }
+        }
+        if revolutes.len() != bodies.len() || angle.is_some() != b.is_some() {
+            return None;
+        }
+        let own = |marker| self.body_of(marker).filter(|body| bodies.contains(body));
+        let outer = revolutes.iter().find(|r| {
+            let ends = [own(r.from), own(r.to)];
+            ends == [Some(a), None] || ends == [None, Some(a)]
+        })?;
+        let (pin, anchor) = self.own_first(*outer, a)?;
+        let second = match b {
+            None => None,
+            Some(b) => {
+                let other = revolutes.iter().find(|r| r.rows != outer.rows)?;
+                let (pin, partner) = self.own_first(*other, b)?;
+                let (row, measured) = angle?;
+                let (marker, reference, sense) = match (own(measured.from), own(measured.to)) {
+                    (from, Some(to)) if to == b && from != Some(b) => {
+                        (measured.to, measured.from, 1.0)
+                    }
+                    (Some(from), to) if from == b && to != Some(b) => {
+                        (measured.from, measured.to, -1.0)
+                    }
+                    _ => return None,
+                };
+                let carried = own(partner) == Some(a);
+                let held = matches!(self.system.equations()[row].target, Target::Constant(_));
+                let fits = if carried {
+                    own(reference).is_none()
+                } else {
+                    own(partner).is_none() && own(reference) == Some(a) && held
+                };
+                if !fits {
+                    return None;
+                }
+                Some(SecondParts {
+                    body: b,
+                    carried,
+                    pin,
+                    partner,
+                    row,
+                    angle: marker,
+                    reference,
+                    sense,
+                })
+            }
+        };
+        let (row, projection) = projection?;
+        Some(Group {
+            recipe: Recipe::Slide(slide::Parts {
+                columns: bodies
+                    .iter()
+                    .flat_map(|body| (0..3).map(move |k| 3 * body + k))
+                    .collect(),
+                rows,
+                body: a,
+                pin,
+                anchor,
+                second,
+                row,
+                projection,
+            }),
+            blocks,
+        })
+    }
+
+    /// An order of the groups in which each comes after those it reads, as close to that of the
+    /// blocks as can be. Grouping may have tied a knot, where two groups read parts of each
+    /// other; such groups are taken apart again.
     fn order(&mut self) -> Vec<usize> {
         loop {
-            let order = self.sorted();
-            if order.len() == self.groups.len() {
-                return order;
+            let reads = self.reads();
+            let knots = knots(&reads);
+            if knots.iter().all(|knot| !knot) {
+                return self.sorted(&reads);
             }
-            let mut done = vec![false; self.groups.len()];
-            order.iter().for_each(|&group| done[group] = true);
-            let groups = std::mem::take(&mut self.groups);
-            let kept =
-                |(group, done): (Group, bool)| (done || group.blocks.len() == 1).then_some(group);
-            self.groups = groups.into_iter().zip(done).filter_map(kept).collect();
+            let groups = std::mem::take(&mut self.groups).into_iter().zip(knots);
+            self.groups = groups
+                .filter_map(|(group, knot)| (!knot).then_some(group))
+                .collect();
             self.group_of.fill(None);
             for (index, group) in self.groups.iter().enumerate() {
                 for &block in &group.blocks {
@@ -286,25 +425,31 @@ impl Search<'_> {
         }
     }
 
-    /// As many groups as can be put in order.
-    fn sorted(&self) -> Vec<usize> {
-        let group_of = |block: usize| self.group_of[block].expect("every block has its group");
-        let mut waits_for = vec![0_usize; self.groups.len()];
-        let mut read_by = vec![Vec::new(); self.groups.len()];
-        for (index, group) in self.groups.iter().enumerate() {
-            let blocks = group.blocks.iter();
-            let reads = blocks.flat_map(|&block| &self.structure.blocks()[block].reads);
-            for read in reads.map(|&block| group_of(block)) {
-                if read != index {
-                    waits_for[index] += 1;
-                    read_by[read].push(index);
-                }
+    /// The groups that each group reads.
+    fn reads(&self) -> Vec<Vec<usize>> {
+        let groups = self.groups.iter().enumerate();
+        groups
+            .map(|(index, group)| {
+                let blocks = group.blocks.iter();
+                let reads = blocks.flat_map(|&block| &self.structure.blocks()[block].reads);
+                let groups = reads.filter_map(|&block| self.group_of[block]);
+                groups.filter(|&read| read != index).collect()
+            })
+            .collect()
+    }
+
+    fn sorted(&self, reads: &[Vec<usize>]) -> Vec<usize> {
+        let mut waits_for: Vec<_> = reads.iter().map(Vec::len).collect();
+        let mut read_by = vec![Vec::new(); reads.len()];
+        for (index, reads) in reads.iter().enumerate() {
+            for &read in reads {
+                read_by[read].push(index);
             }
         }
         let last = |group: usize| self.groups[group].blocks.last().copied();
-        let free = (0..self.groups.len()).filter(|&group| waits_for[group] == 0);
+        let free = (0..reads.len()).filter(|&group| waits_for[group] == 0);
         let mut ready: BinaryHeap<_> = free.map(|group| Reverse((last(group), group))).collect();
-        let mut order = Vec::with_capacity(self.groups.len());
+        let mut order = Vec::with_capacity(reads.len());
         while let Some(Reverse((_, group))) = ready.pop() {
             order.push(group);
             for &reader in &read_by[group] {
@@ -348,6 +493,7 @@ impl Search<'_> {
                     Kernel::Pinned(Box::new(Pinned::new(self.mechanism, parts)))
                 }
                 Recipe::Dyad(parts) => Kernel::Dyad(Dyad::new(self.mechanism, parts)),
+                Recipe::Slide(parts) => Kernel::Slide(Box::new(Slide::new(self.mechanism, parts))),
                 Recipe::Coupled => {
                     let order = orders.next().expect("each group of this kind has one");
                     let lu = order.matrix(self.system);

@@ -75,6 +75,11 @@ impl Coupled {
         &self.columns
     }
 
+    /// Whether its matrix is sparse, with pivots that are kept.
+    pub(super) fn is_sparse(&self) -> bool {
+        matches!(self.lu, Lu::Sparse(_))
+    }
+
     /// Evaluates the rows and their Jacobian at the pose in `work`, not yet factorised.
     fn evaluate(&mut self, work: &Work<'_>) {
         let Self {

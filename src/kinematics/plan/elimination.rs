@@ -117,6 +117,6 @@ impl Order {
             entries.dedup();
             entries
         });
-        Lu::Sparse(SparseLu::new(pattern.collect()))
+        Lu::Sparse(Box::new(SparseLu::new(pattern.collect())))
     }
 }

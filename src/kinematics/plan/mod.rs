@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | [`Pinned`] | x, y, phi of a body | straight from a revolute and an angle |
 //! | [`Dyad`] | x, y, phi of two bodies | Newton on two angles, 2×2 in closed form |
+//! | [`Slide`] | x, y, phi of one or two bodies, one point on a line | Newton on one angle |
 //! | [`Coupled`] | any block | Newton on its rows, whatever they are |
 
 mod anchor;
@@ -16,6 +17,7 @@ mod coupled;
 mod dyad;
 mod elimination;
 mod pinned;
+mod slide;
 
 use super::configuration::Configuration;
 use super::newton::{Correction, Rejected};
@@ -26,6 +28,7 @@ use crate::mechanism::Jet;
 pub(super) use coupled::Coupled;
 use dyad::Dyad;
 use pinned::Pinned;
+use slide::Slide;
 
 /// The kernels in the order in which they run.
 #[derive(Debug)]
@@ -38,6 +41,7 @@ pub(super) struct Plan {
 pub(super) enum Kernel {
     Pinned(Box<Pinned>),
     Dyad(Dyad),
+    Slide(Box<Slide>),
     Coupled(Box<Coupled>),
 }
 
@@ -69,13 +73,46 @@ impl Advance {
 
 impl Plan {
     /// Takes over what depends on the parameters alone. Allocates nothing.
-    pub(super) fn set_parameters(&mut self, at: &Configuration) {
+    pub(super) fn set_parameters(&mut self, at: &Configuration, targets: &Targets) {
         for kernel in &mut self.kernels {
             match kernel {
                 Kernel::Pinned(kernel) => kernel.set_parameters(at),
                 Kernel::Dyad(kernel) => kernel.set_parameters(at),
+                Kernel::Slide(kernel) => kernel.set_parameters(at, targets),
                 Kernel::Coupled(_) => {}
             }
+        }
+    }
+
+    /// Chooses the pivots of sparse matrices, at a pose that has nothing to do with any motion:
+    /// so they do not depend on where the mechanism has been.
+    pub(super) fn choose_pivots(&mut self, system: &System, at: &Configuration, targets: &Targets) {
+        let kernels = self.kernels.iter_mut();
+        let sparse = kernels.filter_map(|kernel| match kernel {
+            Kernel::Coupled(kernel) if kernel.is_sparse() => Some(kernel),
+            _ => None,
+        });
+        let mut sparse = sparse.peekable();
+        if sparse.peek().is_none() {
+            return;
+        }
+        // Spread evenly by the golden ratio: nothing is in line or at right angles there.
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let q: Vec<_> = (1..=system.unknowns())
+            .map(|k| at.size() * (GOLDEN * k as f64).fract() + (k % 3) as f64)
+            .collect();
+        let mut anywhere = at.clone();
+        anywhere.set_pose(system.mechanism(), &q);
+        let work = Work {
+            system,
+            targets,
+            drivers: &vec![1.0; system.mechanism().drivers.len()],
+            at: &mut anywhere,
+            flow: &mut Rates::new(0),
+        };
+        for kernel in sparse {
+            // Should the pose be singular, the pivots are chosen at the first one that is not.
+            let _ = kernel.factorise(&work);
         }
     }
 
@@ -98,16 +135,23 @@ impl Plan {
         for kernel in &mut self.kernels {
             let correction = match kernel {
                 Kernel::Pinned(kernel) => {
-                    kernel.locate(work);
+                    let correction = kernel.advance(work, advance)?;
                     if let Some(unit) = unit {
                         kernel.solve_rates(work, unit);
                     }
-                    continue;
+                    correction
                 }
                 Kernel::Dyad(kernel) => {
                     let correction = kernel.advance(work, advance)?;
                     if unit.is_some() {
                         kernel.solve_rates(work);
+                    }
+                    correction
+                }
+                Kernel::Slide(kernel) => {
+                    let correction = kernel.advance(work, advance)?;
+                    if let Some(unit) = unit {
+                        kernel.solve_rates(work, unit);
                     }
                     correction
                 }
@@ -134,6 +178,7 @@ impl Plan {
             match kernel {
                 Kernel::Pinned(_) => {}
                 Kernel::Dyad(kernel) => kernel.factorise(work)?,
+                Kernel::Slide(kernel) => kernel.factorise(work)?,
                 Kernel::Coupled(kernel) => kernel.factorise(work)?,
             }
         }
@@ -147,6 +192,7 @@ impl Plan {
             match kernel {
                 Kernel::Pinned(kernel) => kernel.solve_rates(work, drivers),
                 Kernel::Dyad(kernel) => kernel.solve_rates(work),
+                Kernel::Slide(kernel) => kernel.solve_rates(work, drivers),
                 Kernel::Coupled(kernel) => kernel.solve_rates(work, drivers),
             }
         }
@@ -165,6 +211,7 @@ impl Kernel {
         match self {
             Self::Pinned(kernel) => kernel.rows(),
             Self::Dyad(kernel) => kernel.rows(),
+            Self::Slide(kernel) => kernel.rows(),
             Self::Coupled(kernel) => kernel.rows(),
         }
     }
@@ -174,6 +221,7 @@ impl Kernel {
         match self {
             Self::Pinned(kernel) => kernel.columns(),
             Self::Dyad(kernel) => kernel.columns(),
+            Self::Slide(kernel) => kernel.columns(),
             Self::Coupled(kernel) => kernel.columns(),
         }
     }
@@ -183,7 +231,53 @@ impl Kernel {
         match self {
             Self::Pinned(_) => 1.0,
             Self::Dyad(kernel) => kernel.rcond(),
+            Self::Slide(kernel) => kernel.rcond(),
             Self::Coupled(kernel) => kernel.rcond(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::Kernel;
+    use crate::kinematics::Solver;
+    use crate::mechanism::{Mechanism, Source};
+
+    /// A letter a kernel, `C` with the number of its unknowns.
+    fn kernels(name: &str) -> String {
+        let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).expect("it is shipped");
+        let (mechanism, _) =
+            Mechanism::parse(&Source::new("test.toml", text)).expect("it has no errors");
+        let solver = Solver::new(Arc::new(mechanism)).expect("the drivers match");
+        let letters = solver.plan.kernels.iter().map(|kernel| match kernel {
+            Kernel::Pinned(_) => "P".to_owned(),
+            Kernel::Dyad(_) => "D".to_owned(),
+            Kernel::Slide(_) => "S".to_owned(),
+            Kernel::Coupled(coupled) => format!("C{}", coupled.columns().len()),
+        });
+        letters.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Work is a result, too: a mechanism that falls to a slower kernel shows here.
+    #[test]
+    fn each_part_has_the_kernel_that_suits_it() {
+        for (name, expected) in [
+            ("four_bar", "P D"),
+            ("slider_crank", "P S"),
+            ("tlv_crank", "P S"),
+            ("slotted_lever", "P S S"),
+            ("jansen_leg", "P D D D"),
+            ("toggle_press", "P D S"),
+            ("watt_six_bar", "P D D"),
+            ("five_bar_robot", "P P D"),
+            ("hart_inversor", "P D D"),
+            // Driven between coupler and rocker: all three angles at once.
+            ("double_rocker", "C1 C1 C1 C1 C5"),
+        ] {
+            assert_eq!(kernels(name), expected, "{name}");
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use nalgebra::Vector2;
 
-use super::Work;
 use super::anchor::Anchor;
+use super::{Advance, Work};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
+use crate::kinematics::newton::{Correction, LARGEST_CORRECTION, Rejected};
 use crate::kinematics::system::Target;
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
@@ -83,6 +84,28 @@ impl Pinned {
             origin: point - frame.rotate(self.s),
             ..frame
         };
+    }
+
+    /// Puts the body where it belongs, if that is where it is expected.
+    pub(super) fn advance(
+        &self,
+        work: &mut Work<'_>,
+        advance: Advance,
+    ) -> Result<Correction, Rejected> {
+        let place = self.parts.body;
+        let before = work.at.frames()[place].phi;
+        let predicted = advance.predict(self.columns[2], before, work.flow);
+        self.locate(work);
+        let moved = work.at.frames()[place].phi - predicted;
+        if moved.abs() <= LARGEST_CORRECTION {
+            // Linear equations are solved by one.
+            Ok(Correction {
+                iterations: 1,
+                contraction: 0.0,
+            })
+        } else {
+            Err(Rejected)
+        }
     }
 
     pub(super) fn solve_rates(&self, work: &mut Work<'_>, drivers: &[Jet]) {

@@ -13,7 +13,7 @@ use crate::kinematics::newton::{
     AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
     SMALL, STALLED,
 };
-use crate::kinematics::system::Target;
+use crate::kinematics::system::{Target, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
 /// x, y and phi of body a, and of body b if there is one. Everything follows from the angle of
@@ -63,8 +63,6 @@ enum Second {
         anchor: Anchor,
         zero: f64,
         s: Vector2<f64>,
-        /// phi_b − phi_a without whole turns, as a frame.
-        turn: BodyPose,
     },
 }
 
@@ -161,7 +159,6 @@ impl Slide {
                 anchor: Anchor::new(mechanism, b.partner),
                 zero: 0.0,
                 s: zero,
-                turn: BodyPose::turned(0.0),
             },
         };
         let on = |marker| match (body_of(marker), &parts.second) {
@@ -198,12 +195,7 @@ impl Slide {
         &self.parts.columns
     }
 
-    /// Takes over what depends on the parameters alone; `constant` is what each row is held at.
-    pub(super) fn set_parameters(
-        &mut self,
-        at: &Configuration,
-        constant: impl Fn(usize) -> f64,
-    ) {
+    pub(super) fn set_parameters(&mut self, at: &Configuration, targets: &Targets) {
         let parts = &self.parts;
         self.anchor.set_parameters(at, parts.anchor);
         self.s = at.local(parts.pin).0;
@@ -220,17 +212,13 @@ impl Slide {
                     *s = inner;
                 }
                 Second::Parallel {
-                    anchor,
-                    zero,
-                    s,
-                    turn,
-                    ..
+                    anchor, zero, s, ..
                 } => {
                     anchor.set_parameters(at, b.partner);
                     *zero = offset;
                     *s = inner;
-                    between = BodyPose::turned(offset + b.sense * constant(b.row));
-                    *turn = between;
+                    // Without whole turns, which are no part of the parameters.
+                    between = BodyPose::turned(offset + b.sense * targets.constant(b.row));
                 }
             }
         }
@@ -254,10 +242,11 @@ impl Slide {
             Axis::X => Vector2::new(cos, sin),
             Axis::Y => Vector2::new(-sin, cos),
         };
-        let on_second = parts
-            .second
-            .as_ref()
-            .is_some_and(|b| at.marker(axes).body.is_some_and(|body| body.index() == b.body));
+        let on_second = parts.second.as_ref().is_some_and(|b| {
+            at.marker(axes)
+                .body
+                .is_some_and(|body| body.index() == b.body)
+        });
         match &mut self.axis {
             Line::Known(_, e) | Line::Carried(e) => *e = direction,
             Line::Turning(e) if on_second => *e = between.rotate(direction),

@@ -94,7 +94,7 @@ impl Contour {
     }
 
     /// The cam's marker, and the contour at the contact.
-    pub(super) fn at<'a>(&self, at: &'a Configuration) -> (MarkerPose, Shape) {
+    pub(super) fn at(&self, at: &Configuration) -> (MarkerPose, Shape) {
         let cam = at.marker(self.cam);
         let theta = at.joint_unknown(self.contact);
         (cam, Self::shape(at.profile(self.profile), theta, cam.axis))

@@ -108,7 +108,7 @@ struct Face {
 }
 
 impl FlatFace {
-    fn face<'a>(&self, at: &'a Configuration) -> Face {
+    fn face(&self, at: &Configuration) -> Face {
         let (cam, contact) = self.contour.at(at);
         let follower = at.marker(self.follower);
         Face {

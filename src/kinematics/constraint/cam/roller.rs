@@ -45,7 +45,7 @@ struct Touch {
 }
 
 impl Roller {
-    fn touch<'a>(&self, at: &'a Configuration) -> Touch {
+    fn touch(&self, at: &Configuration) -> Touch {
         let (cam, contact) = self.contour.at(at);
         let follower = at.marker(self.follower);
         let w = match self.axis {
