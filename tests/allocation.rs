@@ -65,7 +65,22 @@ fn the_allocator_counts() {
 
 #[test]
 fn a_cycle_of_set_step_and_get_allocates_nothing() {
-    for name in ["pendulum", "slider_crank", "four_bar", "tlv_crank"] {
+    // All with one crank or cam: the solver's kinds of blocks, gears, cams of every kind.
+    for name in [
+        "pendulum",
+        "slider_crank",
+        "four_bar",
+        "tlv_crank",
+        "slotted_lever",
+        "stephenson_six_bar",
+        "jansen_leg",
+        "geared_five_bar",
+        "rack_drive",
+        "cam_knife",
+        "cam_points",
+        "cam_roller_arm",
+        "cam_flat",
+    ] {
         let mut instance =
             Instance::new(shipped(name), Box::new(Silent), false).expect("the mechanism assembles");
         let outputs: Vec<u32> = (0..instance.variables().list().len() as u32)
@@ -100,6 +115,30 @@ fn a_cycle_of_set_step_and_get_allocates_nothing() {
         assert_eq!(count, 0, "{name}");
         assert!(values.iter().all(|value| value.is_finite()));
     }
+}
+
+/// Tables whose parameters move: their splines are found anew at each sub-step.
+#[test]
+fn a_tunable_table_allocates_nothing() {
+    let mut instance = Instance::new(shipped("pick_and_place"), Box::new(Silent), false)
+        .expect("the mechanism assembles");
+    let lift = instance
+        .variables()
+        .list()
+        .iter()
+        .position(|variable| variable.name == "lift")
+        .expect("it has one") as u32;
+    instance.setup_experiment(0.0, None).unwrap();
+    instance.enter_initialization_mode().unwrap();
+    instance.exit_initialization_mode().unwrap();
+    let count = allocations(|| {
+        for step in 0..100 {
+            let t = 0.01 * f64::from(step);
+            instance.set_real(&[lift], &[0.1 + 0.05 * t]).unwrap();
+            instance.do_step(t, 0.01).unwrap();
+        }
+    });
+    assert_eq!(count, 0);
 }
 
 /// The same for the solver by itself, on mechanisms of every kind of block: dyads and slides,

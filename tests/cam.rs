@@ -4,7 +4,7 @@ mod common;
 
 use std::f64::consts::TAU;
 
-use biela::kinematics::{MisfitKind, Rates, Solver};
+use biela::kinematics::{MisfitKind, Rates, Reason, Solver};
 use biela::mechanism::{Jet, Mechanism};
 use common::{assembled, parse, shipped, straight_to};
 use proptest::prelude::*;
@@ -78,10 +78,13 @@ fn a_round_cam_moves_nothing() {
         path.to[eccentricity.index()] = 0.0;
         solver.follow(&path).expect("eccentricities between fit");
         path.from.clone_from(&path.to);
-        let height = solver.pose().q[4];
+        let before = solver.pose().q[3..6].to_vec();
         straight_to(&solver, &mut path, 4.0);
         solver.follow(&path).expect("a round cam turns");
-        assert!((solver.pose().q[4] - height).abs() < 1e-16, "{name}");
+        for (q, before) in solver.pose().q[3..6].iter().zip(before) {
+            // Some eps of lengths up to 0.1 m and angles up to 3 rad.
+            assert!((q - before).abs() < 4e-15, "{name}");
+        }
         let mut rates = Rates::new(solver.pose().q.len());
         let turning = Jet {
             value: 4.0,
@@ -112,12 +115,15 @@ fn a_round_cam_moves_nothing() {
 
 /// A shipped cam with another contour.
 fn with_profile(name: &str, profile: &str) -> Solver {
+    assembled(&parse(&text_with_profile(name, profile))).0
+}
+
+fn text_with_profile(name: &str, profile: &str) -> String {
     let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).expect("shipped mechanisms can be read");
     let start = text.find("profile = ").expect("it has a profile");
     let end = start + text[start..].find('\n').expect("it is a line");
-    let text = text.replace(&text[start..end], &format!("profile = {profile}"));
-    assembled(&parse(&text)).0
+    text.replace(&text[start..end], &format!("profile = {profile}"))
 }
 
 /// At θ = 60° of R = 0.05 + 0.01 cos 3θ the contour is hollow: R = 0.04, R″ = 0.09, so that the
@@ -136,15 +142,18 @@ fn a_roller_too_large_for_a_hollow_is_reported() {
             [misfit] => {
                 assert!(!fits);
                 let MisfitKind::NarrowHollow {
-                    range, curvature, ..
-                } = misfit.kind
+                    ranges, curvature, ..
+                } = &misfit.kind
                 else {
                     panic!("{misfit}");
                 };
                 assert!((curvature - 0.032).abs() < 1e-9);
-                // One of the three hollows.
-                let middle = 0.5 * (range[0] + range[1]);
-                assert!(((3.0 * middle).cos() + 1.0).abs() < 1e-9);
+                // The three hollows, to the parts of a degree that are looked at.
+                let middles = ranges
+                    .iter()
+                    .map(|[from, to]| (0.5 * (from + to)).to_degrees());
+                let middles: Vec<_> = middles.map(|middle| middle.round()).collect();
+                assert_eq!(middles, [60.0, 180.0, 300.0]);
             }
             more => panic!("{more:?}"),
         }
@@ -245,4 +254,72 @@ fn wheels_that_do_not_fit_are_reported() {
              side ask for -0.050000 m"
         ]
     );
+}
+
+/// Parameters that make no contour, or no roller, are refused with the reason, whether they come
+/// between steps or at the start; the pose and its parameters are kept.
+#[test]
+fn parameters_that_make_no_contour_are_refused() {
+    let profile = "'disc_radius + 0*eccentricity + sqrt(offset)*cos(theta)/20'";
+    let text = text_with_profile("cam_roller", profile);
+    let text = text.replace(
+        "offset        = { value = 0.008,",
+        "offset        = { tunable = true, value = 0.008,",
+    );
+    let mechanism = parse(&text);
+    let parameter = |name: &str| mechanism.parameter_id(name).expect("it has one").index();
+    for (name, value, reason) in [
+        (
+            "offset",
+            -0.001,
+            "joint `contact`: radius, slope and curvature of a contour must be finite; they are \
+             not at theta = 0 deg",
+        ),
+        (
+            "disc_radius",
+            0.003,
+            "joint `contact`: the radius of a contour must be positive; it is ",
+        ),
+        (
+            "roller_radius",
+            -0.005,
+            "joint `contact` would hold a distance at -0.005 m; a distance must be positive",
+        ),
+    ] {
+        let (mut solver, mut path) = assembled(&mechanism);
+        let before = solver.pose().clone();
+        path.to[parameter(name)] = value;
+        let blocked = solver.follow(&path).expect_err(name);
+        let Reason::Value(_) = blocked.reason else {
+            panic!("{name}: {blocked:?}");
+        };
+        // It stands where the last values of the way made a mechanism.
+        assert!(solver.residual() < 1e-14, "{name}");
+        let error = solver.assemble(&path).expect_err(name);
+        assert!(error.to_string().starts_with(reason), "{name}: {error}");
+        solver.restore(&before);
+        assert_eq!(solver.pose(), &before);
+        path.to.clone_from(&path.from);
+        straight_to(&solver, &mut path, 3.0);
+        solver.follow(&path).expect("the mechanism is as it was");
+    }
+}
+
+/// A roller estimated inside the contour comes out on the side on which it is, not through the
+/// axle on the other.
+#[test]
+fn a_rough_estimate_keeps_its_side() {
+    let path = format!("{}/mechanisms/cam_roller.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("shipped mechanisms can be read");
+    let (_, law) = LAWS[1];
+    for height in ["0.005", "0.01", "0.03", "0.2"] {
+        let text = text.replace(
+            "[\"offset\", 0.06, 0]",
+            &format!("[\"offset\", {height}, 0]"),
+        );
+        let mechanism = parse(&text.replace("60*deg", "90*deg"));
+        let (solver, _) = assembled(&mechanism);
+        let off = follower_height(&solver, &mechanism) - law(90_f64.to_radians());
+        assert!(off.abs() < 1e-15, "{height}: {off:e}");
+    }
 }

@@ -112,6 +112,25 @@ fn a_mechanism_without_driver_exits_with_1_and_says_what_is_loose() {
 }
 
 #[test]
+fn a_motion_of_the_file_gives_way_to_one_of_the_command_line() {
+    let run = biela(&[
+        "run",
+        "mechanisms/pick_and_place.toml",
+        "--drive",
+        "travel = 0.1 + t",
+        "--stop",
+        "0.1",
+        "--step",
+        "0.1",
+    ])
+    .code(0);
+    let table = stdout(&run);
+    let mut rows = table.lines().skip(1).map(|row| row.split(',').nth(1));
+    assert_eq!(rows.next(), Some(Some("0.1")));
+    assert_eq!(rows.next(), Some(Some("0.2")));
+}
+
+#[test]
 fn bad_usage_exits_with_2() {
     for (arguments, expected) in [
         (&["check"][..], "required"),

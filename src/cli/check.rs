@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::Error;
-use super::input::Input;
+use super::input::{Input, warn_of_misfits};
 use super::run::print;
 use crate::kinematics::{Assembly, Element, Rates, Solver};
 use crate::mechanism::{CoordinateKind, DriverSource, Mechanism};
@@ -31,6 +31,7 @@ impl Check {
         let mechanism = &input.mechanism;
         print(&describe_equations(mechanism))?;
         let (mut solver, assembly) = input.assemble()?;
+        warn_of_misfits(&solver);
         print(&describe_pose(&mut solver, assembly))?;
         Ok(())
     }
@@ -59,7 +60,7 @@ fn describe_equations(mechanism: &std::sync::Arc<Mechanism>) -> String {
     line(
         "unknowns",
         unknowns,
-        vec!["x, y, phi of each body".to_owned()],
+        vec![format!("x, y, phi of each body{}", contacts_text(&system))],
     );
     line(
         "constraints",
@@ -94,6 +95,19 @@ fn describe_equations(mechanism: &std::sync::Arc<Mechanism>) -> String {
         let _ = write!(title, ": {}", mechanism.description);
     }
     format!("{title}\n\n{out}")
+}
+
+/// The unknowns that joints bring with them.
+fn contacts_text(system: &crate::kinematics::System) -> String {
+    let first = 3 * system.mechanism().bodies.len();
+    let joints: Vec<_> = (first..system.unknowns())
+        .map(|column| system.describe_unknown(column))
+        .collect();
+    if joints.is_empty() {
+        String::new()
+    } else {
+        format!(", the contact's angle of {}", joints.join(", "))
+    }
 }
 
 fn describe_pose(solver: &mut Solver, assembly: Assembly) -> String {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::error::Error;
+use super::input::warn_of_misfits;
 use crate::kinematics::{Curve, Path, Solver, Start};
 use crate::mechanism::{DriverSource, ExpressionError, Mechanism, Motion, ParameterId, Variable};
 
@@ -83,13 +84,21 @@ pub(super) fn start(
     let mut path = Path::new(home_solver.mechanism());
     path.duration = time - home.time;
     path.to.copy_from_slice(parameters);
-    for (index, (curve, driver)) in path.curves.iter_mut().zip(&driven.drivers).enumerate() {
-        // What is an input in the file has got an expression.
-        if let (Curve::Input { position, jump, .. }, Some(Motion::Expression(motion))) =
-            (curve, driver.motion())
-        {
-            *position = motion.evaluate(&|p: ParameterId| parameters[p.index()], time);
-            *jump = home.drivers[index] - *position;
+    let drivers = home_solver.mechanism().drivers.iter().zip(&driven.drivers);
+    for (index, (curve, (own, driver))) in path.curves.iter_mut().zip(drivers).enumerate() {
+        let kept = match (own.motion(), driver.motion()) {
+            (Some(Motion::Expression(own)), Some(Motion::Expression(given))) => own == given,
+            (Some(Motion::Table(_)), Some(Motion::Table(_))) | (None, None) => true,
+            _ => false,
+        };
+        if let (false, Some(Motion::Expression(given))) = (kept, driver.motion()) {
+            let position = given.evaluate(&|p: ParameterId| parameters[p.index()], time);
+            *curve = Curve::Input {
+                position,
+                velocity: 0.0,
+                acceleration: 0.0,
+                jump: home.drivers[index] - position,
+            };
         }
     }
     if let Start::Reassembled(_) = home_solver.start(&home, &path)? {
@@ -100,6 +109,7 @@ pub(super) fn start(
     }
     let mut solver = Solver::new(Arc::clone(driven))?;
     solver.restore(home_solver.pose());
+    warn_of_misfits(&solver);
     Ok(solver)
 }
 

@@ -16,8 +16,8 @@ use crate::drawing::{Scene, Sheet, png, svg};
 /// Shown is the pose at the start: at the drivers' start values, or where --drive and --set say.
 /// There are bodies, joints, ground, the drivers with their names, and the points of interest
 /// (`[outputs] markers`) with the paths that they take: over the prescribed motions until the
-/// file's stop time or, if none moves, over one turn of the first driver that is an angle, as far
-/// as it gets both ways.
+/// file's stop time or, if none moves, over turns of the first driver that is an angle: as many,
+/// up to eight, as bring the mechanism back, or one, as far as it gets both ways.
 ///
 /// The same file gives the same picture.
 #[derive(Args, Debug)]

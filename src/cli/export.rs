@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::Error;
-use super::input::Input;
+use super::input::{Input, warn_of_misfits};
 use super::output::write;
 use super::runtime;
 use crate::fmi::{model_description, write_fmu};
@@ -41,6 +41,7 @@ impl Export {
         let generated = generation_time()?;
         let input = Input::read(&self.file)?;
         let (solver, _) = input.assemble()?;
+        warn_of_misfits(&solver);
         let mechanism = &input.mechanism;
         if let Some(path) = self.model_description {
             let xml = model_description::write(mechanism, solver.structure(), generated.as_deref());

@@ -47,18 +47,21 @@ impl Input {
         }
     }
 
-    /// A solver at the file's own assembled pose, and how it got there. Joints that do not fit
-    /// their own numbers there are warned of on stderr.
+    /// A solver at the file's own assembled pose, and how it got there.
     pub(super) fn assemble(&self) -> Result<(Solver, crate::kinematics::Assembly), Error> {
         let mut solver =
             Solver::new(Arc::clone(&self.mechanism)).map_err(|error| self.error(error))?;
         let assembly = solver
             .assemble(&Path::new(&self.mechanism))
             .map_err(|error| self.error(error))?;
-        for misfit in solver.misfits() {
-            anstream::eprintln!("warning: {}: {misfit}\n", self.source.name());
-        }
         Ok((solver, assembly))
+    }
+}
+
+/// Warns on stderr of joints that do not fit their own numbers where the solver stands.
+pub(super) fn warn_of_misfits(solver: &Solver) {
+    for misfit in solver.misfits() {
+        anstream::eprintln!("warning: {misfit}");
     }
 }
 

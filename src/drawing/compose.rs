@@ -1,9 +1,12 @@
 //! From a mechanism to the symbols of its scene.
 
+mod cam;
+mod guide;
+
 use nalgebra::Vector2;
 
 use super::outline::{across, angle, direction};
-use super::scene::{Anchor, Symbol, WaySide};
+use super::scene::{Anchor, Held, Symbol, WaySide};
 use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, Expression, Joint, JointKind, MarkerId, Mechanism,
     RackSide, WheelSizes,
@@ -50,7 +53,10 @@ pub(super) fn symbols(
         covered: vec![Vec::new(); mechanism.bodies.len()],
         pivots: Vec::new(),
     };
-    for joint in &mechanism.joints {
+    // A knife points away from what its follower reaches, which the other joints decide.
+    let is_cam = |joint: &&Joint| matches!(joint.kind, JointKind::Cam { .. });
+    let (cams, others): (Vec<&Joint>, Vec<&Joint>) = mechanism.joints.iter().partition(is_cam);
+    for joint in others.into_iter().chain(cams) {
         composer.joint(joint);
     }
     for driver in &mechanism.drivers {
@@ -87,29 +93,29 @@ struct Composer<'a> {
 }
 
 /// What a symbol covers of a body, in the body's frame.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum Cover {
     Block,
     Wheel { center: Vector2<f64>, radius: f64 },
     Rack { along: Anchor, range: [f64; 2] },
+    Contour(Vec<[f64; 2]>),
+    Face { along: Anchor, range: [f64; 2] },
 }
 
 impl Cover {
     /// Whether a point lies in it, to within what cannot be seen.
-    fn has(self, point: Vector2<f64>) -> bool {
+    fn has(&self, point: Vector2<f64>) -> bool {
         match self {
             Self::Block => false,
             Self::Wheel { center, radius } => (point - center).norm() <= radius * 1.001,
-            Self::Rack { along, range } => {
-                let (axis, offset) = (
-                    direction(along.angle),
-                    point - Vector2::from(along.position),
-                );
+            Self::Rack { along, range } | Self::Face { along, range } => {
                 let near = 1e-3 * (range[1] - range[0]);
-                let s = axis.dot(&offset);
-                across(axis).dot(&offset).abs() <= near
-                    && s >= range[0] - near
-                    && s <= range[1] + near
+                let [s, aside] = along.coordinates(point);
+                aside.abs() <= near && s >= range[0] - near && s <= range[1] + near
+            }
+            Self::Contour(points) => {
+                let corners: Vec<_> = points.iter().map(|&p| p.into()).collect();
+                contains(&corners, point)
             }
         }
     }
@@ -180,13 +186,11 @@ impl Composer<'_> {
                     crossed: *crossed,
                 });
             }
-            JointKind::Cam { .. } => {}
+            JointKind::Cam { follower, profile } => self.cam([from, to], follower, profile),
             JointKind::RackAndPinion { radius, side } => {
                 let radius = self.value(radius);
                 self.wheel(from, radius, false);
-                let [low, high] = self.range(to, from);
-                let end = RACK_END * radius;
-                let range = [low - end, high + end];
+                let range = self.rack_range([from, to], radius);
                 self.cover(to.body, Cover::Rack { along: to, range });
                 self.add(Symbol::Rack {
                     along: to,
@@ -219,14 +223,22 @@ impl Composer<'_> {
 
     /// What lies along an axis: a way for a block, or a slot for a point.
     fn way(&mut self, along: Anchor, to: Anchor, block: bool) {
+        if block && self.guide(along, to) {
+            return;
+        }
         let range = self.range(along, to);
         if along.body.is_none() {
-            let side = if block {
-                self.free_side(along, to.body)
+            let (side, holds) = if block {
+                (self.free_side(along, to.body), Held::Block)
             } else {
-                WaySide::Both
+                (WaySide::Both, Held::Point)
             };
-            self.add(Symbol::SlideWay { along, range, side });
+            self.add(Symbol::SlideWay {
+                along,
+                range,
+                side,
+                holds,
+            });
         } else {
             self.reach(along, [range[0].min(0.0), range[1].max(0.0)]);
             if !block {
@@ -263,6 +275,30 @@ impl Composer<'_> {
             let ends: [[f64; 2]; 2] = range.map(|s| (origin + s * direction(along.angle)).into());
             self.spans[body.index()].extend(ends);
         }
+    }
+
+    /// What there is of a rack: its teeth over the motion, and its body's markers on its axis.
+    fn rack_range(&self, [pinion, rack]: [Anchor; 2], radius: f64) -> [f64; 2] {
+        let [low, high] = self.range(rack, pinion);
+        let end = RACK_END * radius;
+        self.with_markers(rack, [low - end, high + end])
+    }
+
+    /// A part of an axis, stretched to the markers of its body that lie on it.
+    fn with_markers(&self, along: Anchor, range: [f64; 2]) -> [f64; 2] {
+        let near = 1e-6 * (range[1] - range[0]);
+        self.positions(along.body)
+            .into_iter()
+            .map(|point| along.coordinates(point.into()))
+            .filter(|[_, aside]| aside.abs() <= near)
+            .fold(range, |[low, high], [s, _]| [low.min(s), high.max(s)])
+    }
+
+    /// Where the markers of a body are in its frame; none for ground, which has no shape.
+    fn positions(&self, body: Option<BodyId>) -> Vec<[f64; 2]> {
+        let markers = body.map(|body| &self.mechanism.bodies[body.index()].markers);
+        let anchors = markers.into_iter().flatten().map(|m| self.anchor(*m));
+        anchors.map(|anchor| anchor.position).collect()
     }
 
     /// The side of a way on which less of the mechanism is.
@@ -372,21 +408,31 @@ impl Composer<'_> {
 
     fn body(&mut self, body: BodyId) {
         let spans = std::mem::take(&mut self.spans[body.index()]);
-        let markers = &self.mechanism.bodies[body.index()].markers;
-        let own = markers.iter().map(|marker| self.anchor(*marker).position);
         let mut points: Vec<[f64; 2]> = Vec::new();
-        for point in own.chain(spans) {
+        for point in self.positions(Some(body)).into_iter().chain(spans) {
             if !points.contains(&point) {
                 points.push(point);
             }
         }
         let covers = &self.covered[body.index()];
+        let mut flat = false;
+        for cover in covers {
+            if let Cover::Face { along, range } = cover {
+                points = self.behind_face(*along, *range, &points);
+                flat = true;
+            }
+        }
         let covered = |point: &[f64; 2]| covers.iter().any(|c| c.has(Vector2::from(*point)));
         if covers.is_empty() && points.len() <= 1 && !points.contains(&[0.0; 2]) {
             points.push([0.0; 2]);
         }
-        // A single point of what has a symbol already needs no other.
-        if covers.is_empty() || points.len() > 1 && !points.iter().all(covered) {
+        let drawn = if flat {
+            !points.is_empty()
+        } else {
+            // A single point of what has a symbol already needs no other.
+            covers.is_empty() || points.len() > 1 && !points.iter().all(covered)
+        };
+        if drawn {
             self.symbols.push(Symbol::Link { body, points });
         }
     }
@@ -516,6 +562,15 @@ fn without_ways_back(path: &[Vector2<f64>], near: f64) -> Vec<&[Vector2<f64>]> {
     pieces.push(&path[start..]);
     pieces.retain(|piece| piece.len() > 1);
     pieces
+}
+
+/// Whether a point lies in a polygon: a ray from it meets the edges an odd number of times.
+fn contains(corners: &[Vector2<f64>], p: Vector2<f64>) -> bool {
+    let ends = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crossed = ends.filter(|(a, b)| {
+        (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
+    });
+    crossed.count() % 2 == 1
 }
 
 /// The distance of a point from a line between two others.

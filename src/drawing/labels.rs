@@ -30,6 +30,8 @@ const PAD: f64 = 2.0;
 const ON_LABEL: f64 = 4.0;
 /// What a label on the area of another body costs.
 const ON_AREA: f64 = 14.0;
+/// What a label on a wheel or a cam costs: they are large and pale.
+pub(super) const ON_WHEEL: f64 = 3.0;
 /// A place has to be this much better: rounding decides nothing.
 const BETTER: f64 = 1e-6;
 
@@ -109,6 +111,7 @@ impl Obstacle {
             Layer::Slider | Layer::Block | Layer::Joint | Layer::Point => 4.0,
         };
         let area = match mark.layer {
+            Layer::Wheel if mark.fill.is_some() => ON_WHEEL,
             Layer::Slider | Layer::Plate | Layer::Bar | Layer::Block if mark.fill.is_some() => {
                 ON_AREA
             }

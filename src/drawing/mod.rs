@@ -35,5 +35,5 @@ pub mod svg;
 mod symbols;
 
 pub use palette::Colour;
-pub use scene::{Anchor, Frame, Scene, Symbol, WaySide};
+pub use scene::{Anchor, Frame, Held, Scene, Symbol, WaySide};
 pub use sheet::Sheet;

@@ -8,6 +8,10 @@ use crate::mechanism::{CoordinateKind, Motion};
 
 /// Poses along a whole motion: fine enough for curves to look smooth.
 const STEPS: usize = 240;
+/// A mechanism that so many turns of its driver do not bring back shows one.
+const MOST_TURNS: usize = 8;
+/// How near, as a part of the way that bodies went and in radians, is back.
+const BACK: f64 = 1e-6;
 
 /// The generalized coordinates along the motion that starts, or passes, where the solver stands;
 /// at least those. The solver is back there in the end.
@@ -41,9 +45,19 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
                 break;
             }
         }
-    } else if let Some(crank) = crank
-        && !turn(solver, &mut path, crank, TAU, &mut poses)
-    {
+    } else if let Some(crank) = crank {
+        if turn(solver, &mut path, crank, TAU, &mut poses) {
+            for _ in 1..MOST_TURNS {
+                if is_back(&poses) || !turn(solver, &mut path, crank, TAU, &mut poses) {
+                    break;
+                }
+            }
+            if !is_back(&poses) {
+                poses.truncate(STEPS + 1);
+            }
+            solver.restore(&home);
+            return poses;
+        }
         solver.restore(&home);
         let mut back = Vec::new();
         turn(solver, &mut path, crank, -TAU, &mut back);
@@ -53,6 +67,26 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
     }
     solver.restore(&home);
     poses
+}
+
+/// Whether all bodies are in the end where they started, whatever full turns they made.
+fn is_back(poses: &[Vec<f64>]) -> bool {
+    let (start, end) = (&poses[0], &poses[poses.len() - 1]);
+    let off = |q: &[f64], k: usize| (q[k] - start[k]).abs();
+    let is_angle = |k: usize| k % 3 == 2;
+    let lengths = || (0..start.len()).filter(|k| !is_angle(*k));
+    let farthest = poses
+        .iter()
+        .flat_map(|q| lengths().map(|k| off(q, k)))
+        .fold(0.0, f64::max);
+    (0..start.len()).all(|k| {
+        if is_angle(k) {
+            let turns = off(end, k) / TAU;
+            (turns - turns.round()).abs() * TAU < BACK
+        } else {
+            off(end, k) <= BACK * farthest
+        }
+    })
 }
 
 /// Turns a driver by an angle; false if something is in the way.

@@ -191,35 +191,40 @@ pub(super) fn unit(v: Point) -> Point {
     v.try_normalize(1e-12).unwrap_or_else(Point::x)
 }
 
-/// The corners of the convex hull, counter-clockwise, without points that lie on its edges to
-/// within rounding (Andrew's monotone chain).
+/// The corners of the convex hull, counter-clockwise from the leftmost, without points that lie
+/// on its edges to within rounding (Jarvis's march).
 pub(super) fn convex_hull(points: &[Point]) -> Vec<Point> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let extent = sorted
-        .iter()
-        .fold(0.0, |extent: f64, p| extent.max((p - sorted[0]).norm()));
-    let near = 1e-9 * extent;
-    sorted.dedup_by(|a, b| (*a - *b).norm() <= near);
-    if sorted.len() < 3 {
-        return sorted;
-    }
-    let half = |points: &mut dyn Iterator<Item = &Point>| {
-        let mut chain: Vec<Point> = Vec::new();
-        for point in points {
-            while let [.., a, b] = chain[..] {
-                if (b - a).perp(&(point - a)) > near * extent {
-                    break;
-                }
-                chain.pop();
-            }
-            chain.push(*point);
-        }
-        chain.pop();
-        chain
+    // What is farthest from a point is a corner.
+    let far = |from: &Point| {
+        let distance = |p: &&Point| (*p - from).norm();
+        let nearer = |a: &&Point, b: &&Point| distance(a).total_cmp(&distance(b));
+        points.iter().max_by(nearer).copied()
     };
-    let mut hull = half(&mut sorted.iter());
-    hull.extend(half(&mut sorted.iter().rev()));
+    let Some(start) = points.first().and_then(far) else {
+        return Vec::new();
+    };
+    let extent = far(&start).map_or(0.0, |end| (end - start).norm());
+    let near = 1e-9 * extent;
+    let mut hull = vec![start];
+    while hull.len() <= points.len() {
+        let corner = hull[hull.len() - 1];
+        let mut next = corner;
+        for point in points {
+            let (best, offset) = (next - corner, point - corner);
+            let turn = best.perp(&offset);
+            let farther = offset.norm() > best.norm() + near;
+            if turn < -near * extent || turn <= near * extent && farther {
+                next = *point;
+            }
+        }
+        if (next - start).norm() <= near {
+            break;
+        }
+        hull.push(next);
+    }
+    let before = |a: &Point, b: &Point| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+    let first = (0..hull.len()).min_by(|&i, &j| before(&hull[i], &hull[j]));
+    hull.rotate_left(first.unwrap_or(0));
     hull
 }
 
@@ -238,6 +243,15 @@ mod tests {
         let line: Vec<_> = (0..5).map(|k| f64::from(k) * direction(0.3)).collect();
         assert_eq!(convex_hull(&line), [line[0], line[4]]);
         assert_eq!(convex_hull(&points[..1]), points[..1]);
+        // Rounding puts neither the points of a vertical edge nor equal ones in an order.
+        let e = 1e-16;
+        let upright =
+            [(0.0, 0.0), (e, 0.5), (-e, 1.0), (2.0 * e, 0.0)].map(|(x, y)| Point::new(x, y));
+        assert_eq!(convex_hull(&upright).len(), 2);
+        let with_corner = [&upright[..], &[Point::new(1.0, 0.0)]].concat();
+        let hull = convex_hull(&with_corner);
+        assert_eq!(hull.len(), 3);
+        assert!(hull.iter().any(|p| p.norm() < 1e-9), "{hull:?}");
     }
 
     #[test]

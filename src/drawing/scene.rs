@@ -77,6 +77,8 @@ pub enum Symbol {
         range: [f64; 2],
         /// Where the way is.
         side: WaySide,
+        /// What slides along it.
+        holds: Held,
     },
     /// A slot in a body along the x-axis of an anchor.
     Slot {
@@ -132,6 +134,34 @@ pub enum Symbol {
         /// Whether the teeth are on the side of the anchor's y-axis.
         above: bool,
     },
+    /// A cam, by its contour.
+    Cam {
+        /// Its axle.
+        at: Anchor,
+        /// The contour, closed, in the frame of the anchor's body \[m\].
+        contour: Vec<[f64; 2]>,
+    },
+    /// The edge of a knife-edge follower; the x-axis points into the follower.
+    Knife {
+        /// The edge.
+        at: Anchor,
+    },
+    /// The roller of a follower.
+    Roller {
+        /// Its centre.
+        at: Anchor,
+        /// Its radius \[m\].
+        radius: f64,
+    },
+    /// The face of a flat-faced follower along the x-axis of an anchor.
+    Face {
+        /// Origin and axis.
+        along: Anchor,
+        /// What is used of the axis \[m\].
+        range: [f64; 2],
+        /// Whether the cam is on the side of the anchor's y-axis.
+        above: bool,
+    },
     /// A driver of an angle.
     AngleDriver {
         /// The driver's name.
@@ -177,8 +207,21 @@ pub enum WaySide {
     Above,
     /// On the other side.
     Below,
-    /// On both: a point slides between them.
+    /// On both: what slides does so between them.
     Both,
+}
+
+/// What slides along a way on ground: how far from its axis the way lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// A block.
+    Block,
+    /// A point.
+    Point,
+    /// A bar along the axis.
+    Bar,
+    /// The back of a rack whose pitch line is the axis.
+    Rack,
 }
 
 impl Scene {
@@ -186,8 +229,8 @@ impl Scene {
     ///
     /// Ways and slots are as long as the motion needs, along which points of interest leave
     /// their traces: that of the prescribed motions until the file's stop time or, if none moves,
-    /// one turn of the first driver that is an angle, as far as it gets both ways. Other drivers
-    /// keep their values. With `traces` false the traces are left out.
+    /// turns of the first driver that is an angle: as many, up to eight, as bring the mechanism
+    /// back, or one, as far as it gets both ways. Other drivers keep their values. With `traces` false the traces are left out.
     #[must_use]
     pub fn new(solver: &mut Solver, traces: bool) -> Self {
         let motion = motion::sweep(solver);
@@ -203,6 +246,11 @@ impl Scene {
 }
 
 impl Anchor {
+    /// A point of the body's frame along the anchor's axes \[m\].
+    pub(super) fn coordinates(&self, point: Vector2<f64>) -> [f64; 2] {
+        (Rotation2::new(-self.angle) * (point - Vector2::from(self.position))).into()
+    }
+
     /// Where it is for the generalized coordinates q, \[m, m, rad\] for each body.
     #[must_use]
     pub fn placed(&self, q: &[f64]) -> Frame {

@@ -1,11 +1,13 @@
 //! How each symbol of a scene looks on a sheet.
 
+mod cam;
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::labels::{Candidate, Label};
+use super::labels::{Candidate, Label, ON_WHEEL};
 use super::outline::{Outline, Point, across, convex_hull, direction, unit};
 use super::palette::Colour;
-use super::scene::{Anchor, Frame, Scene, Symbol, WaySide};
+use super::scene::{Anchor, Frame, Held, Scene, Symbol, WaySide};
 use super::sheet::{Layer, Mark, Stroke};
 use crate::mechanism::BodyId;
 
@@ -31,6 +33,8 @@ const HATCH: f64 = 6.0;
 const RIM: f64 = 10.0;
 /// Pitch and height of a rack's teeth.
 const TOOTH: [f64; 2] = [9.0, 5.0];
+/// Height of a rack under its teeth.
+const RACK_BODY: f64 = 2.0 * BAR;
 /// Radius of an angle driver's arc.
 const ARC: f64 = 27.0;
 /// An angle smaller than this, 20°, has no room for an arrow.
@@ -78,7 +82,11 @@ impl<'a> Pen<'a> {
         };
         let mut points = Vec::new();
         for symbol in &scene.symbols {
-            if let Symbol::Link { .. } | Symbol::Block { .. } | Symbol::Wheel { .. } = symbol {
+            if let Symbol::Link { .. }
+            | Symbol::Block { .. }
+            | Symbol::Wheel { .. }
+            | Symbol::Cam { .. } = symbol
+            {
                 points.extend(symbol.extremes(q));
             }
         }
@@ -107,7 +115,12 @@ impl<'a> Pen<'a> {
             Symbol::Link { body, points } => self.link(*body, points),
             Symbol::Block { at, on } => self.block(*at, *on),
             Symbol::SlotBlock { at, along } => self.slot_block(*at, *along),
-            Symbol::SlideWay { along, range, side } => self.slide_way(*along, *range, *side),
+            Symbol::SlideWay {
+                along,
+                range,
+                side,
+                holds,
+            } => self.slide_way(*along, *range, *side, *holds),
             Symbol::Slot { along, range } => self.slot(*along, *range),
             Symbol::Fixture { at } => self.fixture(*at),
             Symbol::Pin { at } => self.pin(*at),
@@ -124,6 +137,14 @@ impl<'a> Pen<'a> {
                 range,
                 above,
             } => self.rack(*along, *range, *above),
+            Symbol::Cam { at, contour } => self.cam(*at, contour),
+            Symbol::Knife { at } => self.knife(*at),
+            Symbol::Roller { at, radius } => self.roller(*at, *radius),
+            Symbol::Face {
+                along,
+                range,
+                above,
+            } => self.face(*along, *range, *above),
             Symbol::AngleDriver { name, from, to } => self.angle_driver(name, *from, *to),
             Symbol::LengthDriver {
                 name,
@@ -232,6 +253,10 @@ impl<'a> Pen<'a> {
         let mut half = BAR;
         for symbol in &self.scene.symbols {
             match symbol {
+                Symbol::Knife { at } if at.body == Some(body) => self.make_room(*at, &mut corners),
+                Symbol::Face { along, above, .. } if along.body == Some(body) => {
+                    self.stay_behind(*along, *above, &mut corners);
+                }
                 Symbol::Slot { along, range } if along.body == Some(body) => {
                     corners.extend(self.slot_ends(*along, *range));
                     half = SLOTTED_BAR;
@@ -301,6 +326,22 @@ impl<'a> Pen<'a> {
                         cost: less + far + 1.0,
                     });
                 }
+            }
+        }
+    }
+
+    /// Places for a body's name on one side of a line.
+    fn places_beside(&mut self, body: Option<BodyId>, [start, end]: [Point; 2], side: Point) {
+        let Some(body) = body else { return };
+        let places = &mut self.body_places[body.index()];
+        for part in [0.5, 0.3, 0.7, 0.1, 0.9] {
+            for (gap, far) in [(5.0, 0.0), (13.0, 5.0), (24.0, 12.0)] {
+                places.push(Candidate {
+                    anchor: start + part * (end - start),
+                    side: Some(side),
+                    gap,
+                    cost: far + 4.0 * f64::abs(part - 0.5),
+                });
             }
         }
     }
@@ -395,7 +436,11 @@ impl<'a> Pen<'a> {
             let outside = if ring { radius + RIM } else { radius };
             let places = &mut self.body_places[body.index()];
             places.extend(around(center, outside + 1.0));
-            places.extend(around(center, 0.35 * radius));
+            let inside = around(center, 0.35 * radius).chain(around(center, 0.6 * radius));
+            places.extend(inside.map(|candidate| Candidate {
+                cost: candidate.cost - if ring { 0.0 } else { ON_WHEEL },
+                ..candidate
+            }));
         }
     }
 
@@ -438,14 +483,16 @@ impl<'a> Pen<'a> {
         self.hatched([foot - reach, foot + reach], down);
     }
 
-    fn slide_way(&mut self, along: Anchor, range: [f64; 2], side: WaySide) {
+    fn slide_way(&mut self, along: Anchor, range: [f64; 2], side: WaySide, holds: Held) {
         let (_, axis) = self.place(along);
         let [start, end] = self.ends(along, range);
         // On the sheet y points down.
         let up = -across(axis);
-        let (half, away) = match side {
-            WaySide::Both => (0.5 * SLOT_BLOCK[0], PIN + 1.0),
-            WaySide::Above | WaySide::Below => (0.5 * BLOCK[0], 0.5 * BLOCK[1] + 1.0),
+        let (half, away) = match holds {
+            Held::Point => (0.5 * SLOT_BLOCK[0], PIN),
+            Held::Block => (0.5 * BLOCK[0], 0.5 * BLOCK[1]),
+            Held::Bar => (0.0, BAR),
+            Held::Rack => (0.0, 0.5 * TOOTH[1] + RACK_BODY),
         };
         let more = (half + BEYOND) * axis;
         let sides: &[f64] = match side {
@@ -455,7 +502,7 @@ impl<'a> Pen<'a> {
         };
         for sign in sides {
             let outwards = *sign * up;
-            let aside = away * outwards;
+            let aside = (away + 1.0) * outwards;
             self.hatched([start - more + aside, end + more + aside], outwards);
         }
     }
@@ -505,10 +552,11 @@ impl<'a> Pen<'a> {
         }
         profile.push(at(length) + root);
         if along.body.is_some() {
-            let back = -(0.5 * height + 2.0 * BAR) * towards;
+            let back = -(0.5 * height + RACK_BODY) * towards;
             profile.extend([at(length) + back, at(0.0) + back]);
             let outline = Outline::polygon(&profile);
             self.area(Layer::Slot, outline, (colour.tint(0.45), 1.0), Some(colour));
+            self.places_beside(along.body, [start + back, end + back], -towards);
         } else {
             self.line(Layer::Ground, Outline::line(&profile), Colour::GROUND, LINE);
             let under = -(0.5 * height + 4.0) * towards;
@@ -684,14 +732,29 @@ impl Symbol {
             | Self::Fixture { at: anchor }
             | Self::Pin { at: anchor }
             | Self::Weld { at: anchor }
+            | Self::Knife { at: anchor }
             | Self::AngleDriver { to: anchor, .. }
             | Self::Point { at: anchor, .. } => vec![at(anchor)],
             Self::SlideWay { along, range, .. }
             | Self::Slot { along, range }
-            | Self::Rack { along, range, .. } => axis(along, range),
+            | Self::Rack { along, range, .. }
+            | Self::Face { along, range, .. } => axis(along, range),
             Self::Rod { ends } => ends.iter().map(at).collect(),
             Self::LengthDriver { from, to, .. } => vec![at(from), at(to)],
-            Self::Wheel {
+            Self::Cam {
+                at: anchor,
+                contour,
+            } => contour
+                .iter()
+                .map(|&position| {
+                    at(&Anchor {
+                        position,
+                        ..*anchor
+                    })
+                })
+                .collect(),
+            Self::Roller { at: anchor, radius }
+            | Self::Wheel {
                 at: anchor, radius, ..
             } => circle(anchor, *radius).to_vec(),
             Self::Belt { centers, radii, .. } => centers

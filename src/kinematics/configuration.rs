@@ -94,6 +94,15 @@ pub struct JointUnknownId(pub usize);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProfileId(pub usize);
 
+/// The profile of a cam, with the joint that it belongs to for messages.
+#[derive(Clone, Debug)]
+pub struct CamProfile {
+    /// The profile with the parameter values in force.
+    pub in_force: ProfileInForce,
+    /// Kind and name of the joint.
+    pub what: String,
+}
+
 /// What a relation needs besides markers, known when the equations are written down.
 #[derive(Clone, Debug)]
 pub struct Coefficient {
@@ -113,7 +122,7 @@ pub struct Configuration {
     /// The bodies, then ground.
     bodies: Vec<BodyPose>,
     coefficients: Vec<f64>,
-    profiles: Vec<ProfileInForce>,
+    profiles: Vec<CamProfile>,
     /// The unknowns behind those of the bodies, which joints bring with them.
     joint_unknowns: Vec<f64>,
     size: f64,
@@ -126,7 +135,7 @@ impl Configuration {
     pub fn new(
         mechanism: &Mechanism,
         coefficients: usize,
-        profiles: Vec<ProfileInForce>,
+        profiles: Vec<CamProfile>,
         joint_unknowns: usize,
     ) -> Self {
         let frames = mechanism
@@ -186,7 +195,11 @@ impl Configuration {
             }
         }
         for profile in &mut self.profiles {
-            profile.set_parameters(value);
+            let set = profile.in_force.set_parameters(value);
+            set.map_err(|error| Error::Profile {
+                what: profile.what.clone(),
+                error,
+            })?;
         }
         self.size = size(mechanism, &self.frames);
         Ok(())
@@ -313,7 +326,7 @@ impl Configuration {
     /// A cam's profile with the parameter values in force.
     #[must_use]
     pub fn profile(&self, id: ProfileId) -> &ProfileInForce {
-        &self.profiles[id.0]
+        &self.profiles[id.0].in_force
     }
 
     /// The mechanism's characteristic length \[m\]: makes metres and radians comparable.

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::mechanism::ProfileError;
+
 /// A call of the kinematics that could not do its work.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -31,6 +33,14 @@ pub enum Error {
         what: String,
         /// The value \[m\].
         value: f64,
+    },
+    /// Parameters make no contour of a cam.
+    #[error("{what}: {error}")]
+    Profile {
+        /// The joint.
+        what: String,
+        /// What is wrong with the contour.
+        error: ProfileError,
     },
     /// No pose was found that satisfies all equations.
     #[error(

@@ -3,6 +3,7 @@
 //! The equations of these pairs hold all the same; a misfit tells that the drawing does not
 //! belong to them.
 
+use std::f64::consts::TAU;
 use std::fmt;
 
 use nalgebra::Vector2;
@@ -10,7 +11,9 @@ use nalgebra::Vector2;
 use super::configuration::{ProfileId, perp};
 use super::constraint::Contour;
 use super::solver::Solver;
-use crate::mechanism::{CamFollower, JointKind, MarkerId, ProfileInForce, RackSide, WheelSizes};
+use crate::mechanism::{
+    CamFollower, Interval, Jet3, JointKind, MarkerId, ProfileInForce, RackSide, WheelSizes,
+};
 
 /// A joint that does not fit its own numbers, in the pose at which the solver stands.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,9 +52,9 @@ pub enum MisfitKind {
     /// The contour has a hollow that is too narrow for the roller: undercutting. The contact
     /// jumps from one of its sides to the other.
     NarrowHollow {
-        /// Polar angles from which to which \[rad\].
-        range: [f64; 2],
-        /// Radius of curvature of the hollow where it is narrowest \[m\].
+        /// Polar angles from which to which, one a hollow \[rad\].
+        ranges: Vec<[f64; 2]>,
+        /// Radius of curvature where they are narrowest \[m\].
         curvature: f64,
         /// Radius of the roller \[m\].
         roller: f64,
@@ -59,17 +62,13 @@ pub enum MisfitKind {
     /// A flat face cannot reach into a hollow of the contour: the contact jumps across it.
     HollowUnderFace {
         /// Polar angles from which to which the contour is not convex \[rad\].
-        range: [f64; 2],
+        ranges: Vec<[f64; 2]>,
     },
 }
 
 impl fmt::Display for Misfit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint `{}`: ", self.joint)?;
-        let degrees = |range: &[f64; 2]| {
-            let [from, to] = range.map(f64::to_degrees);
-            format!("between theta = {from:.1} and {to:.1} deg")
-        };
         match &self.kind {
             MisfitKind::GearCentres { distance, expected } => write!(
                 f,
@@ -86,24 +85,42 @@ impl fmt::Display for Misfit {
                  ask for {expected:.6} m"
             ),
             MisfitKind::NarrowHollow {
-                range,
+                ranges,
                 curvature,
                 roller,
             } => write!(
                 f,
-                "a roller of radius {roller:.6} m does not fit into the contour's hollow {}, \
-                 whose radius of curvature goes down to {curvature:.6} m",
-                degrees(range)
+                "a roller of radius {roller:.6} m does not fit into hollows of the contour whose \
+                 radius of curvature goes down to {curvature:.6} m: {}",
+                degrees(ranges)
             ),
-            MisfitKind::HollowUnderFace { range } => write!(
+            MisfitKind::HollowUnderFace { ranges } => write!(
                 f,
-                "the contour is hollow {}: a flat face cannot follow it there",
-                degrees(range)
+                "a flat face cannot follow the contour where it is hollow: {}",
+                degrees(ranges)
             ),
         }
     }
 }
 
+/// Ranges of polar angles, the first of them.
+fn degrees(ranges: &[[f64; 2]]) -> String {
+    const SHOWN: usize = 4;
+    let shown = ranges.iter().take(SHOWN).map(|range| {
+        let [from, to] = range.map(f64::to_degrees);
+        format!("from theta = {from:.1} to {to:.1} deg")
+    });
+    let mut text = shown.collect::<Vec<_>>().join(", ");
+    if let Some(more @ 1..) = ranges.len().checked_sub(SHOWN) {
+        text += &format!(", and in {more} more places");
+    }
+    text
+}
+
+/// Into so many parts a contour is divided to begin with.
+const PARTS: u32 = 64;
+/// Parts are divided down to this width \[rad\], 0.02°.
+const SMALLEST_PART: f64 = TAU / 16_384.0;
 /// A distance that is wrong by no more than this part of it fits.
 const TOLERANCE: f64 = 1e-6;
 
@@ -216,48 +233,83 @@ impl Solver {
             // every pocket has a hollow narrower than the roller: looking for those is enough.
             CamFollower::Roller { radius } => {
                 let roller = self.number(radius);
-                let too_narrow = |curvature: f64| 1.0 + curvature * roller <= 0.0;
-                let (range, curvature) = worst_range(&curvatures(profile), too_narrow)?;
-                Some(MisfitKind::NarrowHollow {
-                    range,
-                    curvature: -curvature.recip(),
+                // 1 + κ r, times the cube of the speed √(R² + R′²).
+                let room = |radius: Jet3<Interval>| {
+                    let (square, bend) = bending(radius);
+                    let cube = |square: f64| square.max(0.0).powf(1.5);
+                    let at = |square: f64, bend: f64| cube(square) + roller * bend;
+                    Interval::new(at(square.low, bend.low), at(square.high, bend.high))
+                };
+                let ranges = ranges_below_zero(profile, room);
+                let middles = ranges.iter().map(|[from, to]| from.midpoint(*to));
+                let narrowest = middles
+                    .chain(ProfileInForce::sample_angles())
+                    .map(|theta| curvature(profile, theta))
+                    .fold(f64::INFINITY, f64::min);
+                (!ranges.is_empty()).then(|| MisfitKind::NarrowHollow {
+                    ranges,
+                    curvature: -narrowest.recip(),
                     roller,
                 })
             }
             CamFollower::Flat => {
-                let hollow = |curvature: f64| curvature <= 0.0;
-                let (range, _) = worst_range(&curvatures(profile), hollow)?;
-                Some(MisfitKind::HollowUnderFace { range })
+                let ranges = ranges_below_zero(profile, |radius| bending(radius).1);
+                (!ranges.is_empty()).then_some(MisfitKind::HollowUnderFace { ranges })
             }
         }
     }
 }
 
-/// The curvature of a contour at the sample angles, positive where it is convex \[1/m\].
-fn curvatures(profile: &ProfileInForce) -> Vec<f64> {
-    ProfileInForce::sample_angles()
-        .map(|theta| {
-            let shape = Contour::shape(profile, theta, Vector2::x());
-            shape.turn[0] / shape.speed[0]
-        })
-        .collect()
+/// R² + R′², and R² + 2R′² − R R″, which has the sign of the curvature.
+fn bending(radius: Jet3<Interval>) -> (Interval, Interval) {
+    let square = |x: Interval| {
+        let (low, high) = (x.low.abs().min(x.high.abs()), x.magnitude());
+        let crosses = x.low < 0.0 && x.high > 0.0;
+        Interval::new(if crosses { 0.0 } else { low * low }, high * high)
+    };
+    let (r, slope) = (square(radius.value), square(radius.first));
+    let sum = r + slope;
+    (sum, sum + slope - radius.value * radius.second)
 }
 
-/// The polar angles round the smallest value for which all values are bad, and that value; `None`
-/// if it is not bad.
-fn worst_range(values: &[f64], bad: impl Fn(f64) -> bool) -> Option<([f64; 2], f64)> {
-    let count = values.len();
-    let worst = (0..count).min_by(|&a, &b| values[a].total_cmp(&values[b]))?;
-    if !bad(values[worst]) {
-        return None;
+/// The curvature of a contour, positive where it is convex \[1/m\].
+fn curvature(profile: &ProfileInForce, theta: f64) -> f64 {
+    let shape = Contour::shape(profile, theta, Vector2::x());
+    shape.turn[0] / shape.speed[0]
+}
+
+/// The polar angles, from which to which in rising order, where a function of the contour is
+/// certainly negative, to within a part of a degree.
+fn ranges_below_zero(
+    profile: &ProfileInForce,
+    function: impl Fn(Jet3<Interval>) -> Interval,
+) -> Vec<[f64; 2]> {
+    let mut ranges: Vec<[f64; 2]> = Vec::new();
+    // Ranges still to be looked at, the last one first.
+    let mut open: Vec<[f64; 2]> = (0..PARTS)
+        .rev()
+        .map(|part| [part, part + 1].map(|k| f64::from(k) * (TAU / f64::from(PARTS))))
+        .collect();
+    while let Some([from, to]) = open.pop() {
+        let middle = from.midpoint(to);
+        let sign = profile.bounds(middle, 0.5 * (to - from)).map(&function);
+        match sign {
+            Some(sign) if sign.low > 0.0 => {}
+            Some(sign) if sign.high < 0.0 => match ranges.last_mut() {
+                Some(last) if from - last[1] <= SMALLEST_PART => last[1] = to,
+                _ => ranges.push([from, to]),
+            },
+            _ if to - from > SMALLEST_PART => open.extend([[middle, to], [from, middle]]),
+            // On the edge, or at a place where the curvature jumps.
+            _ => {}
+        }
     }
-    let reach = |step: usize| {
-        let places = (1..count).map(|k| (worst + k * step) % count);
-        places.take_while(|&place| bad(values[place])).count()
-    };
-    let (forwards, backwards) = (reach(1), reach(count - 1));
-    let angle = std::f64::consts::TAU / count as f64;
-    let from = worst as f64 - backwards as f64;
-    let to = (worst + forwards) as f64;
-    Some(([from * angle, to * angle], values[worst]))
+    // What goes on over the seam is one range.
+    if let [first, .., last] = &mut ranges[..]
+        && first[0] + TAU - last[1] <= SMALLEST_PART
+    {
+        last[1] = first[1] + TAU;
+        ranges.remove(0);
+    }
+    ranges
 }

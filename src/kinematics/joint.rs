@@ -68,7 +68,7 @@ pub(super) fn relations(
             vec![(Box::new(rolling), zero())]
         }
         JointKind::Cam { follower, profile } => {
-            let profile = parts.profile(profile, mechanism);
+            let profile = parts.profile(profile, mechanism, element.describe(mechanism));
             let contour = Contour {
                 cam: from,
                 profile,

@@ -43,7 +43,7 @@ mod system;
 
 pub use assembly::{Assembly, Start};
 pub use configuration::{
-    Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
+    CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
 pub use element::Element;
 pub use error::{Error, OpenJoint};

@@ -35,4 +35,12 @@ impl Motions {
             .as_ref()
             .map_or(Jet::constant(f64::NAN), |motion| motion.evaluate(t))
     }
+
+    /// The next time after `t` at which a motion given by a table begins another piece.
+    pub(super) fn next_point(&self, t: f64) -> f64 {
+        let motions = self.in_force.iter().flatten();
+        motions
+            .map(|motion| motion.next_point(t))
+            .fold(f64::INFINITY, f64::min)
+    }
 }

@@ -85,6 +85,16 @@ impl Path {
         self.start + s * self.duration
     }
 
+    /// The first s after `s` at which a motion begins another piece, or the end of the path.
+    pub(super) fn next_point(&self, s: f64, motions: &Motions) -> f64 {
+        if self.duration <= 0.0 {
+            return 1.0;
+        }
+        // A point so near has been reached up to rounding.
+        let after = self.time(s + 1e-9);
+        ((motions.next_point(after) - self.start) / self.duration).min(1.0)
+    }
+
     /// Writes the parameters at s with their derivatives with respect to s.
     pub(super) fn parameters(&self, mechanism: &Mechanism, s: f64, out: &mut [Jet]) {
         for ((out, from), to) in out.iter_mut().zip(&self.from).zip(&self.to) {

@@ -90,11 +90,15 @@ impl Solver {
             if substep < SMALLEST_SUBSTEP || progress.substeps >= MOST_SUBSTEPS {
                 return blocked(s, Reason::TooLong, progress);
             }
+            // Between its points a motion given by a table tells at its ends where it has been.
+            let most = path.next_point(start, &self.motions);
+            let mut reaches_point = false;
             loop {
-                let next = if start + substep < 1.0 {
+                let next = if start + substep < most {
                     start + substep
                 } else {
-                    1.0
+                    reaches_point = true;
+                    most
                 };
                 progress.substeps = progress.substeps.saturating_add(1);
                 let reached = self.try_substep(path, [start, next], &mut progress);
@@ -103,14 +107,16 @@ impl Solver {
                     break;
                 }
                 self.stand_at(path, start);
+                reaches_point = false;
                 substep = 0.5 * (next - start);
                 if substep < SMALLEST_SUBSTEP {
                     let reason = reached.map_or_else(Reason::Value, |_| Reason::DeadPoint);
                     return blocked(start, reason, progress);
                 }
             }
-            // Twice the sub-step that was possible here.
-            substep = 2.0 * (s - start);
+            // Twice the sub-step that was possible here; what a point cut short was no less.
+            let possible = if reaches_point { substep } else { s - start };
+            substep = 2.0 * possible;
         }
         Ok(progress)
     }

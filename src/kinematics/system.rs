@@ -6,7 +6,9 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::configuration::{Coefficient, CoefficientId, Configuration, JointUnknownId, ProfileId};
+use super::configuration::{
+    CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, ProfileId,
+};
 use super::constraint::{self, Constraint, Dimension, Gradient, JointUnknown, TurnEffect};
 use super::{Element, Error, joint};
 use crate::mechanism::{DriverId, Expression, Mechanism, ParameterId, Profile, ProfileInForce};
@@ -47,7 +49,7 @@ pub struct System {
 #[derive(Debug, Default)]
 pub(super) struct JointParts {
     coefficients: Vec<Coefficient>,
-    profiles: Vec<ProfileInForce>,
+    profiles: Vec<CamProfile>,
     /// The unknowns behind those of the bodies, each with its joint.
     unknowns: Vec<(Element, Box<dyn JointUnknown>)>,
     /// The parameters used by the joint that is being written down.
@@ -70,10 +72,17 @@ impl JointParts {
     }
 
     /// Registers a cam's profile.
-    pub(super) fn profile(&mut self, profile: &Profile, mechanism: &Mechanism) -> ProfileId {
+    pub(super) fn profile(
+        &mut self,
+        profile: &Profile,
+        mechanism: &Mechanism,
+        what: impl Into<String>,
+    ) -> ProfileId {
         self.parameters.extend(profile.parameters());
-        let parameters = mechanism.parameters.len();
-        self.profiles.push(ProfileInForce::new(profile, parameters));
+        self.profiles.push(CamProfile {
+            in_force: ProfileInForce::new(profile, mechanism.parameters.len()),
+            what: what.into(),
+        });
         ProfileId(self.profiles.len() - 1)
     }
 

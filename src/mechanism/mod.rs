@@ -25,7 +25,7 @@ pub use expression::{Expression, ExpressionError, Interval, Jet, Jet3, Number, S
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 pub use parameter::Parameter;
-pub use profile::{Profile, ProfileInForce};
+pub use profile::{Profile, ProfileError, ProfileInForce};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 pub use table::{Table, TableFile};
@@ -73,8 +73,8 @@ pub struct Mechanism {
     pub simulation: Simulation,
     /// The CSV files that the mechanism file names, each once.
     pub table_files: Vec<TableFile>,
-    /// The content of the file and of its tables without comments and layout: equal for two
-    /// files exactly when they describe the same mechanism with the same values and tables in the same order.
+    /// The content of the file and of its tables without comments and layout: equal only for
+    /// files that describe the same mechanism with the same values and tables in the same order.
     pub canonical: String,
 }
 

@@ -24,13 +24,67 @@ impl Profile {
     }
 }
 
+/// A contour that no follower can run on.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProfileError {
+    /// Radius, slope or curvature are not finite somewhere.
+    #[error(
+        "radius, slope and curvature of a contour must be finite; they are not at theta = {} deg",
+        degrees(*.theta)
+    )]
+    NotFinite {
+        /// Where \[rad\].
+        theta: f64,
+    },
+    /// The radius is not positive somewhere.
+    #[error(
+        "the radius of a contour must be positive; it is {radius:.3e} m at theta = {} deg",
+        degrees(*.theta)
+    )]
+    NotPositive {
+        /// Where \[rad\].
+        theta: f64,
+        /// R \[m\].
+        radius: f64,
+    },
+    /// After a turn the contour is not where it began.
+    #[error("the contour does not close: its {what} is {start} at theta = 0 and {end} at 2*pi")]
+    Open {
+        /// Radius, slope or second derivative.
+        what: &'static str,
+        /// Its value at the start of the turn.
+        start: f64,
+        /// Its value at the end.
+        end: f64,
+    },
+    /// The slope jumps, or the radius.
+    #[error("the contour has a corner at theta = {} deg", degrees(*.theta))]
+    Corner {
+        /// Where \[rad\].
+        theta: f64,
+    },
+    /// The angles of a table do not rise within one turn.
+    #[error("the angles of the contour's table do not rise within one turn")]
+    Disordered,
+}
+
+fn degrees(theta: f64) -> f64 {
+    (theta.to_degrees() * 10.0).round() / 10.0
+}
+
 /// A profile with parameter values in force.
 ///
 /// Made once; [`set_parameters`](Self::set_parameters) then changes it without allocating.
 #[derive(Clone, Debug)]
 pub struct ProfileInForce {
     curve: Curve,
+    /// The values of all parameters.
     parameters: Vec<f64>,
+    /// Those that the profile uses.
+    used: Vec<ParameterId>,
+    /// Whether the parameters make a contour.
+    valid: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -40,13 +94,21 @@ enum Curve {
         table: Table,
         /// Its last point is the first one, a turn later.
         spline: Spline<f64>,
-        /// Whether the table's angles rise.
-        valid: bool,
     },
 }
 
 /// In how many places a whole contour is looked at.
 const SAMPLES: u32 = 720;
+/// Where a contour closes, radius and derivatives have to meet up to this part of the radius.
+const SEAM: f64 = 1e-9;
+/// A range that cannot be shown to be smooth is divided down to this width \[rad\].
+const CORNER_WIDTH: f64 = 1e-7;
+/// Across that width no smooth contour changes by more, in radii and radii per radian: its
+/// second derivative would have to exceed a thousand radii.
+const CORNER_JUMP: f64 = 1e-4;
+/// So many ranges are divided at the most; a contour that needs more is looked at as coarsely as
+/// it comes.
+const MOST_LOOKS: u32 = 20_000;
 
 impl ProfileInForce {
     /// The profile for parameters still to be given, `parameters` of them.
@@ -57,54 +119,135 @@ impl ProfileInForce {
             Profile::Table(table) => Curve::Spline {
                 spline: Spline::new(table.points.len() + 1, Ends::Periodic),
                 table: table.clone(),
-                valid: false,
             },
         };
         Self {
             curve,
             parameters: vec![0.0; parameters],
+            used: profile.parameters().collect(),
+            valid: false,
         }
     }
 
     /// Takes over parameter values.
-    pub fn set_parameters(&mut self, parameter: impl Fn(ParameterId) -> f64) {
+    ///
+    /// # Errors
+    ///
+    /// They make no contour. The profile is without use until others are set.
+    pub fn set_parameters(
+        &mut self,
+        parameter: impl Fn(ParameterId) -> f64,
+    ) -> Result<(), ProfileError> {
+        let kept =
+            |id: &ParameterId| self.parameters[id.index()].to_bits() == parameter(*id).to_bits();
+        if self.valid && self.used.iter().all(kept) {
+            return Ok(());
+        }
+        self.valid = false;
         for (index, value) in self.parameters.iter_mut().enumerate() {
             *value = parameter(ParameterId(index));
         }
-        if let Curve::Spline {
-            table,
-            spline,
-            valid,
-        } = &mut self.curve
-        {
+        if let Curve::Spline { table, spline } = &mut self.curve {
             let (angles, radii) = spline.points_mut();
             table.write(&parameter, angles, radii);
             let last = angles.len() - 1;
             (angles[last], radii[last]) = (angles[0] + TAU, radii[0]);
-            *valid = spline.is_valid();
-            if *valid {
-                spline.fit();
+            if !spline.is_valid() {
+                return Err(ProfileError::Disordered);
             }
+            spline.fit();
+        }
+        self.check()?;
+        self.valid = true;
+        Ok(())
+    }
+
+    /// Looks at the contour all round, and at its seam.
+    fn check(&self) -> Result<(), ProfileError> {
+        for theta in Self::sample_angles() {
+            let radius = self.radius(theta);
+            if !(radius.value + radius.first + radius.second).is_finite() {
+                return Err(ProfileError::NotFinite { theta });
+            }
+            if radius.value <= 0.0 {
+                return Err(ProfileError::NotPositive {
+                    theta,
+                    radius: radius.value,
+                });
+            }
+        }
+        let Curve::Expression(expression) = &self.curve else {
+            return Ok(());
+        };
+        let [start, end] = [0.0, TAU].map(|theta| self.evaluate(expression, theta));
+        let pairs = [
+            ("radius", start.value, end.value),
+            ("slope", start.first, end.first),
+            ("second derivative", start.second, end.second),
+        ];
+        let meet =
+            |(_, start, end): &(_, f64, f64)| (start - end).abs() <= SEAM * self.radius(0.0).value;
+        match pairs.iter().find(|pair| !meet(pair)) {
+            Some(&(what, start, end)) => Err(ProfileError::Open { what, start, end }),
+            None => Ok(()),
+        }
+    }
+
+    /// Looks for corners: places where the radius or its slope jumps. Looks closely where the
+    /// contour cannot be shown to be smooth.
+    ///
+    /// # Errors
+    ///
+    /// The first corner.
+    pub fn check_smoothness(&self) -> Result<(), ProfileError> {
+        let mut looks = MOST_LOOKS;
+        let sixteenth = TAU / 16.0;
+        for part in 0..16 {
+            let low = f64::from(part) * sixteenth;
+            self.find_corner(low, low + sixteenth, &mut looks)?;
+        }
+        Ok(())
+    }
+
+    fn find_corner(&self, low: f64, high: f64, looks: &mut u32) -> Result<(), ProfileError> {
+        let middle = low.midpoint(high);
+        if self.bounds(middle, 0.5 * (high - low)).is_some() {
+            return Ok(());
+        }
+        *looks = looks.saturating_sub(1);
+        if high - low > CORNER_WIDTH && *looks > 0 {
+            self.find_corner(low, middle, looks)?;
+            return self.find_corner(middle, high, looks);
+        }
+        let (before, after) = (self.radius(low), self.radius(high));
+        let jump = CORNER_JUMP * before.value;
+        let smooth = (before.value - after.value).abs() <= jump
+            && (before.first - after.first).abs() <= jump;
+        if smooth {
+            Ok(())
+        } else {
+            Err(ProfileError::Corner { theta: middle })
         }
     }
 
     /// R and its first three derivatives at a polar angle, of any number of turns. Allocates
     /// nothing.
     ///
-    /// Not finite where an expression leaves its domain or the angles of a table do not rise.
+    /// Without meaning for parameters that make no contour.
     #[must_use]
     pub fn radius(&self, theta: f64) -> Jet3 {
         match &self.curve {
-            Curve::Expression(expression) => {
-                let parameter = |p: ParameterId| Jet3::constant(self.parameters[p.index()]);
-                expression.evaluate(&parameter, Jet3::variable(theta.rem_euclid(TAU)))
-            }
-            Curve::Spline { valid: false, .. } => Jet3::constant(f64::NAN),
+            Curve::Expression(expression) => self.evaluate(expression, theta.rem_euclid(TAU)),
             Curve::Spline { spline, .. } => {
                 let theta = first_turn(spline, theta);
                 cubic(spline, spline.segment(theta), theta)
             }
         }
+    }
+
+    fn evaluate(&self, expression: &Expression, theta: f64) -> Jet3 {
+        let parameter = |p: ParameterId| Jet3::constant(self.parameters[p.index()]);
+        expression.evaluate(&parameter, Jet3::variable(theta))
     }
 
     /// Bounds of R and its first three derivatives for polar angles up to `reach` from `theta`.
@@ -126,7 +269,6 @@ impl ProfileInForce {
                 }
                 Some(enclose(low, TAU)?.hull(enclose(0.0, high - TAU)?))
             }
-            Curve::Spline { valid: false, .. } => None,
             Curve::Spline { spline, .. } => Some(spline_bounds(spline, theta, reach)),
         }
     }
@@ -212,7 +354,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn table(points: &[(f64, f64)]) -> ProfileInForce {
+    fn table(points: &[(f64, f64)]) -> Result<ProfileInForce, ProfileError> {
         let table = Table {
             points: points
                 .iter()
@@ -221,8 +363,7 @@ mod tests {
             scale: [1.0, 1.0].map(Expression::constant),
         };
         let mut profile = ProfileInForce::new(&Profile::Table(table), 0);
-        profile.set_parameters(|_| 0.0);
-        profile
+        profile.set_parameters(|_| 0.0).map(|()| profile)
     }
 
     proptest! {
@@ -238,7 +379,7 @@ mod tests {
             let step = TAU / radii.len() as f64;
             let points: Vec<_> =
                 radii.iter().enumerate().map(|(k, r)| (0.7 + step * k as f64, *r)).collect();
-            let profile = table(&points);
+            let profile = table(&points).expect("it makes a contour");
             let bounds = profile.bounds(theta, reach).expect("a spline is smooth");
             for part in parts {
                 let values = profile.radius(theta + part * reach);
@@ -264,7 +405,7 @@ mod tests {
             let step = TAU / radii.len() as f64;
             let points: Vec<_> =
                 radii.iter().enumerate().map(|(k, r)| (step * k as f64, *r)).collect();
-            let profile = table(&points);
+            let profile = table(&points).expect("it makes a contour");
             // Across 2e-9 rad at third derivatives up to some 100 m/rad³.
             let (before, after) = (profile.radius(-1e-9), profile.radius(1e-9));
             prop_assert!((before.value - after.value).abs() < 1e-6);
@@ -275,11 +416,11 @@ mod tests {
     }
 
     #[test]
-    fn angles_that_do_not_rise_give_no_radius() {
-        let profile = table(&[(0.0, 1.0), (2.0, 1.0), (1.0, 1.0)]);
-        assert!(profile.radius(0.5).value.is_nan());
-        assert_eq!(profile.bounds(0.5, 0.1), None);
-        let more_than_a_turn = table(&[(0.0, 1.0), (3.0, 1.0), (7.0, 1.0)]);
-        assert!(more_than_a_turn.radius(0.5).value.is_nan());
+    fn angles_that_do_not_rise_within_a_turn_make_no_contour() {
+        let disordered = [(0.0, 1.0), (2.0, 1.0), (1.0, 1.0)];
+        let more_than_a_turn = [(0.0, 1.0), (3.0, 1.0), (7.0, 1.0)];
+        for points in [disordered, more_than_a_turn] {
+            assert_eq!(table(&points).expect_err("no"), ProfileError::Disordered);
+        }
     }
 }

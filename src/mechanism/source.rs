@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::ops::Range;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// A stretch of the text, in bytes.
 pub type Span = Range<usize>;
@@ -69,17 +69,18 @@ impl Source {
     /// It cannot be read, or `name` is not the plain name of a file.
     pub(super) fn read_beside(&self, name: &str) -> io::Result<String> {
         let refuse = |why| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
-        let mut parts = Path::new(name).components();
-        if !matches!(
-            (parts.next(), parts.next()),
-            (Some(Component::Normal(_)), None)
-        ) || name.contains(['/', '\\'])
-        {
-            return refuse("expected the name of a file beside the mechanism file");
+        if !is_portable(name) {
+            return refuse("expected the plain name of a file beside the mechanism file");
         }
-        match &self.folder {
-            Some(folder) => read_bounded(&folder.join(name)),
-            None => refuse("the mechanism was not read from a file"),
+        let Some(folder) = &self.folder else {
+            return refuse("the mechanism was not read from a file");
+        };
+        let path = folder.join(name);
+        // Opening a pipe would wait for whoever writes to it.
+        if std::fs::metadata(&path)?.is_file() {
+            read_bounded(&path)
+        } else {
+            refuse("it is not a file")
         }
     }
 
@@ -131,6 +132,26 @@ impl Source {
     }
 }
 
+/// Whether every system and every zip tool takes this for the name of a file.
+fn is_portable(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default();
+    let device = ["con", "prn", "aux", "nul"]
+        .iter()
+        .any(|device| stem.eq_ignore_ascii_case(device))
+        || (["com", "lpt"].iter().any(|device| {
+            stem.get(..3)
+                .is_some_and(|start| start.eq_ignore_ascii_case(device))
+                && stem.len() == 4
+                && stem.ends_with(|c: char| c.is_ascii_digit())
+        }));
+    let legal = |c: char| c.is_alphanumeric() || " ._-+()".contains(c);
+    !device
+        && name.chars().all(legal)
+        && !stem.trim().is_empty()
+        && !name.ends_with(['.', ' '])
+        && !name.starts_with(' ')
+}
+
 fn read_bounded(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     let read = File::open(path)?
@@ -165,6 +186,25 @@ mod tests {
         let source = Source::new("a.toml", "one\r\ntwo\n");
         let lines: Vec<&str> = (0..5).map(|number| source.line(number)).collect();
         assert_eq!(lines, ["", "one", "two", "", ""]);
+    }
+
+    #[test]
+    fn names_that_some_system_refuses_are_not_portable() {
+        for name in [
+            "a.csv",
+            "Ley de elevación (2).csv",
+            "cam_points.csv",
+            "console",
+            "com10.csv",
+        ] {
+            assert!(is_portable(name), "{name}");
+        }
+        for name in [
+            "", ".", "..", ".a", "a.", "a ", " a", "../a", "a/b", "a\\b", "C:a", "a*", "a\nb",
+            "con.csv", "Aux", "COM1.csv",
+        ] {
+            assert!(!is_portable(name), "{name}");
+        }
     }
 
     #[test]

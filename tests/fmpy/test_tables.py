@@ -56,6 +56,36 @@ def test_values_are_in_the_guid_and_layout_is_not(copy, tmp_path):
         assert (changed == original) == same, name
 
 
+def test_rows_belong_to_their_table(tmp_path):
+    """The same rows divided between two tables in another way are another mechanism."""
+    text = """
+        format = 1
+        name = "two_tables"
+        [ground.markers]
+        O = [0, 0]
+        [bodies.a]
+        markers = { O = [0, 0] }
+        [bodies.b]
+        markers = { O = [0, 0] }
+        [joints]
+        way = { type = "translational", markers = ["ground.O", "a.O"] }
+        other = { type = "translational", markers = ["ground.O", "b.O"] }
+        [drivers]
+        x = { coordinate = "x", markers = ["ground.O", "a.O"], motion = { file = "a.csv" } }
+        y = { coordinate = "x", markers = ["ground.O", "b.O"], motion = { file = "b.csv" } }
+    """
+    rows = ["0,1", "1,2", "2,3", "3,4", "4,5"]
+    found = set()
+    for first in (2, 3):
+        folder = tmp_path / str(first)
+        folder.mkdir()
+        (folder / "two_tables.toml").write_text(text, encoding="utf-8")
+        (folder / "a.csv").write_text("\n".join(rows[:first]), encoding="utf-8")
+        (folder / "b.csv").write_text("\n".join(rows[first:]), encoding="utf-8")
+        found.add(guid(folder / "two_tables.toml", folder / "two_tables.fmu"))
+    assert len(found) == 2
+
+
 def test_a_changed_table_is_refused(tmp_path, messages):
     """As with the mechanism file, nothing in `resources` may differ from what the XML describes."""
     folder = tmp_path / "cam"

@@ -437,6 +437,10 @@ impl Instance {
         }
         self.commit();
         self.state = State::StepComplete;
+        for misfit in self.solver.misfits() {
+            self.logger
+                .write(Status::Warning, Category::Warning, &misfit.to_string());
+        }
         if self.logger.wants(Category::Events) {
             let message = format!(
                 "initialized at t = {} s; residual {:.1e}",

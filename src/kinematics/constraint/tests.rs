@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::kinematics::{Coefficient, CoefficientId, JointUnknownId, ProfileId};
+use crate::kinematics::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
 use crate::mechanism::{JointKind, ProfileInForce, RackSide, Source};
 
 /// Three bodies and ground with markers in general position, one of them at its body's origin,
@@ -133,7 +133,10 @@ fn configuration(mechanism: &Mechanism) -> Configuration {
     let JointKind::Cam { profile, .. } = &mechanism.joints[0].kind else {
         panic!("the sample has a cam");
     };
-    let profiles = vec![ProfileInForce::new(profile, 0)];
+    let profiles = vec![CamProfile {
+        in_force: ProfileInForce::new(profile, 0),
+        what: "a sample".to_owned(),
+    }];
     let mut at = Configuration::new(mechanism, coefficients().len(), profiles, 1);
     at.set_parameters(mechanism, &coefficients(), &[])
         .expect("the sample has numbers only");

@@ -364,7 +364,8 @@ impl<'a> Parser<'a> {
             };
         }
         if name == Variable::Time.name() {
-            let error = ExpressionError::new(span, "only a `motion` may use time `t`");
+            let error =
+                ExpressionError::new(span, "only the expression of a `motion` may use time `t`");
             return match self.scope.variable {
                 Some(own) => error.help(format!("here the variable is `{}`", own.name())),
                 None => error,

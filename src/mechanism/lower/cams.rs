@@ -1,15 +1,10 @@
 //! Cam pairs: the follower and the cam's profile.
 
-use std::f64::consts::TAU;
-
 use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::shown;
 use crate::mechanism::syntax::Value;
-use crate::mechanism::{
-    CamFollower, Jet, JointKind, ParameterId, Profile, ProfileInForce, Variable,
-};
+use crate::mechanism::{CamFollower, JointKind, Profile, ProfileError, ProfileInForce, Variable};
 
 use super::context::{Context, Fields};
 use super::tables::TABLE_KEYS;
@@ -26,9 +21,6 @@ const FOLLOWERS: [(&str, Follower); 3] = [
     ("roller", Follower::Roller),
     ("flat", Follower::Flat),
 ];
-
-/// Where a contour closes, its radius and slope have to meet up to this part of the radius.
-const SEAM: f64 = 1e-9;
 
 impl<'a> Context<'a> {
     pub(super) fn cam(&mut self, fields: &Fields<'a>) -> Option<JointKind> {
@@ -96,58 +88,29 @@ impl<'a> Context<'a> {
         Some(profile)
     }
 
-    /// Refuses a contour that for the file's parameters is not finite or positive all round, or
-    /// does not close without a corner.
+    /// Refuses what is no contour with the file's parameters.
     fn check_contour(&mut self, profile: &Profile, value: &'a Value<'a>) -> Option<()> {
         let values = &self.parameter_values;
         if profile.parameters().any(|id| values[id.index()].is_none()) {
             return Some(());
         }
         let mut in_force = ProfileInForce::new(profile, values.len());
-        in_force.set_parameters(|id| values[id.index()].unwrap_or(0.0));
-        for theta in ProfileInForce::sample_angles() {
-            let radius = in_force.radius(theta);
-            let finite = radius.value + radius.first + radius.second;
-            let finite = finite.is_finite();
-            if finite && radius.value > 0.0 {
-                continue;
-            }
-            let at = shown((theta.to_degrees() * 10.0).round() / 10.0);
-            let what = if finite {
-                format!(
-                    "the radius of a contour must be positive; it is {}",
-                    shown(radius.value)
-                )
-            } else {
-                "radius, slope and curvature of a contour must be finite; they are not".to_owned()
-            };
-            let message = format!("{what} at theta = {at} deg with the file's parameters");
-            self.error(code::BAD_PROFILE, value.span(), message);
-            return None;
-        }
-        if let Profile::Expression(expression) = profile {
-            let parameter = |id: ParameterId| Jet::constant(values[id.index()].unwrap_or(0.0));
-            let [start, end] = [0.0, TAU].map(|theta| {
-                let jet = expression.evaluate(&parameter, Jet::variable(theta));
-                [jet.value, jet.first, jet.second]
-            });
-            let size = start[0].abs();
-            let what = ["radius", "slope", "second derivative"];
-            let jump = (0..3).find(|&k| (start[k] - end[k]).abs() > SEAM * size);
-            if let Some(k) = jump {
-                let message = format!(
-                    "the contour does not close: its {} is {} at theta = 0 and {} at 2*pi",
-                    what[k],
-                    shown(start[k]),
-                    shown(end[k])
-                );
-                let help = "a contour goes once round without corners: use `theta` in sines and \
-                            cosines of whole multiples, or give points"
-                    .to_owned();
-                self.error_with_help(code::BAD_PROFILE, value.span(), message, help);
-                return None;
-            }
-        }
-        Some(())
+        let error = in_force
+            .set_parameters(|id| values[id.index()].unwrap_or(0.0))
+            .and_then(|()| in_force.check_smoothness())
+            .err();
+        let Some(error) = error else {
+            return Some(());
+        };
+        let help = match error {
+            ProfileError::Open { .. } | ProfileError::Corner { .. } => Some(
+                "a contour goes once round without corners: use `theta` in sines and cosines of \
+                 whole multiples, or give points"
+                    .to_owned(),
+            ),
+            _ => None,
+        };
+        self.error_with_help(code::BAD_PROFILE, value.span(), error.to_string(), help);
+        None
     }
 }

@@ -7,6 +7,7 @@ use crate::mechanism::{
 };
 
 use super::context::{Context, Entry, Fields, Quantity};
+use super::motions::MOTION_FORMS;
 
 const COORDINATES: [(&str, CoordinateKind); 4] = [
     ("angle", CoordinateKind::Angle),
@@ -99,8 +100,9 @@ impl<'a> Context<'a> {
                     code::DRIVER_SOURCE,
                     fields.place.clone(),
                     format!("{} has neither `start` nor `motion`", fields.subject),
-                    "`start = \"60*deg\"` makes it an FMI input, `motion = \"10*deg*t\"` prescribes it"
-                        .to_owned(),
+                    format!(
+                        "`start = \"60*deg\"` makes it an FMI input, {MOTION_FORMS} prescribes it"
+                    ),
                 );
                 None
             }

@@ -32,6 +32,10 @@ const ENDS: [(&str, Ends); 3] = [
     ("periodic", Ends::Periodic),
 ];
 
+/// The ways to write a motion.
+pub(super) const MOTION_FORMS: &str = "`motion = \"10*deg*t\"`, `motion = { table = [[0, 0], \
+                                       [1, 2]] }` or `motion = { file = \"a.csv\" }`";
+
 impl<'a> Context<'a> {
     /// A prescribed motion, checked at the start time.
     pub(super) fn motion(
@@ -49,10 +53,27 @@ impl<'a> Context<'a> {
                 };
                 Motion::Table(self.motion_table(&fields, kind)?)
             }
+            DeValue::Array(_) => {
+                self.not_a_motion(value, "an array of points is no motion by itself");
+                return None;
+            }
+            DeValue::String(text) if text.ends_with(".csv") => {
+                self.not_a_motion(value, "the name of a file is no motion by itself");
+                return None;
+            }
             _ => Motion::Expression(self.expression(value, Some(Variable::Time))?),
         };
         self.check_start(&motion, value, kind, start_time)?;
         Some(motion)
+    }
+
+    fn not_a_motion(&mut self, value: &'a Value<'a>, message: &str) {
+        self.error_with_help(
+            code::WRONG_TYPE,
+            value.span(),
+            message,
+            format!("expected {MOTION_FORMS}"),
+        );
     }
 
     fn motion_table(

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::{quoted, shown};
 use crate::mechanism::syntax::Value;
+use crate::mechanism::table::MOST_POINTS;
 use crate::mechanism::{Expression, Span, Table, TableFile};
 
 use super::context::{Context, Fields};
@@ -72,8 +73,9 @@ impl<'a> Context<'a> {
 
     fn points(&mut self, value: &'a Value<'a>, form: &str) -> Option<Vec<Point>> {
         let items = self.items(value, &format!("an array of points {form}"))?;
-        if items.len() < 2 {
-            let message = "a table has two points at least";
+        let count = items.len();
+        if !(2..=MOST_POINTS).contains(&count) {
+            let message = format!("a table has from two to {MOST_POINTS} points, this one {count}");
             self.error(code::BAD_TABLE, value.span(), message);
             return None;
         }
@@ -101,7 +103,7 @@ impl<'a> Context<'a> {
         };
         let name = self.text(value)?;
         let file = self.table_file(value, name)?;
-        let rows = match file.rows(columns) {
+        let rows = match self.table_files[file].rows(columns) {
             Ok(rows) => rows,
             Err(error) => {
                 let message = format!("in the file {}: {error}", quoted(name));
@@ -117,10 +119,9 @@ impl<'a> Context<'a> {
             self.error(code::BAD_TABLE, value.span(), message);
             return None;
         }
-        for (_, row) in &rows {
-            // The shortest digits that give the same numbers back.
-            let _ = write!(self.file_tables, "{row:?}");
-        }
+        // The shortest digits that give the same numbers back.
+        let numbers: Vec<_> = rows.iter().map(|(_, row)| row).collect();
+        let _ = write!(self.file_tables, "{numbers:?}");
         let points = rows.into_iter().map(|(line, row)| Point {
             span: value.span(),
             line: Some(line),
@@ -136,26 +137,40 @@ impl<'a> Context<'a> {
         Some([*names.first()?, *names.get(1)?].map(|name| name.unwrap_or_default()))
     }
 
-    /// The file of that name beside the mechanism file, read once.
-    fn table_file(&mut self, value: &'a Value<'a>, name: &'a str) -> Option<TableFile> {
-        if let Some(known) = self.table_files.iter().find(|file| file.name == name) {
-            return Some(known.clone());
+    /// The file of that name beside the mechanism file, read once: its place among those read.
+    fn table_file(&mut self, value: &'a Value<'a>, name: &'a str) -> Option<usize> {
+        let mut known = self.table_files.iter();
+        if let Some(place) = known.position(|file| file.name == name) {
+            return Some(place);
         }
-        match self.source.read_beside(name) {
-            Ok(text) => {
-                let file = TableFile {
-                    name: name.to_owned(),
-                    text,
-                };
-                self.table_files.push(file.clone());
-                Some(file)
+        // Together in a folder they have to differ on systems that take A for a.
+        let lower_case = name.to_lowercase();
+        let mut others = self.table_files.iter().map(|file| file.name.as_str());
+        let message = if lower_case.ends_with(".toml") {
+            format!(
+                "{} has the name of a mechanism, not of a table",
+                quoted(name)
+            )
+        } else if let Some(other) = others.find(|other| other.to_lowercase() == lower_case) {
+            format!(
+                "{} and {} are one file on some systems",
+                quoted(name),
+                quoted(other)
+            )
+        } else {
+            match self.source.read_beside(name) {
+                Ok(text) => {
+                    self.table_files.push(TableFile {
+                        name: name.to_owned(),
+                        text,
+                    });
+                    return Some(self.table_files.len() - 1);
+                }
+                Err(error) => format!("cannot read the file {}: {error}", quoted(name)),
             }
-            Err(error) => {
-                let message = format!("cannot read the file {}: {error}", quoted(name));
-                self.error(code::TABLE_FILE, value.span(), message);
-                None
-            }
-        }
+        };
+        self.error(code::TABLE_FILE, value.span(), message);
+        None
     }
 
     /// Brings points to SI units.
@@ -165,7 +180,10 @@ impl<'a> Context<'a> {
             None => ([one(), one()], Some([1.0, 1.0])),
             Some(value) => {
                 let [across, up] = self.quantities::<2>(value, "an array of two factors")?;
-                self.check_positive(&across, "the factor of the first column");
+                if across.value.is_some_and(|factor| factor <= 0.0) {
+                    self.check_positive(&across, "the factor of the first column");
+                    return None;
+                }
                 let factors = across.value.zip(up.value).map(|(x, y)| [x, y]);
                 ([across.expression, up.expression], factors)
             }
@@ -232,28 +250,31 @@ impl<'a> Context<'a> {
     }
 
     /// Makes the table of a closed curve go once round: a last point that repeats the first a
-    /// turn later is left out, one beyond it is an error.
+    /// turn later, with the same number or expression, is left out; any other there is an error.
     pub(super) fn close_turn(&mut self, known: &mut KnownTable) -> Option<()> {
         // Angles written in degrees come back to within some ulp of a turn.
         const ROUNDING: f64 = 1e-12;
         let values = |point: Option<&KnownPoint>| point.and_then(|point| point.values);
         let ends = (values(known.points.first()), values(known.points.last()));
-        if let (Some([start, first]), Some([end, last])) = ends {
+        let ordinates = |point: Option<&[Expression; 2]>| point.map(|[_, y]| y.clone());
+        let points = &known.table.points;
+        let same = ordinates(points.first()) == ordinates(points.last());
+        if let (Some([start, _]), Some([end, _])) = ends {
             let excess = end - start - TAU;
-            let repeats =
-                excess.abs() <= ROUNDING && (last - first).abs() <= ROUNDING * first.abs();
-            if repeats {
+            if excess.abs() <= ROUNDING && same {
                 known.points.pop();
                 known.table.points.pop();
             } else if excess >= -ROUNDING {
                 let at = known.points.last()?;
                 let message = format!(
-                    "{}the last angle, {} deg, closes the turn that starts at {} deg",
+                    "{}the last point, at {} deg, is not within the turn that starts at {} deg",
                     at.place(),
                     shown(end.to_degrees()),
                     shown(start.to_degrees())
                 );
-                let help = "angles go once round; the last point is joined to the first".to_owned();
+                let help = "angles go once round: the last point is joined to the first, and only \
+                            that one may be repeated"
+                    .to_owned();
                 self.error_with_help(code::BAD_TABLE, at.span.clone(), message, help);
                 return None;
             }

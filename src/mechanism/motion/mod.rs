@@ -102,7 +102,8 @@ impl MotionInForce {
     /// The value and its derivatives at time `t`, itself a function of the variable along which
     /// the motion is evaluated. Allocates nothing.
     ///
-    /// Not finite where an expression leaves its domain or the times of a table do not rise.
+    /// At a point of a table the rates are those of what follows. Not finite where an expression
+    /// leaves its domain or the times of a table do not rise.
     #[must_use]
     pub fn evaluate(&self, t: Jet) -> Jet {
         match (&self.motion, &self.spline) {
@@ -112,6 +113,28 @@ impl MotionInForce {
             (Motion::Table(motion), Some(spline)) if self.valid => motion.evaluate(spline, t),
             (Motion::Table(_), _) => Jet::constant(f64::NAN),
         }
+    }
+}
+
+impl MotionInForce {
+    /// The time of the next point of a table after `t`, where another piece of the motion
+    /// begins. Infinite if there is none.
+    #[must_use]
+    pub fn next_point(&self, t: f64) -> f64 {
+        let (Motion::Table(motion), Some(spline), true) = (&self.motion, &self.spline, self.valid)
+        else {
+            return f64::INFINITY;
+        };
+        let times = spline.knots();
+        let (start, end) = (times[0].value, times[times.len() - 1].value);
+        let laps = match motion.ends {
+            Ends::Periodic => ((t - start) / (end - start)).floor() * (end - start),
+            _ => 0.0,
+        };
+        let next = times.partition_point(|time| time.value + laps <= t);
+        times
+            .get(next)
+            .map_or(f64::INFINITY, |time| time.value + laps)
     }
 }
 
@@ -129,7 +152,7 @@ impl MotionTable {
                 gained + self.between(spline, t - laps * period)
             }
             _ if t.value < start.value => self.beyond(spline, 0, t),
-            _ if t.value > end.value => self.beyond(spline, last, t),
+            _ if t.value >= end.value => self.beyond(spline, last, t),
             _ => self.between(spline, t),
         }
     }

@@ -1,6 +1,10 @@
 //! Tables in CSV files.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
+
+/// Tables with more points are refused: each costs several hundred bytes in every instance.
+pub(in crate::mechanism) const MOST_POINTS: usize = 100_000;
 
 /// A CSV file beside the mechanism file, which travels with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,7 +22,7 @@ pub(in crate::mechanism) enum TableFileError {
     #[error("it has no numbers")]
     Empty,
     /// A row is too short.
-    #[error("line {line} has {found} columns, expected {expected}")]
+    #[error("line {line} ends after {found} of {expected} columns")]
     Columns {
         /// The line, from 1.
         line: u64,
@@ -28,12 +32,18 @@ pub(in crate::mechanism) enum TableFileError {
         expected: usize,
     },
     /// Something other than a finite number.
-    #[error("line {line}: `{found}` is not a finite number")]
+    #[error("line {line}: `{found}` is not a finite number{}", comma_hint(.found))]
     Number {
         /// The line, from 1.
         line: u64,
         /// What stands there.
         found: String,
+    },
+    /// More points than anyone needs.
+    #[error("it has more than {most} points")]
+    TooLong {
+        /// How many are read.
+        most: usize,
     },
     /// No column of that name.
     #[error("{}", no_column(.name, .header))]
@@ -45,8 +55,16 @@ pub(in crate::mechanism) enum TableFileError {
     },
 }
 
+fn comma_hint(found: &str) -> &'static str {
+    if found.contains(',') {
+        "; decimals stand after a point"
+    } else {
+        ""
+    }
+}
+
 fn no_column(name: &str, header: &[String]) -> String {
-    if header.is_empty() {
+    if header.iter().all(|known| known.parse::<f64>().is_ok()) {
         return format!("it has no line of column names, so no column `{name}`");
     }
     let mut message = format!("it has no column `{name}`; its columns are");
@@ -62,8 +80,9 @@ pub(in crate::mechanism) type Row = (u64, [f64; 2]);
 impl TableFile {
     /// Reads two columns: those called `columns`, or the first two.
     ///
-    /// Columns are separated by commas, semicolons or tabs. Lines that start with `#` are
-    /// skipped; a first line that is not all numbers has the columns' names.
+    /// Columns are separated by commas, semicolons, tabs or, where there are none of these, by
+    /// blanks. Lines that start with `#` are skipped. The first other line has the columns' names
+    /// if `columns` asks for them, or if neither of its first two fields is a number.
     ///
     /// # Errors
     ///
@@ -73,10 +92,11 @@ impl TableFile {
         columns: Option<[&str; 2]>,
     ) -> Result<Vec<Row>, TableFileError> {
         let text = self.text.trim_start_matches('\u{feff}');
+        let (delimiter, text) = separated(text);
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .comment(Some(b'#'))
-            .delimiter(delimiter(text))
+            .delimiter(delimiter)
             .trim(csv::Trim::All)
             .flexible(true)
             .from_reader(text.as_bytes());
@@ -87,9 +107,10 @@ impl TableFile {
         for (index, record) in reader.records().flatten().enumerate() {
             let line = record
                 .position()
-                .map_or(0, |place| line_of_record(text, place));
+                .map_or(0, |place| line_of_record(&text, place));
             if index == 0 {
-                if record.iter().any(|field| field.parse::<f64>().is_err()) {
+                let mut used = record.iter().take(2);
+                if columns.is_some() || used.all(|field| field.parse::<f64>().is_err()) {
                     header = record.iter().map(str::to_owned).collect();
                 }
                 if let Some(names) = columns {
@@ -98,6 +119,9 @@ impl TableFile {
                 if !header.is_empty() {
                     continue;
                 }
+            }
+            if rows.len() == MOST_POINTS {
+                return Err(TableFileError::TooLong { most: MOST_POINTS });
             }
             let mut row = [0.0; 2];
             for (value, place) in row.iter_mut().zip(places) {
@@ -148,21 +172,38 @@ fn find_columns(names: [&str; 2], header: &[String]) -> Result<[usize; 2], Table
     Ok(places)
 }
 
-/// What separates the columns: whichever the first line that is no comment has.
-fn delimiter(text: &str) -> u8 {
+/// What separates the columns: whichever the first line that is no comment has. Blanks are made
+/// commas, which leaves the lines where they are.
+fn separated(text: &str) -> (u8, Cow<'_, str>) {
+    let is_comment = |line: &str| line.starts_with('#');
     let first = text
         .lines()
-        .find(|line| !line.starts_with('#') && !line.trim().is_empty())
+        .find(|line| !is_comment(line) && !line.trim().is_empty())
         .unwrap_or_default();
-    [b'\t', b';']
-        .into_iter()
-        .find(|delimiter| first.as_bytes().contains(delimiter))
-        .unwrap_or(b',')
+    let mut delimiters = [b'\t', b';', b','].into_iter();
+    if let Some(delimiter) = delimiters.find(|delimiter| first.as_bytes().contains(delimiter)) {
+        return (delimiter, text.into());
+    }
+    let lines = text.lines().map(|line| {
+        if is_comment(line) {
+            line.to_owned()
+        } else {
+            line.split_whitespace().collect::<Vec<_>>().join(",")
+        }
+    });
+    (b',', lines.collect::<Vec<_>>().join("\n").into())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn too_many_points_are_refused() {
+        let text: String = (0..=MOST_POINTS).map(|k| format!("{k},0\n")).collect();
+        let error = rows(&text, None).expect_err("one too many");
+        assert_eq!(error, TableFileError::TooLong { most: MOST_POINTS });
+    }
 
     fn rows(text: &str, columns: Option<[&str; 2]>) -> Result<Vec<Row>, TableFileError> {
         let file = TableFile {
@@ -182,6 +223,10 @@ mod tests {
             "t;u\n0;1\n# between\n0.5;-2e-3\n",
             "0\t1\n0.5\t-2e-3\n",
             "\"t\",\"u\"\n\"0\",1\n0.5,\"-2e-3\"\n",
+            "0,1,\n0.5,-2e-3,\n",
+            "0,1,start\n0.5,-2e-3,end\n",
+            "  0   1\n# between\n0.5\t-2e-3\n",
+            "time angle\n0 1\n0.5 -2e-3\n",
         ] {
             let read = rows(text, None).expect(text);
             let numbers: Vec<_> = read.into_iter().map(|(_, row)| row).collect();
@@ -213,7 +258,12 @@ mod tests {
             ("t,u\n# nothing\n", "it has no numbers"),
             ("t,u\n0,1\n\n1,x\n", "line 4: `x` is not a finite number"),
             ("0,1\n1,inf\n", "line 2: `inf` is not a finite number"),
-            ("0,1\n1\n", "line 2 has 1 columns, expected 2"),
+            ("0,1\n1\n", "line 2 ends after 1 of 2 columns"),
+            ("0,x\n1,2\n", "line 1: `x` is not a finite number"),
+            (
+                "t;u\n0;0,5\n",
+                "line 2: `0,5` is not a finite number; decimals stand after a point",
+            ),
         ] {
             assert_eq!(rows(text, None).expect_err(text).to_string(), message);
         }

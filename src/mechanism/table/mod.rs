@@ -2,6 +2,7 @@
 
 mod file;
 
+pub(super) use file::MOST_POINTS;
 pub use file::TableFile;
 
 use super::{Expression, Number, ParameterId};

@@ -107,6 +107,14 @@ impl Constraint for Roller {
             - turn * turn * e.dot(&w)
     }
 
+    /// The roller's radius is positive.
+    fn admits(&self, value: f64) -> bool {
+        match self.axis {
+            Axis::X => true,
+            Axis::Y => value > 0.0,
+        }
+    }
+
     /// The same terms with each factor at its bound.
     fn bend(
         &self,
@@ -153,11 +161,16 @@ impl Constraint for Roller {
 }
 
 impl JointUnknown for RollerContact {
-    /// The point of the contour that is nearest the roller's centre.
+    /// The point of the contour that is nearest the roller's centre; for an estimate inside the
+    /// contour the one in its direction, from where it has to come out.
     fn estimate(&self, at: &Configuration) -> f64 {
         let cam = at.marker(self.contour.cam);
         let centre = at.marker(self.follower).point - cam.point;
-        at.profile(self.contour.profile)
-            .angle_of_least(|theta, radius| (Contour::arm(cam, theta, radius) - centre).norm())
+        let profile = at.profile(self.contour.profile);
+        let direction = cam.axis.perp(&centre).atan2(cam.axis.dot(&centre));
+        if centre.norm() < profile.radius(direction).value {
+            return direction;
+        }
+        profile.angle_of_least(|theta, radius| (Contour::arm(cam, theta, radius) - centre).norm())
     }
 }

@@ -86,7 +86,10 @@ fn time_is_refused_where_it_has_no_place() {
     };
     let error = Expression::parse("2*t", scope).expect_err("no time here");
     assert_eq!(error.span, 2..3);
-    assert_eq!(error.message, "only a `motion` may use time `t`");
+    assert_eq!(
+        error.message,
+        "only the expression of a `motion` may use time `t`"
+    );
     assert_eq!(error.help, None);
 }
 
@@ -138,7 +141,7 @@ fn the_polar_angle_has_its_place_in_a_profile() {
             "2*t",
             &[],
             profile,
-            "only a `motion` may use time `t`",
+            "only the expression of a `motion` may use time `t`",
             "here the variable is `theta`",
         ),
     ];
