@@ -5,7 +5,7 @@
  *
  * Each line of stdin is a request, a function without its `fmi2` and its arguments:
  *
- *     Instantiate  SLOT NAME GUID URI TYPE LOGGING_ON CALLBACKS     full, no logger, or none
+ *     Instantiate  SLOT NAME GUID URI TYPE LOGGING_ON CALLBACKS
  *     GetReal      SLOT N VALUE_REFERENCES VALUES
  *     DoStep       SLOT POINT SIZE NO_SET_FMU_STATE_PRIOR_TO_CURRENT_POINT
  *
@@ -15,8 +15,8 @@
  *     log     SLOT INSTANCE_NAME STATUS CATEGORY MESSAGE
  *     answer  STATUS RESULT...
  *
- * Fields are separated by tabs. In them `\t`, `\n` and `\\` stand for these characters, `\N` for a
- * null pointer. Items of a list are separated by commas. Slots are 0 to 3; `\N` is the null
+ * Fields are separated by tabs. In them `\t`, `\n` and `\\` stand for these characters, `\xFF` for
+ * the byte of that number and `\N` for a null pointer. Items of a list are separated by commas. Slots are 0 to 3; `\N` is the null
  * instance. At the end of stdin all instances are freed. Whatever the host did not expect ends
  * it with a message on stderr and status 1. */
 
@@ -111,7 +111,13 @@ static char *unescape(char *text)
     for (const char *from = text; *from; from++) {
         if (*from == '\\') {
             from++;
-            *to++ = *from == 't' ? '\t' : *from == 'n' ? '\n' : *from;
+            unsigned byte;
+            if (*from == 'x' && sscanf(from + 1, "%2x", &byte) == 1) {
+                *to++ = (char)byte;
+                from += 2;
+            } else {
+                *to++ = *from == 't' ? '\t' : *from == 'n' ? '\n' : *from;
+            }
         } else {
             *to++ = *from;
         }
@@ -186,6 +192,8 @@ static struct slot {
     fmi2Component component;
     /* Lives as long as the instance, which may use it. */
     fmi2CallbackFunctions *callbacks;
+    /* Whether its logger calls functions of the instance. */
+    int calls_back;
 } slots[4] = {{.number = 0}, {.number = 1}, {.number = 2}, {.number = 3}};
 
 static struct slot *slot(const char *text)
@@ -202,6 +210,22 @@ static fmi2Component component(void)
     fmi2Component c = slot(text)->component;
     if (!c) fail("no instance in slot", text);
     return c;
+}
+
+/* What no logger may do: calls that read, change and free the instance. */
+static void call_back(fmi2Component c)
+{
+    const fmi2ValueReference first = 0;
+    fmi2Real value = 7.0;
+    fmi2Status statuses[] = {
+        fmu.GetReal(c, &first, 1, &value),
+        fmu.SetReal(c, &first, 1, &value),
+        fmu.DoStep(c, 0.0, 0.1, fmi2True),
+        fmu.Reset(c),
+    };
+    fmu.FreeInstance(c);
+    fputs(value == 7.0 ? " called back:" : " a value was written:", stdout);
+    for (size_t k = 0; k < COUNT(statuses); k++) printf(" %d", (int)statuses[k]);
 }
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String instance_name,
@@ -223,6 +247,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String instance_nam
     printf("\t%d", (int)status);
     put_text(category);
     put_text(text);
+    if (from->calls_back) call_back(from->component);
     putchar('\n');
     free(text);
 }
@@ -244,6 +269,7 @@ static void instantiate(void)
     fmi2Type type = (fmi2Type)integer(field());
     fmi2Boolean logging_on = (fmi2Boolean)integer(field());
     char *callbacks = field();
+    to->calls_back = is(callbacks, "calls back");
     if (!is(callbacks, "none")) {
         fmi2CallbackFunctions functions = {
             .logger = is(callbacks, "no logger") ? NULL : logger,

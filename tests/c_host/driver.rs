@@ -111,7 +111,7 @@ pub(crate) struct Instantiate {
     pub(crate) uri: Option<String>,
     pub(crate) model_exchange: bool,
     pub(crate) logging_on: bool,
-    /// `"full"`, `"no logger"` or `"none"`.
+    /// `"full"`, `"no logger"`, `"none"`, or `"calls back"` for a logger that makes calls itself.
     pub(crate) callbacks: &'static str,
 }
 
