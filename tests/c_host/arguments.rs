@@ -39,6 +39,12 @@ SetReal A 2 @crank_angle.position,@rocker_length 1.3,0 -> cannot be set to 0: ex
 SetRealInputDerivatives A 1 @crank_angle.position 0 1 -> order 0 are not known; expected 1 or 2
 SetRealInputDerivatives A 2 @crank_angle.position,@crank_angle.position 1,3 1,1 -> order 3 are not known
 SetRealInputDerivatives A 1 @crank_angle.position 1 nan -> not a finite number
+# Output derivatives.
+GetRealOutputDerivatives A 1 9999 1 room -> no variable with value reference 9999
+GetRealOutputDerivatives A 1 @crank_angle.position 1 room -> `crank_angle.position` is no output
+GetRealOutputDerivatives A 1 @solver.residual 1 room -> only outputs have output derivatives
+GetRealOutputDerivatives A 1 @crank.phi 0 room -> cannot be of order 0; expected 1 or 2
+GetRealOutputDerivatives A 2 @crank.phi,@crank.phi 1,-2147483648 room -> cannot be of order -2147483648
 # Steps.
 DoStep A 0.5 0.1 1 -> is not where the last step ended, 0 s
 DoStep A 0 0 1 -> the step size 0 s is not positive
@@ -62,10 +68,23 @@ SetString A 1 NULL x -> `vr` is a null pointer
 SetRealInputDerivatives A 1 NULL 1 1 -> `vr` is a null pointer
 SetRealInputDerivatives A 1 @crank_angle.position NULL 1 -> `order` is a null pointer
 SetRealInputDerivatives A 1 @crank_angle.position 1 NULL -> `value` is a null pointer
+GetRealOutputDerivatives A 1 NULL 1 room -> `vr` is a null pointer
+GetRealOutputDerivatives A 1 @crank.phi NULL room -> `order` is a null pointer
+GetRealOutputDerivatives A 1 @crank.phi 1 NULL -> `value` is a null pointer
 GetReal A 18446744073709551615 @crank.phi room -> `vr` has an impossible length
 GetStatus A 0 NULL -> `value` is a null pointer
 GetRealStatus A 2 NULL -> `value` is a null pointer
 GetBooleanStatus A 3 NULL -> `value` is a null pointer
+# FMU states; there is none in slot 0.
+GetFMUstate A NULL -> `FMUstate` is a null pointer
+SetFMUstate A NULL -> `FMUstate` is a null pointer
+SetFMUstate A 0 -> `FMUstate` is a null pointer
+SerializedFMUstateSize A 0 room -> `FMUstate` is a null pointer
+SerializeFMUstate A 0 4 room -> `FMUstate` is a null pointer
+DeSerializeFMUstate A NULL 5 0 -> `serializedState` is a null pointer
+DeSerializeFMUstate A 00ff 2 NULL -> `FMUstate` is a null pointer
+DeSerializeFMUstate A NULL 0 0 -> these 0 bytes are no serialized FMU state
+DeSerializeFMUstate A 00ff 2 0 -> these 2 bytes are no serialized FMU state
 # Log categories.
 SetDebugLogging A 1 1 NULL -> `categories` is a null pointer
 SetDebugLogging A 1 2 logEvents,NULL -> `category` is a null pointer
@@ -162,5 +181,9 @@ fn nothing_may_be_asked_for_with_null_pointers() {
         host.ok(&[&format!("Set{kind}"), A, "0", NULL, NULL]);
     }
     host.ok(&["SetRealInputDerivatives", A, "0", NULL, NULL, NULL]);
+    host.ok(&["GetRealOutputDerivatives", A, "0", NULL, NULL, NULL]);
     host.ok(&["SetDebugLogging", A, "0", "0", NULL]);
+    // No state, and no place for one.
+    host.ok(&["FreeFMUstate", A, "0"]);
+    host.ok(&["FreeFMUstate", A, NULL]);
 }

@@ -256,6 +256,17 @@ impl Host {
         (answer.results == ["1"], answer.log)
     }
 
+    /// The memory that the host has in use \[bytes\], where the system tells.
+    pub(crate) fn resident_memory(&self) -> Option<u64> {
+        let status = format!("/proc/{}/status", self.process.id());
+        let status = std::fs::read_to_string(status).ok()?;
+        let line = status
+            .lines()
+            .find_map(|line| line.strip_prefix("VmRSS:"))?;
+        let kilobytes: u64 = line.trim().trim_end_matches(" kB").parse().ok()?;
+        Some(1024 * kilobytes)
+    }
+
     #[track_caller]
     pub(crate) fn instantiated(&mut self, slot: &str, fmu: &Fmu) {
         let made = self.instantiate(slot, &Instantiate::right(fmu));

@@ -4,6 +4,7 @@
 
 mod arguments;
 mod driver;
+mod fmu_state;
 mod instantiation;
 mod memory;
 mod messages;
@@ -14,31 +15,8 @@ mod stepping;
 use std::collections::BTreeSet;
 use std::process::Command;
 
-use biela::fmi::Call;
 use driver::{Host, library};
-
-/// Functions of capabilities that are not declared, and why they are not served.
-const NOT_SERVED: [(&str, &str); 19] = [
-    ("GetFMUstate", "cannot get and set its state"),
-    ("SetFMUstate", "cannot get and set its state"),
-    ("FreeFMUstate", "cannot get and set its state"),
-    ("SerializedFMUstateSize", "cannot get and set its state"),
-    ("SerializeFMUstate", "cannot get and set its state"),
-    ("DeSerializeFMUstate", "cannot get and set its state"),
-    ("GetDirectionalDerivative", "no directional derivatives"),
-    ("GetRealOutputDerivatives", "no output derivatives"),
-    ("CancelStep", "does not run asynchronously"),
-    ("EnterEventMode", "for co-simulation only"),
-    ("NewDiscreteStates", "for co-simulation only"),
-    ("EnterContinuousTimeMode", "for co-simulation only"),
-    ("CompletedIntegratorStep", "for co-simulation only"),
-    ("SetTime", "for co-simulation only"),
-    ("SetContinuousStates", "for co-simulation only"),
-    ("GetDerivatives", "for co-simulation only"),
-    ("GetEventIndicators", "for co-simulation only"),
-    ("GetContinuousStates", "for co-simulation only"),
-    ("GetNominalsOfContinuousStates", "for co-simulation only"),
-];
+use states::functions;
 
 /// Calls that no state decides about.
 const IN_NO_STATE: [&str; 4] = [
@@ -59,10 +37,8 @@ fn the_functions_of_the_header_are_exported_and_nothing_else() {
         .collect();
     assert_eq!(declared.len(), 44);
 
-    let calls = Call::ALL.iter().map(|call| call.name());
-    let here: BTreeSet<_> = calls
-        .map(|name| name.strip_prefix("fmi2").unwrap())
-        .chain(NOT_SERVED.map(|(name, _)| name))
+    let here: BTreeSet<_> = functions()
+        .map(|(name, _)| name)
         .chain(IN_NO_STATE)
         .map(|name| format!("fmi2{name}"))
         .collect();

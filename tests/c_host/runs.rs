@@ -126,3 +126,25 @@ fn instances_do_not_know_of_each_other() {
         assert_eq!(answer.log[0].slot, slot);
     }
 }
+
+#[test]
+fn several_threads_may_use_an_instance_each() {
+    let [crank, triangle] = ["four_bar", "tlv"].map(Fmu::of);
+    let mut host = Host::start();
+    let mut run = |how: &str| {
+        for (slot, fmu) in [(A, &crank), (B, &crank), ("2", &triangle), ("3", &triangle)] {
+            host.instantiated(slot, fmu);
+            host.initialize(slot);
+        }
+        // An output in both.
+        let values = host.ok(&["Run", how, "100", "20"]);
+        for slot in [A, B, "2", "3"] {
+            host.ok(&["FreeInstance", slot]);
+        }
+        values
+    };
+    let in_turn = run("in turn");
+    assert_eq!(in_turn.len(), 400);
+    assert_ne!(in_turn[99], in_turn[399]);
+    assert_eq!(run("at once"), in_turn, "to the last bit");
+}

@@ -101,6 +101,71 @@ fn input_derivatives_carry_the_input_along() {
 }
 
 #[test]
+fn derivatives_of_outputs_are_the_outputs_of_the_next_order() {
+    let fmu = Fmu::of("four_bar");
+    let mut host = Host::start();
+    host.instantiated(A, &fmu);
+    host.initialize(A);
+    host.ok(&["SetReal", A, "3", "0,1,2", "1.2,3,-4"]);
+    assert_eq!(host.do_step(A, 0.0, 0.1).status, Status::Ok);
+    let outputs = [
+        "rocker.phi",
+        "rocker.phi",
+        "rocker.omega",
+        "coupler.P.y",
+        "coupler.P.vy",
+    ];
+    let orders = "1,2,1,2,1";
+    let expected = [
+        "rocker.omega",
+        "rocker.alpha",
+        "rocker.alpha",
+        "coupler.P.ay",
+        "coupler.P.ay",
+    ];
+    let list = |names: [&str; 5]| names.map(|name| fmu.vr(name)).join(",");
+    let derivatives = host.ok(&[
+        "GetRealOutputDerivatives",
+        A,
+        "5",
+        &list(outputs),
+        orders,
+        "room",
+    ]);
+    assert_eq!(
+        derivatives,
+        host.ok(&["GetReal", A, "5", &list(expected), "room"])
+    );
+    assert_eq!(derivatives.iter().filter(|value| *value == "0").count(), 0);
+
+    // What does not exist is discarded, and what is asked for with it.
+    for (output, order) in [
+        ("rocker.alpha", "1"),
+        ("rocker.omega", "2"),
+        ("rocker.phi", "3"),
+    ] {
+        let list = [fmu.vr("rocker.phi"), fmu.vr(output)].join(",");
+        let orders = format!("1,{order}");
+        let request = ["GetRealOutputDerivatives", A, "2", &list, &orders, "room"];
+        let answer = host.call(&request);
+        assert_eq!(answer.status, Status::Discard, "{output}");
+        assert_eq!(answer.results, ["7", "7"], "{output}");
+        assert_eq!(answer.log, [], "{output}");
+        // Told who asks for it.
+        host.ok(&["SetDebugLogging", A, "1", "1", "logStatusDiscard"]);
+        let answer = host.call(&request);
+        let message = &answer.log[0];
+        assert_eq!(
+            (message.status, message.category.as_str()),
+            (Status::Discard, "logStatusDiscard")
+        );
+        let expected = format!("`{output}` has no derivative of order {order}");
+        assert!(message.text.contains(&expected), "{message:?}");
+        host.ok(&["SetDebugLogging", A, "0", "1", "logStatusDiscard"]);
+    }
+}
+
+#[test]
 fn a_status_that_does_not_exist_is_discarded() {
     let fmu = Fmu::of("four_bar");
     let mut host = Host::start();

@@ -26,8 +26,6 @@ pub(super) enum CallError {
     Refused(Error),
     /// An argument is no use at all.
     Argument(String),
-    /// The status asked for does not exist here.
-    NotAvailable,
 }
 
 impl From<Error> for CallError {
@@ -120,7 +118,6 @@ fn serve(
         Ok(()) => Status::Ok,
         Err(CallError::Refused(error)) => instance.report(call, &error),
         Err(CallError::Argument(message)) => instance.report_argument(call, &message),
-        Err(CallError::NotAvailable) => Status::Discard,
     }));
     outcome.unwrap_or_else(|payload| {
         let what = format!("{call}: defect in biela: {}", panic_message(&*payload));

@@ -14,8 +14,8 @@
 //!   that are read hold values and stay as they are during the call; those that are written may
 //!   hold nothing yet, and nobody else touches them during the call.
 //! - A string that is not null ends in NUL.
-//! - An `fmi2FMUstate` that is not null came from this library and has not been freed. A pointer
-//!   from anywhere else cannot be told from one.
+//! - An `fmi2FMUstate` that is not null came from this library, has not been freed, and is used by
+//!   one call at a time. A pointer from anywhere else cannot be told from one.
 
 #![allow(
     unsafe_code,
@@ -30,12 +30,16 @@
 mod access;
 mod arguments;
 mod component;
+mod fmu_state;
 mod host;
 mod lifecycle;
 mod not_served;
 mod stepping;
+#[cfg(test)]
+mod tests;
 
 use access::*;
+use fmu_state::*;
 use lifecycle::*;
 use not_served::*;
 use stepping::*;

@@ -1,8 +1,7 @@
 //! Functions of capabilities that the FMU does not have.
 
 use fmi_sys::fmi2::{
-    fmi2Boolean, fmi2Byte, fmi2Component, fmi2EventInfo, fmi2FMUstate, fmi2Integer, fmi2Real,
-    fmi2Status, fmi2ValueReference,
+    fmi2Boolean, fmi2Component, fmi2EventInfo, fmi2Real, fmi2Status, fmi2ValueReference,
 };
 
 use super::component::{CallError, with_instance};
@@ -30,27 +29,11 @@ macro_rules! not_served {
 }
 
 not_served! {
-    "this FMU cannot get and set its state" {
-        fmi2GetFMUstate(*mut fmi2FMUstate);
-        fmi2SetFMUstate(fmi2FMUstate);
-        fmi2FreeFMUstate(*mut fmi2FMUstate);
-        fmi2SerializedFMUstateSize(fmi2FMUstate, *mut usize);
-        fmi2SerializeFMUstate(fmi2FMUstate, *mut fmi2Byte, usize);
-        fmi2DeSerializeFMUstate(*const fmi2Byte, usize, *mut fmi2FMUstate);
-    }
     "this FMU provides no directional derivatives" {
         fmi2GetDirectionalDerivative(
             *const fmi2ValueReference, usize, *const fmi2ValueReference, usize, *const fmi2Real,
             *mut fmi2Real
         );
-    }
-    "this FMU provides no output derivatives" {
-        fmi2GetRealOutputDerivatives(
-            *const fmi2ValueReference, usize, *const fmi2Integer, *mut fmi2Real
-        );
-    }
-    "this FMU does not run asynchronously, so that no step can be cancelled" {
-        fmi2CancelStep();
     }
     "this FMU is for co-simulation only" {
         fmi2EnterEventMode();

@@ -6,10 +6,10 @@ use fmi_sys::fmi2::{
     fmi2StatusKind_fmi2Terminated, fmi2String, fmi2ValueReference,
 };
 
-use super::arguments::{slice, write};
-use super::component::{CallError, with_instance};
+use super::arguments::{Room, slice, write};
+use super::component::with_instance;
 use super::host::status_code;
-use crate::fmi::Call;
+use crate::fmi::{Call, Error};
 
 /// `fmi2SetRealInputDerivatives`.
 ///
@@ -34,6 +34,30 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     }
 }
 
+/// `fmi2GetRealOutputDerivatives`.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2GetRealOutputDerivatives", |instance| {
+            let (vr, order) = (slice("vr", vr, nvr)?, slice("order", order, nvr)?);
+            let room = Room::new("value", value, nvr)?;
+            room.fill(instance.output_derivatives(vr, order)?);
+            Ok(())
+        })
+    }
+}
+
 /// `fmi2DoStep`. Nothing is kept for going back, so that
 /// `no_set_fmu_state_prior_to_current_point` makes no difference.
 ///
@@ -51,6 +75,21 @@ pub unsafe extern "C" fn fmi2DoStep(
     unsafe {
         with_instance(c, "fmi2DoStep", |instance| {
             Ok(instance.do_step(current_communication_point, communication_step_size)?)
+        })
+    }
+}
+
+/// `fmi2CancelStep`: no step is ever in progress when it could be called.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2CancelStep", |instance| {
+            Ok(instance.allow(Call::CancelStep)?)
         })
     }
 }
@@ -82,7 +121,7 @@ macro_rules! status {
                                 let $instance = instance;
                                 write("value", value, $value)
                             })?
-                            _ => Err(CallError::NotAvailable),
+                            (kind, _) => Err(Error::StatusKind { kind: kind.into() }.into()),
                         }
                     })
                 }

@@ -224,6 +224,43 @@ impl Instance {
         }))
     }
 
+    /// `fmi2GetRealOutputDerivatives`: exact derivatives of outputs with respect to time, in the
+    /// order of their references.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoOutputDerivative`] for one that does not exist; a variable is no output, an
+    /// order is below 1; or there is no pose, or no rates, for the values set.
+    pub fn output_derivatives<'a>(
+        &'a mut self,
+        value_references: &'a [u32],
+        orders: &'a [i32],
+    ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
+        self.allow(Call::GetRealOutputDerivatives)?;
+        let entries = value_references.iter().zip(orders);
+        for (&value_reference, &order) in entries.clone() {
+            let variable = self.variable(value_reference)?;
+            let name = || variable.name.clone();
+            if variable.causality != Causality::Output {
+                return Err(Error::NotOutput { name: name() });
+            }
+            if order < 1 {
+                let name = name();
+                return Err(Error::OutputDerivativeOrder { name, order });
+            }
+            let Some(derivative) = variable.quantity.derivative(order as usize) else {
+                let name = name();
+                return Err(Error::NoOutputDerivative { name, order });
+            };
+            self.make_ready(derivative)?;
+        }
+        Ok(entries.map(|(&value_reference, &order)| {
+            let output = self.variables.list()[value_reference as usize].quantity;
+            let derivative = output.derivative(order as usize);
+            self.real(derivative.expect("checked above"))
+        }))
+    }
+
     /// The value of a coordinate or of a rate, if that has been computed.
     #[inline]
     fn known(&self, value_reference: u32) -> Option<f64> {
@@ -323,7 +360,7 @@ impl Instance {
     }
 }
 
-fn check_value(variable: &Variable, value: f64) -> Result<(), Error> {
+pub(super) fn check_value(variable: &Variable, value: f64) -> Result<(), Error> {
     check_finite(&variable.name, value)?;
     if let Kind::Real { min, max, .. } = variable.kind
         && (min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max))
