@@ -44,7 +44,7 @@ pub(super) fn write(
 ///
 /// # Errors
 ///
-/// The bytes are not as [`write`] wrote them for this GUID.
+/// The bytes are not as [`write()`] wrote them for this GUID.
 pub(super) fn read(
     guid: &str,
     bytes: &[u8],

@@ -111,6 +111,8 @@ impl Instance {
             mechanism: _,
             variables: _,
             logger: _,
+            // The same for all instances of a mechanism, rounding apart.
+            own_home: _,
             // Work space, laid anew for each step.
             path: _,
             // Computed from the pose when asked for.
@@ -222,8 +224,8 @@ impl Instance {
         self.solver.restore(&here.standing);
         checked?;
         // The usual case, which needs no second copy.
-        if state.home == self.home {
-            state.home = Arc::clone(&self.home);
+        if state.home == self.own_home {
+            state.home = Arc::clone(&self.own_home);
         }
         Ok(state)
     }

@@ -258,7 +258,10 @@ pub struct Instance {
     logger: Logger,
     state: State,
     solver: Solver,
-    /// The file's own pose at its own values, from which initialization starts.
+    /// The file's own pose at its own values.
+    own_home: Arc<Pose>,
+    /// From where initialization starts: the own home, or that of an FMU state, which the same
+    /// library built for another machine may have found with other rounding.
     home: Arc<Pose>,
     settings: Settings,
     /// One a driver; that of a prescribed motion is without use.
@@ -326,7 +329,7 @@ impl Instance {
     /// An instance whose solver stands at the file's own pose.
     fn at_home(solver: Solver, logger: Logger) -> Self {
         let mechanism = Arc::clone(solver.mechanism());
-        let pose = solver.pose().clone();
+        let home = Arc::new(solver.pose().clone());
         Self {
             guid: super::guid(&mechanism).into(),
             variables: Variables::new(&mechanism),
@@ -334,19 +337,20 @@ impl Instance {
             state: State::Instantiated,
             settings: Settings::new(&mechanism),
             inputs: start_inputs(&mechanism),
-            committed: pose.clone(),
+            committed: Pose::clone(&home),
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
-            rates: Rates::new(pose.q.len()),
+            rates: Rates::new(home.q.len()),
             freshness: Freshness::Stale,
             path: Path::new(&mechanism),
             progress: Progress::default(),
-            time: pose.time,
+            time: home.time,
             stop_time: None,
-            last_successful_time: pose.time,
+            last_successful_time: home.time,
             terminated: false,
-            home: pose.into(),
+            own_home: Arc::clone(&home),
+            home,
             solver,
             mechanism,
         }
@@ -515,6 +519,7 @@ impl Instance {
     pub fn reset(&mut self) -> Result<(), Error> {
         self.allow(Call::Reset)?;
         self.state = State::Instantiated;
+        self.home = Arc::clone(&self.own_home);
         self.settings = Settings::new(&self.mechanism);
         self.inputs = start_inputs(&self.mechanism);
         self.committed.clone_from(&self.home);
