@@ -5,19 +5,22 @@
  *
  * Each line of stdin is a request, a function without its `fmi2` and its arguments:
  *
- *     Instantiate  SLOT NAME GUID URI TYPE LOGGING_ON CALLBACKS     full, no logger, or none
+ *     Instantiate  SLOT NAME GUID URI TYPE LOGGING_ON CALLBACKS
  *     GetReal      SLOT N VALUE_REFERENCES VALUES
  *     DoStep       SLOT POINT SIZE NO_SET_FMU_STATE_PRIOR_TO_CURRENT_POINT
  *
+ *     Lives        COUNT GUID URI
+ *     Run          "at once" or "in turn" STEPS OUTPUT
+ *
  * and so on, as `requests` has them; `in-thread` before the function makes the call from another
- * thread. The answer is one line for each message that the logger got meanwhile and a last one:
+ * thread. FMU states have slots of their own, which are numbered alike; bytes are hexadecimal. The answer is one line for each message that the logger got meanwhile and a last one:
  *
  *     log     SLOT INSTANCE_NAME STATUS CATEGORY MESSAGE
  *     answer  STATUS RESULT...
  *
- * Fields are separated by tabs. In them `\t`, `\n` and `\\` stand for these characters, `\N` for a
- * null pointer. Items of a list are separated by commas. Slots are 0 to 3; `\N` is the null
- * instance. At the end of stdin all instances are freed. Whatever the host did not expect ends
+ * Fields are separated by tabs. In them `\t`, `\n` and `\\` stand for these characters, `\xFF` for
+ * the byte of that number and `\N` for a null pointer. Items of a list are separated by commas. Slots are 0 to 3; `\N` is the null
+ * instance. At the end of stdin all instances and states are freed. Whatever the host did not expect ends
  * it with a message on stderr and status 1. */
 
 #define _POSIX_C_SOURCE 200809L
@@ -111,7 +114,13 @@ static char *unescape(char *text)
     for (const char *from = text; *from; from++) {
         if (*from == '\\') {
             from++;
-            *to++ = *from == 't' ? '\t' : *from == 'n' ? '\n' : *from;
+            unsigned byte;
+            if (*from == 'x' && sscanf(from + 1, "%2x", &byte) == 1) {
+                *to++ = (char)byte;
+                from += 2;
+            } else {
+                *to++ = *from == 't' ? '\t' : *from == 'n' ? '\n' : *from;
+            }
         } else {
             *to++ = *from;
         }
@@ -186,6 +195,8 @@ static struct slot {
     fmi2Component component;
     /* Lives as long as the instance, which may use it. */
     fmi2CallbackFunctions *callbacks;
+    /* Whether its logger calls functions of the instance. */
+    int calls_back;
 } slots[4] = {{.number = 0}, {.number = 1}, {.number = 2}, {.number = 3}};
 
 static struct slot *slot(const char *text)
@@ -202,6 +213,22 @@ static fmi2Component component(void)
     fmi2Component c = slot(text)->component;
     if (!c) fail("no instance in slot", text);
     return c;
+}
+
+/* What no logger may do: calls that read, change and free the instance. */
+static void call_back(fmi2Component c)
+{
+    const fmi2ValueReference first = 0;
+    fmi2Real value = 7.0;
+    fmi2Status statuses[] = {
+        fmu.GetReal(c, &first, 1, &value),
+        fmu.SetReal(c, &first, 1, &value),
+        fmu.DoStep(c, 0.0, 0.1, fmi2True),
+        fmu.Reset(c),
+    };
+    fmu.FreeInstance(c);
+    fputs(value == 7.0 ? " called back:" : " a value was written:", stdout);
+    for (size_t k = 0; k < COUNT(statuses); k++) printf(" %d", (int)statuses[k]);
 }
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String instance_name,
@@ -223,6 +250,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String instance_nam
     printf("\t%d", (int)status);
     put_text(category);
     put_text(text);
+    if (from->calls_back) call_back(from->component);
     putchar('\n');
     free(text);
 }
@@ -244,6 +272,7 @@ static void instantiate(void)
     fmi2Type type = (fmi2Type)integer(field());
     fmi2Boolean logging_on = (fmi2Boolean)integer(field());
     char *callbacks = field();
+    to->calls_back = is(callbacks, "calls back");
     if (!is(callbacks, "none")) {
         fmi2CallbackFunctions functions = {
             .logger = is(callbacks, "no logger") ? NULL : logger,
@@ -371,27 +400,117 @@ STATUS(GetIntegerStatus, fmi2Integer, 7, put_integer)
 STATUS(GetBooleanStatus, fmi2Boolean, 7, put_integer)
 STATUS(GetStringStatus, fmi2String, NULL, put_text)
 
+/* ---- FMU states ---- */
+
+static fmi2FMUstate states[4];
+
+/* A place for a state; a null pointer for `\N`. */
+static fmi2FMUstate *place(void)
+{
+    char *text = field();
+    if (is(text, "\\N")) return NULL;
+    long long number = integer(text);
+    if (number < 0 || number >= (long long)COUNT(states)) fail("no such slot", text);
+    return &states[number];
+}
+
+/* The state in a slot, perhaps null; null for `\N`. */
+static fmi2FMUstate state(void)
+{
+    fmi2FMUstate *from = place();
+    return from ? *from : NULL;
+}
+
+/* Tells whether there is a state then, and whether it is the object that was there before. */
+#define CHANGES_STATE(name)                                                                        \
+    static void call_##name(void)                                                                  \
+    {                                                                                              \
+        fmi2Component c = component();                                                             \
+        fmi2FMUstate *to = place(), before = to ? *to : NULL;                                      \
+        answer(fmu.name(c, to));                                                                   \
+        if (to) put_integer(*to != NULL), put_integer(*to == before);                              \
+    }
+
+CHANGES_STATE(GetFMUstate)
+CHANGES_STATE(FreeFMUstate)
+
+static void set_fmu_state(void)
+{
+    fmi2Component c = component();
+    answer(fmu.SetFMUstate(c, state()));
+}
+
+static void serialized_fmu_state_size(void)
+{
+    size_t bytes = 7;
+    fmi2Component c = component();
+    fmi2FMUstate from = state();
+    int none = is(field(), "\\N");
+    answer(fmu.SerializedFMUstateSize(c, from, none ? NULL : &bytes));
+    printf("\t%zu", bytes);
+}
+
+static void serialize_fmu_state(void)
+{
+    fmi2Component c = component();
+    fmi2FMUstate from = state();
+    size_t n = size(field());
+    int none = is(field(), "\\N");
+    fmi2Byte *bytes = malloc(n + 1);
+    if (!bytes) fail("no memory", "SerializeFMUstate");
+    memset(bytes, 7, n + 1);
+    answer(fmu.SerializeFMUstate(c, from, none ? NULL : bytes, n));
+    putchar('\t');
+    for (size_t k = 0; k < n; k++) printf("%02x", (unsigned char)bytes[k]);
+    if (bytes[n] != 7) fail("wrote past the end", "SerializeFMUstate");
+    free(bytes);
+}
+
+static void deserialize_fmu_state(void)
+{
+    fmi2Component c = component();
+    char *text = field();
+    size_t n = size(field());
+    fmi2FMUstate *to = place(), before = to ? *to : NULL;
+    int none = is(text, "\\N");
+    /* Just as much as there is, so that reading more is an error to be found. */
+    fmi2Byte *bytes = malloc(n ? n : 1);
+    if (!bytes) fail("no memory", "DeSerializeFMUstate");
+    for (size_t k = 0; !none && k < n; k++) {
+        unsigned byte;
+        if (sscanf(text + 2 * k, "%2x", &byte) != 1) fail("too few bytes", text);
+        bytes[k] = (fmi2Byte)byte;
+    }
+    answer(fmu.DeSerializeFMUstate(c, none ? NULL : bytes, n, to));
+    if (to) put_integer(*to != before);
+    free(bytes);
+}
+
+static void get_real_output_derivatives(void)
+{
+    fmi2ValueReference vr[LONGEST_LIST];
+    fmi2Integer orders[LONGEST_LIST];
+    fmi2Real values[LONGEST_LIST];
+    for (size_t k = 0; k < LONGEST_LIST; k++) values[k] = 7.0;
+    fmi2Component c = component();
+    size_t n = size(field());
+    const fmi2ValueReference *from = value_references(vr);
+    const fmi2Integer *order = integers(orders);
+    int none = is(field(), "\\N");
+    answer(fmu.GetRealOutputDerivatives(c, from, n, order, none ? NULL : values));
+    for (size_t k = 0; !none && k < n && k < LONGEST_LIST; k++) put_real(values[k]);
+}
+
 /* What belongs to capabilities that are not declared. It has to leave its arguments alone. */
 static struct {
-    fmi2FMUstate state;
-    size_t size;
-    fmi2Byte bytes[8];
     fmi2ValueReference vr[1];
-    fmi2Integer order[1];
     fmi2Real real[1], other[1];
     fmi2EventInfo event;
     fmi2Boolean boolean[2];
 } untouched, scratch;
 
 #define UNDECLARED(X)                                                                              \
-    X(GetFMUstate, &scratch.state)                                                                 \
-    X(SetFMUstate, scratch.state)                                                                  \
-    X(FreeFMUstate, &scratch.state)                                                                \
-    X(SerializedFMUstateSize, scratch.state, &scratch.size)                                        \
-    X(SerializeFMUstate, scratch.state, scratch.bytes, sizeof scratch.bytes)                       \
-    X(DeSerializeFMUstate, scratch.bytes, sizeof scratch.bytes, &scratch.state)                    \
     X(GetDirectionalDerivative, scratch.vr, 1, scratch.vr, 1, scratch.real, scratch.other)         \
-    X(GetRealOutputDerivatives, scratch.vr, 1, scratch.order, scratch.real)                        \
     X(NewDiscreteStates, &scratch.event)                                                           \
     X(CompletedIntegratorStep, fmi2True, &scratch.boolean[0], &scratch.boolean[1])                 \
     X(SetTime, 1.0)                                                                                \
@@ -409,6 +528,100 @@ static struct {
     }
 UNDECLARED(X)
 #undef X
+
+/* ---- much at once ---- */
+
+/* Takes an instance through its life again and again, without a word in between. */
+static void lives(void)
+{
+    long long n = integer(field());
+    char *guid = unescape(field()), *uri = unescape(field());
+    fmi2CallbackFunctions callbacks = {.allocateMemory = calloc, .freeMemory = free};
+    const fmi2ValueReference first = 0;
+    const fmi2Integer order = 1;
+    int worst = fmi2OK;
+    for (; n > 0; n--) {
+        fmi2Component c =
+            fmu.Instantiate("life", fmi2CoSimulation, guid, uri, &callbacks, fmi2False, fmi2False);
+        if (!c) fail("no instance", uri);
+        fmi2FMUstate saved = NULL, read = NULL;
+        fmi2Real value = 0.4;
+        size_t bytes = 0;
+#define CALL(name, ...)                                                                            \
+    do {                                                                                           \
+        int status = (int)fmu.name(c, __VA_ARGS__);                                                \
+        worst = status > worst ? status : worst;                                                   \
+    } while (0)
+        CALL(SetupExperiment, fmi2False, 0.0, 0.0, fmi2False, 0.0);
+        fmu.EnterInitializationMode(c);
+        fmu.ExitInitializationMode(c);
+        CALL(SetReal, &first, 1, &value);
+        CALL(DoStep, 0.0, 0.1, fmi2True);
+        CALL(GetFMUstate, &saved);
+        CALL(GetFMUstate, &saved);
+        CALL(SerializedFMUstateSize, saved, &bytes);
+        fmi2Byte *buffer = malloc(bytes);
+        if (!buffer) fail("no memory", "Lives");
+        CALL(SerializeFMUstate, saved, buffer, bytes);
+        CALL(DeSerializeFMUstate, buffer, bytes, &read);
+        CALL(SetFMUstate, read);
+        CALL(SetRealInputDerivatives, &first, 1, &order, &value);
+        CALL(DoStep, 0.1, 0.1, fmi2True);
+        CALL(FreeFMUstate, &saved);
+        CALL(FreeFMUstate, &read);
+#undef CALL
+        free(buffer);
+        fmu.FreeInstance(c);
+    }
+    answer((fmi2Status)worst);
+}
+
+#define MOST_STEPS 100
+
+struct runner {
+    fmi2Component component;
+    int steps;
+    fmi2ValueReference output;
+    fmi2Real values[MOST_STEPS];
+};
+
+static void *run(void *argument)
+{
+    struct runner *runner = argument;
+    const fmi2ValueReference input = 0;
+    for (int k = 0; k < runner->steps; k++) {
+        fmi2Real t = 0.1 * k, value = 0.35 + 0.01 * t;
+        fmu.SetReal(runner->component, &input, 1, &value);
+        fmu.DoStep(runner->component, t, 0.1, fmi2True);
+        fmu.GetReal(runner->component, &runner->output, 1, &runner->values[k]);
+    }
+    return NULL;
+}
+
+/* Runs all instances at the same time, each in a thread, or one after the other; gives an output
+ * of each after every step. */
+static void run_all(void)
+{
+    static struct runner runners[COUNT(slots)];
+    pthread_t threads[COUNT(slots)];
+    int at_once = is(field(), "at once");
+    int steps = (int)integer(field());
+    fmi2ValueReference output = (fmi2ValueReference)integer(field());
+    if (steps > MOST_STEPS) fail("too many steps", "Run");
+    for (size_t k = 0; k < COUNT(slots); k++) {
+        runners[k].component = slots[k].component;
+        runners[k].steps = slots[k].component ? steps : 0;
+        runners[k].output = output;
+        if (!at_once)
+            run(&runners[k]);
+        else if (pthread_create(&threads[k], NULL, run, &runners[k]))
+            fail("no thread", "Run");
+    }
+    for (size_t k = 0; at_once && k < COUNT(slots); k++) pthread_join(threads[k], NULL);
+    answer(fmi2OK);
+    for (size_t k = 0; k < COUNT(slots); k++)
+        for (int step = 0; step < runners[k].steps; step++) put_real(runners[k].values[step]);
+}
 
 /* ---- the loop ---- */
 
@@ -432,6 +645,15 @@ static const struct request {
     {"SetBoolean", set_Boolean},
     {"SetString", set_String},
     {"SetRealInputDerivatives", set_real_input_derivatives},
+    {"Lives", lives},
+    {"Run", run_all},
+    {"GetFMUstate", call_GetFMUstate},
+    {"SetFMUstate", set_fmu_state},
+    {"FreeFMUstate", call_FreeFMUstate},
+    {"SerializedFMUstateSize", serialized_fmu_state_size},
+    {"SerializeFMUstate", serialize_fmu_state},
+    {"DeSerializeFMUstate", deserialize_fmu_state},
+    {"GetRealOutputDerivatives", get_real_output_derivatives},
     {"GetStatus", call_GetStatus},
     {"GetRealStatus", call_GetRealStatus},
     {"GetIntegerStatus", call_GetIntegerStatus},
@@ -488,6 +710,10 @@ int main(int argc, char **argv)
         serve();
     }
     free(line);
+    for (size_t k = 0; k < COUNT(slots) * COUNT(states); k++) {
+        fmi2Component c = slots[k / COUNT(states)].component;
+        if (c) fmu.FreeFMUstate(c, &states[k % COUNT(states)]);
+    }
     for (size_t k = 0; k < COUNT(slots); k++) discard(&slots[k]);
     if (dlclose(library)) fail("cannot unload the library", dlerror());
     return 0;

@@ -1,5 +1,6 @@
 //! What the host has said about one driver, and what follows for its path and its rates.
 
+use super::codec::{Codec, Unreadable};
 use super::variables::Order;
 
 /// Where velocity and acceleration of inputs come from: the FMU's parameter `rates`.
@@ -33,7 +34,7 @@ pub(super) struct DriverRates {
 }
 
 /// A value and the communication point at which the host had set it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sample {
     time: f64,
     position: f64,
@@ -192,6 +193,31 @@ impl DriverInput {
         self.history = self.with_sample(time);
         self.derivatives = [[0.0; 2]; 3];
         self.derivative_given = [false; 3];
+    }
+
+    /// Takes a codec through all fields.
+    pub(super) fn walk(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
+        let Self {
+            values,
+            derivatives,
+            derivative_given,
+            ever_nonzero,
+            history,
+        } = self;
+        for value in values.iter_mut().chain(derivatives.as_flattened_mut()) {
+            codec.finite(value)?;
+        }
+        for flag in derivative_given.iter_mut().chain(ever_nonzero) {
+            codec.flag(flag)?;
+        }
+        let samples = history.0.iter_mut();
+        samples.into_iter().try_for_each(|sample| {
+            codec.option(sample, Sample::default(), |codec, sample| {
+                codec.finite(&mut sample.time)?;
+                codec.finite(&mut sample.position)?;
+                codec.finite(&mut sample.velocity)
+            })
+        })
     }
 }
 

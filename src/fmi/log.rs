@@ -15,7 +15,7 @@ pub enum Category {
     Error,
     /// Messages that accompany `fmi2Fatal`.
     Fatal,
-    /// What happens: initialized, reset, terminated.
+    /// What happens: initialized, reset, terminated, FMU state set.
     Events,
     /// What the solver did in each step.
     Solver,
@@ -32,7 +32,10 @@ impl Category {
             "calls that were refused or failed; always logged",
         ),
         (Self::Fatal, "defects of biela; always logged"),
-        (Self::Events, "initialization, reset and termination"),
+        (
+            Self::Events,
+            "initialization, reset, termination and FMU states set",
+        ),
         (Self::Solver, "iterations and sub-steps of each step"),
     ];
 

@@ -6,18 +6,20 @@
 //! Rust and knows nothing of C; `abi` wraps it.
 
 mod abi;
+mod codec;
 mod guid;
 mod inputs;
 mod instance;
 mod log;
 pub mod model_description;
 mod package;
+mod serialized;
 mod state;
 mod uri;
 mod variables;
 
 pub use guid::guid;
-pub use instance::{Error, Instance, Status};
+pub use instance::{Error, FmuState, Instance, StateError, Status};
 pub use log::{Category, Sink};
 pub use package::{PackageError, Platform, RESOURCE, RuntimeLibrary, write_fmu};
 pub use state::{Call, State};

@@ -109,6 +109,9 @@ fn write_co_simulation(xml: &mut Xml, mechanism: &Mechanism) -> io::Result<()> {
             ("canInterpolateInputs", "true"),
             ("canBeInstantiatedOnlyOncePerProcess", "false"),
             ("canNotUseMemoryManagementFunctions", "true"),
+            ("maxOutputDerivativeOrder", "2"),
+            ("canGetAndSetFMUstate", "true"),
+            ("canSerializeFMUstate", "true"),
         ])
         .write_empty()?;
     Ok(())

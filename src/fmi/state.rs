@@ -11,11 +11,15 @@ pub enum State {
     InitializationMode,
     /// Ready for the next step.
     StepComplete,
+    /// A step is being taken. Never entered: steps have ended when `fmi2DoStep` returns.
+    StepInProgress,
     /// The last step was discarded.
     StepFailed,
+    /// A step was cancelled. Never entered, as there is none to be cancelled.
+    StepCanceled,
     /// After terminating.
     Terminated,
-    /// Initialization failed; only reading, reset and freeing are left.
+    /// Initialization failed; only reading, going back and freeing are left.
     Error,
     /// A defect of biela was caught; nothing but freeing is left.
     Fatal,
@@ -23,14 +27,26 @@ pub enum State {
 
 impl State {
     /// All states.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
+        Self::Instantiated,
+        Self::InitializationMode,
+        Self::StepComplete,
+        Self::StepInProgress,
+        Self::StepFailed,
+        Self::StepCanceled,
+        Self::Terminated,
+        Self::Error,
+        Self::Fatal,
+    ];
+
+    /// Those in which an FMU state can be got.
+    pub(super) const SAVED: [Self; 6] = [
         Self::Instantiated,
         Self::InitializationMode,
         Self::StepComplete,
         Self::StepFailed,
         Self::Terminated,
         Self::Error,
-        Self::Fatal,
     ];
 }
 
@@ -40,7 +56,9 @@ impl fmt::Display for State {
             Self::Instantiated => "instantiated",
             Self::InitializationMode => "initializationMode",
             Self::StepComplete => "stepComplete",
+            Self::StepInProgress => "stepInProgress",
             Self::StepFailed => "stepFailed",
+            Self::StepCanceled => "stepCanceled",
             Self::Terminated => "terminated",
             Self::Error => "error",
             Self::Fatal => "fatal",
@@ -81,7 +99,10 @@ macro_rules! calls {
 
 calls! {
     /// `fmi2SetDebugLogging`
-    SetDebugLogging: [Instantiated InitializationMode StepComplete StepFailed Terminated Error];
+    SetDebugLogging: [
+        Instantiated InitializationMode StepComplete StepInProgress StepFailed StepCanceled
+        Terminated Error
+    ];
     /// `fmi2SetupExperiment`
     SetupExperiment: [Instantiated];
     /// `fmi2EnterInitializationMode`
@@ -91,15 +112,15 @@ calls! {
     /// `fmi2Terminate`
     Terminate: [StepComplete StepFailed];
     /// `fmi2Reset`
-    Reset: [Instantiated InitializationMode StepComplete StepFailed Terminated Error];
+    Reset: [Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
     /// `fmi2GetReal`
-    GetReal: [InitializationMode StepComplete StepFailed Terminated Error];
+    GetReal: [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
     /// `fmi2GetInteger`
-    GetInteger: [InitializationMode StepComplete StepFailed Terminated Error];
+    GetInteger: [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
     /// `fmi2GetBoolean`
-    GetBoolean: [InitializationMode StepComplete StepFailed Terminated Error];
+    GetBoolean: [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
     /// `fmi2GetString`
-    GetString: [InitializationMode StepComplete StepFailed Terminated Error];
+    GetString: [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
     /// `fmi2SetReal`
     SetReal: [Instantiated InitializationMode StepComplete];
     /// `fmi2SetInteger`
@@ -108,18 +129,46 @@ calls! {
     SetBoolean: [Instantiated InitializationMode StepComplete];
     /// `fmi2SetString`
     SetString: [Instantiated InitializationMode StepComplete];
+    /// `fmi2GetFMUstate`
+    GetFMUstate: [
+        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
+    ];
+    /// `fmi2SetFMUstate`
+    SetFMUstate: [
+        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
+    ];
+    /// `fmi2FreeFMUstate`
+    FreeFMUstate: [
+        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
+    ];
+    /// `fmi2SerializedFMUstateSize`
+    SerializedFMUstateSize: [
+        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
+    ];
+    /// `fmi2SerializeFMUstate`
+    SerializeFMUstate: [
+        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
+    ];
+    /// `fmi2DeSerializeFMUstate`
+    DeSerializeFMUstate: [
+        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
+    ];
     /// `fmi2SetRealInputDerivatives`
     SetRealInputDerivatives: [Instantiated InitializationMode StepComplete];
+    /// `fmi2GetRealOutputDerivatives`
+    GetRealOutputDerivatives: [StepComplete StepFailed StepCanceled Terminated Error];
     /// `fmi2DoStep`
     DoStep: [StepComplete];
+    /// `fmi2CancelStep`
+    CancelStep: [StepInProgress];
     /// `fmi2GetStatus`
-    GetStatus: [StepComplete StepFailed Terminated];
+    GetStatus: [StepComplete StepInProgress StepFailed Terminated];
     /// `fmi2GetRealStatus`
-    GetRealStatus: [StepComplete StepFailed Terminated];
+    GetRealStatus: [StepComplete StepInProgress StepFailed Terminated];
     /// `fmi2GetIntegerStatus`
-    GetIntegerStatus: [StepComplete StepFailed Terminated];
+    GetIntegerStatus: [StepComplete StepInProgress StepFailed Terminated];
     /// `fmi2GetBooleanStatus`
-    GetBooleanStatus: [StepComplete StepFailed Terminated];
+    GetBooleanStatus: [StepComplete StepInProgress StepFailed Terminated];
     /// `fmi2GetStringStatus`
-    GetStringStatus: [StepComplete StepFailed Terminated];
+    GetStringStatus: [StepComplete StepInProgress StepFailed Terminated];
 }

@@ -94,6 +94,19 @@ impl Quantity {
             _ => panic!("{self:?} is no output"),
         }
     }
+
+    /// The derivative of an output of this order with respect to time, as far as there is one:
+    /// of positions the first and the second, of velocities the first.
+    pub(super) fn derivative(self, order: usize) -> Option<Self> {
+        let raised = |own: Order| Order::ALL.get(own as usize + order).copied();
+        Some(match self {
+            Self::Body(body, component, own) => Self::Body(body, component, raised(own)?),
+            Self::Marker(marker, component, own) => Self::Marker(marker, component, raised(own)?),
+            Self::Measure(measure, own) => Self::Measure(measure, raised(own)?),
+            Self::Motion(driver, own) => Self::Motion(driver, raised(own)?),
+            _ => return None,
+        })
+    }
 }
 
 /// Which derivative with respect to time.

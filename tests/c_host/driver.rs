@@ -111,7 +111,7 @@ pub(crate) struct Instantiate {
     pub(crate) uri: Option<String>,
     pub(crate) model_exchange: bool,
     pub(crate) logging_on: bool,
-    /// `"full"`, `"no logger"` or `"none"`.
+    /// `"full"`, `"no logger"`, `"none"`, or `"calls back"` for a logger that makes calls itself.
     pub(crate) callbacks: &'static str,
 }
 
@@ -254,6 +254,17 @@ impl Host {
             with.callbacks,
         ]);
         (answer.results == ["1"], answer.log)
+    }
+
+    /// The memory that the host has in use \[bytes\], where the system tells.
+    pub(crate) fn resident_memory(&self) -> Option<u64> {
+        let status = format!("/proc/{}/status", self.process.id());
+        let status = std::fs::read_to_string(status).ok()?;
+        let line = status
+            .lines()
+            .find_map(|line| line.strip_prefix("VmRSS:"))?;
+        let kilobytes: u64 = line.trim().trim_end_matches(" kB").parse().ok()?;
+        Some(1024 * kilobytes)
     }
 
     #[track_caller]

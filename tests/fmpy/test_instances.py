@@ -128,9 +128,7 @@ def test_functions_not_served_yet_say_so(slave):
     """Their capability flags are off; called all the same they answer with an error."""
     instance = slave("four_bar").start()
     for call in (
-        instance.fmi.getFMUstate,
         lambda: instance.fmi.getDirectionalDerivative([0], [1], [1.0]),
-        lambda: instance.fmi.getRealOutputDerivatives([0], [1]),
         instance.fmi.cancelStep,
     ):
         with pytest.raises(FMICallException) as refused:

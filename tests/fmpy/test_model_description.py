@@ -341,11 +341,13 @@ def test_capabilities(fmu, name):
 
     served = dict(root.find("CoSimulation").attrib)
     assert served.pop("modelIdentifier") == root.get("modelName") == name
-    assert served.pop("maxOutputDerivativeOrder", "0") == "0"
+    assert served.pop("maxOutputDerivativeOrder") == "2"
     assert {flag for flag, value in served.items() if value != "false"} == {
         "canHandleVariableCommunicationStepSize",
         "canInterpolateInputs",
         "canNotUseMemoryManagementFunctions",
+        "canGetAndSetFMUstate",
+        "canSerializeFMUstate",
     }
 
 

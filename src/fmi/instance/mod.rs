@@ -4,16 +4,19 @@
 //! pointers into slices. A refused call changes neither data nor state and leaves the instance
 //! usable.
 
+mod fmu_state;
 mod motion;
 mod values;
 
 use std::sync::Arc;
 
+pub use fmu_state::{FmuState, StateError};
+
 use super::inputs::{DriverInput, Extrapolation, RateSource};
 use super::log::{Category, Logger, Sink};
 use super::package::RESOURCE;
 use super::state::{Call, State};
-use super::variables::Variables;
+use super::variables::{Quantity, Variables};
 use super::{UriError, resource_path};
 use crate::kinematics::{self, Path, Pose, Progress, Rates, Solver};
 use crate::mechanism::{Diagnostic, DriverSource, Jet, Mechanism, Severity, Source};
@@ -109,6 +112,37 @@ pub enum Error {
         /// The order.
         order: i32,
     },
+    /// Only outputs have output derivatives.
+    #[error("`{name}` is no output, and only outputs have output derivatives")]
+    NotOutput {
+        /// The variable.
+        name: String,
+    },
+    /// An order of derivative that nothing has.
+    #[error("`{name}`: an output derivative cannot be of order {order}; expected 1 or 2")]
+    OutputDerivativeOrder {
+        /// The output.
+        name: String,
+        /// The order.
+        order: i32,
+    },
+    /// A derivative that this output does not have.
+    #[error(
+        "`{name}` has no derivative of order {order}: velocities have the first, positions \
+             the second as well"
+    )]
+    NoOutputDerivative {
+        /// The output.
+        name: String,
+        /// The order.
+        order: i32,
+    },
+    /// A kind of status that a status function does not tell.
+    #[error("status kind {kind} is not told by this function, or not while no step is pending")]
+    StatusKind {
+        /// The number of the kind.
+        kind: i64,
+    },
     /// A communication point, step size or stop time that makes no sense.
     #[error("{message}")]
     Time {
@@ -147,6 +181,9 @@ pub enum Error {
         /// One line an error.
         diagnostics: Vec<String>,
     },
+    /// Bytes or a state that are none of this FMU.
+    #[error(transparent)]
+    FmuState(#[from] StateError),
     /// The mechanism is not the one that the model description was made from.
     #[error(
         "the GUID `{given}` is not that of the mechanism in the FMU's resources, `{actual}`: the \
@@ -165,7 +202,9 @@ impl Error {
     #[must_use]
     pub fn status(&self) -> Status {
         match self {
-            Self::DeadPoint { .. } => Status::Discard,
+            Self::DeadPoint { .. } | Self::NoOutputDerivative { .. } | Self::StatusKind { .. } => {
+                Status::Discard
+            }
             _ => Status::Error,
         }
     }
@@ -214,12 +253,16 @@ enum Freshness {
 #[derive(Debug)]
 pub struct Instance {
     mechanism: Arc<Mechanism>,
+    guid: Arc<str>,
     variables: Variables,
     logger: Logger,
     state: State,
     solver: Solver,
-    /// The file's own pose at its own values, from which initialization starts.
-    home: Pose,
+    /// The file's own pose at its own values.
+    own_home: Arc<Pose>,
+    /// From where initialization starts: the own home, or that of an FMU state, which the same
+    /// library built for another machine may have found with other rounding.
+    home: Arc<Pose>,
     settings: Settings,
     /// One a driver; that of a prescribed motion is without use.
     inputs: Vec<DriverInput>,
@@ -286,26 +329,28 @@ impl Instance {
     /// An instance whose solver stands at the file's own pose.
     fn at_home(solver: Solver, logger: Logger) -> Self {
         let mechanism = Arc::clone(solver.mechanism());
-        let pose = solver.pose().clone();
+        let home = Arc::new(solver.pose().clone());
         Self {
+            guid: super::guid(&mechanism).into(),
             variables: Variables::new(&mechanism),
             logger,
             state: State::Instantiated,
             settings: Settings::new(&mechanism),
             inputs: start_inputs(&mechanism),
-            committed: pose.clone(),
+            committed: Pose::clone(&home),
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
-            rates: Rates::new(pose.q.len()),
+            rates: Rates::new(home.q.len()),
             freshness: Freshness::Stale,
             path: Path::new(&mechanism),
             progress: Progress::default(),
-            time: pose.time,
+            time: home.time,
             stop_time: None,
-            last_successful_time: pose.time,
+            last_successful_time: home.time,
             terminated: false,
-            home: pose,
+            own_home: Arc::clone(&home),
+            home,
             solver,
             mechanism,
         }
@@ -331,19 +376,20 @@ impl Instance {
 
     /// Gives an error to the host's logger and turns it into the call's status.
     pub fn report(&self, call: &str, error: &Error) -> Status {
-        match error {
-            // The warning that precedes a dead point has said it all.
-            Error::DeadPoint { .. } => {
-                let message = format!("{call}: discarded");
-                self.logger
-                    .write(Status::Discard, Category::Discard, &message);
-            }
-            _ => {
-                let message = format!("{call}: {error}");
-                self.logger.write(Status::Error, Category::Error, &message);
-            }
+        let status = error.status();
+        let category = match status {
+            Status::Discard => Category::Discard,
+            _ => Category::Error,
+        };
+        if self.logger.wants(category) {
+            let message = match error {
+                // The warning that precedes a dead point has said it all.
+                Error::DeadPoint { .. } => format!("{call}: discarded"),
+                _ => format!("{call}: {error}"),
+            };
+            self.logger.write(status, category, &message);
         }
-        error.status()
+        status
     }
 
     /// Tells the host's logger of an argument that is no use at all.
@@ -473,9 +519,10 @@ impl Instance {
     pub fn reset(&mut self) -> Result<(), Error> {
         self.allow(Call::Reset)?;
         self.state = State::Instantiated;
+        self.home = Arc::clone(&self.own_home);
         self.settings = Settings::new(&self.mechanism);
         self.inputs = start_inputs(&self.mechanism);
-        self.committed = self.home.clone();
+        self.committed.clone_from(&self.home);
         self.solver.restore(&self.home);
         self.at_committed = true;
         self.driver_rates.fill(Jet::constant(0.0));
@@ -519,6 +566,14 @@ impl Settings {
             parameters: mechanism.default_parameters(),
             rates: RateSource::Auto,
             extrapolation: Extrapolation::Hold,
+        }
+    }
+
+    /// The value of a quantity that is a parameter of the mechanism.
+    fn parameter(&self, quantity: Quantity) -> Option<f64> {
+        match quantity {
+            Quantity::Parameter(parameter) => Some(self.parameters[parameter.index()]),
+            _ => None,
         }
     }
 }

@@ -143,13 +143,26 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// A variable is unknown or no Real; or there is no pose, or no rates, for the values set.
-    /// `values` is without meaning then.
+    /// As [`reals`](Self::reals); nothing is written then.
     pub fn get_real(&mut self, value_references: &[u32], values: &mut [f64]) -> Result<(), Error> {
+        for (to, value) in values.iter_mut().zip(self.reals(value_references)?) {
+            *to = value;
+        }
+        Ok(())
+    }
+
+    /// The values of Real variables, in the order of their references.
+    ///
+    /// # Errors
+    ///
+    /// A variable is unknown or no Real; or there is no pose, or no rates, for the values set.
+    pub fn reals<'a>(
+        &'a mut self,
+        value_references: &'a [u32],
+    ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
-        for (&value_reference, value) in value_references.iter().zip(values) {
-            if let Some(known) = self.known(value_reference) {
-                *value = known;
+        for &value_reference in value_references {
+            if self.known(value_reference).is_some() {
                 continue;
             }
             let variable = self.variable(value_reference)?;
@@ -160,47 +173,92 @@ impl Instance {
                     expected: "Real",
                 });
             }
-            *value = self.real(variable.quantity)?;
+            self.make_ready(variable.quantity)?;
         }
-        Ok(())
+        Ok(value_references.iter().map(|&value_reference| {
+            self.known(value_reference).unwrap_or_else(|| {
+                self.real(self.variables.list()[value_reference as usize].quantity)
+            })
+        }))
     }
 
     /// `fmi2GetInteger`: counts of the last step, and the choices.
     ///
     /// # Errors
     ///
-    /// A variable is unknown or neither Integer nor Enumeration; or there is no pose.
+    /// As [`integers`](Self::integers); nothing is written then.
     pub fn get_integer(
         &mut self,
         value_references: &[u32],
         values: &mut [i32],
     ) -> Result<(), Error> {
-        self.allow(Call::GetInteger)?;
-        for (&value_reference, value) in value_references.iter().zip(values) {
-            let variable = self.variable(value_reference)?;
-            let quantity = variable.quantity;
-            *value = match quantity {
-                Quantity::RateSource => self.settings.rates as i32,
-                Quantity::Extrapolation => self.settings.extrapolation as i32,
-                Quantity::Iterations | Quantity::Substeps => {
-                    self.refresh_pose()?;
-                    let count = if quantity == Quantity::Iterations {
-                        self.progress.iterations
-                    } else {
-                        self.progress.substeps
-                    };
-                    i32::try_from(count).unwrap_or(i32::MAX)
-                }
-                _ => {
-                    return Err(Error::Type {
-                        name: variable.name.clone(),
-                        actual: type_name(variable),
-                        expected: "Integer or Enumeration",
-                    });
-                }
-            };
+        for (to, value) in values.iter_mut().zip(self.integers(value_references)?) {
+            *to = value;
         }
         Ok(())
+    }
+
+    /// The values of Integer and Enumeration variables, in the order of their references.
+    ///
+    /// # Errors
+    ///
+    /// A variable is unknown or neither Integer nor Enumeration; or there is no pose.
+    pub fn integers<'a>(
+        &'a mut self,
+        value_references: &'a [u32],
+    ) -> Result<impl Iterator<Item = i32> + 'a, Error> {
+        self.allow(Call::GetInteger)?;
+        for &value_reference in value_references {
+            let variable = self.variable(value_reference)?;
+            if matches!(variable.kind, Kind::Real { .. }) {
+                return Err(Error::Type {
+                    name: variable.name.clone(),
+                    actual: type_name(variable),
+                    expected: "Integer or Enumeration",
+                });
+            }
+            self.make_ready(variable.quantity)?;
+        }
+        Ok(value_references.iter().map(|&value_reference| {
+            self.integer(self.variables.list()[value_reference as usize].quantity)
+        }))
+    }
+
+    /// `fmi2GetRealOutputDerivatives`: exact derivatives of outputs with respect to time, in the
+    /// order of their references.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoOutputDerivative`] for one that does not exist; a variable is no output, an
+    /// order is below 1; or there is no pose, or no rates, for the values set.
+    pub fn output_derivatives<'a>(
+        &'a mut self,
+        value_references: &'a [u32],
+        orders: &'a [i32],
+    ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
+        self.allow(Call::GetRealOutputDerivatives)?;
+        let entries = value_references.iter().zip(orders);
+        for (&value_reference, &order) in entries.clone() {
+            let variable = self.variable(value_reference)?;
+            let name = || variable.name.clone();
+            if variable.causality != Causality::Output {
+                return Err(Error::NotOutput { name: name() });
+            }
+            if order < 1 {
+                let name = name();
+                return Err(Error::OutputDerivativeOrder { name, order });
+            }
+            let Some(derivative) = variable.quantity.derivative(order as usize) else {
+                let name = name();
+                return Err(Error::NoOutputDerivative { name, order });
+            };
+            self.make_ready(derivative)?;
+        }
+        Ok(entries.map(|(&value_reference, &order)| {
+            let output = self.variables.list()[value_reference as usize].quantity;
+            let derivative = output.derivative(order as usize);
+            self.real(derivative.expect("checked above"))
+        }))
     }
 
     /// The value of a coordinate or of a rate, if that has been computed.
@@ -257,33 +315,52 @@ impl Instance {
         })
     }
 
-    /// The value of a Real variable.
-    fn real(&mut self, quantity: Quantity) -> Result<f64, Error> {
+    /// Computes what the value of a variable is read from.
+    fn make_ready(&mut self, quantity: Quantity) -> Result<(), Error> {
         match quantity {
-            Quantity::Input(driver, order) => return Ok(self.inputs[driver.index()].get(order)),
-            Quantity::Parameter(parameter) => {
-                return Ok(self.settings.parameters[parameter.index()]);
-            }
-            Quantity::Time => return Ok(self.time),
+            Quantity::Input(..)
+            | Quantity::Parameter(_)
+            | Quantity::RateSource
+            | Quantity::Extrapolation
+            | Quantity::Time => Ok(()),
             Quantity::Body(_, _, order)
             | Quantity::Marker(_, _, order)
             | Quantity::Measure(_, order)
             | Quantity::Motion(_, order)
                 if order > Order::Position =>
             {
-                self.refresh_rates()?;
+                self.refresh_rates()
             }
-            _ => self.refresh_pose()?,
+            _ => self.refresh_pose(),
         }
-        Ok(match quantity {
+    }
+
+    /// The value of a Real variable that is [ready](Self::make_ready).
+    fn real(&mut self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Input(driver, order) => self.inputs[driver.index()].get(order),
+            Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
+            Quantity::Time => self.time,
             Quantity::Residual => self.solver.residual(),
             Quantity::Rcond => self.solver.rcond(),
             output => output.read(&self.solver, &self.rates, &self.driver_rates),
-        })
+        }
+    }
+
+    /// The value of an Integer or Enumeration variable that is [ready](Self::make_ready).
+    fn integer(&self, quantity: Quantity) -> i32 {
+        let count = match quantity {
+            Quantity::RateSource => return self.settings.rates as i32,
+            Quantity::Extrapolation => return self.settings.extrapolation as i32,
+            Quantity::Iterations => self.progress.iterations,
+            Quantity::Substeps => self.progress.substeps,
+            _ => unreachable!("all other variables are Reals"),
+        };
+        i32::try_from(count).unwrap_or(i32::MAX)
     }
 }
 
-fn check_value(variable: &Variable, value: f64) -> Result<(), Error> {
+pub(super) fn check_value(variable: &Variable, value: f64) -> Result<(), Error> {
     check_finite(&variable.name, value)?;
     if let Kind::Real { min, max, .. } = variable.kind
         && (min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max))

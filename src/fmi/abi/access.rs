@@ -1,0 +1,110 @@
+//! Setting and getting variables.
+
+use fmi_sys::fmi2::{
+    fmi2Boolean, fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2ValueReference,
+};
+
+use super::arguments::{Room, slice};
+use super::component::with_instance;
+use crate::fmi::Call;
+
+/// The access functions of types that variables have: those that get, with the method that
+/// computes, and those that set.
+macro_rules! with_variables {
+    ($(
+        $(#[$doc:meta])*
+        $get:ident($values:ident), $set:ident($take:ident): $type:ty;
+    )*) => {
+        $(
+            $(#[$doc])*
+            ///
+            /// # Safety
+            ///
+            /// The [host's promise](super#safety).
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn $get(
+                c: fmi2Component,
+                vr: *const fmi2ValueReference,
+                nvr: usize,
+                value: *mut $type,
+            ) -> fmi2Status {
+                // SAFETY: the host's promise.
+                unsafe {
+                    with_instance(c, stringify!($get), |instance| {
+                        let vr = slice("vr", vr, nvr)?;
+                        let room = Room::new("value", value, nvr)?;
+                        room.fill(instance.$values(vr)?);
+                        Ok(())
+                    })
+                }
+            }
+
+            #[doc = concat!("`", stringify!($set), "`.")]
+            ///
+            /// # Safety
+            ///
+            /// The [host's promise](super#safety).
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn $set(
+                c: fmi2Component,
+                vr: *const fmi2ValueReference,
+                nvr: usize,
+                value: *const $type,
+            ) -> fmi2Status {
+                // SAFETY: the host's promise.
+                unsafe {
+                    with_instance(c, stringify!($set), |instance| {
+                        let vr = slice("vr", vr, nvr)?;
+                        Ok(instance.$take(vr, slice("value", value, nvr)?)?)
+                    })
+                }
+            }
+        )*
+    };
+}
+
+with_variables! {
+    /// `fmi2GetReal`.
+    fmi2GetReal(reals), fmi2SetReal(set_real): fmi2Real;
+    /// `fmi2GetInteger`: counts of the solver, and the choices.
+    fmi2GetInteger(integers), fmi2SetInteger(set_integer): fmi2Integer;
+}
+
+/// The access functions of types that no variable has: right for an empty list only.
+macro_rules! without_variables {
+    ($($(#[$doc:meta])* $function:ident($call:ident, $value:ty, $expected:literal);)*) => {
+        $(
+            $(#[$doc])*
+            ///
+            /// # Safety
+            ///
+            /// The [host's promise](super#safety). `value` is not touched.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn $function(
+                c: fmi2Component,
+                vr: *const fmi2ValueReference,
+                nvr: usize,
+                _value: $value,
+            ) -> fmi2Status {
+                // SAFETY: the host's promise.
+                unsafe {
+                    with_instance(c, stringify!($function), |instance| {
+                        let vr = slice("vr", vr, nvr)?;
+                        Ok(instance.no_variables(Call::$call, $expected, vr)?)
+                    })
+                }
+            }
+        )*
+    };
+}
+
+without_variables! {
+    /// `fmi2GetBoolean`: there are no Boolean variables.
+    fmi2GetBoolean(GetBoolean, *mut fmi2Boolean, "Boolean");
+    /// `fmi2SetBoolean`: there are no Boolean variables.
+    fmi2SetBoolean(SetBoolean, *const fmi2Boolean, "Boolean");
+    /// `fmi2GetString`: there are no String variables.
+    fmi2GetString(GetString, *mut fmi2String, "String");
+    /// `fmi2SetString`: there are no String variables.
+    fmi2SetString(SetString, *const fmi2String, "String");
+}

@@ -1,0 +1,102 @@
+//! Arrays and strings of the host.
+
+use std::ffi::{CStr, c_char};
+
+use super::component::CallError;
+
+/// The array `pointer` of `length` items.
+///
+/// # Safety
+///
+/// A pointer that is not null points to `length` items that live and do not change while the
+/// slice is used.
+pub(super) unsafe fn slice<'a, T>(
+    name: &str,
+    pointer: *const T,
+    length: usize,
+) -> Result<&'a [T], CallError> {
+    check_array(name, pointer, length)?;
+    if length == 0 {
+        return Ok(&[]);
+    }
+    // SAFETY: checked above as far as possible, promised by the caller beyond.
+    Ok(unsafe { std::slice::from_raw_parts(pointer, length) })
+}
+
+/// Memory of the host to be written. It may hold nothing yet, so that it is never read and no
+/// reference to it is made.
+pub(super) struct Room<T> {
+    pointer: *mut T,
+    length: usize,
+}
+
+impl<T: Copy> Room<T> {
+    /// Room for `length` items at `pointer`.
+    ///
+    /// # Safety
+    ///
+    /// A pointer that is not null points to room for `length` items that nobody else touches
+    /// until [`fill`](Self::fill) has returned.
+    pub(super) unsafe fn new(
+        name: &str,
+        pointer: *mut T,
+        length: usize,
+    ) -> Result<Self, CallError> {
+        check_array(name, pointer, length)?;
+        Ok(Self { pointer, length })
+    }
+
+    /// Writes values from the first item on, as many as there are and have room.
+    pub(super) fn fill(self, values: impl IntoIterator<Item = T>) {
+        for (index, value) in (0..self.length).zip(values) {
+            // SAFETY: `index` is below the length of which `new` was told.
+            unsafe { self.pointer.add(index).write(value) };
+        }
+    }
+}
+
+fn check_array<T>(name: &str, pointer: *const T, length: usize) -> Result<(), CallError> {
+    let refuse = |why: &str| Err(CallError::Argument(format!("`{name}` {why}")));
+    if length == 0 {
+        Ok(())
+    } else if pointer.is_null() {
+        refuse("is a null pointer")
+    } else if !pointer.is_aligned() {
+        refuse("is not aligned for its type")
+    } else if length > isize::MAX as usize / size_of::<T>() {
+        refuse("has an impossible length")
+    } else {
+        Ok(())
+    }
+}
+
+/// The text behind a C string.
+///
+/// # Safety
+///
+/// A pointer that is not null points to a string that ends in NUL and lives and does not change
+/// while the text is used.
+pub(super) unsafe fn text<'a>(name: &str, pointer: *const c_char) -> Result<&'a str, CallError> {
+    if pointer.is_null() {
+        return Err(CallError::Argument(format!("`{name}` is a null pointer")));
+    }
+    // SAFETY: promised by the caller.
+    unsafe { CStr::from_ptr(pointer) }
+        .to_str()
+        .map_err(|_| CallError::Argument(format!("`{name}` is not UTF-8")))
+}
+
+/// Writes one value through a pointer of the host.
+///
+/// # Safety
+///
+/// A pointer that is not null can be written.
+pub(super) unsafe fn write<T: Copy>(
+    name: &str,
+    pointer: *mut T,
+    value: T,
+) -> Result<(), CallError> {
+    // SAFETY: promised by the caller.
+    unsafe { Room::new(name, pointer, 1)? }.fill([value]);
+    Ok(())
+}

@@ -1,0 +1,144 @@
+//! What a component is, and the one door through which all calls on it go.
+
+use std::any::Any;
+use std::cell::UnsafeCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Once;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use fmi_sys::fmi2::{fmi2Component, fmi2Status, fmi2Status_fmi2Error};
+
+use super::host::status_code;
+use crate::fmi::{Error, Instance, Status};
+
+/// What stands behind an `fmi2Component`.
+pub(super) struct Component {
+    instance: UnsafeCell<Instance>,
+    /// Whether a call is being served: only who has set it touches the instance.
+    busy: AtomicBool,
+    /// Whether another call came meanwhile and was refused.
+    disturbed: AtomicBool,
+}
+
+/// Why a call did not return `fmi2OK`.
+pub(super) enum CallError {
+    /// The instance said no.
+    Refused(Error),
+    /// An argument is no use at all.
+    Argument(String),
+}
+
+impl From<Error> for CallError {
+    fn from(error: Error) -> Self {
+        Self::Refused(error)
+    }
+}
+
+impl Component {
+    /// Hands an instance over to the host.
+    pub(super) fn hand_over(instance: Instance) -> fmi2Component {
+        let component = Self {
+            instance: UnsafeCell::new(instance),
+            busy: AtomicBool::new(false),
+            disturbed: AtomicBool::new(false),
+        };
+        Box::into_raw(Box::new(component)).cast()
+    }
+
+    /// Whether nobody else was using the instance, whose use is the caller's from now on.
+    fn seize(&self) -> bool {
+        let free = !self.busy.swap(true, Ordering::Acquire);
+        if !free {
+            self.disturbed.store(true, Ordering::Relaxed);
+        }
+        free
+    }
+
+    /// Frees a component; while a call on it is being served it stays, as if not asked for.
+    ///
+    /// # Safety
+    ///
+    /// `c` is null or a component that has not been freed, and is not used any more.
+    pub(super) unsafe fn take_back(c: fmi2Component) {
+        let component: *mut Self = c.cast();
+        // SAFETY: promised by the caller.
+        let seized = unsafe { component.as_ref() }.is_some_and(Self::seize);
+        if seized {
+            // SAFETY: the box was made in `hand_over`, and nobody uses the instance.
+            let component = unsafe { Box::from_raw(component) };
+            let _ = catch_unwind(AssertUnwindSafe(|| drop(component)));
+        }
+    }
+}
+
+/// Runs `f` on the instance behind `c`; its error goes to the host's logger, a panic becomes
+/// `fmi2Fatal`.
+///
+/// # Safety
+///
+/// `c` is null or a component that has not been freed.
+pub(super) unsafe fn with_instance(
+    c: fmi2Component,
+    call: &str,
+    f: impl FnOnce(&mut Instance) -> Result<(), CallError>,
+) -> fmi2Status {
+    // SAFETY: promised by the caller.
+    let Some(component) = (unsafe { c.cast::<Component>().as_ref() }) else {
+        return fmi2Status_fmi2Error;
+    };
+    if !component.seize() {
+        // The instance's logger cannot be reached now; who is being served will tell of it.
+        return fmi2Status_fmi2Error;
+    }
+    // SAFETY: seized, so that this is the only reference to the instance until `busy` is false
+    // again.
+    let instance = unsafe { &mut *component.instance.get() };
+    let status = serve(instance, call, f);
+    if component.disturbed.swap(false, Ordering::Relaxed) {
+        let _ = catch_unwind(AssertUnwindSafe(|| {
+            instance.report_argument(
+                call,
+                "another call on this instance came meanwhile, from the logger or from another \
+                 thread, and was refused",
+            )
+        }));
+        // Lest a logger that always calls back be told of it for ever.
+        component.disturbed.store(false, Ordering::Relaxed);
+    }
+    component.busy.store(false, Ordering::Release);
+    status_code(status)
+}
+
+fn serve(
+    instance: &mut Instance,
+    call: &str,
+    f: impl FnOnce(&mut Instance) -> Result<(), CallError>,
+) -> Status {
+    let outcome = catch_unwind(AssertUnwindSafe(|| match f(instance) {
+        Ok(()) => Status::Ok,
+        Err(CallError::Refused(error)) => instance.report(call, &error),
+        Err(CallError::Argument(message)) => instance.report_argument(call, &message),
+    }));
+    outcome.unwrap_or_else(|payload| {
+        let what = format!("{call}: defect in biela: {}", panic_message(&*payload));
+        // Should the logging be what panicked, a second panic must not escape either.
+        let _ = catch_unwind(AssertUnwindSafe(|| instance.lose(&what)));
+        Status::Fatal
+    })
+}
+
+/// What a caught panic says.
+pub(super) fn panic_message(payload: &(dyn Any + Send)) -> &str {
+    payload
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| payload.downcast_ref::<&str>().copied())
+        .unwrap_or("no message")
+}
+
+/// A caught panic reaches the host as a message; std would print it to stderr as well. The
+/// library has a copy of std of its own, so that no other panic in the process is silenced.
+pub(super) fn silence_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| std::panic::set_hook(Box::new(|_| {})));
+}

@@ -1,0 +1,70 @@
+//! The host's logger callback.
+
+use std::ffi::{CString, c_void};
+
+use fmi_sys::fmi2::{
+    fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Status, fmi2Status_fmi2Discard,
+    fmi2Status_fmi2Error, fmi2Status_fmi2Fatal, fmi2Status_fmi2OK, fmi2Status_fmi2Warning,
+};
+
+use crate::fmi::{Category, Sink, Status};
+
+/// The host's logger, with what it wants to be called with.
+pub(super) struct HostLogger {
+    callback: fmi2CallbackLogger,
+    environment: *mut c_void,
+    instance_name: CString,
+}
+
+// SAFETY: the environment pointer is never read here, only handed back to the host, which uses an
+// instance from one thread at a time and so gets its callback from one thread at a time.
+unsafe impl Send for HostLogger {}
+
+impl HostLogger {
+    pub(super) fn new(callbacks: &fmi2CallbackFunctions, instance_name: &str) -> Self {
+        Self {
+            callback: callbacks.logger,
+            environment: callbacks.componentEnvironment,
+            instance_name: c_string(instance_name),
+        }
+    }
+}
+
+impl Sink for HostLogger {
+    fn write(&self, status: Status, category: Category, message: &str) {
+        let Some(callback) = self.callback else {
+            return;
+        };
+        // The standard reads `#r12#` in a message as a reference to a variable.
+        let message = message.replace('#', "##");
+        let (category, message) = (c_string(category.name()), c_string(&message));
+        // SAFETY: the host promises a function with the signature of the header, all strings live
+        // until it returns, and the format has exactly one argument, a string.
+        unsafe {
+            callback(
+                self.environment,
+                self.instance_name.as_ptr(),
+                status_code(status),
+                category.as_ptr(),
+                c"%s".as_ptr(),
+                message.as_ptr(),
+            );
+        }
+    }
+}
+
+/// The standard's number of a status.
+pub(super) fn status_code(status: Status) -> fmi2Status {
+    match status {
+        Status::Ok => fmi2Status_fmi2OK,
+        Status::Warning => fmi2Status_fmi2Warning,
+        Status::Discard => fmi2Status_fmi2Discard,
+        Status::Error => fmi2Status_fmi2Error,
+        Status::Fatal => fmi2Status_fmi2Fatal,
+    }
+}
+
+/// A C string; NUL characters inside, which it could not carry, are left out.
+fn c_string(text: &str) -> CString {
+    CString::new(text.replace('\0', "")).unwrap_or_default()
+}

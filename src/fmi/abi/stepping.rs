@@ -1,0 +1,147 @@
+//! Steps: their inputs' derivatives, the step itself and how it ended.
+
+use fmi_sys::fmi2::{
+    fmi2Boolean, fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2StatusKind,
+    fmi2StatusKind_fmi2DoStepStatus, fmi2StatusKind_fmi2LastSuccessfulTime,
+    fmi2StatusKind_fmi2Terminated, fmi2String, fmi2ValueReference,
+};
+
+use super::arguments::{Room, slice, write};
+use super::component::with_instance;
+use super::host::status_code;
+use crate::fmi::{Call, Error};
+
+/// `fmi2SetRealInputDerivatives`.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2SetRealInputDerivatives", |instance| {
+            let vr = slice("vr", vr, nvr)?;
+            let (order, value) = (slice("order", order, nvr)?, slice("value", value, nvr)?);
+            Ok(instance.set_real_input_derivatives(vr, order, value)?)
+        })
+    }
+}
+
+/// `fmi2GetRealOutputDerivatives`.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2GetRealOutputDerivatives", |instance| {
+            let (vr, order) = (slice("vr", vr, nvr)?, slice("order", order, nvr)?);
+            let room = Room::new("value", value, nvr)?;
+            room.fill(instance.output_derivatives(vr, order)?);
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2DoStep`. Nothing is kept for going back, so that
+/// `no_set_fmu_state_prior_to_current_point` makes no difference.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DoStep(
+    c: fmi2Component,
+    current_communication_point: fmi2Real,
+    communication_step_size: fmi2Real,
+    _no_set_fmu_state_prior_to_current_point: fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2DoStep", |instance| {
+            Ok(instance.do_step(current_communication_point, communication_step_size)?)
+        })
+    }
+}
+
+/// `fmi2CancelStep`: no step is ever in progress when it could be called.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2CancelStep", |instance| {
+            Ok(instance.allow(Call::CancelStep)?)
+        })
+    }
+}
+
+/// The status functions, each with the one kind, if any, that it can tell.
+macro_rules! status {
+    ($(
+        $(#[$doc:meta])*
+        $function:ident($call:ident): $type:ty $(, $kind:ident => |$instance:ident| $value:expr)?;
+    )*) => {
+        $(
+            $(#[$doc])*
+            ///
+            /// # Safety
+            ///
+            /// The [host's promise](super#safety).
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn $function(
+                c: fmi2Component,
+                kind: fmi2StatusKind,
+                value: *mut $type,
+            ) -> fmi2Status {
+                // SAFETY: the host's promise.
+                unsafe {
+                    with_instance(c, stringify!($function), |instance| {
+                        instance.allow(Call::$call)?;
+                        match (kind, value) {
+                            $(($kind, value) => {
+                                let $instance = instance;
+                                write("value", value, $value)
+                            })?
+                            (kind, _) => Err(Error::StatusKind { kind: kind.into() }.into()),
+                        }
+                    })
+                }
+            }
+        )*
+    };
+}
+
+status! {
+    /// `fmi2GetStatus`: how the last step ended.
+    fmi2GetStatus(GetStatus): fmi2Status,
+        fmi2StatusKind_fmi2DoStepStatus => |instance| status_code(instance.step_status());
+    /// `fmi2GetRealStatus`: the last successful time.
+    fmi2GetRealStatus(GetRealStatus): fmi2Real,
+        fmi2StatusKind_fmi2LastSuccessfulTime => |instance| instance.last_successful_time();
+    /// `fmi2GetIntegerStatus`: the standard defines none.
+    fmi2GetIntegerStatus(GetIntegerStatus): fmi2Integer;
+    /// `fmi2GetBooleanStatus`: whether a step was discarded for good.
+    fmi2GetBooleanStatus(GetBooleanStatus): fmi2Boolean,
+        fmi2StatusKind_fmi2Terminated => |instance| fmi2Boolean::from(instance.is_terminated());
+    /// `fmi2GetStringStatus`: nothing is ever pending.
+    fmi2GetStringStatus(GetStringStatus): fmi2String;
+}

@@ -1,0 +1,525 @@
+//! FMU states: going on from one, and bytes that are none.
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use biela::fmi::{
+    Call, Category, Causality, Error, FmuState, Instance, Kind, Order, Quantity, Sink, State,
+    StateError, Status,
+};
+use common::{shipped, stems};
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+struct Silent;
+
+impl Sink for Silent {
+    fn write(&self, _: Status, _: Category, _: &str) {}
+}
+
+fn instance(name: &str) -> Instance {
+    Instance::new(shipped(name), Box::new(Silent), true).expect("the mechanism assembles")
+}
+
+fn initialized(name: &str, settings: [i32; 2]) -> Instance {
+    let mut instance = instance(name);
+    instance.setup_experiment(0.0, Some(10.0)).expect("legal");
+    let choices: Vec<u32> = references(&instance, |quantity| {
+        matches!(quantity, Quantity::RateSource | Quantity::Extrapolation)
+    });
+    instance
+        .set_integer(&choices, &settings[..choices.len()])
+        .expect("there are such choices");
+    instance.enter_initialization_mode().expect("legal");
+    instance.exit_initialization_mode().expect("it starts");
+    instance
+}
+
+fn references(instance: &Instance, which: impl Fn(Quantity) -> bool) -> Vec<u32> {
+    (0..)
+        .zip(instance.variables().list())
+        .filter(|(_, variable)| which(variable.quantity))
+        .map(|(reference, _)| reference)
+        .collect()
+}
+
+/// All variables to the last bit, and what the status functions tell.
+#[derive(Debug, PartialEq)]
+struct Look {
+    state: State,
+    reals: Result<Vec<u64>, Error>,
+    integers: Result<Vec<i32>, Error>,
+    last: u64,
+    terminated: bool,
+}
+
+fn look(instance: &mut Instance) -> Look {
+    let (reals, integers): (Vec<u32>, Vec<u32>) = (0..instance.variables().list().len() as u32)
+        .partition(|&reference| {
+            let variable = &instance.variables().list()[reference as usize];
+            matches!(variable.kind, Kind::Real { .. })
+        });
+    let values = instance.reals(&reals);
+    let reals = values.map(|values| values.map(f64::to_bits).collect());
+    let values = instance.integers(&integers);
+    let integers = values.map(Iterator::collect);
+    Look {
+        state: instance.state(),
+        reals,
+        integers,
+        last: instance.last_successful_time().to_bits(),
+        terminated: instance.is_terminated(),
+    }
+}
+
+/// A step: how it ended, and what is to be seen after it.
+#[derive(Debug, PartialEq)]
+struct Act {
+    outcome: Result<(), Error>,
+    look: Look,
+}
+
+/// One step of a host that uses all that there is to use.
+fn act(instance: &mut Instance, step: u32) -> Act {
+    let t = 0.1 * f64::from(step);
+    for position in references(instance, |quantity| {
+        matches!(quantity, Quantity::Input(_, Order::Position))
+    }) {
+        let start = match instance.variables().list()[position as usize].kind {
+            Kind::Real { start, .. } => start.expect("inputs have start values"),
+            _ => unreachable!("inputs are Reals"),
+        };
+        let value = start + 0.03 * (5.0 * t).sin();
+        // Refused after a step that failed.
+        let _ = instance.set_real(&[position], &[value]);
+        if step % 4 == 1 {
+            let _ = instance.set_real(&[position + 1], &[0.15 * (5.0 * t).cos()]);
+        }
+        if step % 5 == 2 {
+            let _ = instance.set_real_input_derivatives(
+                &[position, position + 1],
+                &[1, 1],
+                &[0.15 * (5.0 * t).cos(), 0.1],
+            );
+        }
+    }
+    if step % 3 == 2 {
+        let _ = look(instance);
+    }
+    let outcome = instance.do_step(t, 0.1);
+    Act {
+        outcome,
+        look: look(instance),
+    }
+}
+
+fn go_on(instance: &mut Instance, from: u32) -> Vec<Act> {
+    (from..from + 8).map(|step| act(instance, step)).collect()
+}
+
+/// The state as another instance reads it.
+fn through_bytes(from: &Instance, to: &mut Instance, state: &FmuState) -> FmuState {
+    let bytes = from
+        .serialize_fmu_state(Call::SerializeFMUstate, state)
+        .expect("it is the same mechanism");
+    to.deserialize_fmu_state(&bytes)
+        .expect("nothing was done to it")
+}
+
+/// From a state on everything is as it was, to the last bit: in the instance itself, after the
+/// state has gone through bytes, and in another instance that had been elsewhere.
+fn assert_replays(name: &str, instance: &mut Instance, from: u32) {
+    let state = instance.fmu_state().expect("allowed in this state");
+    let first = (look(instance), go_on(instance, from));
+    instance.set_fmu_state(&state).expect("it is its own");
+    assert_eq!(instance.fmu_state().as_ref(), Ok(&state), "{name}");
+    assert_eq!((look(instance), go_on(instance, from)), first, "{name}");
+
+    let mut other = initialized(name, [3, 2]);
+    go_on(&mut other, 0);
+    let read = through_bytes(instance, &mut other, &state);
+    assert_eq!(read, state, "{name}");
+    other
+        .set_fmu_state(&read)
+        .expect("the mechanism is the same");
+    assert_eq!((look(&mut other), go_on(&mut other, from)), first, "{name}");
+}
+
+#[test]
+fn from_a_state_on_everything_is_as_it_was() {
+    for name in stems("mechanisms", "toml") {
+        for settings in [[1, 1], [3, 2]] {
+            let mut instance = initialized(&name, settings);
+            for step in 0..7 {
+                assert_eq!(act(&mut instance, step).outcome, Ok(()), "{name}");
+            }
+            assert_replays(&name, &mut instance, 7);
+        }
+    }
+}
+
+/// A state can be got between setting and stepping, when outputs have been read ahead or not.
+#[test]
+fn what_was_set_since_the_last_step_is_part_of_the_state() {
+    for read_ahead in [false, true] {
+        let mut instance = initialized("four_bar", [1, 1]);
+        for step in 0..3 {
+            act(&mut instance, step);
+        }
+        instance.set_real(&[0, 1], &[1.3, 0.5]).unwrap();
+        instance
+            .set_real_input_derivatives(&[0], &[2], &[0.7])
+            .unwrap();
+        if read_ahead {
+            look(&mut instance);
+        }
+        assert_replays("four_bar", &mut instance, 3);
+    }
+}
+
+/// Tunable parameters count as they were set, and as far as the last step has taken them.
+#[test]
+fn tunable_parameters_are_part_of_the_state() {
+    let mut instance = initialized("four_bar", [1, 1]);
+    let tunable = (0..)
+        .zip(instance.variables().list())
+        .find(|(_, variable)| variable.name == "rocker_length")
+        .map(|(reference, _)| reference)
+        .expect("the four-bar has a rocker");
+    instance.set_real(&[tunable], &[0.31]).unwrap();
+    act(&mut instance, 0);
+    instance.set_real(&[tunable], &[0.32]).unwrap();
+    assert_replays("four_bar", &mut instance, 1);
+}
+
+fn fixed_parameter(instance: &Instance) -> u32 {
+    (0..)
+        .zip(instance.variables().list())
+        .find(|(_, variable)| variable.causality == Causality::Parameter)
+        .map(|(reference, _)| reference)
+        .expect("it has a parameter")
+}
+
+/// Before and during initialization, too, and then with everything set so far.
+#[test]
+fn states_before_the_first_step() {
+    type Prepare = fn(&mut Instance);
+    let prepare: [Prepare; 4] = [
+        |_| {},
+        |instance| {
+            let parameter = fixed_parameter(instance);
+            instance.setup_experiment(2.0, Some(3.0)).unwrap();
+            instance.set_real(&[0, parameter], &[0.7, 0.21]).unwrap();
+        },
+        |instance| {
+            instance.enter_initialization_mode().unwrap();
+            instance.set_real(&[0], &[0.9]).unwrap();
+        },
+        |instance| {
+            instance.enter_initialization_mode().unwrap();
+            instance.set_real(&[0], &[0.9]).unwrap();
+            look(instance);
+        },
+    ];
+    let start = |instance: &mut Instance| {
+        let entered = instance.enter_initialization_mode();
+        let before = look(instance);
+        let left = instance.exit_initialization_mode();
+        (entered, before, left, look(instance))
+    };
+    for prepare in prepare {
+        let mut instance = instance("four_bar");
+        prepare(&mut instance);
+        let state = instance.fmu_state().unwrap();
+        let first = start(&mut instance);
+        assert_eq!(first.2, Ok(()));
+        go_on(&mut instance, 0);
+        instance.set_fmu_state(&state).unwrap();
+        assert_eq!(start(&mut instance), first);
+
+        let mut other = initialized("four_bar", [2, 2]);
+        let read = through_bytes(&instance, &mut other, &state);
+        other.set_fmu_state(&read).unwrap();
+        assert_eq!(start(&mut other), first);
+    }
+}
+
+/// The length of the triangle's side that a step cannot reach.
+const TOO_LONG: f64 = 0.9;
+
+#[test]
+fn a_host_goes_on_from_before_a_step_that_failed() {
+    let mut straight = initialized("tlv", [1, 1]);
+    let mut detour = initialized("tlv", [1, 1]);
+    for instance in [&mut straight, &mut detour] {
+        act(instance, 0);
+        act(instance, 1);
+    }
+    let before = detour.fmu_state().unwrap();
+    detour.set_real(&[0], &[TOO_LONG]).unwrap();
+    let error = detour.do_step(0.2, 0.1).unwrap_err();
+    assert!(matches!(error, Error::DeadPoint { .. }));
+    assert_eq!(detour.state(), State::StepFailed);
+    let failed = detour.fmu_state().unwrap();
+    let at_failure = look(&mut detour);
+
+    detour.set_fmu_state(&before).unwrap();
+    assert_eq!(detour.state(), State::StepComplete);
+    assert!(!detour.is_terminated());
+    assert_eq!(go_on(&mut detour, 2), go_on(&mut straight, 2));
+
+    // The failed state itself is one to be looked at, not to be left by a step.
+    detour.set_fmu_state(&failed).unwrap();
+    assert_eq!(look(&mut detour), at_failure);
+    let refused = detour.do_step(0.2, 0.1).unwrap_err();
+    assert!(matches!(refused, Error::State { .. }), "{refused}");
+}
+
+#[test]
+fn a_host_goes_on_after_termination_and_a_failed_initialization() {
+    let mut straight = initialized("tlv", [1, 1]);
+    act(&mut straight, 0);
+    let state = straight.fmu_state().unwrap();
+    let expected = go_on(&mut straight, 1);
+
+    let mut ended = initialized("tlv", [1, 1]);
+    ended.terminate().unwrap();
+    let mut broken = instance("tlv");
+    let parameter = references(&broken, |quantity| {
+        matches!(quantity, Quantity::Parameter(_))
+    })
+    .into_iter()
+    .find(|&reference| broken.variables().list()[reference as usize].name == "arm_length")
+    .unwrap();
+    broken.set_real(&[parameter], &[10.0]).unwrap();
+    broken.enter_initialization_mode().unwrap();
+    broken.exit_initialization_mode().unwrap_err();
+    assert_eq!(broken.state(), State::Error);
+    for mut instance in [ended, broken] {
+        // Neither is harmed by getting and reading a state where it is.
+        let here = instance.fmu_state().unwrap();
+        let seen = look(&mut instance);
+        let read = through_bytes(&straight, &mut instance, &state);
+        assert_eq!(look(&mut instance), seen);
+        instance.set_fmu_state(&read).unwrap();
+        assert_eq!(go_on(&mut instance, 1), expected);
+        instance.set_fmu_state(&here).unwrap();
+        assert_eq!(look(&mut instance), seen);
+    }
+}
+
+#[test]
+fn a_reset_after_setting_a_state_gives_a_new_instance() {
+    let mut used = initialized("four_bar", [3, 2]);
+    go_on(&mut used, 0);
+    let state = used.fmu_state().unwrap();
+    let mut other = initialized("four_bar", [1, 1]);
+    let read = through_bytes(&used, &mut other, &state);
+    other.set_fmu_state(&read).unwrap();
+    other.reset().unwrap();
+    assert_eq!(other.fmu_state(), instance("four_bar").fmu_state());
+}
+
+/// The triangle is driven by its length in one file and by its arm in the other.
+#[test]
+fn a_state_of_another_mechanism_is_refused() {
+    let mut instance = initialized("tlv", [1, 1]);
+    let other = initialized("tlv_crank", [1, 1]);
+    let state = other.fmu_state().unwrap();
+    let before = instance.fmu_state();
+    let refused = |outcome: Result<(), Error>| {
+        let error = outcome.expect_err("it is of another mechanism");
+        let StateError::Mechanism { given, expected } = (match &error {
+            Error::FmuState(error) => error.clone(),
+            _ => panic!("{error}"),
+        }) else {
+            panic!("{error}")
+        };
+        assert_ne!(given, expected);
+        let message = error.to_string();
+        assert!(
+            message.contains(&given) && message.contains(&expected),
+            "{message}"
+        );
+    };
+    refused(instance.set_fmu_state(&state));
+    refused(
+        instance
+            .serialize_fmu_state(Call::SerializeFMUstate, &state)
+            .map(drop),
+    );
+    let bytes = other
+        .serialize_fmu_state(Call::SerializeFMUstate, &state)
+        .unwrap();
+    refused(instance.deserialize_fmu_state(&bytes).map(drop));
+    assert_eq!(instance.fmu_state(), before);
+}
+
+/// A state in the middle of a run, as bytes.
+fn written(name: &str) -> (Instance, Vec<u8>) {
+    let mut instance = initialized(name, [1, 2]);
+    go_on(&mut instance, 0);
+    let bytes = instance
+        .fmu_state()
+        .and_then(|state| instance.serialize_fmu_state(Call::SerializeFMUstate, &state));
+    (instance, bytes.expect("allowed in this state"))
+}
+
+#[track_caller]
+fn reason(instance: &mut Instance, bytes: &[u8]) -> StateError {
+    match instance.deserialize_fmu_state(bytes) {
+        Err(Error::FmuState(error)) => error,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn all_states_of_a_mechanism_have_one_size() {
+    let (running, bytes) = written("four_bar");
+    let new = instance("four_bar");
+    let state = new.fmu_state().unwrap();
+    let first = running.serialize_fmu_state(Call::SerializedFMUstateSize, &state);
+    assert_eq!(first.unwrap().len(), bytes.len());
+}
+
+#[test]
+fn what_is_wrong_with_bytes_is_told() {
+    let (mut instance, bytes) = written("tlv");
+    let altered = |at: usize| {
+        let mut altered = bytes.clone();
+        altered[at] ^= 0x10;
+        altered
+    };
+    for foreign in [
+        &b""[..],
+        b"x",
+        b"[parameters]",
+        &bytes[..19],
+        &altered(0),
+        &[0; 400],
+    ] {
+        let expected = StateError::Foreign {
+            length: foreign.len(),
+        };
+        assert_eq!(reason(&mut instance, foreign), expected);
+    }
+    let version = reason(&mut instance, &altered(8));
+    assert!(
+        matches!(
+            version,
+            StateError::Version {
+                given: 17,
+                expected: 1
+            }
+        ),
+        "{version}"
+    );
+    let mut longer = bytes.clone();
+    longer.push(0);
+    for wrong in [
+        &bytes[..20],
+        &bytes[..61],
+        &bytes[..bytes.len() - 1],
+        &longer,
+    ] {
+        let expected = StateError::Length {
+            announced: bytes.len() as u64,
+            given: wrong.len(),
+        };
+        assert_eq!(reason(&mut instance, wrong), expected);
+    }
+    // The GUID, a value, the checksum itself.
+    for at in [20, 100, bytes.len() - 1] {
+        assert_eq!(
+            reason(&mut instance, &altered(at)),
+            StateError::Checksum,
+            "{at}"
+        );
+    }
+}
+
+/// The bytes with a checksum that fits.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let content = bytes.len() - 4;
+    let checksum = crc32fast::hash(&bytes[..content]);
+    bytes[content..].copy_from_slice(&checksum.to_le_bytes());
+    bytes
+}
+
+/// Another machine may have found the file's own pose with other rounding; here it is its time
+/// that differs, which is the first number of the first of three poses at the end.
+#[test]
+fn initialization_starts_from_the_pose_of_the_state_until_a_reset() {
+    let mut instance = instance("tlv");
+    let state = instance.fmu_state().unwrap();
+    let mut bytes = instance
+        .serialize_fmu_state(Call::SerializeFMUstate, &state)
+        .unwrap();
+    let mechanism = shipped("tlv");
+    let unknowns = 3 * mechanism.bodies.len();
+    let numbers = 1 + mechanism.parameters.len() + mechanism.drivers.len() + unknowns;
+    let pose = 8 * numbers + 4 * unknowns;
+    let home = bytes.len() - 4 - 3 * pose;
+    bytes[home..home + 8].copy_from_slice(&1.0_f64.to_le_bytes());
+
+    let read = instance.deserialize_fmu_state(&sealed(bytes)).unwrap();
+    assert_ne!(read, state);
+    instance.set_fmu_state(&read).unwrap();
+    assert_eq!(instance.fmu_state().as_ref(), Ok(&read));
+    instance.reset().unwrap();
+    assert_eq!(instance.fmu_state(), Ok(state));
+}
+
+proptest! {
+    #[test]
+    fn truncated_states_are_refused(length in any::<Index>()) {
+        let (mut instance, bytes) = written("tlv");
+        let length = length.index(bytes.len());
+        let before = instance.fmu_state();
+        prop_assert!(instance.deserialize_fmu_state(&bytes[..length]).is_err());
+        prop_assert_eq!(instance.fmu_state(), before);
+    }
+
+    #[test]
+    fn states_with_flipped_bits_are_refused(flips in prop::collection::vec(any::<Index>(), 1..4)) {
+        let (mut instance, mut bytes) = written("tlv");
+        let bits: BTreeSet<_> = flips.iter().map(|bit| bit.index(8 * bytes.len())).collect();
+        for bit in bits {
+            bytes[bit / 8] ^= 1 << (bit % 8);
+        }
+        prop_assert!(instance.deserialize_fmu_state(&bytes).is_err());
+    }
+
+    #[test]
+    fn any_bytes_are_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        let (mut instance, start) = written("tlv");
+        prop_assert!(instance.deserialize_fmu_state(&bytes).is_err());
+        // And after a beginning that is right.
+        let bytes = [&start[..20], &bytes].concat();
+        prop_assert!(instance.deserialize_fmu_state(&bytes).is_err());
+    }
+
+    /// Whoever forges the checksum gets no further than to a state that an instance can go on
+    /// from, if only to a step that fails.
+    #[test]
+    fn forged_states_do_no_harm(
+        name in prop::sample::select(vec!["tlv", "four_bar", "cam_roller", "cam_points", "rack_drive"]),
+        changes in prop::collection::vec((any::<Index>(), any::<[u8; 8]>(), 1..9_usize), 1..4),
+    ) {
+        let (mut instance, mut bytes) = written(name);
+        for (place, new, length) in changes {
+            // Behind the envelope.
+            let at = 58 + place.index(bytes.len() - 58 - 4 - 8);
+            bytes[at..at + length].copy_from_slice(&new[..length]);
+        }
+        if let Ok(state) = instance.deserialize_fmu_state(&sealed(bytes)) {
+            instance.set_fmu_state(&state).unwrap();
+            look(&mut instance);
+            go_on(&mut instance, 8);
+            let _ = instance.exit_initialization_mode();
+            instance.reset().unwrap();
+            look(&mut instance);
+        }
+    }
+}
