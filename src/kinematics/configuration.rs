@@ -11,6 +11,21 @@ pub fn perp(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
+/// The unit vector in the direction `angle`. A right angle such as `90*deg` is one only up to
+/// its rounding; the vector then has exact zeros, as the structure of the equations has.
+#[must_use]
+pub(super) fn axis(angle: f64) -> Vector2<f64> {
+    let (sin, cos) = angle.sin_cos();
+    let rounding = f64::EPSILON * angle.abs().max(1.0);
+    if sin.abs() <= rounding {
+        Vector2::new(cos.signum(), 0.0)
+    } else if cos.abs() <= rounding {
+        Vector2::new(0.0, sin.signum())
+    } else {
+        Vector2::new(cos, sin)
+    }
+}
+
 /// A marker in its body's frame, with the parameter values in force.
 #[derive(Clone, Copy, Debug)]
 struct LocalFrame {
@@ -183,8 +198,7 @@ impl Configuration {
                     what: format!("marker `{}`", mechanism.marker_path(MarkerId(index))),
                 });
             }
-            let (sin, cos) = frame.angle.sin_cos();
-            frame.axis = Vector2::new(cos, sin);
+            frame.axis = axis(frame.angle);
         }
         for (value_in_force, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
             *value_in_force = coefficient.expression.evaluate(&value, 0.0);

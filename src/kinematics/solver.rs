@@ -185,6 +185,7 @@ impl Solver {
                 .expect("the parameters of a pose were valid when it was solved");
         }
         self.targets.turns.copy_from_slice(&self.pose.turns);
+        self.plan.return_to_first_pivots();
         self.stand_at_pose();
     }
 

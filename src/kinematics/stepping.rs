@@ -66,6 +66,17 @@ impl Solver {
     /// [`Blocked`] if the end cannot be reached on the continuous motion. The mechanism then
     /// stands at the last pose reached on the way, which is a valid one.
     pub fn follow(&mut self, path: &Path) -> Result<Progress, Blocked> {
+        let followed = self.follow_to_end(path);
+        // How the mechanism goes on from a pose shall depend on the pose alone, to the last bit.
+        if self.plan.return_to_first_pivots() {
+            self.stand_at_pose();
+            // What is singular to the last bit is told by whoever asks for rates.
+            let _ = self.refresh();
+        }
+        followed
+    }
+
+    fn follow_to_end(&mut self, path: &Path) -> Result<Progress, Blocked> {
         let mut progress = Progress::default();
         let mut s = 0.0;
         let mut substep: f64 = 1.0;

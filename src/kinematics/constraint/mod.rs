@@ -26,7 +26,7 @@ pub use distance::Distance;
 pub use projection::Projection;
 pub use rack_and_pinion::RackAndPinion;
 
-use super::configuration::{Configuration, JointUnknownId, MarkerPose, perp};
+use super::configuration::{self, Configuration, JointUnknownId, MarkerPose, perp};
 use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, Expression, MarkerId, Mechanism, ParameterId,
 };
@@ -389,11 +389,10 @@ fn axis_components(mechanism: &Mechanism, marker: MarkerId, axis: Axis) -> [bool
     let marker = &mechanism.markers[marker.index()];
     match (marker.body, marker.angle.literal()) {
         // On ground with a literal angle the axis has a fixed direction, which often runs along
-        // x or y; an angle such as 90*deg is a right angle up to its rounding.
+        // x or y.
         (None, Some(angle)) => {
-            let e = axis.of(Vector2::new(angle.cos(), angle.sin()));
-            let rounding = f64::EPSILON * angle.abs().max(1.0);
-            [e.x.abs() > rounding, e.y.abs() > rounding]
+            let e = axis.of(configuration::axis(angle));
+            [e.x.abs() > 0.0, e.y.abs() > 0.0]
         }
         _ => [true, true],
     }

@@ -139,6 +139,15 @@ impl Lu {
         }
     }
 
+    /// Goes back to the pivots that were chosen first; whether that changes anything.
+    pub fn return_to_first(&mut self) -> bool {
+        match self {
+            // Its pivots are chosen anew each time.
+            Self::Dense(_) => false,
+            Self::Sparse(lu) => lu.return_to_first(),
+        }
+    }
+
     /// Whether the determinant is negative.
     #[must_use]
     pub fn determinant_is_negative(&self) -> bool {

@@ -2,7 +2,8 @@
 //!
 //! The pivots are chosen once, by Markowitz' count among entries that are large enough, which
 //! fixes where the factors have entries. From then on a factorisation is a run over fixed lists,
-//! for as long as its pivots stay large enough; then they are chosen again.
+//! for as long as its pivots stay large enough; then others are chosen, until the first ones are
+//! asked for again.
 
 use std::collections::BTreeSet;
 
@@ -21,11 +22,10 @@ const KEEP: f64 = 1e-3;
 pub struct SparseLu {
     /// The matrix by rows.
     matrix: Rows,
-    order: Option<Order>,
-    /// L without its unit diagonal and U without its diagonal, by rows in the order of pivots;
-    /// columns are numbered likewise.
-    lower: Rows,
-    upper: Rows,
+    /// The factors in the order in use, `None` before pivots are chosen.
+    factors: Option<Triangles>,
+    /// Those in the order chosen first, kept while another one is in use.
+    first: Option<Triangles>,
     diagonal: Vec<f64>,
     /// A row while it is eliminated; zero otherwise.
     work: Vec<f64>,
@@ -38,6 +38,16 @@ struct Rows {
     start: Vec<usize>,
     columns: Vec<usize>,
     values: Vec<f64>,
+}
+
+/// An order of pivots, and the factors in it.
+#[derive(Clone, Debug)]
+struct Triangles {
+    order: Order,
+    /// L without its unit diagonal and U without its diagonal, by rows in the order of pivots;
+    /// columns are numbered likewise.
+    lower: Rows,
+    upper: Rows,
 }
 
 /// The order of pivots.
@@ -80,9 +90,8 @@ impl SparseLu {
         let order = pattern.len();
         Self {
             matrix: Rows::new(pattern.into_iter()),
-            order: None,
-            lower: Rows::default(),
-            upper: Rows::default(),
+            factors: None,
+            first: None,
             diagonal: vec![0.0; order],
             work: vec![0.0; order],
             norm: 0.0,
@@ -122,22 +131,48 @@ impl SparseLu {
         if !self.norm.is_finite() {
             return Err(Singular);
         }
-        if self.order.is_some() && self.eliminate(KEEP) {
+        if self.factors.is_some() && self.eliminate(KEEP) {
             return Ok(());
         }
-        self.choose()?;
+        let Ok(chosen) = self.choose() else {
+            self.return_to_first();
+            return Err(Singular);
+        };
+        let replaced = self.factors.replace(chosen);
+        if self.first.is_none() {
+            self.first = replaced;
+        }
         if self.eliminate(0.0) {
             Ok(())
         } else {
-            self.order = None;
+            if !self.return_to_first() {
+                self.factors = None;
+            }
             Err(Singular)
         }
+    }
+
+    /// Goes back to the pivots that were chosen first, so that what comes does not depend on
+    /// where others had to be chosen. Whether that changes anything; the factors then have to be
+    /// computed again.
+    pub fn return_to_first(&mut self) -> bool {
+        let first = self.first.take();
+        let returns = first.is_some();
+        if returns {
+            self.factors = first;
+        }
+        returns
     }
 
     /// Runs the elimination in the chosen order. False if a pivot is not above `keep` times the
     /// largest entry of its row.
     fn eliminate(&mut self, keep: f64) -> bool {
-        let Some(order) = &self.order else {
+        let Some(Triangles {
+            order,
+            lower,
+            upper,
+        }) = &mut self.factors
+        else {
             return false;
         };
         let mut kept = true;
@@ -147,12 +182,12 @@ impl SparseLu {
             for (&column, &value) in columns.iter().zip(values) {
                 work[order.place[column]] = value;
             }
-            for entry in self.lower.start[k]..self.lower.start[k + 1] {
-                let before = self.lower.columns[entry];
+            for entry in lower.start[k]..lower.start[k + 1] {
+                let before = lower.columns[entry];
                 let factor = work[before] / self.diagonal[before];
                 work[before] = 0.0;
-                self.lower.values[entry] = factor;
-                let (columns, values) = self.upper.row(before);
+                lower.values[entry] = factor;
+                let (columns, values) = upper.row(before);
                 for (&column, &value) in columns.iter().zip(values) {
                     work[column] -= factor * value;
                 }
@@ -160,9 +195,9 @@ impl SparseLu {
             let pivot = std::mem::take(&mut work[k]);
             self.diagonal[k] = pivot;
             let mut largest = pivot.abs();
-            for entry in self.upper.start[k]..self.upper.start[k + 1] {
-                let value = std::mem::take(&mut work[self.upper.columns[entry]]);
-                self.upper.values[entry] = value;
+            for entry in upper.start[k]..upper.start[k + 1] {
+                let value = std::mem::take(&mut work[upper.columns[entry]]);
+                upper.values[entry] = value;
                 largest = largest.max(value.abs());
             }
             // Not so for what is not a number.
@@ -173,7 +208,7 @@ impl SparseLu {
 
     /// Chooses the pivots for the present values: the entry with the fewest others in its row
     /// and column (Markowitz) among those that are large enough.
-    fn choose(&mut self) -> Result<(), Singular> {
+    fn choose(&self) -> Result<Triangles, Singular> {
         let order = self.diagonal.len();
         let mut rows: Vec<Vec<(usize, f64)>> = (0..order)
             .map(|k| {
@@ -229,25 +264,29 @@ impl SparseLu {
         for (k, &column) in columns.iter().enumerate() {
             place[column] = k;
         }
-        self.lower = Rows::new(rows.iter().map(|&row| std::mem::take(&mut lower[row])));
-        self.upper = Rows::new(
-            upper
-                .into_iter()
-                .map(|row| row.into_iter().map(|column| place[column]).collect()),
-        );
-        self.order = Some(Order {
-            odd: is_odd(&rows) ^ is_odd(&columns),
-            rows,
-            columns,
-            place,
-        });
-        Ok(())
+        Ok(Triangles {
+            lower: Rows::new(rows.iter().map(|&row| std::mem::take(&mut lower[row]))),
+            upper: Rows::new(
+                upper
+                    .into_iter()
+                    .map(|row| row.into_iter().map(|column| place[column]).collect()),
+            ),
+            order: Order {
+                odd: is_odd(&rows) ^ is_odd(&columns),
+                rows,
+                columns,
+                place,
+            },
+        })
     }
 
     /// Whether the determinant is negative.
     #[must_use]
     pub fn determinant_is_negative(&self) -> bool {
-        let odd = self.order.as_ref().is_some_and(|order| order.odd);
+        let odd = self
+            .factors
+            .as_ref()
+            .is_some_and(|factors| factors.order.odd);
         let negative = self.diagonal.iter().filter(|pivot| **pivot < 0.0).count();
         odd ^ (negative % 2 == 1)
     }
@@ -322,15 +361,22 @@ impl Factors for SparseLu {
     }
 
     fn solve(&mut self, b: &mut [f64]) {
-        let Some(order) = &self.order else { return };
+        let Some(Triangles {
+            order,
+            lower,
+            upper,
+        }) = &self.factors
+        else {
+            return;
+        };
         let x = &mut self.work;
         for (k, &row) in order.rows.iter().enumerate() {
-            let (columns, values) = self.lower.row(k);
+            let (columns, values) = lower.row(k);
             let known = columns.iter().zip(values).map(|(&c, l)| l * x[c]);
             x[k] = b[row] - known.sum::<f64>();
         }
         for k in (0..x.len()).rev() {
-            let (columns, values) = self.upper.row(k);
+            let (columns, values) = upper.row(k);
             let known = columns.iter().zip(values).map(|(&c, u)| u * x[c]);
             x[k] = (x[k] - known.sum::<f64>()) / self.diagonal[k];
         }
@@ -340,7 +386,14 @@ impl Factors for SparseLu {
     }
 
     fn solve_transposed(&mut self, b: &mut [f64]) {
-        let Some(order) = &self.order else { return };
+        let Some(Triangles {
+            order,
+            lower,
+            upper,
+        }) = &self.factors
+        else {
+            return;
+        };
         let x = &mut self.work;
         for (x, &column) in x.iter_mut().zip(&order.columns) {
             *x = b[column];
@@ -348,14 +401,14 @@ impl Factors for SparseLu {
         for k in 0..x.len() {
             let value = x[k] / self.diagonal[k];
             x[k] = value;
-            let (columns, values) = self.upper.row(k);
+            let (columns, values) = upper.row(k);
             for (&column, u) in columns.iter().zip(values) {
                 x[column] -= u * value;
             }
         }
         for k in (0..x.len()).rev() {
             let value = x[k];
-            let (columns, values) = self.lower.row(k);
+            let (columns, values) = lower.row(k);
             for (&column, l) in columns.iter().zip(values) {
                 x[column] -= l * value;
             }
@@ -462,5 +515,11 @@ mod tests {
                 assert_eq!(x.map(|x| x as i32), [first, second]);
             }
         }
+        // With nothing left the first pivots are there again.
+        assert!(!lu.return_to_first());
+        lu.add(0, 0, 1.0);
+        lu.add(1, 1, 1.0);
+        assert_eq!(lu.factorise(0.0), Ok(()));
+        assert_eq!(lu.diagonal, [1.0, 1.0]);
     }
 }

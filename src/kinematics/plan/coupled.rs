@@ -80,6 +80,11 @@ impl Coupled {
         matches!(self.lu, Lu::Sparse(_))
     }
 
+    /// Goes back to the pivots that were chosen first; whether that changes anything.
+    pub(super) fn return_to_first_pivots(&mut self) -> bool {
+        self.lu.return_to_first()
+    }
+
     /// Evaluates the rows and their Jacobian at the pose in `work`, not yet factorised.
     fn evaluate(&mut self, work: &Work<'_>) {
         let Self {

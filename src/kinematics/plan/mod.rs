@@ -116,6 +116,18 @@ impl Plan {
         }
     }
 
+    /// Goes back to the pivots that were chosen first; whether that changes anything, so that
+    /// the plan has to be factorised again.
+    pub(super) fn return_to_first_pivots(&mut self) -> bool {
+        let mut changed = false;
+        for kernel in &mut self.kernels {
+            if let Kernel::Coupled(kernel) = kernel {
+                changed |= kernel.return_to_first_pivots();
+            }
+        }
+        changed
+    }
+
     /// Goes from the pose at which all kernels are factorised to the one that belongs to new
     /// values of the drivers: predicts along the flow, then corrects, kernel by kernel. With
     /// `unit`, the flow becomes the one for these rates of the drivers at the new pose on the
