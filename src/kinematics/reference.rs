@@ -80,9 +80,10 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
     rcond
 }
 
-fn assembled(text: &str, what: &str) -> (Solver, Path) {
-    let (mechanism, _) = Mechanism::parse(&Source::new("test.toml", text))
-        .unwrap_or_else(|diagnostics| panic!("{what}: {diagnostics:#?}"));
+fn assembled(source: &Source) -> (Solver, Path) {
+    let what = source.name();
+    let (mechanism, _) =
+        Mechanism::parse(source).unwrap_or_else(|diagnostics| panic!("{what}: {diagnostics:#?}"));
     let path = Path::new(&mechanism);
     let mut solver = Solver::new(Arc::new(mechanism)).expect("the drivers match");
     solver
@@ -117,12 +118,8 @@ fn every_shipped_mechanism_agrees() {
             continue;
         }
         let name = file.display().to_string();
-        let text = std::fs::read_to_string(&file).expect("it can be read");
-        // Tables of motion stand in files beside them.
-        if text.contains(".csv") {
-            continue;
-        }
-        let (mut solver, mut path) = assembled(&text, &name);
+        let source = Source::open(name.clone(), &file).expect("it can be read");
+        let (mut solver, mut path) = assembled(&source);
         let drivers: Vec<_> = (0..solver.pose.drivers.len())
             .map(|k| Jet {
                 value: 0.0,
@@ -153,7 +150,7 @@ fn generated_mechanisms_agree() {
     ];
     for (index, text) in texts.iter().enumerate() {
         let name = format!("mechanism {index}");
-        let (mut solver, mut path) = assembled(text, &name);
+        let (mut solver, mut path) = assembled(&Source::new(name.clone(), text));
         let driver = Jet {
             value: 0.0,
             first: 1.3,
