@@ -144,7 +144,7 @@ fn make(
         Request::Serialize(index) => {
             let state = &saved[index.index(saved.len())];
             let read = instance
-                .serialize_fmu_state(Call::SerializeFMUstate, state)
+                .serialize_fmu_state(state)
                 .and_then(|bytes| instance.deserialize_fmu_state(&bytes));
             let outcome = read.map(|read| {
                 assert_eq!(text(&Ok(read)), text(&Ok(state.clone())));
