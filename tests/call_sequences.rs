@@ -32,12 +32,14 @@ enum Request {
     Serialize(Index),
 }
 
+/// A number such as hosts set, or one that no host should: as large as leaves products of lengths
+/// numbers.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => 0.0..1.0_f64,
         2 => -3.0..3.0_f64,
         1 => select(vec![
-            f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MIN_POSITIVE, 1e300, -1e300,
+            f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MIN_POSITIVE, 1e100, -1e100,
         ]),
     ]
 }
@@ -144,7 +146,7 @@ fn make(
         Request::Serialize(index) => {
             let state = &saved[index.index(saved.len())];
             let read = instance
-                .serialize_fmu_state(Call::SerializeFMUstate, state)
+                .serialize_fmu_state(state)
                 .and_then(|bytes| instance.deserialize_fmu_state(&bytes));
             let outcome = read.map(|read| {
                 assert_eq!(text(&Ok(read)), text(&Ok(state.clone())));

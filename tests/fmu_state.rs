@@ -5,8 +5,8 @@ mod common;
 use std::collections::BTreeSet;
 
 use biela::fmi::{
-    Call, Category, Causality, Error, FmuState, Instance, Kind, Order, Quantity, Sink, State,
-    StateError, Status,
+    Category, Causality, Error, FmuState, Instance, Kind, Order, Quantity, Sink, State, StateError,
+    Status,
 };
 use common::{shipped, stems};
 use proptest::prelude::*;
@@ -121,7 +121,7 @@ fn go_on(instance: &mut Instance, from: u32) -> Vec<Act> {
 /// The state as another instance reads it.
 fn through_bytes(from: &Instance, to: &mut Instance, state: &FmuState) -> FmuState {
     let bytes = from
-        .serialize_fmu_state(Call::SerializeFMUstate, state)
+        .serialize_fmu_state(state)
         .expect("it is the same mechanism");
     to.deserialize_fmu_state(&bytes)
         .expect("nothing was done to it")
@@ -344,14 +344,8 @@ fn a_state_of_another_mechanism_is_refused() {
         );
     };
     refused(instance.set_fmu_state(&state));
-    refused(
-        instance
-            .serialize_fmu_state(Call::SerializeFMUstate, &state)
-            .map(drop),
-    );
-    let bytes = other
-        .serialize_fmu_state(Call::SerializeFMUstate, &state)
-        .unwrap();
+    refused(instance.serialize_fmu_state(&state).map(drop));
+    let bytes = other.serialize_fmu_state(&state).unwrap();
     refused(instance.deserialize_fmu_state(&bytes).map(drop));
     assert_eq!(instance.fmu_state(), before);
 }
@@ -362,7 +356,7 @@ fn written(name: &str) -> (Instance, Vec<u8>) {
     go_on(&mut instance, 0);
     let bytes = instance
         .fmu_state()
-        .and_then(|state| instance.serialize_fmu_state(Call::SerializeFMUstate, &state));
+        .and_then(|state| instance.serialize_fmu_state(&state));
     (instance, bytes.expect("allowed in this state"))
 }
 
@@ -379,8 +373,8 @@ fn all_states_of_a_mechanism_have_one_size() {
     let (running, bytes) = written("four_bar");
     let new = instance("four_bar");
     let state = new.fmu_state().unwrap();
-    let first = running.serialize_fmu_state(Call::SerializedFMUstateSize, &state);
-    assert_eq!(first.unwrap().len(), bytes.len());
+    let first = running.serialized_fmu_state_size(&state);
+    assert_eq!(first, Ok(bytes.len()));
 }
 
 #[test]
@@ -453,9 +447,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 fn initialization_starts_from_the_pose_of_the_state_until_a_reset() {
     let mut instance = instance("tlv");
     let state = instance.fmu_state().unwrap();
-    let mut bytes = instance
-        .serialize_fmu_state(Call::SerializeFMUstate, &state)
-        .unwrap();
+    let mut bytes = instance.serialize_fmu_state(&state).unwrap();
     let mechanism = shipped("tlv");
     let unknowns = 3 * mechanism.bodies.len();
     let numbers = 1 + mechanism.parameters.len() + mechanism.drivers.len() + unknowns;

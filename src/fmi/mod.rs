@@ -3,7 +3,7 @@
 //! The same library serves every mechanism. Exporting writes the mechanism's file and the
 //! [model description](model_description) made from its [table of variables](Variables) into an
 //! archive beside this library; instantiating reads the mechanism back. An [`Instance`] is safe
-//! Rust and knows nothing of C; `abi` wraps it.
+//! Rust and knows nothing of C; `abi` wraps it. An [`FmuState`] is what it can be set back to.
 
 mod abi;
 mod codec;

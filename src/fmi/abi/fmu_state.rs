@@ -106,9 +106,8 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     // SAFETY: the host's promise.
     unsafe {
         with_instance(c, "fmi2SerializedFMUstateSize", |instance| {
-            let call = Call::SerializedFMUstateSize;
-            let bytes = instance.serialize_fmu_state(call, state(fmu_state)?)?;
-            write("size", size, bytes.len())
+            let bytes = instance.serialized_fmu_state_size(state(fmu_state)?)?;
+            write("size", size, bytes)
         })
     }
 }
@@ -128,8 +127,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
     // SAFETY: the host's promise.
     unsafe {
         with_instance(c, "fmi2SerializeFMUstate", |instance| {
-            let call = Call::SerializeFMUstate;
-            let bytes = instance.serialize_fmu_state(call, state(fmu_state)?)?;
+            let bytes = instance.serialize_fmu_state(state(fmu_state)?)?;
             let room = Room::new("serializedState", serialized_state, size)?;
             // With more room the host would hand back more than was written.
             if size != bytes.len() {

@@ -191,15 +191,30 @@ impl Instance {
         Ok(())
     }
 
-    /// `fmi2SerializedFMUstateSize` and `fmi2SerializeFMUstate`: a state as bytes that
-    /// [`deserialize_fmu_state`](Self::deserialize_fmu_state) reads, here or elsewhere. All
-    /// states of a mechanism have the same size.
+    /// `fmi2SerializedFMUstateSize`: how many bytes
+    /// [`serialize_fmu_state`](Self::serialize_fmu_state) gives, which is the same for all states
+    /// of a mechanism.
     ///
     /// # Errors
     ///
-    /// The state is of another mechanism, or the state machine does not allow `call`.
-    pub fn serialize_fmu_state(&self, call: Call, state: &FmuState) -> Result<Vec<u8>, Error> {
-        self.allow(call)?;
+    /// The state is of another mechanism, or the state machine does not allow the call.
+    pub fn serialized_fmu_state_size(&self, state: &FmuState) -> Result<usize, Error> {
+        self.allow(Call::SerializedFMUstateSize)?;
+        Ok(self.serialized(state)?.len())
+    }
+
+    /// `fmi2SerializeFMUstate`: a state as bytes that
+    /// [`deserialize_fmu_state`](Self::deserialize_fmu_state) reads, here or elsewhere.
+    ///
+    /// # Errors
+    ///
+    /// The state is of another mechanism, or the state machine does not allow the call.
+    pub fn serialize_fmu_state(&self, state: &FmuState) -> Result<Vec<u8>, Error> {
+        self.allow(Call::SerializeFMUstate)?;
+        self.serialized(state)
+    }
+
+    fn serialized(&self, state: &FmuState) -> Result<Vec<u8>, Error> {
         self.check_guid(&state.guid)?;
         Ok(serialized::write(&self.guid, |writer| {
             // A walk may replace what it goes through.
