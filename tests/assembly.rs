@@ -240,3 +240,23 @@ fn values_that_make_no_mechanism_are_named() {
     assert_eq!(solver.pose(), &home);
     assert!(solver.residual() < 4.0 * f64::EPSILON);
 }
+
+/// Squares of such lengths overflow: an answer, not an endless search.
+#[test]
+fn lengths_beyond_all_numbers_are_answered() {
+    for (file, parameter) in [
+        ("four_bar", "crank_length"),
+        ("tlv", "arm_length"),
+        ("tlv", "base"),
+        ("slider_crank", "rod_length"),
+    ] {
+        let mechanism = shipped(file);
+        let parameter = mechanism.parameter_id(parameter).expect("it has one");
+        for value in [1e160, 1e300] {
+            let (mut solver, mut path) = assembled(&mechanism);
+            path.to[parameter.index()] = value;
+            let error = solver.assemble(&path).expect_err(file).to_string();
+            assert!(!error.ends_with(": "), "{file}: {error}");
+        }
+    }
+}

@@ -277,6 +277,17 @@ impl Solver {
     /// The verdict on a part whose nearest pose, at which the solver stands, leaves gaps.
     fn explain_failure(&mut self, part: &Part) -> Error {
         let (residual, jacobian) = part.equations(&self.work().1);
+        // Lengths whose squares overflow leave nothing to look at.
+        let beyond_numbers = || Error::NotFinite {
+            what: "an equation of the mechanism".to_owned(),
+        };
+        if !residual
+            .iter()
+            .chain(jacobian.iter())
+            .all(|x| x.is_finite())
+        {
+            return beyond_numbers();
+        }
         if residual.amax() <= CLOSED {
             let singular = jacobian.singular_values();
             return Error::Singular {
@@ -284,6 +295,9 @@ impl Solver {
             };
         }
         let spread = self.open_joints(part, residual.amax());
+        if spread.is_empty() {
+            return beyond_numbers();
+        }
         // The minimum spreads the gap over all joints of a loop. People look for one joint that
         // does not meet: gather it where it is smallest, in the joint declared last on a tie.
         let mut best: Option<(f64, OpenJoint)> = None;
