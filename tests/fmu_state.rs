@@ -325,7 +325,7 @@ fn a_reset_after_setting_a_state_gives_a_new_instance() {
 #[test]
 fn a_state_of_another_mechanism_is_refused() {
     let mut instance = initialized("tlv", [1, 1]);
-    let other = initialized("tlv_crank", [1, 1]);
+    let mut other = initialized("tlv_crank", [1, 1]);
     let state = other.fmu_state().unwrap();
     let before = instance.fmu_state();
     let refused = |outcome: Result<(), Error>| {
@@ -371,7 +371,7 @@ fn reason(instance: &mut Instance, bytes: &[u8]) -> StateError {
 #[test]
 fn all_states_of_a_mechanism_have_one_size() {
     let (running, bytes) = written("four_bar");
-    let new = instance("four_bar");
+    let mut new = instance("four_bar");
     let state = new.fmu_state().unwrap();
     let first = running.serialized_fmu_state_size(&state);
     assert_eq!(first, Ok(bytes.len()));

@@ -7,7 +7,7 @@ mod generated;
 
 use std::f64::consts::{PI, TAU};
 
-use biela::kinematics::{Path, Reason, Solver};
+use biela::kinematics::{Curve, Path, Reason, Solver};
 use biela::mechanism::Jet;
 use common::{EXACT, assembled, parse, shipped, straight_to};
 use generated::scissor_lift;
@@ -406,4 +406,45 @@ fn ten_thousand_steps_leave_no_residual_behind() {
             solver.residual()
         );
     }
+}
+
+/// A crank that starts from rest and turns by most of a turn within one step, by its acceleration
+/// alone: the parallelogram would be laid flat on the way, which is refused.
+#[test]
+fn a_turn_from_rest_is_followed_all_the_way() {
+    let (mut solver, mut path) = assembled(&shipped("parallelogram"));
+    let start = solver.pose().drivers[0];
+    path.duration = 1.0;
+    path.curves[0] = Curve::Input {
+        position: start,
+        velocity: 0.0,
+        acceleration: 2.0 * 5.3,
+        jump: 0.0,
+    };
+    let blocked = solver
+        .follow(&path)
+        .expect_err("two change points are in the way");
+    // Flat where the crank has turned to 180°.
+    let flat = ((PI - start) / 5.3).sqrt();
+    assert!((blocked.s - flat).abs() < 1e-3, "{} {flat}", blocked.s);
+}
+
+/// A stroke so long that the old value is lost beside it: refused, and nothing is lost.
+#[test]
+fn a_jump_beyond_all_rounding_is_refused() {
+    let mechanism = parse(
+        "format = 1\nname = 'slide'\n[ground.markers]\nO = [0, 0]\n[bodies.slide]\n\
+         markers = { O = [0, 0] }\nestimate = [0.3, 0, 0]\n[joints]\n\
+         O = { type = 'translational', markers = ['ground.O', 'slide.O'] }\n[drivers]\n\
+         d = { coordinate = 'distance', markers = ['ground.O', 'slide.O'], start = 0.3 }\n",
+    );
+    let (mut solver, mut path) = assembled(&mechanism);
+    let before = solver.pose().clone();
+    straight_to(&solver, &mut path, -1e17);
+    let blocked = solver.follow(&path).expect_err("no distance is negative");
+    assert!(matches!(blocked.reason, Reason::Value(_)), "{blocked:?}");
+    assert_eq!(solver.pose().parameters, before.parameters);
+    solver.restore(&before);
+    straight_to(&solver, &mut path, 0.4);
+    solver.follow(&path).expect("the slide is as it was");
 }

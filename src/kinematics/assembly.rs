@@ -66,8 +66,6 @@ impl Solver {
             Err(kernel) => self.assemble_at_once(kernel, &estimate)?,
         };
         self.choose_turns(&estimate);
-        self.plan.return_to_first_pivots();
-        self.stand_at_pose();
         self.refresh()?;
         let rcond = self.plan.rcond();
         if rcond < SINGULAR {

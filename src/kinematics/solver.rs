@@ -85,6 +85,9 @@ pub struct Solver {
     pub(super) path_parameters: Vec<Jet>,
     /// Whether they differ between the ends of the path that is followed.
     pub(super) parameters_move: bool,
+    /// Time and parameters where a sub-step starts.
+    pub(super) origin_time: f64,
+    pub(super) origin_parameters: Vec<f64>,
     pub(super) path_drivers: Vec<Jet>,
     /// The drivers where a sub-step starts.
     pub(super) origin_drivers: Vec<Jet>,
@@ -135,6 +138,8 @@ impl Solver {
             motions,
             path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
             parameters_move: false,
+            origin_time: pose.time,
+            origin_parameters: pose.parameters.clone(),
             path_drivers: vec![Jet::constant(0.0); drivers],
             origin_drivers: vec![Jet::constant(0.0); drivers],
             next_drivers: vec![0.0; drivers],
@@ -185,7 +190,13 @@ impl Solver {
                 .expect("the parameters of a pose were valid when it was solved");
         }
         self.targets.turns.copy_from_slice(&self.pose.turns);
-        self.plan.return_to_first_pivots();
+        self.stand_at_pose();
+    }
+
+    /// Lets go of what the way to the present pose has left behind, the pivots of sparse
+    /// matrices: from here on everything depends on the pose alone, to the last bit.
+    pub fn forget_way(&mut self) {
+        self.plan.forget_pivots();
         self.stand_at_pose();
     }
 

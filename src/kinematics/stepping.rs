@@ -66,17 +66,6 @@ impl Solver {
     /// [`Blocked`] if the end cannot be reached on the continuous motion. The mechanism then
     /// stands at the last pose reached on the way, which is a valid one.
     pub fn follow(&mut self, path: &Path) -> Result<Progress, Blocked> {
-        let followed = self.follow_to_end(path);
-        // How the mechanism goes on from a pose shall depend on the pose alone, to the last bit.
-        if self.plan.return_to_first_pivots() {
-            self.stand_at_pose();
-            // What is singular to the last bit is told by whoever asks for rates.
-            let _ = self.refresh();
-        }
-        followed
-    }
-
-    fn follow_to_end(&mut self, path: &Path) -> Result<Progress, Blocked> {
         let mut progress = Progress::default();
         let mut s = 0.0;
         let mut substep: f64 = 1.0;
@@ -95,8 +84,14 @@ impl Solver {
         self.drive(path, 0.0);
         while s < 1.0 {
             self.predict();
-            let advance = self.advance_of(1.0);
-            substep = substep.min(LARGEST_TURN / self.turn_of(advance));
+            while self.turn_within(substep) > LARGEST_TURN && substep >= SMALLEST_SUBSTEP {
+                substep *= 0.5;
+            }
+            self.origin_time = self.pose.time;
+            if self.parameters_move {
+                self.origin_parameters
+                    .copy_from_slice(&self.pose.parameters);
+            }
             let start = s;
             if substep < SMALLEST_SUBSTEP || progress.substeps >= MOST_SUBSTEPS {
                 return blocked(s, Reason::TooLong, progress);
@@ -159,20 +154,21 @@ impl Solver {
         }
     }
 
-    /// The fastest turn of a body along the tangent, in radians for the whole path, whose
-    /// `advance` this is.
-    fn turn_of(&self, advance: Advance) -> f64 {
-        let first = match self.origin_drivers[..] {
-            [u] => u.first,
-            _ => advance.first,
+    /// A bound of how far a body turns over the part `h` of the path \[rad\], by tangent and
+    /// curvature of the motion there. What parameters add that move as well is left out.
+    fn turn_within(&self, h: f64) -> f64 {
+        let way = match self.origin_drivers[..] {
+            [u] => h * (u.first.abs() + 0.5 * h * u.second.abs()),
+            _ => h,
         };
         let bodies = 3 * self.system.mechanism().bodies.len();
-        let (bodies, joints) = self.flow.velocity().split_at(bodies);
-        let angles = bodies
-            .chunks_exact(3)
-            .map(|v| v[2])
-            .chain(joints.iter().copied());
-        first.abs() * angles.fold(0.0, |fastest: f64, turn| fastest.max(turn.abs()))
+        let rates = self.flow.velocity().iter().zip(self.flow.acceleration());
+        let angles = rates
+            .enumerate()
+            .filter(|(column, _)| *column >= bodies || column % 3 == 2);
+        angles.fold(0.0, |most: f64, (_, (first, second))| {
+            most.max(way * (first.abs() + 0.5 * way * second.abs()))
+        })
     }
 
     /// Whether the prescribed motions between the two ends go where their value, velocity and
@@ -282,8 +278,15 @@ impl Solver {
 
     /// Returns from a sub-step that failed to the pose, which was reached at s.
     fn stand_at(&mut self, path: &Path, s: f64) {
-        self.set_path(path, s)
-            .expect("the path was valid where the mechanism has been");
+        self.pose.time = self.origin_time;
+        if self.parameters_move {
+            self.pose
+                .parameters
+                .copy_from_slice(&self.origin_parameters);
+            self.take_over_parameters()
+                .expect("these parameters were in force before");
+        }
+        self.drive(path, s);
         self.stand_at_pose();
         self.refresh()
             .expect("the pose was regular when it was reached");

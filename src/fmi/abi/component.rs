@@ -46,9 +46,14 @@ impl Component {
     }
 
     /// Whether nobody else was using the instance, whose use is the caller's from now on.
+    ///
+    /// The host has promised to call from one thread at a time, so that looking and then taking
+    /// is enough; it costs a fraction of an atomic exchange, of which each call would need two.
     fn seize(&self) -> bool {
-        let free = !self.busy.swap(true, Ordering::Acquire);
-        if !free {
+        let free = !self.busy.load(Ordering::Acquire);
+        if free {
+            self.busy.store(true, Ordering::Relaxed);
+        } else {
             self.disturbed.store(true, Ordering::Relaxed);
         }
         free
@@ -76,7 +81,7 @@ impl Component {
 ///
 /// # Safety
 ///
-/// `c` is null or a component that has not been freed.
+/// `c` is null or a component that has not been freed, and no other thread uses it meanwhile.
 pub(super) unsafe fn with_instance(
     c: fmi2Component,
     call: &str,
@@ -90,11 +95,12 @@ pub(super) unsafe fn with_instance(
         // The instance's logger cannot be reached now; who is being served will tell of it.
         return fmi2Status_fmi2Error;
     }
-    // SAFETY: seized, so that this is the only reference to the instance until `busy` is false
-    // again.
+    // SAFETY: seized, and calls come from one thread at a time, so that this is the only reference
+    // to the instance until `busy` is false again.
     let instance = unsafe { &mut *component.instance.get() };
     let status = serve(instance, call, f);
-    if component.disturbed.swap(false, Ordering::Relaxed) {
+    if component.disturbed.load(Ordering::Relaxed) {
+        component.disturbed.store(false, Ordering::Relaxed);
         let _ = catch_unwind(AssertUnwindSafe(|| {
             instance.report_argument(
                 call,

@@ -104,8 +104,15 @@ impl Instance {
     /// # Errors
     ///
     /// The state machine does not allow it.
-    pub fn fmu_state(&self) -> Result<FmuState, Error> {
+    pub fn fmu_state(&mut self) -> Result<FmuState, Error> {
         self.allow(Call::GetFMUstate)?;
+        // A stale pose is found anew from the committed one.
+        if self.freshness == Freshness::Stale {
+            self.solver.restore(&self.committed);
+            self.at_committed = true;
+        }
+        self.solver.forget_way();
+        self.freshness = self.freshness.min(Freshness::Pose);
         // Field by field, so that a new one cannot be forgotten.
         let Self {
             mechanism: _,
@@ -134,7 +141,6 @@ impl Instance {
             last_successful_time,
             terminated,
         } = self;
-        // A stale pose is found anew from the committed one.
         let at_committed = *at_committed || *freshness == Freshness::Stale;
         Ok(FmuState {
             guid: Arc::clone(guid),
@@ -151,7 +157,7 @@ impl Instance {
             at_committed,
             driver_rates: driver_rates.clone(),
             committed_rates: committed_rates.clone(),
-            freshness: (*freshness).min(Freshness::Pose),
+            freshness: *freshness,
             progress: *progress,
             time: *time,
             stop_time: *stop_time,
@@ -175,6 +181,7 @@ impl Instance {
         self.inputs.clone_from(&state.inputs);
         self.committed.clone_from(&state.committed);
         self.solver.restore(&state.standing);
+        self.solver.forget_way();
         self.at_committed = state.at_committed;
         self.driver_rates.clone_from(&state.driver_rates);
         self.committed_rates.clone_from(&state.committed_rates);

@@ -139,12 +139,10 @@ impl Lu {
         }
     }
 
-    /// Goes back to the pivots that were chosen first; whether that changes anything.
-    pub fn return_to_first(&mut self) -> bool {
-        match self {
-            // Its pivots are chosen anew each time.
-            Self::Dense(_) => false,
-            Self::Sparse(lu) => lu.return_to_first(),
+    /// Lets the next factorisation choose its pivots, as that of a dense matrix always does.
+    pub fn forget_pivots(&mut self) {
+        if let Self::Sparse(lu) = self {
+            lu.forget_pivots();
         }
     }
 

@@ -2,8 +2,7 @@
 //!
 //! The pivots are chosen once, by Markowitz' count among entries that are large enough, which
 //! fixes where the factors have entries. From then on a factorisation is a run over fixed lists,
-//! for as long as its pivots stay large enough; then others are chosen, until the first ones are
-//! asked for again.
+//! for as long as its pivots stay large enough; then they are chosen again.
 
 use std::collections::BTreeSet;
 
@@ -24,8 +23,6 @@ pub struct SparseLu {
     matrix: Rows,
     /// The factors in the order in use, `None` before pivots are chosen.
     factors: Option<Triangles>,
-    /// Those in the order chosen first, kept while another one is in use.
-    first: Option<Triangles>,
     diagonal: Vec<f64>,
     /// A row while it is eliminated; zero otherwise.
     work: Vec<f64>,
@@ -91,7 +88,6 @@ impl SparseLu {
         Self {
             matrix: Rows::new(pattern.into_iter()),
             factors: None,
-            first: None,
             diagonal: vec![0.0; order],
             work: vec![0.0; order],
             norm: 0.0,
@@ -134,34 +130,18 @@ impl SparseLu {
         if self.factors.is_some() && self.eliminate(KEEP) {
             return Ok(());
         }
-        let Ok(chosen) = self.choose() else {
-            self.return_to_first();
-            return Err(Singular);
-        };
-        let replaced = self.factors.replace(chosen);
-        if self.first.is_none() {
-            self.first = replaced;
-        }
+        self.factors = Some(self.choose()?);
         if self.eliminate(0.0) {
             Ok(())
         } else {
-            if !self.return_to_first() {
-                self.factors = None;
-            }
+            self.factors = None;
             Err(Singular)
         }
     }
 
-    /// Goes back to the pivots that were chosen first, so that what comes does not depend on
-    /// where others had to be chosen. Whether that changes anything; the factors then have to be
-    /// computed again.
-    pub fn return_to_first(&mut self) -> bool {
-        let first = self.first.take();
-        let returns = first.is_some();
-        if returns {
-            self.factors = first;
-        }
-        returns
+    /// Lets the next factorisation choose its pivots.
+    pub fn forget_pivots(&mut self) {
+        self.factors = None;
     }
 
     /// Runs the elimination in the chosen order. False if a pivot is not above `keep` times the
@@ -515,11 +495,5 @@ mod tests {
                 assert_eq!(x.map(|x| x as i32), [first, second]);
             }
         }
-        // With nothing left the first pivots are there again.
-        assert!(!lu.return_to_first());
-        lu.add(0, 0, 1.0);
-        lu.add(1, 1, 1.0);
-        assert_eq!(lu.factorise(0.0), Ok(()));
-        assert_eq!(lu.diagonal, [1.0, 1.0]);
     }
 }

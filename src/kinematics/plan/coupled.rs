@@ -80,9 +80,9 @@ impl Coupled {
         matches!(self.lu, Lu::Sparse(_))
     }
 
-    /// Goes back to the pivots that were chosen first; whether that changes anything.
-    pub(super) fn return_to_first_pivots(&mut self) -> bool {
-        self.lu.return_to_first()
+    /// Lets a sparse matrix choose its pivots anew.
+    pub(super) fn forget_pivots(&mut self) {
+        self.lu.forget_pivots();
     }
 
     /// Evaluates the rows and their Jacobian at the pose in `work`, not yet factorised.

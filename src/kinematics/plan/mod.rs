@@ -116,16 +116,13 @@ impl Plan {
         }
     }
 
-    /// Goes back to the pivots that were chosen first; whether that changes anything, so that
-    /// the plan has to be factorised again.
-    pub(super) fn return_to_first_pivots(&mut self) -> bool {
-        let mut changed = false;
+    /// Lets sparse matrices choose their pivots anew; the plan has then to be factorised again.
+    pub(super) fn forget_pivots(&mut self) {
         for kernel in &mut self.kernels {
             if let Kernel::Coupled(kernel) = kernel {
-                changed |= kernel.return_to_first_pivots();
+                kernel.forget_pivots();
             }
         }
-        changed
     }
 
     /// Goes from the pose at which all kernels are factorised to the one that belongs to new

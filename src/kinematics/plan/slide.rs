@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use super::anchor::{Anchor, Moving, Place, compact};
 use super::{Advance, Work};
-use crate::kinematics::configuration::{BodyPose, Configuration, perp};
+use crate::kinematics::configuration::{self, BodyPose, Configuration, perp};
 use crate::kinematics::constraint::{Axis, Projection};
 use crate::kinematics::newton::{
     AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
@@ -237,10 +237,10 @@ impl Slide {
                 Point::Parallel(arm) => *arm = between.rotate(s - inner),
             }
         }
-        let (sin, cos) = at.local(axes).1.sin_cos();
+        let u = configuration::axis(at.local(axes).1);
         let direction = match axis {
-            Axis::X => Vector2::new(cos, sin),
-            Axis::Y => Vector2::new(-sin, cos),
+            Axis::X => u,
+            Axis::Y => perp(u),
         };
         let on_second = parts.second.as_ref().is_some_and(|b| {
             at.marker(axes)
