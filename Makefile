@@ -24,6 +24,12 @@ BIN_DIR = $(DESTDIR)$(PREFIX)/bin
 LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 
+# Only by itself is the library optimised as a whole: as rlib and cdylib at once it is not.
+define BUILD
+$(CARGO) build --release --locked
+$(CARGO) rustc --release --locked --lib --crate-type cdylib
+endef
+
 # The shipped mechanisms with the tables that they name.
 MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 
@@ -49,7 +55,7 @@ test: setup ## run all tests: Rust, documentation, FMPy
 	else \
 	    echo '$(CARGO) test --workspace --locked' && $(CARGO) test --workspace --locked; \
 	fi
-	$(CARGO) build --release --locked
+	$(BUILD)
 	$(PYTHON) -m pytest tests/fmpy
 
 bench: build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
@@ -62,7 +68,7 @@ lint: setup ## check formatting, lints and documentation
 	RUSTDOCFLAGS=-Dwarnings $(CARGO) doc --no-deps --locked
 
 build: setup ## build the program and the library that goes into an FMU (release)
-	$(CARGO) build --release --locked
+	$(BUILD)
 
 setup: ## get what building and testing need, into this folder only
 	@bash scripts/setup.sh

@@ -448,3 +448,29 @@ fn a_jump_beyond_all_rounding_is_refused() {
     straight_to(&solver, &mut path, 0.4);
     solver.follow(&path).expect("the slide is as it was");
 }
+
+/// A slotted lever whose pivot lies on the pin's circle: when the pin runs over the pivot the
+/// lever points anywhere.
+#[test]
+fn a_pin_over_the_pivot_of_its_slot_is_refused() {
+    let mechanism = parse(
+        "format = 1\nname = 'lever'\n[ground.markers]\nO = [0, 0]\nL = [-1, 0]\n\
+         [bodies.crank]\nmarkers = { O = [0, 0], A = [1, 0] }\nestimate = [0, 0, 1]\n\
+         [bodies.lever]\nmarkers = { L = [0, 0], end = [2, 0] }\nestimate = [-1, 0, 0.5]\n\
+         [joints]\nO = { type = 'revolute', markers = ['ground.O', 'crank.O'] }\n\
+         L = { type = 'revolute', markers = ['ground.L', 'lever.L'] }\n\
+         A = { type = 'slot', markers = ['lever.L', 'crank.A'] }\n[drivers]\n\
+         u = { coordinate = 'angle', markers = ['ground.O', 'crank.O'], start = 1 }\n",
+    );
+    let (mut solver, mut path) = assembled(&mechanism);
+    // By the inscribed angle the lever turns half as fast.
+    straight_to(&solver, &mut path, 2.0);
+    solver.follow(&path).expect("the pin is far from the pivot");
+    assert!((solver.pose().q[5] - 1.0).abs() < 1e-15);
+    straight_to(&solver, &mut path, PI);
+    let blocked = solver
+        .follow(&path)
+        .expect_err("the lever points anywhere there");
+    assert_eq!(blocked.reason, Reason::DeadPoint);
+    assert!(solver.rcond() < 1e-5);
+}

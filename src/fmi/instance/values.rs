@@ -162,7 +162,7 @@ impl Instance {
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
         for &value_reference in value_references {
-            if self.known(value_reference).is_some() {
+            if self.is_known(value_reference) {
                 continue;
             }
             let variable = self.variable(value_reference)?;
@@ -176,9 +176,17 @@ impl Instance {
             self.make_ready(variable.quantity)?;
         }
         Ok(value_references.iter().map(|&value_reference| {
-            self.known(value_reference).unwrap_or_else(|| {
-                self.real(self.variables.list()[value_reference as usize].quantity)
-            })
+            match self.variables.place(value_reference) {
+                Place::Coordinate(order, column) => {
+                    let coordinates = match order {
+                        Order::Position => &self.solver.pose().q[..],
+                        Order::Velocity => self.rates.velocity(),
+                        Order::Acceleration => self.rates.acceleration(),
+                    };
+                    coordinates[column as usize]
+                }
+                _ => self.real(self.variables.list()[value_reference as usize].quantity),
+            }
         }))
     }
 
@@ -261,18 +269,17 @@ impl Instance {
         }))
     }
 
-    /// The value of a coordinate or of a rate, if that has been computed.
+    /// Whether it is a coordinate or its rate, and that has been computed.
     #[inline]
-    fn known(&self, value_reference: u32) -> Option<f64> {
-        let Place::Coordinate(order, column) = self.variables.place(value_reference) else {
-            return None;
+    fn is_known(&self, value_reference: u32) -> bool {
+        let Place::Coordinate(order, _) = self.variables.place(value_reference) else {
+            return false;
         };
-        let (from, since) = match order {
-            Order::Position => (&self.solver.pose().q[..], Freshness::Pose),
-            Order::Velocity => (self.rates.velocity(), Freshness::Rates),
-            Order::Acceleration => (self.rates.acceleration(), Freshness::Rates),
+        let since = match order {
+            Order::Position => Freshness::Pose,
+            Order::Velocity | Order::Acceleration => Freshness::Rates,
         };
-        (self.freshness >= since).then(|| from[column as usize])
+        self.freshness >= since
     }
 
     fn variable(&self, value_reference: u32) -> Result<&Variable, Error> {

@@ -382,7 +382,8 @@ impl Slide {
                 || (open <= STALLED * rounding && open >= 0.5 * last_gap)
             {
                 self.put(work.at.frames_mut(), &known, frame);
-                (self.g, self.slope, self.scale) = (g, slope, scale);
+                // A line that turns about a point which the pin has reached turns freely.
+                (self.g, self.slope, self.scale) = (g, slope, scale.max(work.at.size()));
                 return Ok((phi, correction));
             }
             let step = -f / slope;
@@ -412,7 +413,7 @@ impl Slide {
         let known = self.known(work);
         self.g = work.at.frames()[self.place as usize].rotate(known.g);
         self.slope = known.w.dot(&perp(self.g));
-        self.scale = known.w.norm() * known.g.norm();
+        self.scale = (known.w.norm() * known.g.norm()).max(work.at.size());
         if self.slope == 0.0 || !self.slope.is_finite() {
             return Err(Rejected);
         }
@@ -519,7 +520,7 @@ impl Slide {
         write(self.place as usize, own, outer, first.rotate(self.s));
     }
 
-    /// |∂f/∂phi| over the largest that it can be.
+    /// |∂f/∂phi| over the largest that it can be, or over the mechanism's size.
     pub(super) fn rcond(&self) -> f64 {
         let rcond = self.slope.abs() / self.scale;
         if rcond.is_finite() { rcond } else { 0.0 }
