@@ -25,6 +25,8 @@
 //! the equations of a part that no straight code solves.
 
 mod course;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::Vector2;
 
