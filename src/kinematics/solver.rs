@@ -194,13 +194,15 @@ impl Solver {
                 .expect("the parameters of a pose were valid when it was solved");
         }
         self.targets.turns.copy_from_slice(&self.pose.turns);
+        self.plan.forget_boxes();
         self.stand_at_pose();
     }
 
     /// Lets go of what the way to the present pose has left behind, the pivots of sparse
-    /// matrices: from here on everything depends on the pose alone, to the last bit.
+    /// matrices and proofs that hold for several steps: from here on everything depends on the pose alone, to the last bit.
     pub fn forget_way(&mut self) {
         self.plan.forget_pivots();
+        self.plan.forget_boxes();
         self.stand_at_pose();
     }
 

@@ -6,6 +6,7 @@
 //! else it is shortened by as much as the certificate finds it too long.
 
 use super::Error;
+use super::newton::Correction;
 use super::path::Path;
 use super::plan::{Advance, Substep, Work};
 use super::solver::{Solver, UNIT};
@@ -186,10 +187,36 @@ impl Solver {
         [start, end]: [f64; 2],
         progress: &mut Progress,
     ) -> Result<bool, Error> {
-        self.set_path(path, end)?;
-        self.tubes.begin();
-        if !self.bound_course(path, [start, end])? {
+        // What holds for several steps is for steps that are taken as a whole: how a longer way is
+        // divided depends on its own proofs alone.
+        let boxes = start <= 0.0 && end >= 1.0 && !self.parameters_move;
+        let mut reached = self.reach(path, [start, end], boxes)?;
+        if reached.is_none() && self.tubes.relied_on_box {
+            self.stand_at(path, start);
+            reached = self.reach(path, [start, end], false)?;
+        }
+        let Some(correction) = reached else {
             return Ok(false);
+        };
+        // The pose takes the new values with the new q, or keeps both as they are.
+        std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
+        self.at.copy_pose(&mut self.pose.q);
+        progress.iterations = progress.iterations.saturating_add(correction.iterations);
+        progress.checked = progress.checked.saturating_add(self.tubes.checked.into());
+        Ok(true)
+    }
+
+    /// Moves the bodies to the end of a sub-step, the pose apart; `None` if that is not proved.
+    fn reach(
+        &mut self,
+        path: &Path,
+        [start, end]: [f64; 2],
+        boxes: bool,
+    ) -> Result<Option<Correction>, Error> {
+        self.set_path(path, end)?;
+        self.tubes.begin(boxes);
+        if !self.bound_course(path, [start, end])? {
+            return Ok(None);
         }
         let advance = self.advance_of(end - start);
         let unit = self.has_unit().then_some(&UNIT[..]);
@@ -205,15 +232,7 @@ impl Solver {
             from: &self.pose.q,
             tubes: &mut self.tubes,
         };
-        let Ok(correction) = self.plan.advance(&mut work, &mut substep, unit) else {
-            return Ok(false);
-        };
-        // The pose takes the new values with the new q, or keeps both as they are.
-        std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
-        self.at.copy_pose(&mut self.pose.q);
-        progress.iterations = progress.iterations.saturating_add(correction.iterations);
-        progress.checked = progress.checked.saturating_add(self.tubes.checked.into());
-        Ok(true)
+        Ok(self.plan.advance(&mut work, &mut substep, unit).ok())
     }
 
     /// Takes time, parameters and drivers from the path at s, leaving q and the pose's drivers,

@@ -68,6 +68,9 @@ pub(super) struct Tubes {
     load: f64,
     /// Whether some bound was an estimate.
     pub(super) checked: bool,
+    /// Whether proofs that hold for several steps may be used and made, and whether one was used.
+    pub(super) boxes: bool,
+    pub(super) relied_on_box: bool,
     /// Work space of [`Region`](super::constraint::Region)s: a radius and a chord an unknown,
     /// zero between uses.
     pub(super) region: Vec<f64>,
@@ -92,15 +95,19 @@ impl Tubes {
             slips: Slips::new(system),
             load: 0.0,
             checked: false,
+            boxes: false,
+            relied_on_box: false,
             region: vec![0.0; unknowns],
             chord: vec![0.0; unknowns],
         }
     }
 
-    /// Begins a sub-step.
-    pub(super) fn begin(&mut self) {
+    /// Begins a sub-step, with or without proofs that hold for several steps.
+    pub(super) fn begin(&mut self, boxes: bool) {
         self.load = 0.0;
         self.checked = false;
+        self.boxes = boxes;
+        self.relied_on_box = false;
     }
 
     /// What moving parameters add; `None` while they rest.

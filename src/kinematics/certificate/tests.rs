@@ -11,7 +11,7 @@ use crate::kinematics::{Curve, Path, Pose, Progress, Solver};
 use crate::mechanism::{DriverId, Mechanism, Source};
 
 /// In how many places the true motion is looked at during a sub-step.
-const LOOKS: u32 = 24;
+const LOOKS: u32 = 12;
 /// Rounding of both motions: some eps times the condition, 1e-3, in metres and radians below ten.
 const ROUNDING: f64 = 1e-11;
 
@@ -205,7 +205,7 @@ fn every_shipped_mechanism_stays_in_its_tubes() {
         });
         let scale = if angle { 1.0 } else { 0.1 };
         let sizes = [1.0, -0.3, 0.02].map(|size: f64| size * scale);
-        let (largest, _) = sweep(&source, &sizes, 3);
+        let (largest, _) = sweep(&source, &sizes, 2);
         assert!(largest >= 0.02 * scale, "{}: {largest}", source.name());
     }
 }
@@ -270,18 +270,17 @@ fn moving_parameters_stay_in_their_tubes() {
             if parameter.derived {
                 continue;
             }
-            for by in [0.0, 0.05] {
-                solver.restore(&home);
-                let mut path = move_drivers(&solver, if by == 0.0 { 1e-9 } else { by });
-                path.to[index] *= 1.1;
-                mechanism.derive_parameters(&mut path.to);
-                let what = format!("{}, {}", source.name(), parameter.name);
-                let (s, _) = check_path(&mut solver, &mut other, &path, &what);
-                moved += u32::from(s > 0.0);
-            }
+            solver.restore(&home);
+            let by = if index % 2 == 0 { 1e-9 } else { 0.05 };
+            let mut path = move_drivers(&solver, by);
+            path.to[index] *= 1.05;
+            mechanism.derive_parameters(&mut path.to);
+            let what = format!("{}, {}", source.name(), parameter.name);
+            let (s, _) = check_path(&mut solver, &mut other, &path, &what);
+            moved += u32::from(s > 0.0);
         }
     }
-    assert!(moved > 100, "{moved}");
+    assert!(moved > 60, "{moved}");
 }
 
 /// Prescribed motions of every kind: drivers stay as near their chords as it says.

@@ -1,10 +1,12 @@
 //! Any block of equations that have to be solved together.
 
 mod certify;
+mod neighbourhood;
 
 use std::sync::Arc;
 
 use certify::Proof;
+use neighbourhood::Neighbourhood;
 
 use super::elimination::Order;
 use super::{Substep, Work};
@@ -37,6 +39,7 @@ pub(in crate::kinematics) struct Coupled {
     excess: f64,
     correction: Vec<f64>,
     proof: Box<Proof>,
+    neighbourhood: Neighbourhood,
 }
 
 impl Coupled {
@@ -56,6 +59,7 @@ impl Coupled {
             residual: vec![0.0; order],
             excess: 0.0,
             correction: vec![0.0; order],
+            neighbourhood: Neighbourhood::new(order + proof.known.len()),
             proof,
             rows,
             columns,
@@ -74,6 +78,11 @@ impl Coupled {
     /// Whether its matrix is sparse, with pivots that are kept.
     pub(super) fn is_sparse(&self) -> bool {
         matches!(self.lu, Lu::Sparse(_))
+    }
+
+    /// Lets go of the box that earlier steps have left.
+    pub(super) fn forget_box(&mut self) {
+        self.neighbourhood.forget();
     }
 
     /// Lets a sparse matrix choose its pivots anew.

@@ -93,7 +93,7 @@ impl Plan {
                 Kernel::Pinned(kernel) => kernel.set_parameters(at, tubes),
                 Kernel::Dyad(kernel) => kernel.set_parameters(at, tubes),
                 Kernel::Slide(kernel) => kernel.set_parameters(at, targets, tubes),
-                Kernel::Coupled(_) => {}
+                Kernel::Coupled(kernel) => kernel.forget_box(),
             }
         }
     }
@@ -127,6 +127,15 @@ impl Plan {
         for kernel in sparse {
             // Should the pose be singular, the pivots are chosen at the first one that is not.
             kernel.choose_pivots(&work);
+        }
+    }
+
+    /// Lets go of what proofs for earlier steps are kept for others.
+    pub(super) fn forget_boxes(&mut self) {
+        for kernel in &mut self.kernels {
+            if let Kernel::Coupled(kernel) = kernel {
+                kernel.forget_box();
+            }
         }
     }
 

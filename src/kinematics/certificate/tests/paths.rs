@@ -159,6 +159,11 @@ proptest! {
         follow_both(&mut solver, &mut other, &steps, scale, name);
     }
 
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: 4000, ..ProptestConfig::with_cases(600) })]
+
     /// By closed form, for any four-bar that closes: the crank's pin and the rocker's pivot have to
     /// stay nearer than the sum of coupler and rocker and farther than their difference.
     #[test]

@@ -42,7 +42,9 @@ const STRICTLY: f64 = 0.999;
 #[derive(Debug)]
 pub(super) struct Proof {
     /// Unknowns found before that the rows contain.
-    known: Vec<usize>,
+    pub(super) known: Vec<usize>,
+    /// The drivers that rows of the block are held at.
+    pub(super) drivers: Vec<usize>,
     /// The bodies of these and of the block's own unknowns, with their frames at the end.
     bodies: Vec<usize>,
     ends: Vec<BodyPose>,
@@ -52,22 +54,22 @@ pub(super) struct Proof {
     /// The Jacobian in the middle.
     middle: Lu,
     /// A by rows, empty where it is too large.
-    inverse: Vec<f64>,
+    pub(super) inverse: Vec<f64>,
     condition: Condition,
     /// What the rows are open by on the way, and what of it comes from moving parameters.
-    open: Vec<f64>,
-    slack: Vec<f64>,
+    pub(super) open: Vec<f64>,
+    pub(super) slack: Vec<f64>,
     /// Entries of the middle's rows at known unknowns: row, place in `known`, scaled value.
     upstream: Vec<(usize, usize, f64)>,
     /// How far entries of the block's Jacobian may change: row, column, scaled value.
     changes: Vec<(usize, usize, f64)>,
     /// Scaled radii: of what is known, those tried, what η + K r makes of them.
     known_radii: Vec<f64>,
-    radii: Vec<f64>,
-    eta: Vec<f64>,
-    next: Vec<f64>,
+    pub(super) radii: Vec<f64>,
+    pub(super) eta: Vec<f64>,
+    pub(super) next: Vec<f64>,
     /// Work space.
-    row: Vec<f64>,
+    pub(super) row: Vec<f64>,
 }
 
 impl Proof {
@@ -94,11 +96,17 @@ impl Proof {
         bodies.sort_unstable();
         bodies.dedup();
         let joint_unknowns: Vec<_> = moving().filter(|&k| k >= of_bodies).collect();
+        let drivers = order.rows.iter();
+        let drivers = drivers.filter_map(|&row| match system.equations()[row].target {
+            Target::Driver(driver) => Some(driver.index()),
+            Target::Constant(_) => None,
+        });
         let inverse = if order.torn() <= MOST_TORN { n * n } else { 0 };
         let entries = 10 * n;
         Self {
             known_radii: vec![0.0; known.len()],
             known,
+            drivers: drivers.collect(),
             ends: Vec::with_capacity(bodies.len()),
             bodies,
             joint_ends: vec![0.0; joint_unknowns.len()],
@@ -164,9 +172,17 @@ impl Proof {
 }
 
 impl Coupled {
-    /// Notes what moving parameters leave open of the rows where the sub-step starts; the block's
-    /// unknowns are there, those found before at their ends.
+    /// Notes how the bodies stand where the sub-step starts, and what moving parameters leave open
+    /// of the rows there. The block's unknowns are there, those found before at their ends.
     pub(super) fn note_start(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) {
+        let bodies = 3 * work.system.mechanism().bodies.len();
+        for &column in &self.columns {
+            if column < bodies && column % 3 == 2 {
+                let frame = &work.at.frames()[column / 3];
+                let tube = substep.tubes.body_mut(column / 3);
+                (tube.cos, tube.sin) = (frame.cos, frame.sin);
+            }
+        }
         if substep.tubes.slips().is_none() {
             self.proof.slack.fill(0.0);
             return;
@@ -202,6 +218,10 @@ impl Coupled {
         work: &mut Work<'_>,
         substep: &mut Substep<'_>,
     ) -> Result<(), Rejected> {
+        if substep.tubes.boxes && self.certify_in_box(work, substep) {
+            self.write_tubes(work, substep);
+            return Ok(());
+        }
         if self.proof.inverse.is_empty() {
             substep.tubes.checked = true;
         }
@@ -225,6 +245,9 @@ impl Coupled {
             }
         };
         self.write_tubes(work, substep);
+        if substep.tubes.boxes {
+            self.make_box(work, substep, contraction);
+        }
         let load = (contraction / GOOD_CONTRACTION).powi(2);
         substep.tubes.bear(load.min(1.0))
     }
@@ -464,9 +487,8 @@ impl Coupled {
             match column % 3 {
                 2 => {
                     let turn = work.at.coordinate(column) - from[column];
-                    let (sin, cos) = from[column].sin_cos();
                     let tube = tubes.body_mut(column / 3);
-                    (tube.radius, tube.turn, tube.cos, tube.sin) = (radius, turn, cos, sin);
+                    (tube.radius, tube.turn) = (radius, turn);
                 }
                 component => tubes.set_component(column / 3, component, radius),
             }
