@@ -52,6 +52,9 @@ pub struct Blocked {
 
 /// Some thousand turns; a path that asks for more is a slip, and the host waits.
 const MOST_SUBSTEPS: u32 = 100_000;
+/// Drivers that still move by more than this in such a sub-step \[m or rad\] tell nothing of what
+/// is ahead: the path is too long.
+const NEAR: f64 = 1e-6;
 /// A sub-step that fails is shortened to no less than this part, one that nothing is known of to
 /// half: what the certificate tells of a much too long one is not to be relied on.
 const SHORTEN: f64 = 0.1;
@@ -118,19 +121,29 @@ impl Solver {
                 reaches_point = false;
                 substep = self.shortened(next - start);
                 if substep < SMALLEST_SUBSTEP {
-                    let reason = reached.map_or_else(Reason::Value, |_| Reason::DeadPoint);
+                    let reason = self.reason_to_stop(reached, substep);
                     return blocked(start, reason, progress);
                 }
             }
-            let suggested = self.lengthened(s - start);
-            // What a point cut short was possible as well.
-            substep = if reaches_point {
-                suggested.max(substep)
-            } else {
-                suggested
-            };
+            if s < 1.0 {
+                let suggested = self.lengthened(s - start);
+                // What a point cut short was possible as well.
+                let possible = if reaches_point { substep } else { 0.0 };
+                substep = suggested.max(possible);
+            }
         }
         Ok(progress)
+    }
+
+    /// Why not even a sub-step of length `h` leads on from where the mechanism stands.
+    fn reason_to_stop(&self, reached: Result<bool, Error>, h: f64) -> Reason {
+        let far = |driver: &Jet| (h * driver.first).abs() > NEAR;
+        match reached {
+            Err(error) => Reason::Value(error),
+            // However small a part of the path it is.
+            Ok(_) if self.origin_drivers.iter().any(far) => Reason::TooLong,
+            Ok(_) => Reason::DeadPoint,
+        }
     }
 
     /// Computes tangent and curvature of the motion along the path where the mechanism stands,
