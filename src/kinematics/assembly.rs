@@ -51,6 +51,45 @@ impl Solver {
     /// make no mechanism. The solver is then without a valid pose until it is assembled or
     /// [restored](Self::restore).
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
+        match self.assemble_rows(path, !self.set_aside.is_empty()) {
+            // Or redundant in a way that only numbers tell.
+            Err(Error::Singular { .. }) => {
+                self.choose_rows(path)?;
+                self.assemble_rows(path, true)
+            }
+            assembled => assembled,
+        }
+    }
+
+    /// Assembles with the rows chosen so far, with an eye on all if some are redundant.
+    fn assemble_rows(&mut self, path: &Path, on_all: bool) -> Result<Assembly, Error> {
+        let estimate = self.go_to_estimate(path)?;
+        let iterations = if on_all {
+            self.assemble_on_all(&estimate)?
+        } else {
+            match self.assemble_in_order(&estimate) {
+                Ok(iterations) => iterations,
+                Err(kernel) => self.assemble_at_once(kernel, &estimate)?,
+            }
+        };
+        self.choose_turns(&estimate);
+        self.refresh()?;
+        let rcond = self.plan.rcond();
+        if rcond < SINGULAR {
+            return Err(Error::Singular {
+                rcond,
+                bodies: Vec::new(),
+            });
+        }
+        Ok(Assembly {
+            iterations,
+            distance: self.scaled_distance(&estimate),
+        })
+    }
+
+    /// Takes all values from the end of `path`, and puts the bodies at the estimates, which are
+    /// returned.
+    pub(super) fn go_to_estimate(&mut self, path: &Path) -> Result<Vec<f64>, Error> {
         self.pose.parameters.copy_from_slice(&path.to);
         self.take_over_parameters()?;
         self.parameters_move = path.moves_parameters();
@@ -60,21 +99,7 @@ impl Solver {
         self.pose.q.copy_from_slice(&estimate);
         self.stand_at_pose();
         self.fix_turns();
-
-        let iterations = match self.assemble_in_order(&estimate) {
-            Ok(iterations) => iterations,
-            Err(kernel) => self.assemble_at_once(kernel, &estimate)?,
-        };
-        self.choose_turns(&estimate);
-        self.refresh()?;
-        let rcond = self.plan.rcond();
-        if rcond < SINGULAR {
-            return Err(Error::Singular { rcond });
-        }
-        Ok(Assembly {
-            iterations,
-            distance: self.scaled_distance(&estimate),
-        })
+        Ok(estimate)
     }
 
     /// Assembles kernel by kernel, each behind those before it. Returns the most corrections
@@ -152,7 +177,7 @@ impl Solver {
 
     /// Newton–Raphson, kernel by kernel, from where the bodies are. Returns the most corrections
     /// that one needed; `None` leaves the pose as it was.
-    fn close(&mut self) -> Option<u32> {
+    pub(super) fn close(&mut self) -> Option<u32> {
         let (plan, mut work) = self.work();
         let mut iterations = 0;
         for kernel in &mut plan.kernels {
@@ -290,9 +315,10 @@ impl Solver {
             let singular = jacobian.singular_values();
             return Error::Singular {
                 rcond: singular.min() / singular.max(),
+                bodies: Vec::new(),
             };
         }
-        let spread = self.open_joints(part, residual.amax());
+        let spread = self.open_joints(&part.rows, residual.amax());
         if spread.is_empty() {
             return beyond_numbers();
         }
@@ -312,7 +338,7 @@ impl Solver {
             };
             part.minimise(&mut work, None, weight, STEPS_TO_NEAREST);
             let gap = part.equations(&work).0.amax();
-            if let [(only, joint)] = &self.open_joints(part, gap)[..]
+            if let [(only, joint)] = &self.open_joints(&part.rows, gap)[..]
                 && only == element
                 && best
                     .as_ref()
@@ -333,9 +359,9 @@ impl Solver {
     }
 
     /// Joints, constraints and drivers with a noticeable part of the largest scaled residual.
-    fn open_joints(&self, part: &Part, largest: f64) -> Vec<(Element, OpenJoint)> {
+    pub(super) fn open_joints(&self, rows: &[usize], largest: f64) -> Vec<(Element, OpenJoint)> {
         let mut open: Vec<(Element, OpenJoint)> = Vec::new();
-        for &row in &part.rows {
+        for &row in rows {
             let equation = &self.system.equations()[row];
             let target = self.system.target(row, &self.targets, &self.pose.drivers);
             let error = (equation.constraint.value(&self.at) - target).abs();

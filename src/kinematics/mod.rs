@@ -34,6 +34,7 @@ mod newton;
 mod path;
 mod plan;
 mod rates;
+mod redundancy;
 #[cfg(test)]
 mod reference;
 mod solver;
@@ -50,6 +51,7 @@ pub use error::{Error, OpenJoint};
 pub use fit::{Misfit, MisfitKind};
 pub use path::{Curve, Path};
 pub use rates::Rates;
+pub use redundancy::Redundancy;
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress, Reason};
 pub use structure::{Dependencies, Structure};

@@ -7,6 +7,7 @@
 //! is crossed.
 
 use super::Error;
+use super::error::OpenJoint;
 use super::newton::LARGEST_CORRECTION;
 use super::path::Path;
 use super::plan::Advance;
@@ -21,6 +22,9 @@ pub enum Reason {
     DeadPoint,
     /// A value on the way is one for which the mechanism does not exist.
     Value(Error),
+    /// Beyond here a constraint that was redundant so far contradicts the others: what it would
+    /// be open by where it first was found open.
+    Contradiction(OpenJoint),
     /// The path asks for more sub-steps than anyone would wait for.
     TooLong,
 }
@@ -99,6 +103,7 @@ impl Solver {
             // Between its points a motion given by a table tells at its ends where it has been.
             let most = path.next_point(start, &self.motions);
             let mut reaches_point = false;
+            let mut opened = None;
             loop {
                 let next = if start + substep < most {
                     start + substep
@@ -114,9 +119,21 @@ impl Solver {
                 }
                 self.stand_at(path, start);
                 reaches_point = false;
+                if let Err(Reason::Contradiction(joint)) = &reached {
+                    opened.get_or_insert_with(|| joint.clone());
+                }
+                if self.change_rows() {
+                    self.stand_at(path, start);
+                    continue;
+                }
                 substep = 0.5 * (next - start);
                 if substep < SMALLEST_SUBSTEP {
-                    let reason = reached.map_or_else(Reason::Value, |_| Reason::DeadPoint);
+                    let reason = match (reached, opened) {
+                        (Err(Reason::Contradiction(_)), Some(joint)) => {
+                            Reason::Contradiction(joint)
+                        }
+                        (reached, _) => reached.err().unwrap_or(Reason::DeadPoint),
+                    };
                     return blocked(start, reason, progress);
                 }
             }
@@ -201,17 +218,19 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// A value on the way is one for which the mechanism does not exist.
+    /// A value on the way is one for which the mechanism does not exist, or a redundant
+    /// constraint is one no longer.
     fn try_substep(
         &mut self,
         path: &Path,
         [start, end]: [f64; 2],
         progress: &mut Progress,
-    ) -> Result<bool, Error> {
-        if !self.is_as_foretold(path, [start, end])? {
+    ) -> Result<bool, Reason> {
+        let foretold = self.is_as_foretold(path, [start, end]);
+        if !foretold.map_err(Reason::Value)? {
             return Ok(false);
         }
-        self.set_path(path, end)?;
+        self.set_path(path, end).map_err(Reason::Value)?;
         let advance = self.advance_of(end - start);
         let unit = self.has_unit().then_some(&UNIT[..]);
         // The pose takes the new values with the new q, or keeps both as they are.
@@ -221,6 +240,10 @@ impl Solver {
             std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
             return Ok(false);
         };
+        if let Some(joint) = self.opened() {
+            std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
+            return Err(Reason::Contradiction(joint));
+        }
         self.at.copy_pose(&mut self.pose.q);
         progress.iterations = progress.iterations.saturating_add(correction.iterations);
         Ok(true)
