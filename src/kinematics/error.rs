@@ -112,7 +112,9 @@ fn degrees(angle: f64) -> String {
 
 fn four_digits(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
-        let decimals = 3 - value.abs().max(1e-3).log10().floor() as i32;
+        // What rounds up to a power of ten has its digits.
+        let rounded = value.abs().max(1e-3) * (1.0 + 5e-5);
+        let decimals = 3 - rounded.log10().floor() as i32;
         format!("{value:.*}", decimals.max(0) as usize)
     } else {
         format!("{value:.3e}")
@@ -131,7 +133,7 @@ fn singular_message(rcond: f64, bodies: &[String]) -> String {
     );
     if !bodies.is_empty() {
         message += &format!(
-            "; there {} can move with no driver moving, and elsewhere not: start from other values",
+            "; {} can move there while all drivers stand still",
             bodies.join(", ")
         );
     }

@@ -241,7 +241,7 @@ impl Structure {
 }
 
 /// A maximum matching of equations with unknowns.
-pub(super) struct Matching {
+struct Matching {
     column_of: Vec<Option<usize>>,
     row_of: Vec<Option<usize>>,
     /// Whether no row was left without an unknown.
@@ -250,7 +250,7 @@ pub(super) struct Matching {
 
 impl Matching {
     /// Augments row by row along alternating paths, breadth first.
-    pub(super) fn new(
+    fn new(
         incidences: &[Incidence],
         unknowns: usize,
         rows: impl Iterator<Item = usize>,
@@ -276,11 +276,6 @@ impl Matching {
             matching.pairs_all_rows &= matching.column_of[row].is_some();
         }
         matching
-    }
-
-    /// Whether no row was left without an unknown.
-    pub(super) fn pairs_all_rows(&self) -> bool {
-        self.pairs_all_rows
     }
 
     fn pair(&mut self, row: usize, column: usize) {

@@ -1,10 +1,9 @@
 //! What is wrong with a mechanism that does not close on all its rows.
 
-use super::Solver;
 use super::closing::Closing;
-use crate::kinematics::constraint::Incidence;
+use super::echelon::Echelon;
+use super::{DEPENDENT, Solver};
 use crate::kinematics::minimise::STARTS;
-use crate::kinematics::structure::Matching;
 use crate::kinematics::{Element, Error};
 
 /// An element with less than this part of the largest residual has no part in the gap.
@@ -41,7 +40,8 @@ impl Solver {
             open = self.elements_open(&all, 0.0);
         }
         if open.len() <= MOST_ELEMENTS {
-            for element in open.clone() {
+            // Of two that stand in for each other the one declared first stays.
+            for element in open.clone().into_iter().rev() {
                 let others: Vec<_> = open.iter().copied().filter(|e| *e != element).collect();
                 if self.close_on(&self.rows_of(&others), estimate).is_some() {
                     open = others;
@@ -55,23 +55,32 @@ impl Solver {
             names.collect::<Vec<_>>()
         };
         let elements = names(&open);
-        // A loop that is too short has no more equations than unknowns; it just does not close.
-        let contradict = self.are_too_many(&rows);
         // People look for one joint that does not meet: the one declared last.
         let is_driver = |element: &Element| matches!(element, Element::Driver(_));
         let last = open.iter().rfind(|element| !is_driver(element));
-        let last = last.or(open.last()).copied();
-        self.close_on(&rows, estimate);
-        let gathered = last.and_then(|last| {
-            let weight = |row: usize| {
-                let of_last = self.system.equations()[row].element == last;
-                if of_last { 1.0 } else { HOLD_CLOSED }
+        let Some(&last) = last.or(open.last()) else {
+            return Error::NotAssembled {
+                starts: STARTS,
+                open: Vec::new(),
             };
-            let mut closing = Closing::new(&self.system, &rows).weigh(weight);
-            closing.close(&mut self.work().1);
-            let joints = self.open_joints(&self.rows_of(&[last]), 0.0);
-            joints.into_iter().next().map(|(_, joint)| joint)
-        });
+        };
+        let rows_of_last = self.rows_of(&[last]);
+        open.retain(|element| *element != last);
+        let others = self.rows_of(&open);
+        self.close_on(&others, estimate);
+        let contradict = self.depend_on(&rows_of_last, &others);
+        self.close_on(&rows, estimate);
+        let weight = |row: usize| {
+            if rows_of_last.contains(&row) {
+                1.0
+            } else {
+                HOLD_CLOSED
+            }
+        };
+        let mut closing = Closing::new(&self.system, &rows).weigh(weight);
+        let gap = closing.close(&mut self.work().1).unwrap_or(0.0);
+        let gathered = self.open_joints(&rows_of_last, gap);
+        let gathered = gathered.into_iter().next().map(|(_, joint)| joint);
         match gathered {
             Some(open) if contradict => Error::Contradiction { elements, open },
             gathered => Error::NotAssembled {
@@ -109,19 +118,17 @@ impl Solver {
         theirs.map(|(row, _)| row).collect()
     }
 
-    /// Whether rows cannot all have an unknown of their own.
-    fn are_too_many(&self, rows: &[usize]) -> bool {
-        let incidences: Vec<_> = rows
-            .iter()
-            .map(|&row| {
-                let mut incidence = Incidence::default();
-                let constraint = &self.system.equations()[row].constraint;
-                constraint.incidence(self.system.mechanism(), &mut incidence);
-                incidence
-            })
-            .collect();
-        let order = 0..rows.len();
-        let matching = Matching::new(&incidences, self.system.unknowns(), order);
-        !matching.pairs_all_rows()
+    /// Whether some of these rows depend on the others where the mechanism is, which is closed on
+    /// the others. A loop that is too short does not close, but could were it longer; what
+    /// depends on the others has no say whatever.
+    fn depend_on(&mut self, rows: &[usize], others: &[usize]) -> bool {
+        let all = self.rows_here();
+        let mut echelon = Echelon::new(self.system.unknowns(), &all);
+        for &row in others {
+            echelon.offer(row, &all[row], DEPENDENT);
+        }
+        let offered = rows.iter();
+        let left_out = offered.filter_map(|&row| echelon.offer(row, &all[row], DEPENDENT));
+        left_out.count() > 0
     }
 }

@@ -61,11 +61,15 @@ impl fmt::Display for Redundancy {
             redundant,
             equations,
         } = self;
-        let verb = if *redundant == 1 { "is" } else { "are" };
+        let set_aside = if *redundant == 1 {
+            "follows from the others; it is"
+        } else {
+            "follow from the others; they are"
+        };
         write!(
             f,
-            "{redundant} of the {equations} constraint equations of {element} {verb} redundant: \
-             what it asks for follows from the others"
+            "constraint equations of {element} are redundant: {redundant} of its {equations} \
+             {set_aside} set aside and watched"
         )
     }
 }
@@ -352,22 +356,26 @@ impl Solver {
         let order = self.drivers_first();
         let eliminate = |least: f64| {
             let mut echelon = Echelon::new(self.system.unknowns(), &rows);
-            let mut left: f64 = 0.0;
             for &row in &order {
-                if let Some(out) = echelon.offer(row, &rows[row], least) {
-                    left = left.max(out.remainder);
-                }
+                echelon.offer(row, &rows[row], least);
             }
-            (echelon, left)
+            echelon
         };
-        let (mut echelon, mut left) = eliminate(DEPENDENT);
+        let mut echelon = eliminate(DEPENDENT);
+        let mut rcond = 0.0;
         if echelon.free().is_empty() {
             // Nearly singular: without the weakest row.
-            left = weakest(&echelon);
-            (echelon, _) = eliminate(left);
+            rcond = weakest(&echelon);
+            echelon = eliminate(rcond);
+        }
+        if rows.len() <= SMALL_PART {
+            let unknowns: Vec<_> = (0..self.system.unknowns()).collect();
+            let part = Part::new(&order, &unknowns);
+            let singular = part.equations(&self.work().1).1.singular_values();
+            rcond = singular.min() / singular.max();
         }
         Error::Singular {
-            rcond: left,
+            rcond,
             bodies: self.moved_by(&echelon),
         }
     }
