@@ -624,3 +624,45 @@ fn three_cranks_turn_through_their_flat_poses() {
         }
     }
 }
+
+/// Chains of loops with one joint too many: at the end, in the middle, and declared before all
+/// others where the pattern of the equations does not tell that it is too many.
+fn long_chains(loops: usize) -> [(&'static str, String, String); 3] {
+    let text = chain(loops, Ground::Zigzag);
+    let middle = loops / 2;
+    let pivot = joint("again", "revolute", &format!("ground.O{loops}"), &format!("rocker_{loops}.O"));
+    let rod = format!(
+        "again = {{ type = \"link\", markers = [\"rocker_{}.B\", \"rocker_{middle}.B\"], \
+         length = 0.25 }}\n",
+        middle - 1
+    );
+    let pin = joint("pin", "revolute", &format!("coupler_{middle}.B"), &format!("rocker_{middle}.B"));
+    let first = text.replacen("[joints]\n", &format!("[joints]\n{pin}"), 1);
+    [
+        ("at the end", with_joints(&text, &pivot), "joint `again`".to_owned()),
+        ("beside a coupler", with_joints(&text, &rod), "joint `again`".to_owned()),
+        ("declared first", first, format!("joint `B{middle}`")),
+    ]
+}
+
+#[test]
+fn timing() {
+    for loops in [10, 50, 100, 1000] {
+    let plain = chain(loops, Ground::Zigzag);
+    let mut all = vec![("plain", plain, String::new())];
+    all.extend(long_chains(loops));
+    for (name, text, _) in all {
+        for est in [true, false] {
+        let text: String = text.lines().filter(|l| est || !l.starts_with("estimate")).flat_map(|l| [l, "\n"]).collect();
+        let mechanism = parse(&text);
+        let now = std::time::Instant::now();
+        let mut solver = match Solver::new(Arc::clone(&mechanism)) { Ok(s) => s, Err(e) => {println!("{loops} {name} {est}: {:?} {}", now.elapsed(), e.to_string()); continue;}};
+        let new = now.elapsed();
+        if let Err(e) = solver.assemble(&Path::new(&mechanism)) {
+        println!("{loops} {name} {est}: {e}"); continue;
+        }
+        println!("{loops} {name} {est}: new {new:?}, all {:?} {:?}", now.elapsed(), solver.redundancies());
+    }
+    }
+    }
+}
