@@ -2,10 +2,10 @@
 
 mod common;
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
-use biela::kinematics::{Error, Path, Solver};
+use biela::kinematics::{Error, Path, Proof, Solver, Verdict};
 use biela::mechanism::Mechanism;
 use common::{EXACT, assembled, parse, shipped};
 use proptest::prelude::*;
@@ -115,25 +115,41 @@ fn angle_rows_hold_modulo_one_turn_and_keep_their_turn() {
 /// The crank's tip is at most 0.25 + 0.30 from (0.4, 0): at 60 degrees a crank of 0.8 m is
 /// √(0.8² + 0.4² − 0.8·0.4) = 0.6928 m away, 0.1428 m too far.
 #[test]
-fn a_crank_too_long_leaves_one_joint_open() {
-    let error = failure(&parse(&four_bar().replace("value = 0.10", "value = 0.80")));
-    let Error::NotAssembled { open, .. } = &error else {
+fn a_crank_too_long_is_proved_to_leave_one_joint_open() {
+    let mechanism = parse(&four_bar().replace("value = 0.10", "value = 0.80"));
+    let error = failure(&mechanism);
+    let Error::NotAssembled {
+        verdict,
+        open,
+        nearest,
+    } = &error
+    else {
         panic!("{error}")
     };
-    assert_eq!(open.len(), 1, "{error}");
-    let gap = (0.64_f64 + 0.16 - 0.32).sqrt() - 0.55;
-    assert_eq!(open[0].element, "joint `O4`");
-    // The other joints are held closed a thousand times harder, so that they give a millionth.
     assert!(
-        (open[0].gap - gap).abs() < 1e-5 * gap,
-        "{} {gap}",
-        open[0].gap
+        matches!(
+            verdict,
+            Verdict::Impossible {
+                proof: Proof::Reach { .. },
+                ways: 1
+            }
+        ),
+        "{error}"
     );
+    let distance = (0.64_f64 + 0.16 - 0.32).sqrt();
+    assert_eq!(open.len(), 1, "{error}");
+    assert_eq!(open[0].element, "joint `O4`");
+    // Some eps of the lengths.
+    assert!((open[0].gap - (distance - 0.55)).abs() < 1e-15, "{error}");
     assert_eq!(
         error.to_string(),
-        "the mechanism was not found to close, from 8 starts at and near the estimates: joint \
-         `O4` stays open by 142.8 mm"
+        "the mechanism cannot close: joint `O4` stays open by 142.8 mm; `crank.A` and \
+         `ground.O4` are 692.8 mm apart, `coupler` and `rocker` together span 50.00 mm to 550.0 mm"
     );
+    // The crank's tip is right above the pivot: stretched out, the links point straight down and
+    // back up.
+    assert!((nearest[5] + FRAC_PI_2).abs() < 1e-14, "{nearest:?}");
+    assert!((nearest[8] - FRAC_PI_2).abs() < 1e-14, "{nearest:?}");
 }
 
 #[test]

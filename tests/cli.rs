@@ -54,10 +54,10 @@ fn check_describes_a_mechanism() {
     assembled at
       crank_angle = 60.000000 deg
 
-      body            x [m]         y [m]     phi [deg]
-      crank        0.000000      0.000000     60.000000
-      coupler      0.050000      0.086603     41.451706
-      rocker       0.400000      0.000000    122.824780
+      body            x [m]         y [m]     phi [deg]     moved [m]  turned [deg]
+      crank        0.000000      0.000000     60.000000      0.000000      0.000000
+      coupler      0.050000      0.086603     41.451706      0.003397     21.451706
+      rocker       0.400000      0.000000    122.824780      0.000000     12.824780
 
       transmission = 81.373073 deg
     "

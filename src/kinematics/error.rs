@@ -57,16 +57,15 @@ pub enum Error {
         /// What is wrong with the contour.
         error: ProfileError,
     },
-    /// No pose was found that satisfies all equations.
-    #[error(
-        "the mechanism was not found to close, from {starts} starts at and near the estimates: {}",
-        open_message(.open)
-    )]
+    /// No pose satisfies all equations, or none was found that does.
+    #[error("{}", not_assembled_message(verdict, open))]
     NotAssembled {
-        /// From how many starts it was tried.
-        starts: usize,
+        /// Which of the two.
+        verdict: Verdict,
         /// What stays open in the nearest pose found.
         open: Vec<OpenJoint>,
+        /// q of that pose.
+        nearest: Vec<f64>,
     },
     /// The equations can be satisfied, but the Jacobian is singular there.
     #[error("{}", singular_message(*.rcond, .bodies))]
@@ -76,6 +75,76 @@ pub enum Error {
         /// The bodies that can move there without any driver, as far as they were looked for.
         bodies: Vec<String>,
     },
+}
+
+/// What is known of a mechanism that was not assembled.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// There is no pose that satisfies all equations.
+    Impossible {
+        /// Why, in the nearest pose.
+        proof: Proof,
+        /// In how many ways the bodies found before can stand; each has been excluded.
+        ways: usize,
+    },
+    /// None was found, which is no proof.
+    NotFound {
+        /// From how many starts, all of them deterministic.
+        starts: usize,
+    },
+}
+
+/// Why a part of a mechanism cannot close.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Proof {
+    /// Two links do not reach from one point to another.
+    Reach {
+        /// The bodies that are the links.
+        bodies: [String; 2],
+        /// The markers that they are to join.
+        points: [String; 2],
+        /// How far these are apart \[m\].
+        distance: f64,
+        /// The least and the largest distance that the links span \[m\].
+        span: [f64; 2],
+    },
+    /// A point does not reach its line, whatever the angle of a body.
+    Line {
+        /// The body.
+        body: String,
+    },
+    /// All angles of some bodies are excluded, by bounds of the equations over intervals.
+    Excluded {
+        /// The bodies.
+        bodies: Vec<String>,
+        /// Into how many boxes their angles had to be divided.
+        boxes: usize,
+    },
+}
+
+impl fmt::Display for Proof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reach {
+                bodies: [a, b],
+                points: [from, to],
+                distance,
+                span: [shortest, longest],
+            } => write!(
+                f,
+                "`{from}` and `{to}` are {} apart, `{a}` and `{b}` together span {} to {}",
+                millimetres(*distance),
+                millimetres(*shortest),
+                millimetres(*longest)
+            ),
+            Self::Line { body } => write!(f, "whatever the angle of `{body}`"),
+            Self::Excluded { bodies, .. } => {
+                let bodies: Vec<_> = bodies.iter().map(|body| format!("`{body}`")).collect();
+                write!(f, "bounds exclude all angles of {}", bodies.join(", "))
+            }
+        }
+    }
 }
 
 /// A joint, constraint or driver that cannot be satisfied together with the rest.
@@ -121,9 +190,36 @@ fn four_digits(value: f64) -> String {
     }
 }
 
-fn open_message(open: &[OpenJoint]) -> String {
-    let parts: Vec<_> = open.iter().map(OpenJoint::to_string).collect();
-    parts.join(", ")
+/// A message names so many open joints.
+const MOST_NAMED: usize = 8;
+
+fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {
+    let mut parts: Vec<_> = open
+        .iter()
+        .take(MOST_NAMED)
+        .map(OpenJoint::to_string)
+        .collect();
+    if open.len() > MOST_NAMED {
+        parts.push(format!("and {} others", open.len() - MOST_NAMED));
+    }
+    let open = parts.join(", ");
+    match verdict {
+        Verdict::Impossible { proof, ways: 1 } => {
+            format!("the mechanism cannot close: {open}; {proof}")
+        }
+        Verdict::Impossible { proof, ways } => format!(
+            "the mechanism cannot close in any of the {ways} ways in which its other parts close; \
+             in the nearest {open}; {proof}"
+        ),
+        Verdict::NotFound { starts: 1 } => format!(
+            "the mechanism was not found to close from 1 deterministic start, which is no proof \
+             that it cannot; in the nearest pose found {open}"
+        ),
+        Verdict::NotFound { starts } => format!(
+            "the mechanism was not found to close from {starts} deterministic starts, which is \
+             no proof that it cannot; in the nearest pose found {open}"
+        ),
+    }
 }
 
 fn singular_message(rcond: f64, bodies: &[String]) -> String {

@@ -17,6 +17,7 @@ mod coupled;
 mod dyad;
 mod elimination;
 mod pinned;
+mod reach;
 mod slide;
 
 use super::configuration::Configuration;
@@ -28,6 +29,7 @@ use crate::mechanism::Jet;
 pub(super) use coupled::Coupled;
 use dyad::Dyad;
 use pinned::Pinned;
+pub(super) use reach::Miss;
 use slide::Slide;
 
 /// The kernels in the order in which they run.
@@ -236,7 +238,7 @@ impl Kernel {
     }
 
     /// Scaled reciprocal condition: 1 is best, 0 singular.
-    fn rcond(&mut self) -> f64 {
+    pub(super) fn rcond(&mut self) -> f64 {
         match self {
             Self::Pinned(_) => 1.0,
             Self::Dyad(kernel) => kernel.rcond(),

@@ -4,7 +4,7 @@ use super::closing::Closing;
 use super::echelon::Echelon;
 use super::{DEPENDENT, Solver};
 use crate::kinematics::minimise::STARTS;
-use crate::kinematics::{Element, Error};
+use crate::kinematics::{Element, Error, OpenJoint, Verdict};
 
 /// An element with less than this part of the largest residual has no part in the gap.
 const TAKES_PART: f64 = 1e-3;
@@ -59,10 +59,7 @@ impl Solver {
         let is_driver = |element: &Element| matches!(element, Element::Driver(_));
         let last = open.iter().rfind(|element| !is_driver(element));
         let Some(&last) = last.or(open.last()) else {
-            return Error::NotAssembled {
-                starts: STARTS,
-                open: Vec::new(),
-            };
+            return self.not_found(Vec::new());
         };
         let rows_of_last = self.rows_of(&[last]);
         open.retain(|element| *element != last);
@@ -83,10 +80,18 @@ impl Solver {
         let gathered = gathered.into_iter().next().map(|(_, joint)| joint);
         match gathered {
             Some(open) if contradict => Error::Contradiction { elements, open },
-            gathered => Error::NotAssembled {
-                starts: STARTS,
-                open: gathered.into_iter().collect(),
-            },
+            gathered => self.not_found(gathered.into_iter().collect()),
+        }
+    }
+
+    /// The verdict on a mechanism that stands at the nearest pose found.
+    fn not_found(&self, open: Vec<OpenJoint>) -> Error {
+        let mut nearest = vec![0.0; self.system.unknowns()];
+        self.at.copy_pose(&mut nearest);
+        Error::NotAssembled {
+            verdict: Verdict::NotFound { starts: STARTS },
+            open,
+            nearest,
         }
     }
 
