@@ -149,7 +149,12 @@ fn describe_pose(solver: &mut Solver) -> String {
             .iter()
             .map(|r| format!("{} of the {} of {}", r.redundant, r.equations, r.element))
             .collect();
-        let _ = writeln!(out, "  {:<20}{count:>4}    {}", "redundant", names.join(", "));
+        let _ = writeln!(
+            out,
+            "  {:<20}{count:>4}    {}",
+            "redundant",
+            names.join(", ")
+        );
     }
     // The Jacobian with all drivers is regular, so the drivers are as many as what is free.
     let _ = writeln!(

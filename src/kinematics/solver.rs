@@ -274,11 +274,7 @@ impl Solver {
             self.plan.solve_rates(&mut work, &self.host_drivers);
             rates.is_finite()
         };
-        if finite {
-            Ok(())
-        } else {
-            Err(SINGULAR_HERE)
-        }
+        if finite { Ok(()) } else { Err(SINGULAR_HERE) }
     }
 
     /// Value, rate and acceleration of a measure of the mechanism at the present pose. Allocates

@@ -73,6 +73,8 @@ impl Solver {
         let mut progress = Progress::default();
         let mut s = 0.0;
         let mut substep: f64 = 1.0;
+        // What a redundant constraint would have been open by, and where.
+        let mut opened: Option<(f64, OpenJoint)> = None;
         let blocked = |s, reason, progress| {
             Err(Blocked {
                 s,
@@ -103,7 +105,6 @@ impl Solver {
             // Between its points a motion given by a table tells at its ends where it has been.
             let most = path.next_point(start, &self.motions);
             let mut reaches_point = false;
-            let mut opened = None;
             loop {
                 let next = if start + substep < most {
                     start + substep
@@ -120,7 +121,7 @@ impl Solver {
                 self.stand_at(path, start);
                 reaches_point = false;
                 if let Err(Reason::Contradiction(joint)) = &reached {
-                    opened.get_or_insert_with(|| joint.clone());
+                    opened.get_or_insert_with(|| (next, joint.clone()));
                 }
                 if self.change_rows() {
                     self.stand_at(path, start);
@@ -129,7 +130,7 @@ impl Solver {
                 substep = 0.5 * (next - start);
                 if substep < SMALLEST_SUBSTEP {
                     let reason = match (reached, opened) {
-                        (Err(Reason::Contradiction(_)), Some(joint)) => {
+                        (Err(Reason::Contradiction(_)), Some((_, joint))) => {
                             Reason::Contradiction(joint)
                         }
                         (reached, _) => reached.err().unwrap_or(Reason::DeadPoint),
@@ -137,6 +138,7 @@ impl Solver {
                     return blocked(start, reason, progress);
                 }
             }
+            opened.take_if(|(place, _)| *place <= s);
             // Twice the sub-step that was possible here; what a point cut short was no less.
             let possible = if reaches_point { substep } else { s - start };
             substep = 2.0 * possible;

@@ -11,9 +11,9 @@ use std::sync::{Arc, OnceLock};
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
+use super::constraint;
 use super::constraint::Incidence;
 use super::system::{System, Target};
-use super::constraint;
 use crate::mechanism::{
     Coordinate, DriverId, Expression, MarkerId, Mechanism, Motion, ParameterId,
 };
@@ -114,6 +114,20 @@ impl Structure {
             structure.blocks.push(block);
         }
         Some(structure)
+    }
+
+    /// Pairs as many of these rows as can be, earlier ones first. Returns the rows of the system
+    /// that are then left, ascending; `None` if an unknown is left.
+    pub(super) fn left_over(
+        system: &System,
+        rows: impl Iterator<Item = usize>,
+    ) -> Option<Vec<usize>> {
+        let all = 0..system.equations().len();
+        let incidences: Vec<_> = all.clone().map(|row| system.incidence(row)).collect();
+        let matching = Matching::new(&incidences, system.unknowns(), rows);
+        let complete = matching.row_of.iter().all(Option::is_some);
+        let unpaired = all.filter(|&row| matching.column_of[row].is_none());
+        complete.then(|| unpaired.collect())
     }
 
     /// The structure of a system that has still to be analysed.
@@ -250,11 +264,7 @@ struct Matching {
 
 impl Matching {
     /// Augments row by row along alternating paths, breadth first.
-    fn new(
-        incidences: &[Incidence],
-        unknowns: usize,
-        rows: impl Iterator<Item = usize>,
-    ) -> Self {
+    fn new(incidences: &[Incidence], unknowns: usize, rows: impl Iterator<Item = usize>) -> Self {
         let mut matching = Self {
             column_of: vec![None; incidences.len()],
             row_of: vec![None; unknowns],
@@ -332,7 +342,11 @@ impl Matching {
             graph.add_node(());
         }
         let paired = |row: usize| self.column_of[row].is_some();
-        for (row, incidence) in incidences.iter().enumerate().filter(|(row, _)| paired(*row)) {
+        for (row, incidence) in incidences
+            .iter()
+            .enumerate()
+            .filter(|(row, _)| paired(*row))
+        {
             for &column in &incidence.unknowns {
                 let owner = self.row_of[column].expect("the matching is perfect");
                 if owner != row {

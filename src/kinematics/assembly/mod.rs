@@ -16,6 +16,7 @@ use super::solver::{Pose, Solver};
 use super::stepping::Progress;
 use super::{Error, Path};
 pub(super) use exclusion::exclude;
+pub(super) use search::Deadlock;
 pub(super) use ways::{Effort, Ways};
 
 /// How the pose for the first values was found.

@@ -25,7 +25,7 @@ impl Solver {
     /// # Errors
     ///
     /// The verdict.
-    pub(super) fn search_at_once(
+    pub(in crate::kinematics) fn search_at_once(
         &mut self,
         mut deadlock: Deadlock,
         estimate: &[f64],

@@ -9,8 +9,8 @@ use crate::kinematics::{Element, Error, OpenJoint, Verdict};
 /// An element with less than this part of the largest residual has no part in the gap.
 const TAKES_PART: f64 = 1e-3;
 /// Elements are left out one by one to find the smallest set that cannot be satisfied, unless
-/// they are more than this.
-const MOST_ELEMENTS: usize = 100;
+/// they are more than this, in a mechanism that is not small.
+const MOST_ELEMENTS: usize = 12;
 /// How much more than an element left open all others count when the gap is gathered in it.
 const HOLD_CLOSED: f64 = 1e3;
 
@@ -39,7 +39,7 @@ impl Solver {
         if self.close_on(&self.rows_of(&open), estimate).is_none() {
             open = self.elements_open(&all, 0.0);
         }
-        if open.len() <= MOST_ELEMENTS {
+        if self.is_small() || open.len() <= MOST_ELEMENTS {
             // Of two that stand in for each other the one declared first stays.
             for element in open.clone().into_iter().rev() {
                 let others: Vec<_> = open.iter().copied().filter(|e| *e != element).collect();
@@ -80,7 +80,15 @@ impl Solver {
         let gathered = gathered.into_iter().next().map(|(_, joint)| joint);
         match gathered {
             Some(open) if contradict => Error::Contradiction { elements, open },
-            gathered => self.not_found(gathered.into_iter().collect()),
+            gathered => match self.find_start(estimate) {
+                // What is impossible with fewer rows is so with all.
+                Some(deadlock) if deadlock.proved => {
+                    let proof = self.search_at_once(deadlock, estimate);
+                    let open = gathered.into_iter().collect();
+                    proof.err().unwrap_or_else(|| self.not_found(open))
+                }
+                _ => self.not_found(gathered.into_iter().collect()),
+            },
         }
     }
 

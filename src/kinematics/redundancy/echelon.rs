@@ -188,7 +188,12 @@ mod tests {
 
     fn rows(matrix: &DMatrix<f64>) -> Vec<Row> {
         let row = |k: usize| {
-            let entries = matrix.row(k).iter().copied().enumerate().collect::<Vec<_>>();
+            let entries = matrix
+                .row(k)
+                .iter()
+                .copied()
+                .enumerate()
+                .collect::<Vec<_>>();
             entries.into_iter().filter(|(_, v)| *v != 0.0).collect()
         };
         (0..matrix.nrows()).map(row).collect()

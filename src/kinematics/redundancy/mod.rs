@@ -23,6 +23,7 @@ use std::fmt;
 use closing::{Closing, evaluate_row, holds};
 use echelon::{Echelon, Row};
 
+use super::assembly::Deadlock;
 use super::error::OpenJoint;
 use super::minimise::{Part, SMALL_PART, STARTS};
 use super::newton::SINGULAR;
@@ -36,8 +37,13 @@ use super::{Element, Error, Path};
 /// is known to the square root of the rounding, 1e-8; a motion of [`freedom::AWAY`] away from it
 /// leaves some 1e-2.
 const DEPENDENT: f64 = 1e-6;
+/// A part with a smaller scaled residual is closed well enough to look for superfluous rows; rows
+/// in a singular part are found so to the square root of it.
+const CLOSED: f64 = 1e-6;
 /// A row of which this is left is fit to be solved, and those declared after it need not be.
 const FIT: f64 = 1e-2;
+/// Where too few rows are fit, those count of which this part of it is left.
+const LESS_FIT: f64 = 0.1;
 /// When rows are chosen again, only what is nearly independent counts as fit.
 const FITTER: f64 = 0.1;
 /// Rows are changed for others with this much more left.
@@ -132,9 +138,24 @@ impl Solver {
     /// mechanism.
     pub(super) fn choose_rows(&mut self, path: &Path) -> Result<(), Error> {
         let estimate = self.go_to_estimate(path)?;
+        // Should there be no choice, what was known of other values stays.
+        let before = (
+            self.set_aside.clone(),
+            std::mem::replace(&mut self.structure, Structure::of_nothing(&self.system)),
+            std::mem::take(&mut self.plan),
+        );
+        let chosen = self.choose_rows_near(&estimate);
+        if chosen.is_err() {
+            (self.set_aside, self.structure, self.plan) = before;
+            self.factorised = false;
+        }
+        chosen
+    }
+
+    fn choose_rows_near(&mut self, estimate: &[f64]) -> Result<(), Error> {
         let all: Vec<_> = (0..self.system.equations().len()).collect();
-        if let Some(gap) = self.close_on(&all, &estimate) {
-            return Err(self.explain_open(gap, &estimate));
+        if let Some(gap) = self.close_on_all(estimate) {
+            return Err(self.explain_open(gap, estimate));
         }
         let redundant = self.find_freedom()?;
         let choice = self.choose_here(FIT);
@@ -162,8 +183,7 @@ impl Solver {
     ///
     /// Those of [`choose_rows`](Self::choose_rows).
     pub(super) fn assemble_on_all(&mut self, estimate: &[f64]) -> Result<u32, Error> {
-        let all: Vec<_> = (0..self.system.equations().len()).collect();
-        if let Some(gap) = self.close_on(&all, estimate) {
+        if let Some(gap) = self.close_on_all(estimate) {
             return Err(self.explain_open(gap, estimate));
         }
         self.at.copy_pose(&mut self.pose.q);
@@ -257,16 +277,32 @@ impl Solver {
         self.factorised = false;
     }
 
+    /// Closes the mechanism on all rows. `None` if they are satisfied; else the largest scaled
+    /// residual of the nearest pose found, where the mechanism then is.
+    fn close_on_all(&mut self, estimate: &[f64]) -> Option<f64> {
+        let all: Vec<_> = (0..self.system.equations().len()).collect();
+        if !self.is_small() {
+            // Too many unknowns for a minimisation to go far: most kernels close by themselves.
+            self.find_start(estimate);
+            Closing::new(&self.system, &all).close(&mut self.work().1)?;
+        }
+        self.close_on(&all, estimate)
+    }
+
+    fn is_small(&self) -> bool {
+        self.system.unknowns() <= SMALL_PART
+    }
+
     /// Closes the mechanism on these rows from the estimates, or starts near them. `None` if they
     /// are satisfied; else the largest scaled residual of the nearest pose found, where the
     /// mechanism then is.
     fn close_on(&mut self, rows: &[usize], estimate: &[f64]) -> Option<f64> {
         let unknowns: Vec<_> = (0..self.system.unknowns()).collect();
         let part = Part::new(rows, &unknowns);
-        let small = unknowns.len() <= SMALL_PART;
+        let small = self.is_small();
         let mut closing = Closing::new(&self.system, rows);
         let mut nearest: Option<(f64, Vec<f64>)> = None;
-        for attempt in 0..STARTS {
+        for attempt in 0..if small { STARTS } else { 1 } {
             let (_, mut work) = self.work();
             part.start(&mut work, estimate, attempt);
             if small {
@@ -284,29 +320,81 @@ impl Solver {
         Some(gap)
     }
 
+    /// Assembles on rows that can be paired with unknowns, the drivers' first, then in the order
+    /// of declaration, kernel by kernel. In a kernel that does not close a row that the others
+    /// make superfluous is left out, and others get their turn. Returns what is known if this
+    /// does not lead to a pose.
+    fn find_start(&mut self, estimate: &[f64]) -> Option<Deadlock> {
+        let mut left_out = Vec::new();
+        loop {
+            let order = self.drivers_first().into_iter();
+            let order = order.filter(|row| !left_out.contains(row));
+            self.set_aside.now = Structure::left_over(&self.system, order)?;
+            self.compile();
+            self.at.set_pose(self.system.mechanism(), estimate);
+            let deadlock = self.search(estimate).err();
+            let kernel = match &deadlock {
+                Some(deadlock) => deadlock.kernel,
+                // Rows that depend on each other may close by chance.
+                None => {
+                    let mut kernels = self.plan.kernels.iter_mut();
+                    kernels.position(|kernel| kernel.rcond() < SINGULAR)?
+                }
+            };
+            match self.superfluous_in(kernel, estimate) {
+                Some(row) => left_out.push(row),
+                None => return deadlock,
+            }
+        }
+    }
+
+    /// The last row of a kernel that the others make superfluous where it closes, behind those
+    /// before it; `None` if there is none, or the kernel does not close or is large.
+    fn superfluous_in(&mut self, kernel: usize, estimate: &[f64]) -> Option<usize> {
+        let kernel = &self.plan.kernels[kernel];
+        let part = Part::new(kernel.rows(), kernel.columns());
+        if part.unknowns() > SMALL_PART {
+            return None;
+        }
+        let columns = kernel.columns().to_vec();
+        let (_, mut work) = self.work();
+        part.start(&mut work, estimate, 0);
+        part.minimise_growing(&mut work);
+        if part.equations(&work).0.amax() > CLOSED {
+            return None;
+        }
+        let mut rows = self.rows_here();
+        for row in &mut rows {
+            row.retain(|(column, _)| columns.contains(column));
+        }
+        let own = part.rows.iter().map(|&row| &rows[row]);
+        let mut echelon = Echelon::new(self.system.unknowns(), own);
+        let is_driver = |row: &usize| {
+            let target = &self.system.equations()[*row].target;
+            matches!(target, Target::Driver(_))
+        };
+        let (drivers, others): (Vec<_>, Vec<_>) = part.rows.iter().partition(|row| is_driver(row));
+        let order = drivers.into_iter().chain(others);
+        order.fold(None, |last, row| {
+            let left_out = echelon.offer(row, &rows[row], CLOSED.sqrt());
+            left_out.map(|left_out| left_out.row).or(last)
+        })
+    }
+
     /// Chooses rows where the mechanism is: the drivers', then those of which enough is left, in
-    /// the order of declaration, then of the rest those of which most is left.
+    /// the order of declaration; as long as that does not do, those of which less is left.
     fn choose_here(&mut self, fit: f64) -> Choice {
         let rows = self.rows_here();
         let mut echelon = Echelon::new(self.system.unknowns(), &rows);
-        let mut set_aside = Vec::new();
-        for row in self.drivers_first() {
-            if echelon.offer(row, &rows[row], fit).is_some() {
-                set_aside.push(row);
-            }
-        }
-        while !set_aside.is_empty() && echelon.kept().len() < self.system.unknowns() {
-            let left = set_aside.iter().enumerate();
-            let left = left.map(|(k, &row)| (k, echelon.reduce(row, &rows[row]).remainder));
-            let most = left.max_by(|(a, x), (b, y)| x.total_cmp(y).then(b.cmp(a)));
-            let Some((place, remainder)) = most else {
-                break;
-            };
-            if remainder <= DEPENDENT {
+        let mut set_aside = self.drivers_first();
+        let mut fit = fit;
+        loop {
+            set_aside.retain(|&row| echelon.offer(row, &rows[row], fit).is_some());
+            let complete = echelon.kept().len() == self.system.unknowns();
+            if complete || set_aside.is_empty() || fit <= DEPENDENT {
                 break;
             }
-            let row = set_aside.remove(place);
-            echelon.offer(row, &rows[row], DEPENDENT);
+            fit = (LESS_FIT * fit).max(DEPENDENT);
         }
         set_aside.sort_unstable();
         Choice {
