@@ -228,7 +228,9 @@ mod tests {
                 let others = matrix.select_rows(&before);
                 let mut with = before.clone();
                 with.push(left_out.row);
-                prop_assert_eq!(others.rank(1e-9), matrix.select_rows(&with).rank(1e-9));
+                // Of no rows at all nalgebra finds no rank.
+                let rank = if before.is_empty() { 0 } else { others.rank(1e-9) };
+                prop_assert_eq!(rank, matrix.select_rows(&with).rank(1e-9));
                 let mut sum = matrix.row(left_out.row).clone_owned();
                 for (row, factor) in echelon.combination(left_out, 0.0) {
                     sum -= matrix.row(row) * factor;
