@@ -290,15 +290,16 @@ impl Solver {
 
     /// Joints, constraints and drivers with a noticeable part of the largest scaled residual.
     fn open_joints(&self, rows: &[usize], largest: f64) -> Vec<(Element, OpenJoint)> {
+        let least = 0.01 * largest;
         let mut open: Vec<(Element, OpenJoint)> = Vec::new();
         for &row in rows {
             let equation = &self.system.equations()[row];
             let target = self.system.target(row, &self.targets, &self.pose.drivers);
             let error = (equation.constraint.value(&self.at) - target).abs();
             let (gap, angle) = match equation.constraint.dimension() {
-                Dimension::Length if error / self.at.size() > 0.01 * largest => (error, 0.0),
-                Dimension::Angle if error > 0.01 * largest => (0.0, error),
-                _ => continue,
+                Dimension::Length => (error, 0.0),
+                Dimension::Angle if error > least => (0.0, error),
+                Dimension::Angle => continue,
             };
             match open.last_mut() {
                 Some((element, joint)) if *element == equation.element => {
@@ -308,13 +309,23 @@ impl Solver {
                 _ => open.push((
                     equation.element,
                     OpenJoint {
-                        element: equation.element.describe(self.system.mechanism()),
+                        element: String::new(),
                         gap,
                         angle,
                     },
                 )),
             }
         }
+        open.retain_mut(|(element, joint)| {
+            if joint.gap <= least * self.at.size() {
+                joint.gap = 0.0;
+            }
+            let kept = joint.gap.max(joint.angle) > 0.0;
+            if kept {
+                joint.element = element.describe(self.system.mechanism());
+            }
+            kept
+        });
         open
     }
 }
