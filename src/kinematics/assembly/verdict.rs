@@ -14,7 +14,7 @@ const STEPS_TO_NEAREST: usize = 200;
 /// Newton failed because the position is singular.
 const CLOSED: f64 = 1e-7;
 /// How much more than a joint left open all others count when the gap is gathered in it.
-const HOLD_CLOSED: f64 = 1e3;
+const HOLD_CLOSED: f64 = 1e4;
 /// A part of more unknowns than this is too large for dense matrices: it stays where it is.
 const LARGEST_PART: usize = 300;
 
@@ -272,9 +272,10 @@ impl Solver {
                 }
             };
             part.minimise(&mut work, None, weight, STEPS_TO_NEAREST);
-            let gap = part.equations(&work).0.amax();
-            if let [joint] = &self.open_joints(&part.rows, gap)[..]
+            let largest = part.equations(&work).0.amax();
+            if let [joint] = &self.open_joints(&part.rows, largest)[..]
                 && joint.0 == *element
+                && let gap = (joint.1.gap / self.at.size()).max(joint.1.angle)
                 && best
                     .as_ref()
                     .is_none_or(|(smallest, ..)| gap <= smallest * (1.0 + 1e-3))
