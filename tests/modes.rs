@@ -4,8 +4,9 @@ mod common;
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use std::sync::Arc;
 
-use biela::kinematics::{Mode, Modes};
+use biela::kinematics::{Error, Mode, Modes, Path, Solver, Verdict};
 use biela::mechanism::Mechanism;
 use common::{assembled, parse, pasted};
 
@@ -131,7 +132,7 @@ impl Triad {
     /// In how many ways it closes, by turning the triangle in small steps: the first two circles
     /// leave two places for it, and the third distance changes its sign at a way.
     fn count(&self) -> usize {
-        const STEPS: usize = 20_000;
+        const STEPS: usize = 5_000;
         let turned = |corner: [f64; 2], phi: f64| {
             let (sin, cos) = phi.sin_cos();
             [
@@ -163,6 +164,46 @@ impl Triad {
     }
 }
 
+impl Triad {
+    /// As a platform on three legs, estimated nowhere in particular.
+    fn platform(&self) -> String {
+        let Self {
+            centres: [a1, a2, a3],
+            radii: [r1, r2, r3],
+            corners: [b1, b2, b3],
+        } = self;
+        format!(
+            r#"
+format = 1
+name = "platform"
+[ground.markers]
+A1 = {a1:?}
+A2 = {a2:?}
+A3 = {a3:?}
+[bodies.leg_1]
+markers = {{ A = [0, 0] }}
+[bodies.leg_2]
+markers = {{ A = [0, 0] }}
+[bodies.leg_3]
+markers = {{ A = [0, 0] }}
+[bodies.platform]
+markers = {{ B1 = {b1:?}, B2 = {b2:?}, B3 = {b3:?} }}
+[joints]
+A1 = {{ type = "revolute", markers = ["ground.A1", "leg_1.A"] }}
+A2 = {{ type = "revolute", markers = ["ground.A2", "leg_2.A"] }}
+A3 = {{ type = "revolute", markers = ["ground.A3", "leg_3.A"] }}
+B1 = {{ type = "slot", markers = ["leg_1.A", "platform.B1"] }}
+B2 = {{ type = "slot", markers = ["leg_2.A", "platform.B2"] }}
+B3 = {{ type = "slot", markers = ["leg_3.A", "platform.B3"] }}
+[drivers]
+length_1 = {{ coordinate = "x", markers = ["leg_1.A", "platform.B1"], start = {r1} }}
+length_2 = {{ coordinate = "x", markers = ["leg_2.A", "platform.B2"], start = {r2} }}
+length_3 = {{ coordinate = "x", markers = ["leg_3.A", "platform.B3"], start = {r3} }}
+"#
+        )
+    }
+}
+
 /// The planar platform of three legs by which six assembly modes were first shown (Gosselin,
 /// Sefrioui and Richard 1992): base (0, 0), (15.91, 0), (0, 10), platform with the sides 17.04,
 /// 16.54 and 20.84, legs 14.98, 15.38 and 12.
@@ -176,39 +217,59 @@ fn a_platform_on_three_legs_has_six_modes() {
         corners: [[0.0, 0.0], [17.04, 0.0], third],
     };
     assert_eq!(triad.count(), 6);
-    let text = format!(
-        r#"
-format = 1
-name = "platform"
-[ground.markers]
-A1 = [0, 0]
-A2 = [15.91, 0]
-A3 = [0, 10]
-[bodies.leg_1]
-markers = {{ A = [0, 0] }}
-[bodies.leg_2]
-markers = {{ A = [0, 0] }}
-[bodies.leg_3]
-markers = {{ A = [0, 0] }}
-[bodies.platform]
-markers = {{ B1 = [0, 0], B2 = [17.04, 0], B3 = [{}, {}] }}
-[joints]
-A1 = {{ type = "revolute", markers = ["ground.A1", "leg_1.A"] }}
-A2 = {{ type = "revolute", markers = ["ground.A2", "leg_2.A"] }}
-A3 = {{ type = "revolute", markers = ["ground.A3", "leg_3.A"] }}
-B1 = {{ type = "slot", markers = ["leg_1.A", "platform.B1"] }}
-B2 = {{ type = "slot", markers = ["leg_2.A", "platform.B2"] }}
-B3 = {{ type = "slot", markers = ["leg_3.A", "platform.B3"] }}
-[drivers]
-length_1 = {{ coordinate = "x", markers = ["leg_1.A", "platform.B1"], start = 14.98 }}
-length_2 = {{ coordinate = "x", markers = ["leg_2.A", "platform.B2"], start = 15.38 }}
-length_3 = {{ coordinate = "x", markers = ["leg_3.A", "platform.B3"], start = 12 }}
-"#,
-        third[0], third[1]
-    );
-    let modes = modes_of(&text);
+    let modes = modes_of(&triad.platform());
     assert_eq!(modes.others.len() + 1, 6);
-    assert!(!modes.complete && modes.starts > 0);
+    assert!(modes.complete && modes.starts == 0);
+}
+
+/// No mode of a platform is missed, and none is made up: against the count of signs.
+#[test]
+fn platforms_have_as_many_modes_as_their_circles_say() {
+    // Spread evenly by the golden ratio.
+    let mut spread = (1..).map(|k| (0.618_033_988_749_894_9 * f64::from(k * k)).fract());
+    let mut next = |low: f64, high: f64| low + (high - low) * spread.next().unwrap_or_default();
+    let mut counts = [0; 7];
+    for _ in 0..16 {
+        let triad = Triad {
+            centres: [
+                [0.0, 0.0],
+                [next(2.0, 4.0), 0.0],
+                [next(0.0, 3.0), next(1.0, 4.0)],
+            ],
+            radii: [0; 3].map(|_| next(0.5, 4.0)),
+            corners: [
+                [0.0, 0.0],
+                [next(0.5, 3.0), 0.0],
+                [next(-1.0, 3.0), next(-3.0, 3.0)],
+            ],
+        };
+        let expected = triad.count();
+        counts[expected] += 1;
+        let mechanism = parse(&triad.platform());
+        let path = Path::new(&mechanism);
+        let mut solver = Solver::new(Arc::clone(&mechanism)).expect("the drivers match");
+        match solver.assemble(&path) {
+            Ok(_) => {
+                let modes = solver.modes().expect("the estimates are numbers");
+                assert!(modes.complete, "{:?}", triad.radii);
+                assert_eq!(modes.others.len() + 1, expected, "{:?}", triad.radii);
+            }
+            Err(Error::NotAssembled { verdict, .. }) => {
+                assert!(
+                    matches!(verdict, Verdict::Impossible { .. }),
+                    "{:?}",
+                    triad.radii
+                );
+                assert_eq!(expected, 0, "{:?}", triad.radii);
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+    // Each answer that there is comes up, but for six, which are rare.
+    assert!(
+        counts[0] > 1 && counts[2] > 1 && counts[4] > 1,
+        "{counts:?}"
+    );
 }
 
 /// Stephenson's six-bar driven at the link that carries no loop of its own: three links carry a
@@ -234,5 +295,33 @@ fn a_coupled_six_bar_has_as_many_modes_as_its_circles_say() {
     assert!(expected >= 2 && expected % 2 == 0);
     let modes = modes_of(&text);
     assert_eq!(modes.others.len() + 1, expected);
-    assert!(!modes.complete);
+    assert!(modes.complete);
+}
+
+/// A knife edge on an arm meets a round cam of radius 1 in two places; of contours there is no
+/// closed form, nor are there bounds.
+#[test]
+fn modes_without_a_proof_are_said_to_be_found() {
+    let modes = modes_of(
+        r#"
+format = 1
+name = "arm"
+[ground.markers]
+O = [0, 0]
+P = [1.5, 0]
+[bodies.cam]
+markers = { O = [0, 0] }
+[bodies.arm]
+markers = { P = [0, 0], tip = [1, 0] }
+estimate = [1.5, 0, 2]
+[joints]
+O = { type = "revolute", markers = ["ground.O", "cam.O"] }
+P = { type = "revolute", markers = ["ground.P", "arm.P"] }
+contact = { type = "cam", markers = ["cam.O", "arm.tip"], follower = "knife", profile = "1 + 0*theta" }
+[drivers]
+angle = { coordinate = "angle", markers = ["ground.O", "cam.O"], start = 0 }
+"#,
+    );
+    assert_eq!(modes.others.len(), 1);
+    assert!(!modes.complete && modes.starts > 8);
 }
