@@ -277,6 +277,83 @@ fn lengths_beyond_all_numbers_are_answered() {
     }
 }
 
+/// Parallelograms hung on each other: cranks of 1 on pivots 2 apart, the first driven, couplers
+/// of 2 but for the last, which has this length.
+fn chain(loops: usize, last: f64) -> Arc<Mechanism> {
+    let mut text = String::from("format = 1\nname = \"chain\"\n[ground.markers]\n");
+    let (mut bodies, mut joints) = (String::new(), String::new());
+    for k in 0..=loops {
+        let x = 2 * k;
+        text += &format!("O{k} = [{x}, 0]\n");
+        bodies += &format!(
+            "[bodies.crank_{k}]\nmarkers = {{ O = [0, 0], A = [1, 0] }}\n\
+             estimate = [{x}, 0, \"60*deg\"]\n"
+        );
+        joints += &format!(
+            "O{k} = {{ type = \"revolute\", markers = [\"ground.O{k}\", \"crank_{k}.O\"] }}\n"
+        );
+        if let Some(before) = k.checked_sub(1) {
+            let length = if k == loops { last } else { 2.0 };
+            bodies += &format!(
+                "[bodies.coupler_{k}]\nmarkers = {{ A = [0, 0], B = [{length}, 0] }}\n\
+                 estimate = [\"{x} - 1.5\", 0.9, 0]\n"
+            );
+            joints += &format!(
+                "A{k} = {{ type = \"revolute\", markers = [\"crank_{before}.A\", \"coupler_{k}.A\"] }}\n\
+                 B{k} = {{ type = \"revolute\", markers = [\"coupler_{k}.B\", \"crank_{k}.A\"] }}\n"
+            );
+        }
+    }
+    text += &format!(
+        "{bodies}[joints]\n{joints}[drivers]\n\
+         angle = {{ coordinate = \"angle\", markers = [\"ground.O0\", \"crank_0.O\"], \
+         start = \"60*deg\" }}\n"
+    );
+    parse(&text)
+}
+
+/// At 60 degrees the tip of a crank is √3 from the next pivot. A last coupler of 3.5 needs 2.5 at
+/// least, which only a crank that is crossed has: mirrored in the line from the tip before it,
+/// which points to −30 degrees, its angle is −120 degrees, and its tip √7 from the last pivot.
+#[test]
+fn the_last_loop_of_a_chain_sends_only_the_one_before_it_to_its_other_mode() {
+    const LOOPS: usize = 300;
+    let mechanism = chain(LOOPS, 3.5);
+    let (solver, _) = assembled(&mechanism);
+    let phi = |k: usize| {
+        let body = mechanism
+            .body_id(&format!("crank_{k}"))
+            .expect("it is there");
+        solver.pose().q[3 * body.index() + 2]
+    };
+    for k in 0..LOOPS - 1 {
+        assert!((phi(k) - PI / 3.0).abs() < 1e-12, "crank {k}");
+    }
+    assert!((phi(LOOPS - 1) + 2.0 * PI / 3.0).abs() < 1e-12);
+    assert!(solver.residual() < 1e-14);
+}
+
+/// No tip is nearer than 1 to the next pivot, so that links of 0.4 and 1 close in no mode of the
+/// 2²⁹⁹ before them unless the crank before points nearly at it: nobody can try them all.
+#[test]
+fn a_chain_of_too_many_modes_is_not_said_to_be_impossible() {
+    let error = failure(&chain(300, 0.4));
+    let Error::NotAssembled { verdict, open, .. } = &error else {
+        panic!("{error}")
+    };
+    assert!(
+        matches!(verdict, Verdict::NotFound { starts } if *starts > 100),
+        "{error}"
+    );
+    assert_eq!(open.len(), 1, "{error}");
+    assert_eq!(open[0].element, "joint `B300`");
+    // The parallel mode leaves √3 − 1.4, the crossed one before it √7 − 1.4.
+    assert!(
+        (open[0].gap - (3_f64.sqrt() - 1.4)).abs() < 1e-12,
+        "{error}"
+    );
+}
+
 /// A stream of numbers from 0 to 1, always the same (SplitMix64).
 struct Stream(u64);
 

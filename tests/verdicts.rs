@@ -546,6 +546,11 @@ fn impossible() -> Vec<Case> {
             linked(1.0, 90.0, ["0, 0, 0", "0, 0, 0"]),
             one("joint `rod`", 17_f64.sqrt() - 2.0 - 1.0),
         ),
+        case(
+            "a link too long by a hundred-millionth",
+            linked(17_f64.sqrt() + 2.0 + 1e-8, 90.0, ["0, 0, 1", "4, 0, 1.5"]),
+            one("joint `rod`", 1e-8),
+        ),
         // Coupler 3 and rocker 4 at a right angle leave A 5 from the pivot: 5 + 2 is less than 8.
         case(
             "a driver between coupler and rocker that asks too much",
@@ -718,6 +723,11 @@ fn others() -> Vec<Case> {
         case(
             "links that only just reach",
             upright([1.0, 2.0, 2.0, 3.0], 180.0),
+            Singular,
+        ),
+        case(
+            "a link that only just reaches",
+            linked(17_f64.sqrt() + 2.0, 90.0, ["0, 0, 1", "4, 0, 1.5"]),
             Singular,
         ),
         // Equal links between a tip and a pivot in the same place turn freely.
