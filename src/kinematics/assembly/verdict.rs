@@ -57,10 +57,10 @@ impl Solver {
     /// from one of them, if `whole`. Returns the most corrections that a kernel needed for that.
     fn minimise_from_all(&mut self, part: &Part, whole: bool, estimate: &[f64]) -> Option<u32> {
         let mut nearest: Option<(f64, Vec<f64>)> = None;
-        let starts = match part.unknowns() {
-            ..=SMALL_PART => STARTS,
-            ..=LARGEST_PART => 1,
-            _ => 0,
+        let starts = if part.unknowns() <= SMALL_PART {
+            STARTS
+        } else {
+            usize::from(part.unknowns() <= LARGEST_PART)
         };
         for attempt in 0..starts {
             let (_, mut work) = self.work();
@@ -193,7 +193,7 @@ impl Solver {
     ) -> Error {
         let verdict = if deadlock.proved {
             Verdict::Impossible {
-                proof,
+                proof: Box::new(proof),
                 ways: deadlock.dead_ends,
             }
         } else {

@@ -164,9 +164,7 @@ impl Ways {
                     let corrected = match (far, listed) {
                         (None, _) => part.attempt(work, estimate, attempt, correct),
                         (Some(far), Some(listed)) => {
-                            let Some(way) = listed.get(far) else {
-                                return None;
-                            };
+                            let way = listed.get(far)?;
                             part.write(work, &DVector::from_column_slice(way));
                             correct(work, MAX_ITERATIONS)
                         }
