@@ -83,7 +83,7 @@ pub enum Verdict {
     /// There is no pose that satisfies all equations.
     Impossible {
         /// Why, in the nearest pose.
-        proof: Proof,
+        proof: Box<Proof>,
         /// In how many ways the bodies found before can stand; each has been excluded.
         ways: usize,
     },

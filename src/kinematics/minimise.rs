@@ -53,6 +53,11 @@ impl Part {
         }
     }
 
+    /// Its unknowns, ascending.
+    pub(super) fn columns(&self) -> &[usize] {
+        &self.columns
+    }
+
     /// How many unknowns it has.
     pub(super) fn unknowns(&self) -> usize {
         self.columns.len()
@@ -73,7 +78,7 @@ impl Part {
         columns.all(|(k, &column)| is_same(work.system, size, column, a[k], b[k]))
     }
 
-    fn write(&self, work: &mut Work<'_>, values: &DVector<f64>) {
+    pub(super) fn write(&self, work: &mut Work<'_>, values: &DVector<f64>) {
         for (&column, &value) in self.columns.iter().zip(values) {
             work.at.set_coordinate(column, value);
         }

@@ -1,6 +1,6 @@
 //! Assembly modes: all the ways in which a mechanism closes for the same values of its drivers.
 
-use super::assembly::{Effort, Ways, exclude};
+use super::assembly::{Effort, Ways};
 use super::minimise::is_same;
 use super::{Error, Solver};
 
@@ -9,11 +9,11 @@ use super::{Error, Solver};
 pub struct Modes {
     /// Those found, nearest the estimates first.
     pub others: Vec<Mode>,
-    /// From how many starts each part was assembled that no closed form assembles, for each way
+    /// From how many starts each part was assembled of which not all ways are known, for each way
     /// of the parts before it; zero if there is no such part.
     pub starts: usize,
-    /// Whether there are no others: all parts were assembled by closed forms, in every way, or
-    /// proved not to close.
+    /// Whether there are no others: all parts were assembled in every way that closed forms give
+    /// them, or bounds over intervals, which leave no other.
     pub complete: bool,
 }
 
@@ -29,7 +29,7 @@ pub struct Mode {
     pub distance: f64,
 }
 
-/// From so many starts a part is assembled that has no closed form.
+/// From so many starts a part is assembled of which not all ways are known.
 const STARTS: usize = 60;
 /// So many modes are listed at the most: independent parts multiply theirs.
 const MOST_MODES: usize = 64;
@@ -38,9 +38,10 @@ const MOST_STEPS: usize = 20_000;
 
 impl Solver {
     /// Finds the other ways in which the mechanism closes with the parameters and driver values
-    /// of the present pose: goes through both ways of each dyad and slide, and through those that
-    /// minimisation finds for other parts from several starts, which are always the same. The
-    /// solver stays where it is.
+    /// of the present pose: goes through both ways of each dyad and slide, through those of other
+    /// parts of few angles that bounds over intervals find, which are all there are, and through
+    /// those that minimisation finds for the rest from several starts, which are always the same.
+    /// The solver stays where it is.
     ///
     /// # Errors
     ///
@@ -104,9 +105,7 @@ impl Solver {
                     break;
                 }
                 if !ways.is_complete() {
-                    let excluded = ways.found_none_from_starts()
-                        && exclude(kernel.rows(), kernel.columns(), &work).0;
-                    modes.complete &= excluded;
+                    modes.complete = false;
                     modes.starts = modes.starts.max(ways.starts);
                 }
                 levels.pop();

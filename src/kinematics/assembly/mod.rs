@@ -5,7 +5,7 @@
 //! ways are excluded, by closed forms or by bounds over intervals, the mechanism is proved
 //! impossible; else it was just not found to close.
 
-mod exclusion;
+mod loops;
 mod search;
 mod turns;
 mod verdict;
@@ -15,7 +15,6 @@ use super::newton::SINGULAR;
 use super::solver::{Pose, Solver};
 use super::stepping::Progress;
 use super::{Error, Path};
-pub(super) use exclusion::exclude;
 pub(super) use search::Deadlock;
 pub(super) use ways::{Effort, Ways};
 

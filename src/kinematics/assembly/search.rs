@@ -6,7 +6,6 @@
 
 use std::collections::BTreeSet;
 
-use super::exclusion;
 use super::ways::{Effort, Ways};
 use crate::kinematics::constraint::Incidence;
 use crate::kinematics::plan::Kernel;
@@ -108,33 +107,25 @@ impl Solver {
                     level.in_doubt |= closed_form && kernel.rcond() < WELL_CONDITIONED;
                     break;
                 }
-                let mut in_doubt = level.in_doubt;
-                if level.ways.given > 0 {
-                    in_doubt |= !level.ways.is_complete();
-                } else {
+                let in_doubt = level.in_doubt || !level.ways.is_complete();
+                let boxes = level.ways.boxes();
+                deadlock.boxes = deadlock.boxes.max(boxes);
+                work_left -= boxes as f64 / BOXES_PER_WORK;
+                if level.ways.given == 0 {
                     if deadlock.dead_ends == 0 {
                         deadlock.kernel = index;
                     }
                     deadlock.dead_ends += 1;
                     deadlock.starts += level.ways.starts.max(1);
-                    match level.ways.gap() {
-                        Some(gap) => {
-                            in_doubt |= !level.ways.is_complete();
-                            let nearest = deadlock.nearest.as_ref();
-                            if gap.is_finite() && nearest.is_none_or(|nearest| gap < nearest.gap) {
-                                let mut q = vec![0.0; unknowns];
-                                work.at.copy_pose(&mut q);
-                                let kernel = index;
-                                deadlock.nearest = Some(Nearest { gap, kernel, q });
-                            }
-                        }
-                        None => {
-                            let (excluded, boxes) =
-                                exclusion::exclude(kernel.rows(), kernel.columns(), &work);
-                            in_doubt |= !excluded;
-                            deadlock.boxes = deadlock.boxes.max(boxes);
-                            work_left -= boxes as f64 / BOXES_PER_WORK;
-                        }
+                    let gap = level.ways.gap().filter(|gap| gap.is_finite());
+                    let nearest = deadlock.nearest.as_ref();
+                    if let Some(gap) = gap
+                        && nearest.is_none_or(|nearest| gap < nearest.gap)
+                    {
+                        let mut q = vec![0.0; unknowns];
+                        work.at.copy_pose(&mut q);
+                        let kernel = index;
+                        deadlock.nearest = Some(Nearest { gap, kernel, q });
                     }
                 }
                 let reads = reads.get_or_insert_with(|| reads_of(work.system, kernels));

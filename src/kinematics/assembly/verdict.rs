@@ -14,7 +14,7 @@ const STEPS_TO_NEAREST: usize = 200;
 /// Newton failed because the position is singular.
 const CLOSED: f64 = 1e-7;
 /// How much more than a joint left open all others count when the gap is gathered in it.
-const HOLD_CLOSED: f64 = 1e3;
+const HOLD_CLOSED: f64 = 1e4;
 /// A part of more unknowns than this is too large for dense matrices: it stays where it is.
 const LARGEST_PART: usize = 300;
 
@@ -57,10 +57,10 @@ impl Solver {
     /// from one of them, if `whole`. Returns the most corrections that a kernel needed for that.
     fn minimise_from_all(&mut self, part: &Part, whole: bool, estimate: &[f64]) -> Option<u32> {
         let mut nearest: Option<(f64, Vec<f64>)> = None;
-        let starts = match part.unknowns() {
-            ..=SMALL_PART => STARTS,
-            ..=LARGEST_PART => 1,
-            _ => 0,
+        let starts = if part.unknowns() <= SMALL_PART {
+            STARTS
+        } else {
+            usize::from(part.unknowns() <= LARGEST_PART)
         };
         for attempt in 0..starts {
             let (_, mut work) = self.work();
@@ -196,7 +196,7 @@ impl Solver {
     ) -> Error {
         let verdict = if deadlock.proved {
             Verdict::Impossible {
-                proof,
+                proof: Box::new(proof),
                 ways: deadlock.dead_ends,
             }
         } else {
@@ -276,9 +276,10 @@ impl Solver {
                 }
             };
             part.minimise(&mut work, None, weight, STEPS_TO_NEAREST);
-            let gap = part.equations(&work).0.amax();
-            if let [joint] = &self.open_joints(&part.rows, gap)[..]
+            let largest = part.equations(&work).0.amax();
+            if let [joint] = &self.open_joints(&part.rows, largest)[..]
                 && joint.0 == *element
+                && let gap = (joint.1.gap / self.at.size()).max(joint.1.angle)
                 && best
                     .as_ref()
                     .is_none_or(|(smallest, ..)| gap <= smallest * (1.0 + 1e-3))
@@ -298,15 +299,16 @@ impl Solver {
         rows: &[usize],
         largest: f64,
     ) -> Vec<(Element, OpenJoint)> {
+        let least = 0.01 * largest;
         let mut open: Vec<(Element, OpenJoint)> = Vec::new();
         for &row in rows {
             let equation = &self.system.equations()[row];
             let target = self.system.target(row, &self.targets, &self.pose.drivers);
             let error = (equation.constraint.value(&self.at) - target).abs();
             let (gap, angle) = match equation.constraint.dimension() {
-                Dimension::Length if error / self.at.size() > 0.01 * largest => (error, 0.0),
-                Dimension::Angle if error > 0.01 * largest => (0.0, error),
-                _ => continue,
+                Dimension::Length => (error, 0.0),
+                Dimension::Angle if error > least => (0.0, error),
+                Dimension::Angle => continue,
             };
             match open.last_mut() {
                 Some((element, joint)) if *element == equation.element => {
@@ -316,13 +318,23 @@ impl Solver {
                 _ => open.push((
                     equation.element,
                     OpenJoint {
-                        element: equation.element.describe(self.system.mechanism()),
+                        element: String::new(),
                         gap,
                         angle,
                     },
                 )),
             }
         }
+        open.retain_mut(|(element, joint)| {
+            if joint.gap <= least * self.at.size() {
+                joint.gap = 0.0;
+            }
+            let kept = joint.gap.max(joint.angle) > 0.0;
+            if kept {
+                joint.element = element.describe(self.system.mechanism());
+            }
+            kept
+        });
         open
     }
 }

@@ -2,12 +2,13 @@
 
 use nalgebra::DVector;
 
+use super::loops::{AllWays, all_ways};
 use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::minimise::{ATTEMPTS, MAX_ITERATIONS, Part};
 use crate::kinematics::newton::Correction;
 use crate::kinematics::plan::{Kernel, Miss, Work};
 
-/// How hard to look for ways that no closed form gives.
+/// How hard to look for ways where neither a closed form nor bounds give them all.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::kinematics) enum Effort {
     /// At and near the estimates.
@@ -42,6 +43,8 @@ enum Source {
         /// Whether the rows are linear, once another way has been asked for.
         linear: Option<bool>,
         found: Vec<DVector<f64>>,
+        /// The ways that bounds give, once the starts near the estimates are used up.
+        all: Option<AllWays>,
     },
     /// A closed form that misses: there are none.
     None(Miss),
@@ -70,6 +73,7 @@ impl Ways {
                     Effort::Anywhere(starts) => ATTEMPTS + starts,
                 },
                 found: Vec::new(),
+                all: None,
             }),
         };
         Self {
@@ -86,14 +90,20 @@ impl Ways {
             Source::Explicit => true,
             // What a closed form promises has to be there.
             Source::ClosedForm(_) => self.failures == 0,
-            Source::Starts { linear, .. } => *linear == Some(true),
+            Source::Starts { linear, all, .. } => {
+                let listed = all.as_ref().is_some_and(|all| all.ways.is_some());
+                *linear == Some(true) || listed && self.failures == 0
+            }
             Source::None(miss) => miss.certain,
         }
     }
 
-    /// Whether starts led to none, which is no proof that there is none.
-    pub(in crate::kinematics) fn found_none_from_starts(&self) -> bool {
-        matches!(self.source, Source::Starts { .. }) && self.given == 0
+    /// Into how many boxes angles were divided for bounds.
+    pub(in crate::kinematics) fn boxes(&self) -> usize {
+        match &self.source {
+            Source::Starts { all: Some(all), .. } => all.boxes,
+            _ => 0,
+        }
     }
 
     /// By how much a kernel in closed form misses that gave no way \[m\].
@@ -132,19 +142,36 @@ impl Ways {
                         most,
                         linear,
                         found,
+                        all,
                     },
                     Kernel::Coupled(kernel),
-                ) if attempt < *most => {
+                ) => {
                     if self.given > 0
                         && *linear
                             .get_or_insert_with(|| is_linear(kernel.rows(), kernel.columns(), work))
                     {
                         return None;
                     }
-                    let correct = |work: &mut Work<'_>, most| kernel.correct(work, most);
-                    let corrected = match attempt.checked_sub(ATTEMPTS) {
-                        None => part.attempt(work, estimate, attempt, correct),
-                        Some(far) => part.attempt_anywhere(work, estimate, far, correct),
+                    let far = attempt.checked_sub(ATTEMPTS);
+                    if far.is_some() && all.is_none() {
+                        let (rows, columns) = (&part.rows, part.columns());
+                        *all = Some(all_ways(rows, columns, work, estimate));
+                        // From here on a failure is one to close where a way was promised.
+                        self.failures = 0;
+                    }
+                    let listed = all.as_ref().and_then(|all| all.ways.as_ref());
+                    let mut correct = |work: &mut Work<'_>, most| kernel.correct(work, most);
+                    let corrected = match (far, listed) {
+                        (None, _) => part.attempt(work, estimate, attempt, correct),
+                        (Some(far), Some(listed)) => {
+                            let way = listed.get(far)?;
+                            part.write(work, &DVector::from_column_slice(way));
+                            correct(work, MAX_ITERATIONS)
+                        }
+                        (Some(far), None) if attempt < *most => {
+                            part.attempt_anywhere(work, estimate, far, correct)
+                        }
+                        _ => return None,
                     };
                     if corrected.is_ok() {
                         let unknowns = part.read(work);

@@ -271,7 +271,8 @@ impl Solver {
         let structure = Structure::new(&self.system, &self.set_aside.now);
         self.structure = structure.expect("independent rows can be paired with unknowns");
         self.plan = Plan::new(&self.system, &self.structure);
-        self.plan.set_parameters(&self.at, &self.targets);
+        self.plan
+            .set_parameters(&self.at, &self.targets, &mut self.tubes);
         self.plan
             .choose_pivots(&self.system, &self.at, &self.targets);
         self.factorised = false;
