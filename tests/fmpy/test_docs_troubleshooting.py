@@ -1,0 +1,170 @@
+"""docs/troubleshooting.md explains every message that a user can meet, and no other.
+
+Messages are taken from the sources, and those about mechanism files also from the reviewed
+answers to bad files in tests/snapshots. What varies in a message is `…` on the page.
+"""
+
+import re
+
+import pytest
+from harness import ROOT
+from manual import tables
+from rust_text import Literal, literals, reported, sources
+
+PAGE = ROOT / "docs" / "troubleshooting.md"
+
+FILES_WITHOUT_MESSAGES = {
+    "cli/check.rs": "its report, which is the answer and not a complaint",
+    "fmi/variables.rs": "descriptions in the FMU",
+    "fmi/model_description.rs": "the FMU's XML",
+    "fmi/log.rs": "descriptions of the log categories",
+    "kinematics/reference.rs": "the oracle of the tests",
+}
+
+NOT_FOR_PEOPLE = re.compile(
+    r"(?:expect|unreachable!|panic!|assert!|debug_assert!)\(\s*$"
+    r"|(?:assert|assert_eq|debug_assert)!\(.*,\s*$"
+    r"|(?:reason|after_help|doc|value_name|help) =$"
+)
+"""Code before a string that is for programmers, or part of `--help`."""
+
+PARTS = {
+    "a fixed parameter, and initialization has ended": "cannot be set: it is …",
+    "a parameter derived from others": "cannot be set: it is …",
+    "no input, and only inputs have input derivatives": "cannot be set: it is …",
+    "Integer or Enumeration": "`…` is …, not …",
+    "the mechanism has none": "no … `…`; …",
+    "crank_angle=60*deg + 10*t": "the example for --drive",
+    "crank_length=120*mm": "the example for --set",
+    "SOURCE_DATE_EPOCH": "the variable itself",
+    "about the solver": "cannot be set: it is …",
+    "the running program": "cannot read `…`",
+    "the estimate of body `…`": "… has no finite value",
+    "an equation of the mechanism": "… has no finite value",
+    "the radius of joint `…`": "… has no finite value",
+    "a wheel's size in joint `…`": "… has no finite value",
+    "… bytes too many": "is none that an instance could be in: …",
+    "a value … bytes before its end": "is none that an instance could be in: …",
+    "its joints are open by …": "is none that an instance could be in: …",
+    "from theta = … to … deg": "does not fit into hollows: …",
+    ", and in … more places": "does not fit into hollows: …",
+    "initialized at t = … s; residual …": "an event, not a complaint",
+    "FMU state set: … at t = … s": "an event, not a complaint",
+    "t = … s: … sub-steps, … iterations, residual …": "solver detail, not a complaint",
+    ".hidden callback_log": "for the linker",
+    ".private_extern _callback_log": "for the linker",
+}
+"""Texts that are no messages by themselves, each with the message that it is a part of."""
+
+FILE_TABLE = "In the mechanism file"
+
+SYMPTOMS = "First aid"
+"""The table without messages."""
+
+
+def rows() -> list[tuple[str, str, str]]:
+    """Heading, code (empty elsewhere than in the table of the file) and message of each row."""
+    found = []
+    for heading, table in tables(PAGE):
+        for row in table:
+            if heading == FILE_TABLE:
+                found.append((heading, row[0].strip("`"), row[1]))
+            elif heading != SYMPTOMS:
+                found.append((heading, "", row[0]))
+    return found
+
+
+def plain(text: str) -> str:
+    """A message without what differs between sources and page: quotes round what varies."""
+    return text.removeprefix("warning: ").replace("`…`", "…").strip()
+
+
+def pattern(message: str) -> re.Pattern:
+    return re.compile(".*".join(map(re.escape, message.split("…"))))
+
+
+def explained(literal: Literal, among: list[tuple[str, str, str]]) -> bool:
+    wanted = pattern(plain(literal.text))
+    return any(wanted.search(plain(message)) for _, _, message in among)
+
+
+def is_message(literal: Literal) -> bool:
+    """Whether people are to read it: three words or more, and not for programmers only."""
+    words = re.findall(r"[A-Za-z]{2,}|\b[a-z]\b", literal.text)
+    return len(words) >= 3 and not NOT_FOR_PEOPLE.search(literal.before)
+
+
+SOURCES = list(sources())
+
+MESSAGES = [
+    literal
+    for name, text in SOURCES
+    if not name.startswith(("mechanism/", "drawing/")) and name not in FILES_WITHOUT_MESSAGES
+    for literal in literals(name, text)
+    if is_message(literal)
+]
+"""Of the program, the solver and the FMU."""
+
+FILE_MESSAGES = [
+    literal
+    for name, text in SOURCES
+    if name.startswith("mechanism/")
+    for literal in reported(name, text)
+    if " " in literal.text
+]
+"""Of the reader."""
+
+SNAPSHOTS = sorted(
+    {
+        found.groups()
+        for path in (ROOT / "tests" / "snapshots").glob("diagnostics__*.snap")
+        for found in re.finditer(
+            r"^(?:error|warning)\[([a-z-]+)\]: (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE
+        )
+    }
+)
+"""Codes and messages of the reviewed answers to bad files."""
+
+
+def test_there_is_something_to_compare():
+    assert min(map(len, (MESSAGES, FILE_MESSAGES, SNAPSHOTS))) > 50
+
+
+def test_every_message_is_explained():
+    missing = {str(m) for m in MESSAGES if m.text not in PARTS and not explained(m, rows())}
+    if missing:
+        pytest.fail(
+            "add to docs/troubleshooting.md (or to PARTS here, if it is a part of another):\n"
+            + "\n".join(sorted(missing))
+        )
+
+
+def test_every_message_about_a_file_is_explained():
+    of_files = [row for row in rows() if row[0] == FILE_TABLE]
+    missing = {str(m) for m in FILE_MESSAGES if not explained(m, of_files)}
+    assert not missing, "add to docs/troubleshooting.md:\n" + "\n".join(sorted(missing))
+
+
+@pytest.mark.parametrize("code", sorted({code for code, _ in SNAPSHOTS}))
+def test_reviewed_answers_are_explained(code):
+    patterns = [pattern(message) for _, known, message in rows() if known == code]
+    for known, message in SNAPSHOTS:
+        if known == code:
+            assert any(p.fullmatch(message) for p in patterns), f"{code}: {message}"
+
+
+def test_every_code_is_there():
+    text = dict(SOURCES)["mechanism/diagnostic.rs"]
+    codes = set(re.findall(r'^    [A-Z_]+ = "([a-z-]+)",$', text, re.MULTILINE))
+    assert codes == {code for heading, code, _ in rows() if heading == FILE_TABLE}
+
+
+def test_nothing_else_is_explained():
+    said = {plain(m.text) for m in (*MESSAGES, *FILE_MESSAGES)}
+    for heading, code, message in rows():
+        answered = any(c == code and pattern(message).fullmatch(m) for c, m in SNAPSHOTS)
+        assert answered or any(text in plain(message) for text in said), f"{heading}: {message}"
+
+
+def test_no_part_is_out_of_date():
+    assert set(PARTS) <= {literal.text for name, text in SOURCES for literal in literals(name, text)}
