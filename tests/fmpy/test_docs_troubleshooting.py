@@ -113,7 +113,7 @@ FILE_MESSAGES = [
     for name, text in SOURCES
     if name.startswith("mechanism/")
     for literal in reported(name, text)
-    if re.search(r"\w \w|… \w", literal.text)
+    if re.search(r" .*[a-z]", literal.text)
 ]
 """Of the reader."""
 
@@ -165,9 +165,13 @@ def test_every_code_is_there():
 def test_nothing_else_is_explained():
     every = [literal for name, text in SOURCES for literal in literals(name, text)]
     said = {plain(m.text) for m in (*filter(is_message, every), *FILE_MESSAGES)}
-    for heading, code, message in rows():
-        answered = any(c == code and pattern(message).fullmatch(m) for c, m in SNAPSHOTS)
-        assert answered or any(text in plain(message) for text in said), f"{heading}: {message}"
+    stale = [
+        f"{heading}: {message}"
+        for heading, code, message in rows()
+        if not any(c == code and pattern(message).fullmatch(m) for c, m in SNAPSHOTS)
+        and not any(text in plain(message) for text in said)
+    ]
+    assert not stale, stale
 
 
 def test_no_part_is_out_of_date():
