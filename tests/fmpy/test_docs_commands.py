@@ -13,18 +13,14 @@ import subprocess
 import sys
 
 import pytest
-from harness import ROOT, program
+from harness import ROOT, program, run_biela
 from manual import PAGES, Block, blocks, commands, page_name, same_output
 
 NOT_RUN = {
     "make demo": "the demo has a test of its own, test_demo.py",
     "make test": "that is what is running",
-    "make install PREFIX=$HOME/.local": "builds for minutes, and writes outside of the checkout",
-    "make bench": "measures for minutes; needs a quiet machine",
-    "python3 -m venv env": "downloads packages; those of the tests are installed already",
-    "env/bin/pip install fmpy": "downloads packages; those of the tests are installed already",
-    "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
-    "make bench RENEW=yes": "measures for minutes, and changes a file",
+    "make install": "builds for minutes, and writes outside of the checkout",
+    'export PATH="$HOME/.local/bin:$PATH"': "of the user's own shell",
 }
 """Commands in blocks marked `norun`, each with the reason."""
 
@@ -115,12 +111,12 @@ def test_no_reason_without_a_command():
     assert set(NOT_RUN) <= listed, set(NOT_RUN) - listed
 
 
-def test_make_targets_exist():
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_make_targets_exist(page):
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    for page in PAGES:
-        for target in re.findall(r"`?make ([a-z]+)`?", page.read_text(encoding="utf-8")):
-            if f"`make {target}" in page.read_text(encoding="utf-8"):
-                assert re.search(rf"^{target}:", makefile, re.MULTILINE), (page_name(page), target)
+    # At the start of a line of a block, or in backquotes.
+    for target in re.findall(r"(?:^|`)make ([a-z]+)", page.read_text(encoding="utf-8"), re.M):
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
@@ -140,3 +136,20 @@ def anchors(page):
     """The anchors of a page's headings, made as on GitHub."""
     headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def test_every_command_and_option_is_there():
+    """docs/commands.md against what the program says of itself."""
+    text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    listed = run_biela("--help").stdout.partition("Commands:\n")[2].partition("\n\n")[0]
+    names = set(re.findall(r"^  (\w+)", listed, re.MULTILINE)) - {"help"}
+    sections = set(re.findall(r"^## (\w+)$", text, re.MULTILINE))
+    assert {"check", "run", "draw", "export"} <= names
+    assert names == sections
+    options = {
+        option
+        for name in names
+        for option in re.findall(r"^ +(?:-\w, )?(--[a-z-]+)", run_biela(name, "--help").stdout, re.M)
+    }
+    documented = set(re.findall(r"--[a-z-]+", text))
+    assert options - {"--help"} <= documented, options - documented
