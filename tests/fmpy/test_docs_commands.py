@@ -11,6 +11,7 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from harness import ROOT, program, run_biela
@@ -20,6 +21,10 @@ NOT_RUN = {
     "make demo": "the demo has a test of its own, test_demo.py",
     "make test": "that is what is running",
     "make install": "builds for minutes, and writes outside of the checkout",
+    "python3 -m venv env": "for packages to be downloaded into",
+    "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
+    "python parameter_sweep.py": "test_examples.py runs it",
+    "python dask_sweep.py": "test_examples.py runs it",
     'export PATH="$HOME/.local/bin:$PATH"': "of the user's own shell",
 }
 """Commands in blocks marked `norun`, each with the reason."""
@@ -71,7 +76,9 @@ def run_console(at, block: Block, folder):
 
 
 def run(at, command, folder, *, may_fail=False) -> list[str]:
-    path = f"{program().parent}{os.pathsep}{os.environ['PATH']}"
+    path = os.pathsep.join(
+        [str(program().parent), str(Path(sys.executable).parent), os.environ["PATH"]]
+    )
     environment = {**os.environ, "PATH": path, "MPLBACKEND": "agg", "BIELA_EXAMPLE": "small"}
     done = subprocess.run(
         command,
