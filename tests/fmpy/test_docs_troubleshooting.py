@@ -50,7 +50,7 @@ PARTS = {
     ", and in … more places": "does not fit into hollows: …",
     "initialized at t = … s; residual …": "an event, not a complaint",
     "FMU state set: … at t = … s": "an event, not a complaint",
-    "t = … s: … sub-steps, … iterations, residual …": "solver detail, not a complaint",
+    "t = … s: … sub-steps, … of them checked, not proved; … iterations, residual …": "solver detail, not a complaint",
     ".hidden callback_log": "for the linker",
     ".private_extern _callback_log": "for the linker",
 }

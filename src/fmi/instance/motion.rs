@@ -242,9 +242,11 @@ impl Instance {
             let Progress {
                 iterations,
                 substeps,
+                checked,
             } = self.progress;
             let message = format!(
-                "t = {} s: {substeps} sub-steps, {iterations} iterations, residual {:.1e}",
+                "t = {} s: {substeps} sub-steps, {checked} of them checked, not proved; \
+                 {iterations} iterations, residual {:.1e}",
                 self.time,
                 self.solver.residual()
             );
@@ -310,6 +312,7 @@ impl Instance {
                 self.progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
+                    checked: 0,
                 };
                 self.logger.write(
                     Status::Warning,
