@@ -33,7 +33,7 @@ STEPS = 36 if SMALL else 180
 
 
 def least_transmission_angles(folder, variants):
-    """The least transmission angle [rad] of each variant (coupler, rocker), NaN if there is none."""
+    """The least transmission angle [rad] of each variant (coupler, rocker), or NaN."""
     description = read_model_description(folder)
     vr = {variable.name: variable.valueReference for variable in description.modelVariables}
     fmu = FMU2Slave(
@@ -129,9 +129,10 @@ def main():
             )
 
     expected = closed_form(coupler, rocker)
-    both = np.array_equal(np.isnan(serial), np.isnan(expected))
+    turns = ~np.isnan(serial)
+    agreed = "as" if np.array_equal(turns, ~np.isnan(expected)) else "NOT as"
+    print(f"{np.count_nonzero(turns)} cranks turn fully, {agreed} Grashof says")
     error = np.nanmax(np.abs(serial - expected))
-    print(f"{np.count_nonzero(~np.isnan(serial))} cranks turn fully, {'as' if both else 'NOT as'} Grashof says")
     print(f"largest difference from the closed form {error:.0e} rad")
     best = np.nanargmax(serial)
     print(

@@ -48,9 +48,9 @@ PARTS = {
     "its joints are open by …": "is none that an instance could be in: …",
     "from theta = … to … deg": "does not fit into hollows: …",
     ", and in … more places": "does not fit into hollows: …",
-    "initialized at t = … s; residual …": "an event, not a complaint",
-    "FMU state set: … at t = … s": "an event, not a complaint",
-    "t = … s: … sub-steps, … of them checked, not proved; … iterations, residual …": "solver detail, not a complaint",
+    "initialized at t = … s; residual …": "an event",
+    "FMU state set: … at t = … s": "an event",
+    "t = … s: … sub-steps, … of them checked, not proved; … iterations, residual …": "solver detail",
     ".hidden callback_log": "for the linker",
     ".private_extern _callback_log": "for the linker",
 }
@@ -120,13 +120,13 @@ FILE_MESSAGES = [
 ]
 """Of the reader."""
 
+ANSWER = re.compile(r"^(?:error|warning)\[([a-z-]+)\]: (.*)$", re.MULTILINE)
+
 SNAPSHOTS = sorted(
     {
-        found.groups()
+        found
         for path in (ROOT / "tests" / "snapshots").glob("diagnostics__*.snap")
-        for found in re.finditer(
-            r"^(?:error|warning)\[([a-z-]+)\]: (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE
-        )
+        for found in ANSWER.findall(path.read_text(encoding="utf-8"))
     }
 )
 """Codes and messages of the reviewed answers to bad files."""
@@ -183,4 +183,5 @@ def test_nothing_else_is_explained():
 
 
 def test_no_part_is_out_of_date():
-    assert set(PARTS) <= {literal.text for name, text in SOURCES for literal in literals(name, text)}
+    texts = {literal.text for name, text in SOURCES for literal in literals(name, text)}
+    assert set(PARTS) <= texts, set(PARTS) - texts
