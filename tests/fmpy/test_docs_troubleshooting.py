@@ -36,7 +36,6 @@ PARTS = {
     "the mechanism has none": "no … `…`; …",
     "crank_angle=60*deg + 10*t": "the example for --drive",
     "crank_length=120*mm": "the example for --set",
-    "SOURCE_DATE_EPOCH": "the variable itself",
     "about the solver": "cannot be set: it is …",
     "the running program": "cannot read `…`",
     "the estimate of body `…`": "… has no finite value",
@@ -96,8 +95,10 @@ def words_in(text: str) -> int:
 
 
 def is_message(literal: Literal) -> bool:
-    """Whether people are to read it: three words or more, and not for programmers only."""
-    return words_in(literal.text) >= 3 and not NOT_FOR_PEOPLE.search(literal.before)
+    """Whether people are to read it: three words or more, no markup, not for programmers."""
+    text = literal.text
+    is_text = " " in text and "<" not in text and words_in(text) >= 3
+    return is_text and not NOT_FOR_PEOPLE.search(literal.before)
 
 
 SOURCES = list(sources())
