@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::constraint::{Dimension, Incidence, TurnEffect};
 use super::error::OpenJoint;
 use super::minimise::{MAX_ITERATIONS, Part, SMALL_PART, STARTS};
-use super::newton::{Correction, SINGULAR};
+use super::newton::SINGULAR;
 use super::plan::Kernel;
 use super::solver::{Pose, Solver};
 use super::stepping::Progress;
@@ -51,6 +51,7 @@ impl Solver {
     /// make no mechanism. The solver is then without a valid pose until it is assembled or
     /// [restored](Self::restore).
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
+        self.release_crossings();
         self.pose.parameters.copy_from_slice(&path.to);
         self.take_over_parameters()?;
         self.parameters_move = path.moves_parameters();
@@ -88,10 +89,7 @@ impl Solver {
         let mut iterations = 0;
         for (index, kernel) in plan.kernels.iter_mut().enumerate() {
             let assembled = match kernel {
-                Kernel::Pinned(kernel) => {
-                    kernel.locate(&mut work);
-                    Ok(Correction::default())
-                }
+                Kernel::Pinned(_) | Kernel::Bridged(_) => kernel.close(&mut work, MAX_ITERATIONS),
                 Kernel::Dyad(kernel) => kernel.assemble(&mut work, estimate),
                 Kernel::Slide(kernel) => kernel.assemble(&mut work, estimate),
                 Kernel::Coupled(kernel) => Part::new(kernel.rows(), kernel.columns()).assemble(
@@ -156,16 +154,8 @@ impl Solver {
         let (plan, mut work) = self.work();
         let mut iterations = 0;
         for kernel in &mut plan.kernels {
-            let correction = match kernel {
-                Kernel::Pinned(kernel) => {
-                    kernel.locate(&mut work);
-                    continue;
-                }
-                Kernel::Dyad(kernel) => kernel.close(&mut work, MAX_ITERATIONS),
-                Kernel::Slide(kernel) => kernel.close(&mut work, MAX_ITERATIONS),
-                Kernel::Coupled(kernel) => kernel.correct(&mut work, MAX_ITERATIONS),
-            };
-            iterations = iterations.max(correction.ok()?.iterations);
+            let correction = kernel.close(&mut work, MAX_ITERATIONS).ok()?;
+            iterations = iterations.max(correction.iterations);
         }
         self.at.copy_pose(&mut self.pose.q);
         Some(iterations)

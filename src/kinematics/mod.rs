@@ -36,6 +36,7 @@ mod plan;
 mod rates;
 #[cfg(test)]
 mod reference;
+mod singular;
 mod solver;
 mod stepping;
 mod structure;
@@ -50,6 +51,7 @@ pub use error::{Error, OpenJoint};
 pub use fit::{Misfit, MisfitKind};
 pub use path::{Curve, Path};
 pub use rates::Rates;
+pub use singular::{Crossing, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress, Reason};
 pub use structure::{Dependencies, Structure};

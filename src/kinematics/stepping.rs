@@ -10,6 +10,7 @@ use super::Error;
 use super::newton::LARGEST_CORRECTION;
 use super::path::Path;
 use super::plan::Advance;
+use super::singular::{NEAR, SingularPoint};
 use super::solver::{Solver, UNIT};
 use crate::mechanism::Jet;
 
@@ -17,8 +18,11 @@ use crate::mechanism::Jet;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// No continuous motion leads on: a dead point, a change point, or a motion that jumps.
-    DeadPoint,
+    /// The Jacobian loses rank ahead: a dead point, or what is not crossed.
+    Singular(Box<SingularPoint>),
+    /// No continuous motion was found to lead on, nor a singular position: the motion jumps, or
+    /// the part of the mechanism that stops is too large or moved by parameters.
+    Lost,
     /// A value on the way is one for which the mechanism does not exist.
     Value(Error),
     /// The path asks for more sub-steps than anyone would wait for.
@@ -33,6 +37,8 @@ pub struct Progress {
     pub iterations: u32,
     /// Sub-steps, failed ones included; one for an ordinary step.
     pub substeps: u32,
+    /// Change points passed; [`Solver::crossed`] has them.
+    pub crossings: u32,
 }
 
 /// The path could not be followed to its end: a dead point is in the way, or values for which
@@ -59,7 +65,9 @@ const LOOK_AT: [f64; 3] = [0.29, 0.53, 0.83];
 const SMALLEST_SUBSTEP: f64 = 1e-12;
 
 impl Solver {
-    /// Moves the mechanism along `path`, at whose start it must stand. Allocates nothing.
+    /// Moves the mechanism along `path`, at whose start it must stand. Change points on the way are
+    /// crossed on the smooth continuation of the motion. Allocates nothing, unless a part of the
+    /// mechanism comes near a singular position.
     ///
     /// # Errors
     ///
@@ -76,13 +84,22 @@ impl Solver {
                 progress,
             })
         };
+        self.crossed.clear();
+        self.parameters_move = path.moves_parameters();
+        if self.parameters_move && !self.pose.crossings.is_empty() {
+            // A crossing is one for these parameters.
+            self.release_crossings();
+            self.stand_at_pose();
+        }
         if self.refresh().is_err() {
-            return blocked(s, Reason::DeadPoint, progress);
+            return blocked(s, Reason::Lost, progress);
         }
         self.pose.time = path.time(0.0);
-        self.parameters_move = path.moves_parameters();
         self.drive(path, 0.0);
         while s < 1.0 {
+            if !self.pose.crossings.is_empty() {
+                self.leave_crossings();
+            }
             self.predict();
             while self.turn_within(substep) > LARGEST_TURN && substep >= SMALLEST_SUBSTEP {
                 substep *= 0.5;
@@ -100,12 +117,17 @@ impl Solver {
             let most = path.next_point(start, &self.motions);
             let mut reaches_point = false;
             loop {
-                let next = if start + substep < most {
+                let mut next = if start + substep < most {
                     start + substep
                 } else {
                     reaches_point = true;
                     most
                 };
+                if !self.pose.crossings.is_empty() {
+                    let end = self.within_crossings(path, start, next);
+                    reaches_point |= end < next;
+                    next = end;
+                }
                 progress.substeps = progress.substeps.saturating_add(1);
                 let reached = self.try_substep(path, [start, next], &mut progress);
                 if reached == Ok(true) {
@@ -116,8 +138,17 @@ impl Solver {
                 reaches_point = false;
                 substep = 0.5 * (next - start);
                 if substep < SMALLEST_SUBSTEP {
-                    let reason = reached.map_or_else(Reason::Value, |_| Reason::DeadPoint);
+                    let reason = reached.map_or_else(Reason::Value, |_| {
+                        let end = self.find_end(path, start);
+                        end.map_or(Reason::Lost, Reason::Singular)
+                    });
                     return blocked(start, reason, progress);
+                }
+            }
+            progress.crossings += self.note_crossings();
+            if self.regularity < NEAR && !self.parameters_move {
+                if let Err(end) = self.take_crossings(Some((path, s))) {
+                    return blocked(s, Reason::Singular(end), progress);
                 }
             }
             // Twice the sub-step that was possible here; what a point cut short was no less.
@@ -222,6 +253,7 @@ impl Solver {
             return Ok(false);
         };
         self.at.copy_pose(&mut self.pose.q);
+        self.regularity = correction.regularity;
         progress.iterations = progress.iterations.saturating_add(correction.iterations);
         Ok(true)
     }
@@ -245,7 +277,7 @@ impl Solver {
     }
 
     /// The drivers along the path at s, with their derivatives.
-    fn drive(&mut self, path: &Path, s: f64) {
+    pub(super) fn drive(&mut self, path: &Path, s: f64) {
         let Self {
             system,
             motions,

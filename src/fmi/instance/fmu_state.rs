@@ -339,6 +339,7 @@ impl FmuState {
         codec.finite(last_successful_time)?;
         codec.count(&mut progress.iterations)?;
         codec.count(&mut progress.substeps)?;
+        codec.count(&mut progress.crossings)?;
         // Derived parameters may be anything until values are looked at together.
         for value in &mut settings.parameters {
             codec.real(value)?;
@@ -368,6 +369,7 @@ fn walk_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> 
         drivers,
         q,
         turns,
+        crossings: _,
     } = pose;
     codec.finite(time)?;
     for value in parameters.iter_mut().chain(drivers).chain(q) {

@@ -242,6 +242,7 @@ impl Instance {
             let Progress {
                 iterations,
                 substeps,
+                ..
             } = self.progress;
             let message = format!(
                 "t = {} s: {substeps} sub-steps, {iterations} iterations, residual {:.1e}",
@@ -301,6 +302,7 @@ impl Instance {
                 self.progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
+                    crossings: 0,
                 };
                 self.logger.write(
                     Status::Warning,

@@ -155,12 +155,18 @@ impl Lu {
         }
     }
 
-    /// Whether the reciprocal condition is below `limit`. Cheap where it clearly is not.
-    pub fn is_singular(&mut self, limit: f64, condition: &mut Condition) -> bool {
-        let (low, high) = match self {
+    /// The magnitudes of the smallest and the largest pivot.
+    #[must_use]
+    pub fn pivot_range(&self) -> (f64, f64) {
+        match self {
             Self::Dense(lu) => lu.pivot_range(),
             Self::Sparse(lu) => lu.pivot_range(),
-        };
+        }
+    }
+
+    /// Whether the reciprocal condition is below `limit`. Cheap where it clearly is not.
+    pub fn is_singular(&mut self, limit: f64, condition: &mut Condition) -> bool {
+        let (low, high) = self.pivot_range();
         // With rows and columns scaled, pivots of similar size mean a good condition; the factor
         // leaves room for the cases where they hide a bad one.
         low < 1e3 * limit * high.max(self.norm()) && condition.rcond(self) < limit

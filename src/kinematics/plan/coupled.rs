@@ -8,6 +8,7 @@ use crate::kinematics::newton::{
     AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
     SMALL, STALLED,
 };
+use crate::kinematics::singular::LARGEST_BLOCK;
 use crate::kinematics::system::{Target, nan_or_larger};
 use crate::mechanism::Jet;
 
@@ -162,7 +163,23 @@ impl Coupled {
             && largest <= LARGEST_CORRECTION
             && self.negative == before
             && !self.lu.is_singular(SINGULAR, &mut self.condition);
-        if kept { Ok(correction) } else { Err(Rejected) }
+        if kept {
+            Ok(Correction {
+                regularity: self.regularity(),
+                ..correction
+            })
+        } else {
+            Err(Rejected)
+        }
+    }
+
+    /// The ratio of the extreme pivots, one where they are too many to tell anything.
+    pub(super) fn regularity(&self) -> f64 {
+        if self.rows.len() > LARGEST_BLOCK {
+            return 1.0;
+        }
+        let (low, high) = self.lu.pivot_range();
+        low / high.max(self.lu.norm())
     }
 
     /// Corrects the block's unknowns from where they are until Phi = 0 to rounding: solves

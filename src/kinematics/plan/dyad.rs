@@ -200,7 +200,10 @@ impl Dyad {
             && self.determinant * before > 0.0
             && !self.is_singular();
         if kept {
-            Ok(found.correction)
+            Ok(Correction {
+                regularity: self.regularity(),
+                ..found.correction
+            })
         } else {
             Err(Rejected)
         }
@@ -347,6 +350,13 @@ impl Dyad {
     fn is_singular(&self) -> bool {
         let [a, b] = &self.sides;
         self.determinant.abs() < SINGULAR * a.length * b.length
+    }
+
+    /// The sine of the angle between the links.
+    #[inline(always)]
+    pub(super) fn regularity(&self) -> f64 {
+        let [a, b] = &self.sides;
+        self.determinant.abs() / (a.length * b.length)
     }
 
     /// 1 / (‖J‖₁ ‖J⁻¹‖₁), each column of J divided by its link's length: it depends on the angle

@@ -101,7 +101,7 @@ impl Pinned {
             // Linear equations are solved by one.
             Ok(Correction {
                 iterations: 1,
-                contraction: 0.0,
+                ..Correction::default()
             })
         } else {
             Err(Rejected)

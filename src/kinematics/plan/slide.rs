@@ -356,7 +356,19 @@ impl Slide {
             && (phi - predicted).abs() <= LARGEST_CORRECTION
             && self.slope * before > 0.0
             && self.slope.abs() >= SINGULAR * self.scale;
-        if kept { Ok(correction) } else { Err(Rejected) }
+        if kept {
+            Ok(Correction {
+                regularity: self.regularity(),
+                ..correction
+            })
+        } else {
+            Err(Rejected)
+        }
+    }
+
+    /// The slope of the equation in the angle, as part of what it can be.
+    pub(super) fn regularity(&self) -> f64 {
+        self.slope.abs() / self.scale
     }
 
     /// Newton–Raphson on the angle of a.

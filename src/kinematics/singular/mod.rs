@@ -1,0 +1,363 @@
+//! Singular positions: dead points, change points, and what is refused.
+//!
+//! Where the Jacobian of a block of equations loses rank, Newton–Raphson neither converges nor
+//! knows where the motion goes on. [`reduced`] makes of the block's equations one function of two
+//! numbers that is smooth there, [`locate`] finds in it the singular position to rounding and
+//! tells its kind, [`crossing`] carries the motion through where two motions cross: on the smooth
+//! continuation, so that what was parallel stays parallel.
+//!
+//! A crossing belongs to the pose: while the driver's value is within its ends, the block's
+//! unknowns and their rates come from it. Blocks that several drivers move, and those with more
+//! than [`LARGEST_BLOCK`] unknowns, are not crossed; nor is anything while parameters move.
+
+mod crossing;
+mod locate;
+mod reduced;
+
+use std::sync::Arc;
+
+pub use crossing::Crossing;
+pub use locate::SingularKind;
+
+use super::newton::MAX_ITERATIONS;
+use super::path::Path;
+use super::plan::{Bridged, Kernel};
+use super::solver::Solver;
+use crate::mechanism::DriverId;
+use crossing::replace;
+use locate::{Finding, find};
+use reduced::{Ground, Line, Reduced};
+
+/// The most unknowns of a block whose singular positions are looked for, by dense matrices.
+pub const LARGEST_BLOCK: usize = 120;
+
+/// The regularity below which a singular position may be near.
+pub(super) const NEAR: f64 = 0.05;
+/// How far it is looked for, in radians and characteristic lengths of the fastest unknown.
+const REACH: f64 = 0.1;
+/// What stops the motion is looked for further: near a dead point everything runs fast.
+const REACH_TO_END: f64 = 0.5;
+/// A motion that would meet what it cannot pass within this way is stopped.
+const STOPPED: f64 = 0.02;
+/// Entries of a null vector above this part of its largest are what is free to move.
+const FREE: f64 = 1e-3;
+/// The part of a crossing next to its end that counts as the end.
+const END: f64 = 1e-6;
+
+/// A singular position on the way of a motion, located to rounding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SingularPoint {
+    /// What it is.
+    pub kind: SingularKind,
+    /// Where on the path it is; beyond one if the path ends before it.
+    pub s: f64,
+    /// The values of all drivers there: the limit \[m or rad\].
+    pub drivers: Vec<f64>,
+    /// q there, as far as the block and what it reads determine it.
+    pub q: Vec<f64>,
+    /// The null vector of the Jacobian there over all of q, zero outside of the block, scaled so
+    /// that metres and radians compare and the largest entry is one: the motion that is free, or
+    /// infinitely fast.
+    pub free: Vec<f64>,
+    /// The bodies that line up: those that the null vector moves.
+    pub bodies: Vec<String>,
+}
+
+impl Solver {
+    /// The change points that the last call of [`follow`](Self::follow) passed, in order.
+    #[must_use]
+    pub fn crossed(&self) -> &[Arc<Crossing>] {
+        &self.crossed
+    }
+
+    /// The bodies that are free to move at a change point, for messages.
+    #[must_use]
+    pub fn free_bodies(&self, crossing: &Crossing) -> Vec<String> {
+        let columns = self.plan.kernels[crossing.kernel].columns();
+        self.bodies_of(columns, &crossing.free)
+    }
+
+    fn bodies_of(&self, columns: &[usize], free: &[f64]) -> Vec<String> {
+        let mut moved: Vec<_> = columns
+            .iter()
+            .zip(free)
+            .filter(|(_, free)| free.abs() > FREE)
+            .map(|(&column, _)| (column / 3, column))
+            .collect();
+        moved.sort_unstable();
+        let mut names: Vec<_> = moved
+            .into_iter()
+            .map(|(_, column)| self.system.describe_unknown(column))
+            .collect();
+        names.dedup();
+        names
+    }
+
+    /// The kernels near a singular position, where all of them are factorised.
+    fn near_singular(&self) -> Vec<usize> {
+        let kernels = self.plan.kernels.iter().enumerate();
+        kernels
+            .filter(|(_, kernel)| kernel.regularity() < NEAR)
+            .map(|(index, _)| index)
+            .collect()
+    }
+
+    /// The reduced equation of a kernel from the pose, which is at `start` of the line.
+    fn reduced<'a>(&'a mut self, kernel: usize, line: Line<'a>, start: f64) -> Option<Reduced<'a>> {
+        let ground = Ground {
+            system: &self.system,
+            targets: &self.targets,
+            motions: &self.motions,
+            at: &self.at,
+            pose: &self.pose,
+            kernels: &mut self.plan.kernels[..=kernel],
+        };
+        Reduced::new(ground, line, start)
+    }
+
+    /// The one driver that moves what a kernel solves and all that it reads; `None` if there are
+    /// more or none.
+    fn only_driver(&self, kernel: usize) -> Option<DriverId> {
+        let structure = self.structure();
+        let mut seen = vec![false; structure.blocks().len()];
+        let columns = self.plan.kernels[kernel].columns();
+        let mut open: Vec<_> = columns.iter().map(|&c| structure.block_of(c)).collect();
+        let mut only = None;
+        while let Some(block) = open.pop() {
+            if std::mem::replace(&mut seen[block], true) {
+                continue;
+            }
+            let block = &structure.blocks()[block];
+            for &row in &block.rows {
+                if let super::Target::Driver(driver) = self.system.equations()[row].target
+                    && only.replace(driver).is_some_and(|other| other != driver)
+                {
+                    return None;
+                }
+            }
+            open.extend(&block.reads);
+        }
+        only
+    }
+
+    /// Looks for change points so near that the pose is within their crossing, and takes it over.
+    /// Allocates where something may be near.
+    ///
+    /// # Errors
+    ///
+    /// A singular position that cannot be passed is right ahead on the path, at whose `s` the
+    /// mechanism stands.
+    pub(super) fn take_crossings(&mut self, ahead: Option<(&Path, f64)>) -> Result<(), Box<SingularPoint>> {
+        let mut taken = false;
+        let mut stopped = None;
+        for kernel in self.near_singular() {
+            let Some(driver) = self.only_driver(kernel) else {
+                continue;
+            };
+            let value = self.pose.drivers[driver.index()];
+            let Some(mut block) = self.reduced(kernel, Line::Driver(driver), value) else {
+                taken = true;
+                continue;
+            };
+            taken = true;
+            let finding = find(&mut block, REACH);
+            if let Finding::End(kind, sheet) = &finding
+                && *kind != SingularKind::DeadPoint
+                && (sheet.tau - value).abs() * block.speed < STOPPED
+            {
+                stopped = stopped.or(Some((kernel, sheet.tau - value)));
+            }
+            let Some(crossing) = Crossing::new(&mut block, finding, kernel, driver) else {
+                continue;
+            };
+            if crossing.place(value).abs() < 1.0 - END {
+                self.enter(Arc::new(crossing));
+            }
+        }
+        if taken {
+            // The kernels before have been elsewhere.
+            self.stand_at_pose();
+            // They were regular at this pose.
+            let _ = self.refresh();
+        }
+        if let (Some((kernel, off)), Some((path, s))) = (stopped, ahead) {
+            let driver = self.only_driver(kernel);
+            let toward = driver.is_some_and(|driver| off * self.path_drivers[driver.index()].first > 0.0);
+            if toward && let Some(point) = self.singular_point(path, s, kernel) {
+                return Err(Box::new(point));
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets a kernel's unknowns come from a crossing, and those behind follow.
+    fn enter(&mut self, crossing: Arc<Crossing>) {
+        let kernel = crossing.kernel;
+        self.bridge(Arc::clone(&crossing));
+        self.stand_at_pose();
+        let (plan, mut work) = self.work();
+        let closed = plan.kernels[kernel..]
+            .iter_mut()
+            .all(|kernel| kernel.close(&mut work, MAX_ITERATIONS).is_ok());
+        if closed {
+            self.at.copy_pose(&mut self.pose.q);
+            self.pose.crossings.push(crossing);
+        } else {
+            self.release(kernel);
+            self.stand_at_pose();
+        }
+    }
+
+    fn bridge(&mut self, crossing: Arc<Crossing>) {
+        replace(&mut self.plan.kernels, crossing.kernel, |kernel| {
+            Kernel::Bridged(Box::new(Bridged::new(kernel, Arc::clone(&crossing))))
+        });
+    }
+
+    fn release(&mut self, kernel: usize) {
+        replace(&mut self.plan.kernels, kernel, |kernel| match kernel {
+            Kernel::Bridged(bridged) => bridged.kernel,
+            kernel => kernel,
+        });
+    }
+
+    /// Lets go of all crossings of the present pose.
+    pub(super) fn release_crossings(&mut self) {
+        while let Some(crossing) = self.pose.crossings.pop() {
+            self.release(crossing.kernel);
+        }
+    }
+
+    /// Takes over those of a pose.
+    pub(super) fn bridge_all(&mut self, crossings: &[Arc<Crossing>]) {
+        for crossing in crossings {
+            self.bridge(Arc::clone(crossing));
+            self.pose.crossings.push(Arc::clone(crossing));
+        }
+    }
+
+    /// Lets go of the crossings at whose end the path, at whose `path_drivers` the mechanism
+    /// stands, leads out of them.
+    pub(super) fn leave_crossings(&mut self) {
+        let mut left = false;
+        for index in (0..self.pose.crossings.len()).rev() {
+            let crossing = &self.pose.crossings[index];
+            let driver = crossing.driver.index();
+            let place = crossing.place(self.pose.drivers[driver]);
+            let jet = self.path_drivers[driver];
+            let direction = if jet.first == 0.0 { jet.second } else { jet.first };
+            if place.abs() >= 1.0 - END && direction * place > 0.0 {
+                let crossing = self.pose.crossings.remove(index);
+                self.release(crossing.kernel);
+                left = true;
+            }
+        }
+        if left {
+            self.stand_at_pose();
+            // The ends of a crossing are regular.
+            let _ = self.refresh();
+        }
+    }
+
+    /// Where a sub-step from `start` to `end` leaves the crossing that it leaves first; `end` if
+    /// it leaves none.
+    pub(super) fn within_crossings(&mut self, path: &Path, start: f64, end: f64) -> f64 {
+        let mut end = end;
+        for index in 0..self.pose.crossings.len() {
+            let crossing = Arc::clone(&self.pose.crossings[index]);
+            let driver = crossing.driver.index();
+            let from = self.origin_drivers[driver];
+            // No further than from one end to the other.
+            let way = |h: f64| h * (from.first.abs() + 0.5 * h * from.second.abs());
+            while way(end - start) > 2.0 * crossing.half_width {
+                end = start + 0.5 * (end - start);
+            }
+            let mut place = |s: f64| {
+                self.drive(path, s);
+                crossing.place(self.path_drivers[driver].value).abs()
+            };
+            if place(end) <= 1.0 {
+                continue;
+            }
+            let (mut inside, mut outside) = (start, end);
+            // Halved until the inner one is at the end of the crossing.
+            for _ in 0..100 {
+                let middle = 0.5 * (inside + outside);
+                let there = place(middle);
+                if there <= 1.0 {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+                if there <= 1.0 && there >= 1.0 - 0.5 * END {
+                    break;
+                }
+            }
+            end = inside;
+        }
+        end
+    }
+
+    /// Notes the change points between the start of a sub-step and the pose.
+    pub(super) fn note_crossings(&mut self) -> u32 {
+        let mut passed = 0;
+        for crossing in &self.pose.crossings {
+            let driver = crossing.driver.index();
+            let before = self.origin_drivers[driver].value - crossing.center;
+            let now = self.pose.drivers[driver] - crossing.center;
+            // Reached counts as passed; so setting out from it does not.
+            if before != 0.0 && before * now <= 0.0 {
+                passed += 1;
+                self.crossed.push(Arc::clone(crossing));
+            }
+        }
+        passed
+    }
+
+    /// What stops the motion along a path, at whose `s` the mechanism stands; `None` if no
+    /// singular position was found: the motion jumps, a block is too large, parameters move.
+    pub(super) fn find_end(&mut self, path: &Path, s: f64) -> Option<Box<SingularPoint>> {
+        if self.parameters_move {
+            return None;
+        }
+        let mut near = self.near_singular();
+        let regularity = |kernel: usize| self.plan.kernels[kernel].regularity();
+        near.sort_by(|a, b| regularity(*a).total_cmp(&regularity(*b)));
+        let found = near
+            .into_iter()
+            .find_map(|kernel| self.singular_point(path, s, kernel));
+        self.stand_at_pose();
+        // The pose was regular when it was reached.
+        let _ = self.refresh();
+        found.map(Box::new)
+    }
+
+    /// The singular position of a kernel ahead on a path.
+    fn singular_point(&mut self, path: &Path, s: f64, kernel: usize) -> Option<SingularPoint> {
+        let mut block = self.reduced(kernel, Line::Path(path), s)?;
+        let (kind, sheet) = match find(&mut block, REACH_TO_END) {
+            Finding::End(kind, sheet) => (kind, sheet),
+            Finding::Crossing(sheet, _) => (SingularKind::ChangePoint, sheet),
+            Finding::Nothing => return None,
+        };
+        // Rounding may put it a little before where the mechanism stands.
+        if sheet.tau < s - 1e-9 {
+            return None;
+        }
+        let free = &sheet.tangents[0] / sheet.tangents[0].amax();
+        let columns = block.columns.clone();
+        let (q, drivers) = (block.pose(), block.drivers().to_vec());
+        let mut over_all = vec![0.0; q.len()];
+        for (&column, value) in columns.iter().zip(free.iter()) {
+            over_all[column] = *value;
+        }
+        Some(SingularPoint {
+            kind,
+            s: sheet.tau,
+            drivers,
+            q,
+            bodies: self.bodies_of(&columns, free.as_slice()),
+            free: over_all,
+        })
+    }
+}
