@@ -5,9 +5,11 @@ mod common;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, Path, Rates, Solver};
+use biela::kinematics::{Rates, Reason, SingularKind, Solver};
 use biela::mechanism::{Jet, Mechanism};
-use common::{Exact, assembled, parse, shipped, straight_to};
+use proptest::prelude::*;
+
+use common::{Errors, Exact, assembled, parse, shipped, straight_to};
 
 /// The parallelogram as shipped, and crossed: B is mirrored in the line from A to O4, so that the
 /// coupler turns by twice the angle of that line.
@@ -102,6 +104,163 @@ fn a_parallelogram_turns_through_its_change_points() {
             let (worst, crossings) = turn(&mechanism, &exact, turns, steps, 0.0);
             println!("{turns} {steps} {worst:?} {crossings}");
             assert_eq!(crossings, 2 * turns);
+        }
+    }
+}
+
+/// Stops at every distance from a change point: position, velocity and acceleration are those of
+/// the smooth motion, and saved poses lead on as before.
+#[test]
+fn outputs_next_to_a_change_point_are_those_of_the_motion() {
+    for (mechanism, exact) in [(shipped("parallelogram"), PARALLEL), (crossed(), CROSSED)] {
+        let (mut solver, mut path) = assembled(&mechanism);
+        let mut rates = Rates::new(solver.pose().q.len());
+        let mut targets = vec![PI, 0.0, PI];
+        for exponent in 1..16 {
+            let off = 10_f64.powi(-exponent);
+            targets.extend([PI - off, PI + off, PI - off, -off, off]);
+        }
+        for target in targets {
+            straight_to(&solver, &mut path, target);
+            solver.follow(&path).expect("the crank turns fully");
+            let driver = Jet {
+                value: target,
+                first: 1.0,
+                second: -0.7,
+            };
+            let pose = solver.pose().clone();
+            for restored in [false, true] {
+                if restored {
+                    solver.restore(&pose);
+                }
+                solver
+                    .solve_rates(|_| driver, &mut rates)
+                    .expect("rates exist on the smooth motion");
+                let mut errors = Errors::default();
+                errors.collect(&solver, &rates, &exact.solution(&mechanism, driver));
+                let [position, velocity, acceleration] = errors.error;
+                // What is asked for is 1e-9, 1e-7 and 1e-5.
+                assert!(
+                    position < 1e-12 && velocity < 1e-9 && acceleration < 1e-6,
+                    "{target}: {errors:?}"
+                );
+            }
+            // Honest: the Jacobian is what it is.
+            let distance = (target - (target / PI).round() * PI).abs();
+            let rcond = solver.rcond();
+            assert!(rcond <= 2.0 * distance + 1e-13, "{rcond} {distance}");
+        }
+    }
+}
+
+#[test]
+fn a_pose_next_to_a_change_point_leads_on_with_the_same_bits() {
+    let mechanism = crossed();
+    let (mut solver, mut path) = assembled(&mechanism);
+    straight_to(&solver, &mut path, PI - 0.001);
+    solver.follow(&path).expect("nothing is in the way");
+    let pose = solver.pose().clone();
+    assert_eq!(pose.crossings.len(), 1);
+    let mut on = |solver: &mut Solver| {
+        let mut seen = Vec::new();
+        for target in [PI, PI + 0.003, PI - 0.002, PI + 0.1, PI + 1.0] {
+            straight_to(solver, &mut path, target);
+            let progress = solver.follow(&path).expect("the crank turns fully");
+            seen.push((solver.pose().clone(), progress));
+        }
+        seen
+    };
+    let first = on(&mut solver);
+    solver.restore(&pose);
+    assert_eq!(on(&mut solver), first);
+    let mut other = Solver::new(mechanism).expect("the drivers match");
+    other.restore(&pose);
+    assert_eq!(on(&mut other), first);
+}
+
+/// A four-bar driven by a link that does not turn fully: lengths of crank, coupler, rocker and
+/// base, and the assembly mode.
+fn four_bar(lengths: [f64; 4], crank: f64, side: f64) -> Option<Arc<Mechanism>> {
+    let [a, b, c, d] = lengths;
+    let (x, y) = (a * crank.cos(), a * crank.sin());
+    let diagonal = (d - x).hypot(y);
+    let cosine = (diagonal * diagonal + b * b - c * c) / (2.0 * diagonal * b);
+    if cosine.abs() > 0.99 {
+        return None;
+    }
+    let coupler = f64::atan2(-y, d - x) + side * cosine.acos();
+    let rocker = (y + b * coupler.sin()).atan2(x + b * coupler.cos() - d);
+    Some(parse(&format!(
+        "format = 1\nname = 'bar'\n[ground.markers]\nO2 = [0, 0]\nO4 = [{d:?}, 0]\n\
+         [bodies.crank]\nmarkers = {{ O = [0, 0], A = [{a:?}, 0] }}\n\
+         estimate = [0, 0, {crank:?}]\n\
+         [bodies.coupler]\nmarkers = {{ A = [0, 0], B = [{b:?}, 0] }}\n\
+         estimate = [{x:?}, {y:?}, {coupler:?}]\n\
+         [bodies.rocker]\nmarkers = {{ O = [0, 0], B = [{c:?}, 0] }}\n\
+         estimate = [{d:?}, 0, {rocker:?}]\n\
+         [joints]\nO2 = {{ type = 'revolute', markers = ['ground.O2', 'crank.O'] }}\n\
+         A = {{ type = 'revolute', markers = ['crank.A', 'coupler.A'] }}\n\
+         B = {{ type = 'revolute', markers = ['coupler.B', 'rocker.B'] }}\n\
+         O4 = {{ type = 'revolute', markers = ['ground.O4', 'rocker.O'] }}\n\
+         [drivers]\nu = {{ coordinate = 'angle', markers = ['ground.O2', 'crank.O'], \
+         start = {crank:?} }}\n"
+    )))
+}
+
+/// The crank angles, from 0 to pi, at which coupler and rocker line up: where the diagonal is
+/// their sum or their difference.
+fn limits([a, b, c, d]: [f64; 4]) -> impl Iterator<Item = f64> {
+    [b + c, b - c].into_iter().filter_map(move |diagonal| {
+        let cosine = (a * a + d * d - diagonal * diagonal) / (2.0 * a * d);
+        (cosine.abs() < 1.0).then(|| cosine.acos())
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Every crank that is blocked is so where the closed form says, both ways; one that turns
+    /// fully is not blocked.
+    #[test]
+    fn limits_of_four_bars_agree_with_the_closed_form(
+        lengths in [0.1..0.5_f64, 0.1..0.5_f64, 0.1..0.5_f64, 0.1..0.5_f64],
+        crank in -3.1..3.1_f64,
+        side in prop::sample::select(vec![-1.0, 1.0]),
+    ) {
+        let Some(mechanism) = four_bar(lengths, crank, side) else {
+            return Ok(());
+        };
+        let (mut solver, mut path) = assembled(&mechanism);
+        let limits: Vec<f64> = limits(lengths).flat_map(|limit| [limit, -limit]).collect();
+        let start = solver.pose().clone();
+        for way in [TAU, -TAU] {
+            solver.restore(&start);
+            straight_to(&solver, &mut path, crank + way);
+            // The first limit on the way.
+            let expected = limits
+                .iter()
+                .map(|limit| ((limit - crank) * way.signum()).rem_euclid(TAU))
+                .fold(f64::INFINITY, f64::min);
+            match solver.follow(&path) {
+                Ok(_) => prop_assert!(expected.is_infinite(), "{expected}"),
+                Err(blocked) => {
+                    let Reason::Singular(point) = &blocked.reason else {
+                        panic!("{blocked:?}")
+                    };
+                    prop_assert_eq!(point.kind, SingularKind::DeadPoint);
+                    let found = (point.drivers[0] - crank) * way.signum();
+                    prop_assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+                    prop_assert!((point.s * TAU - expected).abs() < 1e-12);
+                    prop_assert_eq!(&point.bodies, &["body `coupler`", "body `rocker`"]);
+                    // Where it stands is near, and the way back is open.
+                    let near = (solver.pose().drivers[0] - crank) * way.signum();
+                    prop_assert!(near <= found && near > found - 1e-9);
+                    straight_to(&solver, &mut path, crank);
+                    prop_assert!(solver.follow(&path).is_ok());
+                    let off = (0..9).map(|k| (solver.pose().q[k] - start.q[k]).abs());
+                    prop_assert!(off.fold(0.0, f64::max) < 1e-9);
+                }
+            }
         }
     }
 }

@@ -9,8 +9,8 @@ use crate::fmi::log::Category;
 use crate::fmi::serialized;
 use crate::fmi::state::{Call, State};
 use crate::fmi::variables::Causality;
-use crate::kinematics::{Pose, Progress};
-use crate::mechanism::Jet;
+use crate::kinematics::{Crossing, Pose, Progress};
+use crate::mechanism::{DriverId, Jet};
 
 /// The residual below which a pose counts as one of the mechanism, relative to its largest
 /// coordinate in characteristic lengths and radians. Newton leaves what rounding does, some
@@ -201,7 +201,7 @@ impl Instance {
 
     /// `fmi2SerializedFMUstateSize`: how many bytes
     /// [`serialize_fmu_state`](Self::serialize_fmu_state) gives, which is the same for all states
-    /// of a mechanism.
+    /// of a mechanism but those next to a change point.
     ///
     /// # Errors
     ///
@@ -294,6 +294,9 @@ impl Instance {
         let largest = (pose.q.iter().enumerate()).fold(1.0, |largest: f64, (column, q)| {
             largest.max((q / system.column_scale(column, at.size())).abs())
         });
+        if !self.solver.admits_crossings(pose) {
+            return Err(impossible("its change points are none of this mechanism"));
+        }
         self.solver.restore(pose);
         let residual = self.solver.residual();
         // Not a number is not closed either.
@@ -370,11 +373,52 @@ fn walk_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> 
         drivers,
         q,
         turns,
-        crossings: _,
+        crossings,
     } = pose;
     codec.finite(time)?;
-    for value in parameters.iter_mut().chain(drivers).chain(q) {
+    for value in parameters.iter_mut().chain(drivers).chain(&mut *q) {
         codec.finite(value)?;
     }
-    turns.iter_mut().try_for_each(|turn| codec.signed(turn))
+    turns
+        .iter_mut()
+        .try_for_each(|turn| codec.signed(turn))?;
+    let unknowns = q.len();
+    codec.resize(crossings, unknowns, || {
+        Arc::new(Crossing {
+            kernel: 0,
+            driver: DriverId(0),
+            center: 0.0,
+            half_width: 0.0,
+            coefficients: Vec::new(),
+            free: Vec::new(),
+        })
+    })?;
+    crossings
+        .iter_mut()
+        .try_for_each(|crossing| walk_crossing(Arc::make_mut(crossing), unknowns, codec))
+}
+
+fn walk_crossing(
+    crossing: &mut Crossing,
+    unknowns: usize,
+    codec: &mut impl Codec,
+) -> Result<(), Unreadable> {
+    let Crossing {
+        kernel,
+        driver,
+        center,
+        half_width,
+        coefficients,
+        free,
+    } = crossing;
+    codec.place(kernel)?;
+    codec.place(&mut driver.0)?;
+    codec.finite(center)?;
+    codec.finite(half_width)?;
+    codec.resize(coefficients, unknowns, || [0.0; 6])?;
+    for value in coefficients.iter_mut().flatten() {
+        codec.finite(value)?;
+    }
+    codec.resize(free, unknowns, || 0.0)?;
+    free.iter_mut().try_for_each(|value| codec.finite(value))
 }

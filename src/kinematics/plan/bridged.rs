@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Advance, Kernel, Work};
 use crate::kinematics::newton::{Correction, Rejected};
-use crate::kinematics::singular::Crossing;
+use crate::kinematics::singular::{Crossing, SEAM};
 use crate::mechanism::Jet;
 
 /// Any kernel while its unknowns come from a [`Crossing`].
@@ -15,9 +15,6 @@ pub(in crate::kinematics) struct Bridged {
     /// Whether the kernel could not be factorised where it stands.
     singular: bool,
 }
-
-/// How far beyond its ends a crossing is still good: what rounding does to a driver's value.
-const SEAM: f64 = 1.0 + 1e-9;
 
 impl Bridged {
     pub(in crate::kinematics) fn new(kernel: Kernel, crossing: Arc<Crossing>) -> Self {

@@ -22,7 +22,7 @@ pub use locate::SingularKind;
 use super::newton::MAX_ITERATIONS;
 use super::path::Path;
 use super::plan::{Bridged, Kernel};
-use super::solver::Solver;
+use super::solver::{Pose, Solver};
 use crate::mechanism::DriverId;
 use crossing::replace;
 use locate::{Finding, find};
@@ -41,6 +41,10 @@ const REACH_TO_END: f64 = 0.5;
 const STOPPED: f64 = 0.02;
 /// Entries of a null vector above this part of its largest are what is free to move.
 const FREE: f64 = 1e-3;
+/// How far beyond its ends a crossing is still good: what rounding does to a driver's value.
+pub(super) const SEAM: f64 = 1.0 + 1e-9;
+/// How far q may be off a crossing that it is on.
+const ON: f64 = 1e-9;
 /// The part of a crossing next to its end that counts as the end.
 const END: f64 = 1e-6;
 
@@ -75,6 +79,35 @@ impl Solver {
     pub fn free_bodies(&self, crossing: &Crossing) -> Vec<String> {
         let columns = self.plan.kernels[crossing.kernel].columns();
         self.bodies_of(columns, &crossing.free)
+    }
+
+    /// Whether the crossings of a pose are ones that this mechanism could have come to, and q
+    /// lies on them: a pose may have been read from outside.
+    #[must_use]
+    pub fn admits_crossings(&self, pose: &Pose) -> bool {
+        let mut kernels: Vec<_> = pose.crossings.iter().map(|c| c.kernel).collect();
+        kernels.sort_unstable();
+        kernels.dedup();
+        kernels.len() == pose.crossings.len()
+            && pose.crossings.iter().all(|crossing| {
+                let Some(kernel) = self.plan.kernels.get(crossing.kernel) else {
+                    return false;
+                };
+                let columns = kernel.columns();
+                let Some(driver) = self.only_driver(crossing.kernel) else {
+                    return false;
+                };
+                let value = pose.drivers[driver.index()];
+                crossing.driver == driver
+                    && crossing.half_width > 0.0
+                    && crossing.place(value).abs() <= SEAM
+                    && crossing.coefficients.len() == columns.len()
+                    && crossing.free.len() == columns.len()
+                    && columns.iter().enumerate().all(|(local, &column)| {
+                        let [there, ..] = crossing.evaluate(local, value);
+                        (there - pose.q[column]).abs() <= ON * (1.0 + there.abs())
+                    })
+            })
     }
 
     fn bodies_of(&self, columns: &[usize], free: &[f64]) -> Vec<String> {
