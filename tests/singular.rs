@@ -256,7 +256,8 @@ proptest! {
                     let near = (solver.pose().drivers[0] - crank) * way.signum();
                     prop_assert!(near <= found && near > found - 1e-9);
                     straight_to(&solver, &mut path, crank);
-                    prop_assert!(solver.follow(&path).is_ok());
+                    let back = solver.follow(&path);
+                    prop_assert!(back.is_ok(), "{blocked:?}\n{back:?}");
                     let off = (0..9).map(|k| (solver.pose().q[k] - start.q[k]).abs());
                     prop_assert!(off.fold(0.0, f64::max) < 1e-9);
                 }

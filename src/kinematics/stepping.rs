@@ -63,6 +63,9 @@ const MOST_SUBSTEPS: u32 = 100_000;
 const LOOK_AT: [f64; 3] = [0.29, 0.53, 0.83];
 /// A sub-step of this part of the path that still fails means that the path is blocked.
 const SMALLEST_SUBSTEP: f64 = 1e-12;
+/// The same for the first sub-step: away from a dead point, from as near as the way there ended.
+/// From there on the motion slows down as it has come on.
+const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
 
 impl Solver {
     /// Moves the mechanism along `path`, at whose start it must stand. Change points on the way are
@@ -101,7 +104,8 @@ impl Solver {
                 self.leave_crossings();
             }
             self.predict();
-            while self.turn_within(substep) > LARGEST_TURN && substep >= SMALLEST_SUBSTEP {
+            let smallest = (0.01 * s).clamp(SMALLEST_FIRST_SUBSTEP, SMALLEST_SUBSTEP);
+            while self.turn_within(substep) > LARGEST_TURN && substep >= smallest {
                 substep *= 0.5;
             }
             self.origin_time = self.pose.time;
@@ -110,7 +114,7 @@ impl Solver {
                     .copy_from_slice(&self.pose.parameters);
             }
             let start = s;
-            if substep < SMALLEST_SUBSTEP || progress.substeps >= MOST_SUBSTEPS {
+            if substep < smallest || progress.substeps >= MOST_SUBSTEPS {
                 return blocked(s, Reason::TooLong, progress);
             }
             // Between its points a motion given by a table tells at its ends where it has been.
@@ -137,7 +141,7 @@ impl Solver {
                 self.stand_at(path, start);
                 reaches_point = false;
                 substep = 0.5 * (next - start);
-                if substep < SMALLEST_SUBSTEP {
+                if substep < smallest {
                     let reason = reached.map_or_else(Reason::Value, |_| {
                         let end = self.find_end(path, start);
                         end.map_or(Reason::Lost, Reason::Singular)
