@@ -385,7 +385,10 @@ fn a_state_next_to_a_change_point_goes_on_with_the_same_bits() {
         matches!(quantity, Quantity::Input(_, Order::Position))
     });
     let mut plain = 0;
-    for (step, angle) in [1.2, 3.13, std::f64::consts::PI, 3.15, 4.0].into_iter().enumerate() {
+    for (step, angle) in [1.2, 3.13, std::f64::consts::PI, 3.15, 4.0]
+        .into_iter()
+        .enumerate()
+    {
         instance.set_real(&position, &[angle]).unwrap();
         instance.do_step(0.1 * step as f64, 0.1).unwrap();
         let state = instance.fmu_state().unwrap();

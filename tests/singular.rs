@@ -17,7 +17,10 @@ const PARALLEL: Exact = Exact {
     file: "parallelogram",
     bodies: &[
         ("crank", ["0", "0", "t"]),
-        ("coupler", ["crank_length*cos(t)", "crank_length*sin(t)", "0"]),
+        (
+            "coupler",
+            ["crank_length*cos(t)", "crank_length*sin(t)", "0"],
+        ),
         ("follower", ["base", "0", "t"]),
     ],
     formulas: &[],
@@ -44,7 +47,10 @@ const CROSSED: Exact = Exact {
 fn crossed() -> Arc<Mechanism> {
     let text = std::fs::read_to_string("mechanisms/parallelogram.toml")
         .expect("it is shipped")
-        .replace("estimate = [0.05, 0.09, 0]", "estimate = [0.05, 0.09, \"-60*deg\"]")
+        .replace(
+            "estimate = [0.05, 0.09, 0]",
+            "estimate = [0.05, 0.09, \"-60*deg\"]",
+        )
         .replace(
             "estimate = [\"base\", 0, \"60*deg\"]",
             "estimate = [\"base\", 0, \"-120*deg\"]",

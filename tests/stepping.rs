@@ -464,6 +464,9 @@ fn a_pin_runs_over_the_pivot_of_its_slot() {
     for target in [2.0, PI, 4.0, 2.0] {
         straight_to(&solver, &mut path, target);
         solver.follow(&path).expect("the motion goes on");
-        assert!((solver.pose().q[5] - 0.5 * target).abs() < SAME_POSE, "{target}");
+        assert!(
+            (solver.pose().q[5] - 0.5 * target).abs() < SAME_POSE,
+            "{target}"
+        );
     }
 }

@@ -33,6 +33,7 @@ mod motions;
 mod newton;
 mod path;
 mod plan;
+mod range;
 mod rates;
 #[cfg(test)]
 mod reference;
@@ -50,6 +51,7 @@ pub use element::Element;
 pub use error::{Error, OpenJoint};
 pub use fit::{Misfit, MisfitKind};
 pub use path::{Curve, Path};
+pub use range::{ChangePoint, End, Range, RangeSettings, Sample};
 pub use rates::Rates;
 pub use singular::{Crossing, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::{Pose, Solver};

@@ -8,9 +8,9 @@ use super::motions::Motions;
 use super::newton::Rejected;
 use super::plan::{Plan, Work};
 use super::rates::Rates;
+use super::singular::Crossing;
 use super::structure::Structure;
 use super::system::{System, Targets};
-use super::singular::Crossing;
 use super::{Error, Path};
 use crate::mechanism::{DriverId, Jet, MarkerId, Mechanism};
 

@@ -379,9 +379,7 @@ fn walk_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> 
     for value in parameters.iter_mut().chain(drivers).chain(&mut *q) {
         codec.finite(value)?;
     }
-    turns
-        .iter_mut()
-        .try_for_each(|turn| codec.signed(turn))?;
+    turns.iter_mut().try_for_each(|turn| codec.signed(turn))?;
     let unknowns = q.len();
     codec.resize(crossings, unknowns, || {
         Arc::new(Crossing {

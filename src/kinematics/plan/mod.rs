@@ -221,6 +221,13 @@ impl Plan {
         kernels.fold(1.0, |least: f64, kernel| least.min(kernel.regularity()))
     }
 
+    /// The smallest transmission angle of all dyads and slides, which are factorised \[rad\].
+    pub(super) fn transmission(&self) -> Option<f64> {
+        let sines = self.kernels.iter().filter_map(Kernel::transmission);
+        let least = sines.fold(f64::INFINITY, f64::min);
+        least.is_finite().then(|| least.min(1.0).asin())
+    }
+
     /// Scaled reciprocal condition: the smallest of all kernels, which are factorised.
     pub(super) fn rcond(&mut self) -> f64 {
         let kernels = self.kernels.iter_mut();
@@ -271,6 +278,16 @@ impl Kernel {
             Self::Coupled(kernel) => kernel.regularity(),
             // It is past the worst.
             Self::Bridged(_) => 1.0,
+        }
+    }
+
+    /// The sine of its transmission angle, if it has one.
+    fn transmission(&self) -> Option<f64> {
+        match self {
+            Self::Dyad(kernel) => Some(kernel.regularity()),
+            Self::Slide(kernel) => Some(kernel.regularity()),
+            Self::Pinned(_) | Self::Coupled(_) => None,
+            Self::Bridged(bridged) => bridged.kernel.transmission(),
         }
     }
 

@@ -196,7 +196,11 @@ fn interpolate(before: &End, behind: &End, half_width: f64) -> Vec<[f64; 6]> {
 }
 
 /// Takes a kernel out of the order of solution and puts what `make` makes of it in its place.
-pub(super) fn replace(kernels: &mut Vec<Kernel>, place: usize, make: impl FnOnce(Kernel) -> Kernel) {
+pub(super) fn replace(
+    kernels: &mut Vec<Kernel>,
+    place: usize,
+    make: impl FnOnce(Kernel) -> Kernel,
+) {
     let kernel = kernels.swap_remove(place);
     kernels.push(make(kernel));
     let last = kernels.len() - 1;

@@ -183,10 +183,7 @@ fn crossing(block: &Reduced<'_>, sheet: Sheet) -> Finding {
     // a α′² + 2 b α′ + c = 0, without cancellation; a = 0 leaves one of them infinite.
     let slopes = [sum / a, c / sum];
     // The pose, at α = 0, lies on one of them.
-    let off = [
-        -sheet.alpha,
-        (block.start - sheet.tau) * speed,
-    ];
+    let off = [-sheet.alpha, (block.start - sheet.tau) * speed];
     let away = |slope: f64| {
         let along = if slope.is_finite() {
             [slope, 1.0]

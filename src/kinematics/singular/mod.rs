@@ -180,7 +180,10 @@ impl Solver {
     ///
     /// A singular position that cannot be passed is right ahead on the path, at whose `s` the
     /// mechanism stands.
-    pub(super) fn take_crossings(&mut self, ahead: Option<(&Path, f64)>) -> Result<(), Box<SingularPoint>> {
+    pub(super) fn take_crossings(
+        &mut self,
+        ahead: Option<(&Path, f64)>,
+    ) -> Result<(), Box<SingularPoint>> {
         let mut taken = false;
         let mut stopped = None;
         for kernel in self.near_singular() {
@@ -215,7 +218,8 @@ impl Solver {
         }
         if let (Some((kernel, off)), Some((path, s))) = (stopped, ahead) {
             let driver = self.only_driver(kernel);
-            let toward = driver.is_some_and(|driver| off * self.path_drivers[driver.index()].first > 0.0);
+            let toward =
+                driver.is_some_and(|driver| off * self.path_drivers[driver.index()].first > 0.0);
             if toward && let Some(point) = self.singular_point(path, s, kernel) {
                 return Err(Box::new(point));
             }
@@ -278,7 +282,11 @@ impl Solver {
             let driver = crossing.driver.index();
             let place = crossing.place(self.pose.drivers[driver]);
             let jet = self.path_drivers[driver];
-            let direction = if jet.first == 0.0 { jet.second } else { jet.first };
+            let direction = if jet.first == 0.0 {
+                jet.second
+            } else {
+                jet.first
+            };
             if place.abs() >= 1.0 - END && direction * place > 0.0 {
                 let crossing = self.pose.crossings.remove(index);
                 self.release(crossing.kernel);

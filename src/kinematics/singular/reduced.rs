@@ -238,7 +238,8 @@ impl<'a> Reduced<'a> {
         let jets = std::mem::take(&mut self.jets);
         let (before, mut work) = self.work();
         let stands = before.iter_mut().all(|kernel| {
-            let closed = kernel.close(&mut work, MAX_ITERATIONS).is_ok() && kernel.factorise(&mut work).is_ok();
+            let closed = kernel.close(&mut work, MAX_ITERATIONS).is_ok()
+                && kernel.factorise(&mut work).is_ok();
             if closed {
                 kernel.solve_rates(&mut work, &jets);
             }
@@ -371,9 +372,7 @@ impl<'a> Reduced<'a> {
         bordered
             .view_mut((0, 0), (order, order))
             .copy_from(jacobian);
-        bordered
-            .view_mut((0, order), (order, 1))
-            .copy_from(&self.b);
+        bordered.view_mut((0, order), (order, 1)).copy_from(&self.b);
         bordered
             .view_mut((order, 0), (1, order))
             .copy_from(&self.c.transpose());
