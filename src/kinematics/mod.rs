@@ -53,7 +53,7 @@ pub use fit::{Misfit, MisfitKind};
 pub use path::{Curve, Path};
 pub use range::{ChangePoint, End, Range, RangeSettings, Sample};
 pub use rates::Rates;
-pub use singular::{Crossing, LARGEST_BLOCK, SingularKind, SingularPoint};
+pub use singular::{Approach, Crossing, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress, Reason};
 pub use structure::{Dependencies, Structure};

@@ -169,7 +169,7 @@ impl Solver {
             let followed = self.follow(&path);
             crossings.extend(self.crossed().iter().map(|crossing| ChangePoint {
                 value: crossing.center,
-                bodies: self.free_bodies(crossing),
+                bodies: self.bodies_in_line(crossing),
             }));
             let reached = self.pose().drivers[driver.index()];
             samples.push(self.sample(reached));

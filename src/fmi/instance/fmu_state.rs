@@ -41,6 +41,7 @@ pub struct FmuState {
     stop_time: Option<f64>,
     last_successful_time: f64,
     terminated: bool,
+    near_singular: bool,
 }
 
 /// Why bytes are no FMU state of this FMU.
@@ -141,6 +142,7 @@ impl Instance {
             stop_time,
             last_successful_time,
             terminated,
+            near_singular,
         } = self;
         let at_committed = *at_committed || *freshness == Freshness::Stale;
         Ok(FmuState {
@@ -164,6 +166,7 @@ impl Instance {
             stop_time: *stop_time,
             last_successful_time: *last_successful_time,
             terminated: *terminated,
+            near_singular: *near_singular,
         })
     }
 
@@ -192,6 +195,7 @@ impl Instance {
         self.stop_time = state.stop_time;
         self.last_successful_time = state.last_successful_time;
         self.terminated = state.terminated;
+        self.near_singular = state.near_singular;
         if self.logger.wants(Category::Events) {
             let message = format!("FMU state set: {} at t = {} s", self.state, self.time);
             self.logger.write(Status::Ok, Category::Events, &message);
@@ -333,11 +337,13 @@ impl FmuState {
             stop_time,
             last_successful_time,
             terminated,
+            near_singular,
         } = self;
         codec.one_of(state, &State::SAVED)?;
         codec.one_of(freshness, &[Freshness::Stale, Freshness::Pose])?;
         codec.flag(at_committed)?;
         codec.flag(terminated)?;
+        codec.flag(near_singular)?;
         codec.finite(time)?;
         codec.option(stop_time, 0.0, |codec, time| codec.finite(time))?;
         codec.finite(last_successful_time)?;

@@ -8,7 +8,6 @@ use crate::kinematics::newton::{
     AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
     SMALL, STALLED,
 };
-use crate::kinematics::singular::LARGEST_BLOCK;
 use crate::kinematics::system::{Target, nan_or_larger};
 use crate::mechanism::Jet;
 
@@ -173,11 +172,8 @@ impl Coupled {
         }
     }
 
-    /// The ratio of the extreme pivots, one where they are too many to tell anything.
+    /// The ratio of the extreme pivots.
     pub(super) fn regularity(&self) -> f64 {
-        if self.rows.len() > LARGEST_BLOCK {
-            return 1.0;
-        }
         let (low, high) = self.lu.pivot_range();
         low / high.max(self.lu.norm())
     }

@@ -1,5 +1,7 @@
 //! Singular positions near a pose, found and told apart in the reduced equation.
 
+use std::fmt;
+
 use super::reduced::{Reduced, Sheet};
 
 /// A singular position of a block.
@@ -18,8 +20,20 @@ pub enum SingularKind {
     HigherRank,
 }
 
+impl fmt::Display for SingularKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::DeadPoint => "dead point",
+            Self::ChangePoint => "change point that cannot be crossed here",
+            Self::Cusp => "cusp",
+            Self::TangentBranches => "point where two motions touch",
+            Self::HigherRank => "singular position of higher order",
+        })
+    }
+}
+
 /// The largest ε, in eps of the mechanism's size, that counts as rounding.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Newton's corrections in the plane of α and τ. Where it converges quadratically a few are
 /// enough; at tangent branches each of them halves the distance.
 const MAX_STEPS: usize = 40;
@@ -64,6 +78,7 @@ pub(super) fn find(block: &mut Reduced<'_>, reach: f64) -> Finding {
         }
     }
     let from = near.unwrap_or([0.0, start]);
+    block.return_to_start();
     let fold = newton(block, from, reach, |sheet| {
         let [aa, at, _] = sheet.second;
         ([sheet.epsilon, sheet.first[0]], [sheet.first, [aa, at]])

@@ -10,12 +10,15 @@
 //! unknowns and their rates come from it. Blocks that several drivers move, and those with more
 //! than [`LARGEST_BLOCK`] unknowns, are not crossed; nor is anything while parameters move.
 
+mod approach;
 mod crossing;
 mod locate;
 mod reduced;
 
+use std::fmt;
 use std::sync::Arc;
 
+pub use approach::Approach;
 pub use crossing::Crossing;
 pub use locate::SingularKind;
 
@@ -25,7 +28,7 @@ use super::plan::{Bridged, Kernel};
 use super::solver::{Pose, Solver};
 use crate::mechanism::DriverId;
 use crossing::replace;
-use locate::{Finding, find};
+use locate::{Finding, ROUNDING, find};
 use reduced::{Ground, Line, Reduced};
 
 /// The most unknowns of a block whose singular positions are looked for, by dense matrices.
@@ -43,6 +46,9 @@ const STOPPED: f64 = 0.02;
 const FREE: f64 = 1e-3;
 /// How far beyond its ends a crossing is still good: what rounding does to a driver's value.
 pub(super) const SEAM: f64 = 1.0 + 1e-9;
+/// A singular position so little before the place on the path where the mechanism stands is the
+/// one that it has come to.
+const JUST_BEYOND: f64 = 1e-9;
 /// How far q may be off a crossing that it is on.
 const ON: f64 = 1e-9;
 /// The part of a crossing next to its end that counts as the end.
@@ -67,6 +73,25 @@ pub struct SingularPoint {
     pub bodies: Vec<String>,
 }
 
+impl fmt::Display for SingularPoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, where {} line up", self.kind, list(&self.bodies))
+    }
+}
+
+/// The most bodies that a message names.
+const MOST_NAMED: usize = 6;
+
+/// Names for a message, the first ones of many.
+fn list(names: &[String]) -> String {
+    match names.split_at_checked(MOST_NAMED) {
+        Some((named, rest)) if !rest.is_empty() => {
+            format!("{} and {} others", named.join(", "), rest.len())
+        }
+        _ => names.join(", "),
+    }
+}
+
 impl Solver {
     /// The change points that the last call of [`follow`](Self::follow) passed, in order.
     #[must_use]
@@ -74,11 +99,23 @@ impl Solver {
         &self.crossed
     }
 
-    /// The bodies that are free to move at a change point, for messages.
+    /// The bodies that line up at a change point of this mechanism.
     #[must_use]
-    pub fn free_bodies(&self, crossing: &Crossing) -> Vec<String> {
+    pub fn bodies_in_line(&self, crossing: &Crossing) -> Vec<String> {
         let columns = self.plan.kernels[crossing.kernel].columns();
         self.bodies_of(columns, &crossing.free)
+    }
+
+    /// What a user is told of a change point that was passed.
+    #[must_use]
+    pub fn describe_crossing(&self, crossing: &Crossing) -> String {
+        let driver = &self.mechanism().drivers[crossing.driver.index()];
+        format!(
+            "change point passed on the smooth motion, with driver `{}` at {}: {} line up there",
+            driver.name,
+            driver.coordinate.kind.show(crossing.center),
+            list(&self.bodies_in_line(crossing))
+        )
     }
 
     /// Whether the crossings of a pose are ones that this mechanism could have come to, and q
@@ -130,7 +167,9 @@ impl Solver {
     fn near_singular(&self) -> Vec<usize> {
         let kernels = self.plan.kernels.iter().enumerate();
         kernels
-            .filter(|(_, kernel)| kernel.regularity() < NEAR)
+            .filter(|(_, kernel)| {
+                kernel.regularity() < NEAR && kernel.columns().len() <= LARGEST_BLOCK
+            })
             .map(|(index, _)| index)
             .collect()
     }
@@ -381,8 +420,11 @@ impl Solver {
             Finding::Crossing(sheet, _) => (SingularKind::ChangePoint, sheet),
             Finding::Nothing => return None,
         };
-        // Rounding may put it a little before where the mechanism stands.
-        if sheet.tau < s - 1e-9 {
+        // Rounding may have let the mechanism come a little beyond it: by so much that the
+        // equations cannot tell: Newton takes a residual for zero that has stopped falling at a
+        // hundred times its rounding.
+        let beyond = s - sheet.tau;
+        if beyond > JUST_BEYOND && beyond * sheet.first[1].abs() > 4.0 * ROUNDING {
             return None;
         }
         let free = &sheet.tangents[0] / sheet.tangents[0].amax();

@@ -356,6 +356,14 @@ impl<'a> Reduced<'a> {
         None
     }
 
+    /// Puts the block's unknowns back to where they were at the start.
+    pub(super) fn return_to_start(&mut self) {
+        for &column in &self.columns {
+            self.at.set_coordinate(column, self.origin[column]);
+        }
+        self.epsilon = 0.0;
+    }
+
     /// c · (z − z⁰).
     fn alpha(&self) -> f64 {
         let moved = self.columns.iter().zip(&self.scales).zip(self.c.iter());
