@@ -10,7 +10,7 @@ use super::Error;
 use super::newton::LARGEST_CORRECTION;
 use super::path::Path;
 use super::plan::Advance;
-use super::singular::{NEAR, SingularPoint};
+use super::singular::{Careful, NEAR, SingularPoint};
 use super::solver::{Solver, UNIT};
 use crate::mechanism::Jet;
 
@@ -99,6 +99,10 @@ impl Solver {
         }
         self.pose.time = path.time(0.0);
         self.drive(path, 0.0);
+        let mut careful = match self.look_ahead(path, s) {
+            Ok(careful) => careful,
+            Err(end) => return blocked(s, Reason::Singular(end), progress),
+        };
         while s < 1.0 {
             if !self.pose.crossings.is_empty() {
                 self.leave_crossings();
@@ -127,6 +131,11 @@ impl Solver {
                     reaches_point = true;
                     most
                 };
+                if let Some(careful) = careful {
+                    let end = self.within_way(careful, start, next);
+                    reaches_point &= end >= next;
+                    next = end;
+                }
                 if !self.pose.crossings.is_empty() {
                     let end = self.within_crossings(path, start, next);
                     reaches_point |= end < next;
@@ -150,16 +159,28 @@ impl Solver {
                 }
             }
             progress.crossings += self.note_crossings();
-            if self.regularity < NEAR && !self.parameters_move {
-                if let Err(end) = self.take_crossings(Some((path, s))) {
-                    return blocked(s, Reason::Singular(end), progress);
-                }
-            }
+            careful = match self.look_ahead(path, s) {
+                Ok(careful) => careful,
+                Err(end) => return blocked(s, Reason::Singular(end), progress),
+            };
             // Twice the sub-step that was possible here; what a point cut short was no less.
             let possible = if reaches_point { substep } else { s - start };
             substep = 2.0 * possible;
         }
         Ok(progress)
+    }
+
+    /// Takes over the crossings of change points that are near, once a sub-step has ended.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be passed is right ahead.
+    fn look_ahead(&mut self, path: &Path, s: f64) -> Result<Option<Careful>, Box<SingularPoint>> {
+        if self.regularity < NEAR && !self.parameters_move {
+            self.take_crossings(path, s)
+        } else {
+            Ok(None)
+        }
     }
 
     /// Computes tangent and curvature of the motion along the path where the mechanism stands,

@@ -67,30 +67,14 @@ impl Solver {
         let Some(kernel) = self.plan.kernels.get(weakest.1) else {
             return Vec::new();
         };
-        let (rows, columns) = (kernel.rows(), kernel.columns());
-        let order = columns.len();
-        let mut free = vec![1.0; order];
-        if order <= LARGEST_BLOCK {
-            let mut jacobian = nalgebra::DMatrix::<f64>::zeros(order, order);
-            for (place, &row) in rows.iter().enumerate() {
-                self.system.evaluate_row(
-                    row,
-                    &self.at,
-                    &self.targets,
-                    &self.pose.drivers,
-                    |column, value| {
-                        if let Some(local) = columns.iter().position(|&own| own == column) {
-                            jacobian[(place, local)] += value;
-                        }
-                    },
-                );
-            }
-            let svd = jacobian.svd(false, true);
+        let columns = kernel.columns();
+        let mut free = vec![1.0; columns.len()];
+        if columns.len() <= LARGEST_BLOCK {
+            let svd = self.block_jacobian(weakest.1).svd(false, true);
             if let Some(right) = svd.v_t {
-                let least = svd.singular_values.imin();
-                let row = right.row(least);
-                let largest = row.amax();
-                free = row.iter().map(|value| value / largest).collect();
+                let least = right.row(right.nrows() - 1);
+                let largest = least.amax();
+                free = least.iter().map(|value| value / largest).collect();
             }
         }
         self.bodies_of(columns, &free)

@@ -35,8 +35,8 @@ impl fmt::Display for SingularKind {
 /// The largest ε, in eps of the mechanism's size, that counts as rounding.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Newton's corrections in the plane of α and τ. Where it converges quadratically a few are
-/// enough; at tangent branches each of them halves the distance.
-const MAX_STEPS: usize = 40;
+/// enough; where motions touch each of them takes a part of the distance, a third as a rule.
+const MAX_STEPS: usize = 60;
 /// A correction of this length, scaled, ends the search.
 const CONVERGED: f64 = 1e-13;
 /// One that was to end it, but did not for the rounding of large angles, may be this long.

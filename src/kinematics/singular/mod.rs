@@ -18,6 +18,8 @@ mod reduced;
 use std::fmt;
 use std::sync::Arc;
 
+use nalgebra::{DMatrix, DVector};
+
 pub use approach::Approach;
 pub use crossing::Crossing;
 pub use locate::SingularKind;
@@ -37,7 +39,7 @@ pub const LARGEST_BLOCK: usize = 120;
 /// The regularity below which a singular position may be near.
 pub(super) const NEAR: f64 = 0.05;
 /// How far it is looked for, in radians and characteristic lengths of the fastest unknown.
-const REACH: f64 = 0.1;
+const REACH: f64 = 0.25;
 /// What stops the motion is looked for further: near a dead point everything runs fast.
 const REACH_TO_END: f64 = 0.5;
 /// A motion that would meet what it cannot pass within this way is stopped.
@@ -49,6 +51,11 @@ pub(super) const SEAM: f64 = 1.0 + 1e-9;
 /// A singular position so little before the place on the path where the mechanism stands is the
 /// one that it has come to.
 const JUST_BEYOND: f64 = 1e-9;
+/// Kernels whose regularities differ by less are near to singular for one and the same reason.
+const SAME_ORDER: f64 = 100.0;
+/// The part of the largest singular value below which those count as lost in front of a singular
+/// position, to which the mechanism has come within some 1e-12 of its way.
+const LOST: f64 = 1e-4;
 /// How far q may be off a crossing that it is on.
 const ON: f64 = 1e-9;
 /// The part of a crossing next to its end that counts as the end.
@@ -71,6 +78,16 @@ pub struct SingularPoint {
     pub free: Vec<f64>,
     /// The bodies that line up: those that the null vector moves.
     pub bodies: Vec<String>,
+}
+
+/// How far the next sub-step may take a driver, as something is ahead that cannot be passed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Careful {
+    driver: DriverId,
+    /// \[m or rad\]
+    way: f64,
+    /// Whether it is so near that the motion stops here.
+    at_once: bool,
 }
 
 impl fmt::Display for SingularPoint {
@@ -213,57 +230,65 @@ impl Solver {
     }
 
     /// Looks for change points so near that the pose is within their crossing, and takes it over.
-    /// Allocates where something may be near.
+    /// Where something is ahead on the path, at whose `s` the mechanism stands, that cannot be
+    /// passed, it tells how far the next sub-step may go. Allocates where something may be near.
     ///
     /// # Errors
     ///
-    /// A singular position that cannot be passed is right ahead on the path, at whose `s` the
-    /// mechanism stands.
+    /// What cannot be passed is right ahead.
     pub(super) fn take_crossings(
         &mut self,
-        ahead: Option<(&Path, f64)>,
-    ) -> Result<(), Box<SingularPoint>> {
-        let mut taken = false;
-        let mut stopped = None;
-        for kernel in self.near_singular() {
+        path: &Path,
+        s: f64,
+    ) -> Result<Option<Careful>, Box<SingularPoint>> {
+        let near = self.near_singular();
+        let mut ahead: Option<(usize, Careful)> = None;
+        for &kernel in &near {
             let Some(driver) = self.only_driver(kernel) else {
                 continue;
             };
             let value = self.pose.drivers[driver.index()];
+            let direction = self.path_drivers[driver.index()].first;
             let Some(mut block) = self.reduced(kernel, Line::Driver(driver), value) else {
-                taken = true;
                 continue;
             };
-            taken = true;
             let finding = find(&mut block, REACH);
             if let Finding::End(kind, sheet) = &finding
                 && *kind != SingularKind::DeadPoint
-                && (sheet.tau - value).abs() * block.speed < STOPPED
+                && (sheet.tau - value) * direction > 0.0
             {
-                stopped = stopped.or(Some((kernel, sheet.tau - value)));
+                let way = (sheet.tau - value).abs();
+                let careful = Careful {
+                    driver,
+                    // Closer to it than to what is behind it.
+                    way: 0.75 * way,
+                    at_once: way * block.speed < STOPPED,
+                };
+                ahead = ahead.or(Some((kernel, careful)));
             }
-            let Some(crossing) = Crossing::new(&mut block, finding, kernel, driver) else {
-                continue;
-            };
-            if crossing.place(value).abs() < 1.0 - END {
+            if let Some(crossing) = Crossing::new(&mut block, finding, kernel, driver)
+                && crossing.place(value).abs() < 1.0 - END
+            {
                 self.enter(Arc::new(crossing));
             }
         }
-        if taken {
+        if !near.is_empty() {
             // The kernels before have been elsewhere.
             self.stand_at_pose();
             // They were regular at this pose.
             let _ = self.refresh();
         }
-        if let (Some((kernel, off)), Some((path, s))) = (stopped, ahead) {
-            let driver = self.only_driver(kernel);
-            let toward =
-                driver.is_some_and(|driver| off * self.path_drivers[driver.index()].first > 0.0);
-            if toward && let Some(point) = self.singular_point(path, s, kernel) {
-                return Err(Box::new(point));
-            }
+        let Some((kernel, careful)) = ahead else {
+            return Ok(None);
+        };
+        if careful.at_once
+            && let Some(point) = self.singular_point(path, s, kernel)
+        {
+            self.stand_at_pose();
+            let _ = self.refresh();
+            return Err(Box::new(point));
         }
-        Ok(())
+        Ok(Some(careful))
     }
 
     /// Lets a kernel's unknowns come from a crossing, and those behind follow.
@@ -339,6 +364,21 @@ impl Solver {
         }
     }
 
+    /// Where a sub-step from `start` to `end` has to end to take a driver no further than it may go.
+    pub(super) fn within_way(&self, careful: Careful, start: f64, end: f64) -> f64 {
+        self.shortened(careful.driver, careful.way, start, end)
+    }
+
+    /// `end` so near to `start` that a driver goes no further than `most` in between.
+    fn shortened(&self, driver: DriverId, most: f64, start: f64, mut end: f64) -> f64 {
+        let from = self.origin_drivers[driver.index()];
+        let way = |h: f64| h * (from.first.abs() + 0.5 * h * from.second.abs());
+        while way(end - start) > most {
+            end = start + 0.5 * (end - start);
+        }
+        end
+    }
+
     /// Where a sub-step from `start` to `end` leaves the crossing that it leaves first; `end` if
     /// it leaves none.
     pub(super) fn within_crossings(&mut self, path: &Path, start: f64, end: f64) -> f64 {
@@ -346,12 +386,8 @@ impl Solver {
         for index in 0..self.pose.crossings.len() {
             let crossing = Arc::clone(&self.pose.crossings[index]);
             let driver = crossing.driver.index();
-            let from = self.origin_drivers[driver];
             // No further than from one end to the other.
-            let way = |h: f64| h * (from.first.abs() + 0.5 * h * from.second.abs());
-            while way(end - start) > 2.0 * crossing.half_width {
-                end = start + 0.5 * (end - start);
-            }
+            end = self.shortened(crossing.driver, 2.0 * crossing.half_width, start, end);
             let mut place = |s: f64| {
                 self.drive(path, s);
                 crossing.place(self.path_drivers[driver].value).abs()
@@ -402,14 +438,80 @@ impl Solver {
         }
         let mut near = self.near_singular();
         let regularity = |kernel: usize| self.plan.kernels[kernel].regularity();
-        near.sort_by(|a, b| regularity(*a).total_cmp(&regularity(*b)));
-        let found = near
-            .into_iter()
-            .find_map(|kernel| self.singular_point(path, s, kernel));
+        // What reads a part that runs ever faster is as near to singular as that.
+        let least = near.iter().map(|&kernel| regularity(kernel));
+        let least = least.fold(f64::INFINITY, f64::min);
+        near.retain(|&kernel| regularity(kernel) <= SAME_ORDER * least);
+        let located = near
+            .iter()
+            .find_map(|&kernel| self.singular_point(path, s, kernel));
         self.stand_at_pose();
         // The pose was regular when it was reached.
         let _ = self.refresh();
+        let found = located.or_else(|| {
+            near.iter()
+                .find_map(|&kernel| self.loss_of_ranks(s, kernel))
+        });
         found.map(Box::new)
+    }
+
+    /// A singular position of more than one rank, at which the search for others fails, taken to
+    /// be where the mechanism has come to a stop in front of it.
+    fn loss_of_ranks(&self, s: f64, kernel: usize) -> Option<SingularPoint> {
+        let svd = self.block_jacobian(kernel).svd(false, true);
+        let values = &svd.singular_values;
+        // In descending order.
+        let last_but_one = values.len().checked_sub(2)?;
+        if values[last_but_one] > LOST * values[0] {
+            return None;
+        }
+        let free = svd.v_t?.row(last_but_one + 1).transpose();
+        Some(self.point(kernel, SingularKind::HigherRank, s, &free))
+    }
+
+    /// The point where the mechanism stands, with a null vector of a kernel.
+    fn point(
+        &self,
+        kernel: usize,
+        kind: SingularKind,
+        s: f64,
+        free: &DVector<f64>,
+    ) -> SingularPoint {
+        let columns = self.plan.kernels[kernel].columns();
+        let free = free / free[free.icamax()];
+        let mut over_all = vec![0.0; self.pose.q.len()];
+        for (&column, value) in columns.iter().zip(free.iter()) {
+            over_all[column] = *value;
+        }
+        SingularPoint {
+            kind,
+            s,
+            drivers: self.pose.drivers.clone(),
+            q: self.pose.q.clone(),
+            bodies: self.bodies_of(columns, free.as_slice()),
+            free: over_all,
+        }
+    }
+
+    /// The Jacobian of a kernel's rows in its own unknowns at the pose, scaled.
+    fn block_jacobian(&self, kernel: usize) -> DMatrix<f64> {
+        let kernel = &self.plan.kernels[kernel];
+        let (rows, columns) = (kernel.rows(), kernel.columns());
+        let mut jacobian = DMatrix::zeros(rows.len(), columns.len());
+        for (place, &row) in rows.iter().enumerate() {
+            self.system.evaluate_row(
+                row,
+                &self.at,
+                &self.targets,
+                &self.pose.drivers,
+                |column, value| {
+                    if let Some(local) = columns.iter().position(|&own| own == column) {
+                        jacobian[(place, local)] += value;
+                    }
+                },
+            );
+        }
+        jacobian
     }
 
     /// The singular position of a kernel ahead on a path.
@@ -427,20 +529,11 @@ impl Solver {
         if beyond > JUST_BEYOND && beyond * sheet.first[1].abs() > 4.0 * ROUNDING {
             return None;
         }
-        let free = &sheet.tangents[0] / sheet.tangents[0].amax();
-        let columns = block.columns.clone();
         let (q, drivers) = (block.pose(), block.drivers().to_vec());
-        let mut over_all = vec![0.0; q.len()];
-        for (&column, value) in columns.iter().zip(free.iter()) {
-            over_all[column] = *value;
-        }
         Some(SingularPoint {
-            kind,
-            s: sheet.tau,
             drivers,
             q,
-            bodies: self.bodies_of(&columns, free.as_slice()),
-            free: over_all,
+            ..self.point(kernel, kind, sheet.tau, &sheet.tangents[0])
         })
     }
 }
