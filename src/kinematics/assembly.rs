@@ -72,6 +72,7 @@ impl Solver {
         if rcond < SINGULAR {
             return Err(Error::Singular { rcond });
         }
+        self.settle();
         Ok(Assembly {
             iterations,
             distance: self.scaled_distance(&estimate),

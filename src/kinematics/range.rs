@@ -200,7 +200,7 @@ impl Solver {
     }
 
     /// A path from the pose on which nothing moves yet, all drivers taken for inputs.
-    fn held_path(&self) -> Path {
+    pub(super) fn held_path(&self) -> Path {
         let pose = self.pose();
         Path {
             start: pose.time,

@@ -291,6 +291,15 @@ impl Solver {
         Ok(Some(careful))
     }
 
+    /// Takes over the crossings of change points near the pose, at which all is factorised.
+    pub(super) fn settle(&mut self) {
+        if self.regularity < NEAR {
+            let held = self.held_path();
+            // On a path on which nothing moves nothing is ahead.
+            let _ = self.take_crossings(&held, 0.0);
+        }
+    }
+
     /// Lets a kernel's unknowns come from a crossing, and those behind follow.
     fn enter(&mut self, crossing: Arc<Crossing>) {
         let kernel = crossing.kernel;
