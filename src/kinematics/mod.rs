@@ -21,6 +21,7 @@
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.
 
 mod assembly;
+mod certificate;
 mod configuration;
 pub mod constraint;
 mod element;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::certificate::Tubes;
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration, point_velocity};
 use super::motions::Motions;
@@ -102,6 +103,8 @@ pub struct Solver {
     pub(super) origin_drivers: Vec<Jet>,
     /// The values of all drivers that a step goes to.
     pub(super) next_drivers: Vec<f64>,
+    /// Where everything stays in a sub-step.
+    pub(super) tubes: Tubes,
     /// Rates of the drivers that the host gives.
     host_drivers: Vec<Jet>,
     /// The least regularity of all kernels at the pose, when they are factorised there.
@@ -157,6 +160,7 @@ impl Solver {
             path_drivers: vec![Jet::constant(0.0); drivers],
             origin_drivers: vec![Jet::constant(0.0); drivers],
             next_drivers: vec![0.0; drivers],
+            tubes: Tubes::new(&system),
             host_drivers: vec![Jet::constant(0.0); drivers],
             pose,
             at: system.configuration(),
@@ -208,13 +212,15 @@ impl Solver {
         }
         self.targets.turns.copy_from_slice(&self.pose.turns);
         self.bridge_all(&pose.crossings);
+        self.plan.forget_boxes();
         self.stand_at_pose();
     }
 
     /// Lets go of what the way to the present pose has left behind, the pivots of sparse
-    /// matrices: from here on everything depends on the pose alone, to the last bit.
+    /// matrices and proofs that hold for several steps: from here on everything depends on the pose alone, to the last bit.
     pub fn forget_way(&mut self) {
         self.plan.forget_pivots();
+        self.plan.forget_boxes();
         self.stand_at_pose();
     }
 
@@ -319,7 +325,8 @@ impl Solver {
         self.parameters_taken = false;
         self.system
             .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
-        self.plan.set_parameters(&self.at, &self.targets);
+        self.plan
+            .set_parameters(&self.at, &self.targets, &mut self.tubes);
         if !self.pivots_chosen {
             self.plan
                 .choose_pivots(&self.system, &self.at, &self.targets);

@@ -350,6 +350,7 @@ impl FmuState {
         codec.count(&mut progress.iterations)?;
         codec.count(&mut progress.substeps)?;
         codec.count(&mut progress.crossings)?;
+        codec.count(&mut progress.checked)?;
         // Derived parameters may be anything until values are looked at together.
         for value in &mut settings.parameters {
             codec.real(value)?;

@@ -268,10 +268,12 @@ impl Instance {
             let Progress {
                 iterations,
                 substeps,
+                checked,
                 ..
             } = self.progress;
             let message = format!(
-                "t = {} s: {substeps} sub-steps, {iterations} iterations, residual {:.1e}",
+                "t = {} s: {substeps} sub-steps, {checked} of them checked, not proved; \
+                 {iterations} iterations, residual {:.1e}",
                 self.time,
                 self.solver.residual()
             );
@@ -341,6 +343,7 @@ impl Instance {
                     iterations: assembly.iterations,
                     substeps: 1,
                     crossings: 0,
+                    checked: 0,
                 };
                 self.logger.write(
                     Status::Warning,

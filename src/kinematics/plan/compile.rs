@@ -496,10 +496,8 @@ impl Search<'_> {
                 Recipe::Slide(parts) => Kernel::Slide(Box::new(Slide::new(self.mechanism, parts))),
                 Recipe::Coupled => {
                     let order = orders.next().expect("each group of this kind has one");
-                    let lu = order.matrix(self.system);
                     let places = Arc::clone(&places);
-                    let (rows, columns) = (order.rows, order.columns);
-                    Kernel::Coupled(Box::new(Coupled::new(index, rows, columns, lu, places)))
+                    Kernel::Coupled(Box::new(Coupled::new(index, order, self.system, places)))
                 }
             })
             .collect()

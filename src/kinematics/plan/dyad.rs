@@ -1,16 +1,16 @@
 //! Two bodies joined to each other and each to something already found, by revolutes.
 
+mod certify;
+
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
 use super::anchor::{Anchor, Moving, compact, larger, largest};
-use super::{Advance, Work};
+use super::{Advance, Substep, Work};
+use crate::kinematics::certificate::Tubes;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
-use crate::kinematics::newton::{
-    AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
-    SMALL, STALLED,
-};
+use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// x, y and phi of two bodies: P_a + A_a l_a = P_b + A_b l_b with both P already found. The two
@@ -111,9 +111,10 @@ impl Side {
         }
     }
 
-    fn set_parameters(&mut self, at: &Configuration, parts: &SideParts) {
-        self.anchor.set_parameters(at, parts.anchor);
+    fn set_parameters(&mut self, at: &Configuration, tubes: &mut Tubes, parts: &SideParts) {
+        self.anchor.set_parameters(at, tubes, parts.anchor);
         self.s = at.local(parts.outer).0;
+        tubes.set_pivot(self.place as usize, self.s);
         self.l = at.local(parts.inner).0 - self.s;
         self.length = self.l.norm();
     }
@@ -166,47 +167,44 @@ impl Dyad {
         &self.parts.columns
     }
 
-    pub(super) fn set_parameters(&mut self, at: &Configuration) {
+    pub(super) fn set_parameters(&mut self, at: &Configuration, tubes: &mut Tubes) {
         for (side, parts) in self.sides.iter_mut().zip(&self.parts.sides) {
-            side.set_parameters(at, parts);
+            side.set_parameters(at, tubes, parts);
         }
     }
 
-    /// Predicts both angles and corrects them until the loop closes to rounding.
+    /// Predicts both angles, corrects them until the loop closes to rounding, and proves that the
+    /// motion leads there.
     #[inline(always)]
     pub(super) fn advance(
         &mut self,
         work: &mut Work<'_>,
-        advance: Advance,
+        substep: &mut Substep<'_>,
     ) -> Result<Correction, Rejected> {
         let [a, b] = &self.sides;
         let frames = work.at.frames();
-        let (frame_a, frame_b) = (&frames[a.place as usize], &frames[b.place as usize]);
-        let (turn_a, turn_b) = (a.turn(work, advance), b.turn(work, advance));
-        let (phi_a, phi_b) = (frame_a.phi + turn_a, frame_b.phi + turn_b);
-        let before = self.determinant;
+        let before = [frames[a.place as usize], frames[b.place as usize]];
+        let turns = [a.turn(work, substep.advance), b.turn(work, substep.advance)];
         let start = Turned {
-            frames: [
-                turned_on(frame_a, turn_a, phi_a),
-                turned_on(frame_b, turn_b, phi_b),
-            ],
+            frames: [0, 1].map(|k| turned_on(&before[k], turns[k], before[k].phi + turns[k])),
             exact: false,
         };
-        let found = self.correct(work, start, MAX_ITERATIONS)?;
-        // An angle that is not a number fails all of these.
-        let kept = found.correction.contraction <= CONTRACTION
-            && (found.phi[0] - phi_a).abs() <= LARGEST_CORRECTION
-            && (found.phi[1] - phi_b).abs() <= LARGEST_CORRECTION
-            && self.determinant * before > 0.0
-            && !self.is_singular();
-        if kept {
-            Ok(Correction {
-                regularity: self.regularity(),
-                ..found.correction
-            })
-        } else {
-            Err(Rejected)
-        }
+        let links = [a.link, b.link];
+        let found = self.correct(work, start, MAX_ITERATIONS);
+        let found = found.map_err(|_| substep.tubes.break_off())?;
+        self.certify(
+            work,
+            substep.tubes,
+            &Before {
+                frames: before,
+                links,
+            },
+            &found,
+        )?;
+        Ok(Correction {
+            regularity: self.regularity(),
+            ..found.correction
+        })
     }
 
     /// Newton–Raphson on the two angles. The angles accepted are those of exact sines and
@@ -224,7 +222,6 @@ impl Dyad {
         let base = outer_a.from(outer_b);
         let reach = outer_a.reach_from(outer_b);
         let mut correction = Correction::default();
-        let mut last = f64::INFINITY;
         let mut last_gap = f64::INFINITY;
         loop {
             let [frame_a, frame_b] = &now.frames;
@@ -254,8 +251,8 @@ impl Dyad {
                     [a.link, b.link] = links;
                     self.determinant = determinant;
                     return Ok(Found {
-                        phi: [phi_a, phi_b],
                         correction,
+                        open: open + rounding,
                     });
                 }
             } else if correction.iterations == max_iterations {
@@ -270,8 +267,6 @@ impl Dyad {
                 phi_a += step_a;
                 phi_b += step_b;
                 size = larger(step_a.abs(), step_b.abs());
-                correction.contraction = larger(correction.contraction, size / last);
-                last = larger(size, SMALL);
                 last_gap = open;
                 correction.iterations += 1;
                 if size > LIKELY_ANOTHER {
@@ -343,13 +338,6 @@ impl Dyad {
         let alpha_b = w.dot(&a.link) * inverse;
         a.set_rates(frames, velocity, acceleration, outer_a, omega_a, alpha_a);
         b.set_rates(frames, velocity, acceleration, outer_b, omega_b, alpha_b);
-    }
-
-    /// Whether the links are in line, to what makes a position singular. Cheaper than
-    /// [`rcond`](Self::rcond), from which it differs by a factor of two at most.
-    fn is_singular(&self) -> bool {
-        let [a, b] = &self.sides;
-        self.determinant.abs() < SINGULAR * a.length * b.length
     }
 
     /// The sine of the angle between the links.
@@ -446,6 +434,13 @@ struct Turned {
 
 /// Where Newton ended.
 struct Found {
-    phi: [f64; 2],
     correction: Correction,
+    /// What the loop is left open by, at the most \[m\].
+    open: f64,
+}
+
+/// Where a sub-step started.
+struct Before {
+    frames: [BodyPose; 2],
+    links: [Vector2<f64>; 2],
 }

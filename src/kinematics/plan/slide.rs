@@ -1,18 +1,20 @@
 //! A body with a revolute to something already found and a point on a line, alone or with a
 //! second body that slides.
 
+mod certify;
+
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
+use certify::Before;
+
 use super::anchor::{Anchor, Moving, Place, compact};
-use super::{Advance, Work};
+use super::{Substep, Work};
+use crate::kinematics::certificate::Tubes;
 use crate::kinematics::configuration::{self, BodyPose, Configuration, perp};
 use crate::kinematics::constraint::{Axis, Projection};
-use crate::kinematics::newton::{
-    AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
-    SMALL, STALLED,
-};
+use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::kinematics::system::{Target, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
@@ -34,9 +36,10 @@ pub(in crate::kinematics) struct Slide {
     /// Of i and j.
     points: [Point; 2],
     axis: Line,
-    /// A_a g at the pose last factorised, and ∂f/∂phi.
+    /// A_a g at the pose last factorised, ∂f/∂phi, and the known part of P_j − P_i.
     g: Vector2<f64>,
     slope: f64,
+    still: Vector2<f64>,
     /// |w| |g|, what the slope is measured against.
     scale: f64,
     parts: Box<Parts>,
@@ -130,6 +133,8 @@ struct Known {
     /// For a parallel b: its revolute, and by how much it is turned against a.
     second_point: Place,
     second_turn: f64,
+    /// The known part of P_j − P_i.
+    still: Vector2<f64>,
     w: Vector2<f64>,
     /// g in a's frame.
     g: Vector2<f64>,
@@ -182,6 +187,7 @@ impl Slide {
             second,
             g: zero,
             slope: 0.0,
+            still: zero,
             scale: 0.0,
             parts: Box::new(parts),
         }
@@ -195,15 +201,22 @@ impl Slide {
         &self.parts.columns
     }
 
-    pub(super) fn set_parameters(&mut self, at: &Configuration, targets: &Targets) {
+    pub(super) fn set_parameters(
+        &mut self,
+        at: &Configuration,
+        targets: &Targets,
+        tubes: &mut Tubes,
+    ) {
         let parts = &self.parts;
-        self.anchor.set_parameters(at, parts.anchor);
+        self.anchor.set_parameters(at, tubes, parts.anchor);
         self.s = at.local(parts.pin).0;
+        tubes.set_pivot(parts.body, self.s);
         let mut between = BodyPose::turned(0.0);
         let mut inner = Vector2::zeros();
         if let Some(b) = &parts.second {
             let offset = at.local(b.reference).1 - at.local(b.angle).1;
             inner = at.local(b.pin).0;
+            tubes.set_pivot(b.body, inner);
             match &mut self.second {
                 Second::None => {}
                 Second::Carried { zero, l, s, .. } => {
@@ -214,7 +227,7 @@ impl Slide {
                 Second::Parallel {
                     anchor, zero, s, ..
                 } => {
-                    anchor.set_parameters(at, b.partner);
+                    anchor.set_parameters(at, tubes, b.partner);
                     *zero = offset;
                     *s = inner;
                     // Without whole turns, which are no part of the parameters.
@@ -231,7 +244,7 @@ impl Slide {
         for (point, marker) in self.points.iter_mut().zip([from, to]) {
             let s = at.local(marker).0;
             match point {
-                Point::Known(anchor) => anchor.set_parameters(at, marker),
+                Point::Known(anchor) => anchor.set_parameters(at, tubes, marker),
                 Point::First(arm) => *arm = s - self.s,
                 Point::Carried(arm) => *arm = s - inner,
                 Point::Parallel(arm) => *arm = between.rotate(s - inner),
@@ -266,6 +279,7 @@ impl Slide {
             second: BodyPose::turned(0.0),
             second_point: point,
             second_turn: 0.0,
+            still: Vector2::zeros(),
             w: Vector2::zeros(),
             g: Vector2::zeros(),
             kappa: 0.0,
@@ -297,6 +311,7 @@ impl Slide {
         let (known_i, turning_i) = part(&self.points[0]);
         let (known_j, turning_j) = part(&self.points[1]);
         let (still, turning) = (known_j.from(known_i), turning_j - turning_i);
+        known.still = still;
         let held_at = target(self.parts.row);
         (known.w, known.g, known.kappa) = match self.axis {
             Line::Known(body, e) => {
@@ -341,29 +356,23 @@ impl Slide {
         frames[self.place as usize] = first;
     }
 
-    /// Predicts the angle of a and corrects it until the point is on its line to rounding.
+    /// Predicts the angle of a, corrects it until the point is on its line to rounding, and proves
+    /// that the motion leads there.
     pub(super) fn advance(
         &mut self,
         work: &mut Work<'_>,
-        advance: Advance,
+        substep: &mut Substep<'_>,
     ) -> Result<Correction, Rejected> {
         let column = 3 * self.place as usize + 2;
-        let phi = work.at.frames()[self.place as usize].phi;
-        let predicted = advance.predict(column, phi, work.flow);
-        let before = self.slope;
-        let (phi, correction) = self.correct(work, predicted, MAX_ITERATIONS)?;
-        let kept = correction.contraction <= CONTRACTION
-            && (phi - predicted).abs() <= LARGEST_CORRECTION
-            && self.slope * before > 0.0
-            && self.slope.abs() >= SINGULAR * self.scale;
-        if kept {
-            Ok(Correction {
-                regularity: self.regularity(),
-                ..correction
-            })
-        } else {
-            Err(Rejected)
-        }
+        let before = Before::new(self, work);
+        let predicted = substep.advance.predict(column, before.first.phi, work.flow);
+        let found = self.correct(work, predicted, MAX_ITERATIONS);
+        let found = found.map_err(|_| substep.tubes.break_off())?;
+        self.certify(work, substep.tubes, &before, &found)?;
+        Ok(Correction {
+            regularity: self.regularity(),
+            ..found.correction
+        })
     }
 
     /// The slope of the equation in the angle, as part of what it can be.
@@ -377,11 +386,10 @@ impl Slide {
         work: &mut Work<'_>,
         mut phi: f64,
         max_iterations: u32,
-    ) -> Result<(f64, Correction), Rejected> {
+    ) -> Result<Found, Rejected> {
         let known = self.known(work);
         let scale = known.w.norm() * known.g.norm();
         let mut correction = Correction::default();
-        let mut last = f64::INFINITY;
         let mut last_gap = f64::INFINITY;
         loop {
             let frame = BodyPose::turned(phi);
@@ -395,16 +403,19 @@ impl Slide {
             {
                 self.put(work.at.frames_mut(), &known, frame);
                 // A line that turns about a point which the pin has reached turns freely.
-                (self.g, self.slope, self.scale) = (g, slope, scale.max(work.at.size()));
-                return Ok((phi, correction));
+                (self.g, self.slope, self.still) = (g, slope, known.still);
+                self.scale = scale.max(work.at.size());
+                return Ok(Found {
+                    known,
+                    correction,
+                    open: open + rounding,
+                });
             }
             let step = -f / slope;
             if correction.iterations == max_iterations || !step.is_finite() {
                 return Err(Rejected);
             }
             phi += step;
-            correction.contraction = correction.contraction.max(step.abs() / last);
-            last = step.abs().max(SMALL);
             last_gap = open;
             correction.iterations += 1;
         }
@@ -417,7 +428,7 @@ impl Slide {
         max_iterations: u32,
     ) -> Result<Correction, Rejected> {
         let phi = work.at.frames()[self.place as usize].phi;
-        Ok(self.correct(work, phi, max_iterations)?.1)
+        Ok(self.correct(work, phi, max_iterations)?.correction)
     }
 
     /// Notes the slope at the pose.
@@ -425,6 +436,7 @@ impl Slide {
         let known = self.known(work);
         self.g = work.at.frames()[self.place as usize].rotate(known.g);
         self.slope = known.w.dot(&perp(self.g));
+        self.still = known.still;
         self.scale = (known.w.norm() * known.g.norm()).max(work.at.size());
         if self.slope == 0.0 || !self.slope.is_finite() {
             return Err(Rejected);
@@ -576,8 +588,16 @@ impl Slide {
             }
         }
         let (_, phi) = best.ok_or(Rejected)?;
-        Ok(self.correct(work, phi, MAX_ITERATIONS)?.1)
+        Ok(self.correct(work, phi, MAX_ITERATIONS)?.correction)
     }
+}
+
+/// Where Newton ended.
+struct Found {
+    known: Known,
+    correction: Correction,
+    /// What is left of f, at the most.
+    open: f64,
 }
 
 /// First and second derivative of an angle.

@@ -61,6 +61,20 @@ impl Crossing {
         ]
     }
 
+    /// Bounds of the magnitudes of an unknown's first and second derivative in the driver's value.
+    pub(in crate::kinematics) fn steepest(&self, local: usize) -> [f64; 2] {
+        let width = self.half_width;
+        let powers = (0..6).zip(&self.coefficients[local]);
+        let [first, second] = powers.fold([0.0; 2], |[first, second], (power, a)| {
+            let power = f64::from(power);
+            [
+                first + power * a.abs(),
+                second + power * (power - 1.0) * a.abs(),
+            ]
+        });
+        [first / width, second / (width * width)]
+    }
+
     /// The crossing of a block at whose change point `finding` stands; `None` if the motion
     /// cannot be shown to go on beyond it.
     pub(super) fn new(

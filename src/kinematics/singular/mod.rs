@@ -375,11 +375,11 @@ impl Solver {
 
     /// Where a sub-step from `start` to `end` has to end to take a driver no further than it may go.
     pub(super) fn within_way(&self, careful: Careful, start: f64, end: f64) -> f64 {
-        self.shortened(careful.driver, careful.way, start, end)
+        self.held_back(careful.driver, careful.way, start, end)
     }
 
     /// `end` so near to `start` that a driver goes no further than `most` in between.
-    fn shortened(&self, driver: DriverId, most: f64, start: f64, mut end: f64) -> f64 {
+    fn held_back(&self, driver: DriverId, most: f64, start: f64, mut end: f64) -> f64 {
         let from = self.origin_drivers[driver.index()];
         let way = |h: f64| h * (from.first.abs() + 0.5 * h * from.second.abs());
         while way(end - start) > most {
@@ -396,7 +396,7 @@ impl Solver {
             let crossing = Arc::clone(&self.pose.crossings[index]);
             let driver = crossing.driver.index();
             // No further than from one end to the other.
-            end = self.shortened(crossing.driver, 2.0 * crossing.half_width, start, end);
+            end = self.held_back(crossing.driver, 2.0 * crossing.half_width, start, end);
             let mut place = |s: f64| {
                 self.drive(path, s);
                 crossing.place(self.path_drivers[driver].value).abs()
