@@ -6,6 +6,7 @@
 //! else it is shortened by as much as the certificate finds it too long.
 
 use super::Error;
+use super::error::OpenJoint;
 use super::newton::Correction;
 use super::path::Path;
 use super::plan::{Advance, Substep, Work};
@@ -24,6 +25,9 @@ pub enum Reason {
     Lost,
     /// A value on the way is one for which the mechanism does not exist.
     Value(Error),
+    /// Beyond here a constraint that was redundant so far contradicts the others: what it would
+    /// be open by where it first was found open.
+    Contradiction(OpenJoint),
     /// The path asks for more sub-steps than anyone would wait for.
     TooLong,
 }
@@ -58,6 +62,9 @@ pub struct Blocked {
 
 /// Some thousand turns; a path that asks for more is a slip, and the host waits.
 const MOST_SUBSTEPS: u32 = 100_000;
+/// Drivers that still move by more than this in such a sub-step \[m or rad\] tell nothing of what
+/// is ahead: the path is too long.
+const TELLS_NOTHING: f64 = 1e-6;
 /// A sub-step that fails is shortened to no less than this part, one that nothing is known of to
 /// half: what the certificate tells of a much too long one is not to be relied on.
 const SHORTEN: f64 = 0.1;
@@ -85,6 +92,8 @@ impl Solver {
         let mut progress = Progress::default();
         let mut s = 0.0;
         let mut substep: f64 = 1.0;
+        // What a redundant constraint would have been open by, and where.
+        let mut opened: Option<(f64, OpenJoint)> = None;
         let blocked = |s, reason, progress| {
             Err(Blocked {
                 s,
@@ -120,8 +129,12 @@ impl Solver {
                     .copy_from_slice(&self.pose.parameters);
             }
             let start = s;
-            if substep < smallest || progress.substeps >= MOST_SUBSTEPS {
+            if progress.substeps >= MOST_SUBSTEPS {
                 return blocked(s, Reason::TooLong, progress);
+            }
+            if substep < smallest {
+                let reason = self.reason_to_stop(path, s, substep);
+                return blocked(s, reason, progress);
             }
             // Between its points a motion given by a table tells at its ends where it has been.
             let most = path.next_point(start, &self.motions);
@@ -151,15 +164,30 @@ impl Solver {
                 }
                 self.stand_at(path, start);
                 reaches_point = false;
-                substep = self.shortened(next - start);
+                if let Err(Reason::Contradiction(joint)) = &reached {
+                    opened.get_or_insert_with(|| (next, joint.clone()));
+                }
+                if self.change_rows() {
+                    self.stand_at(path, start);
+                    continue;
+                }
+                substep = match reached {
+                    // The rows that are solved have nothing against it.
+                    Err(Reason::Contradiction(_)) => HALVE * (next - start),
+                    _ => self.shortened(next - start),
+                };
                 if substep < smallest {
-                    let reason = reached.map_or_else(Reason::Value, |_| {
-                        let end = self.find_end(path, start);
-                        end.map_or(Reason::Lost, Reason::Singular)
-                    });
+                    let reason = match (reached, opened) {
+                        (Err(Reason::Contradiction(_)), Some((_, joint))) => {
+                            Reason::Contradiction(joint)
+                        }
+                        (Err(reason), _) => reason,
+                        (Ok(_), _) => self.reason_to_stop(path, start, substep),
+                    };
                     return blocked(start, reason, progress);
                 }
             }
+            opened.take_if(|(place, _)| *place <= s);
             let suggested = self.lengthened(s - start);
             progress.crossings += self.note_crossings();
             careful = match self.look_ahead(path, s) {
@@ -174,6 +202,21 @@ impl Solver {
             };
         }
         Ok(progress)
+    }
+
+    /// Why not even a sub-step of length `h` leads on from where the mechanism stands, which is at
+    /// `s`.
+    fn reason_to_stop(&mut self, path: &Path, s: f64, h: f64) -> Reason {
+        if let Some(end) = self.find_end(path, s) {
+            return Reason::Singular(end);
+        }
+        // However small a part of the path it is.
+        let far = |driver: &Jet| (h * driver.first).abs() > TELLS_NOTHING;
+        if self.origin_drivers.iter().any(far) {
+            Reason::TooLong
+        } else {
+            Reason::Lost
+        }
     }
 
     /// Takes over the crossings of change points that are near, once a sub-step has ended.
@@ -236,24 +279,30 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// A value on the way is one for which the mechanism does not exist.
+    /// A value on the way is one for which the mechanism does not exist, or a redundant
+    /// constraint is one no longer.
     fn try_substep(
         &mut self,
         path: &Path,
         [start, end]: [f64; 2],
         progress: &mut Progress,
-    ) -> Result<bool, Error> {
+    ) -> Result<bool, Reason> {
         // What holds for several steps is for steps that are taken as a whole: how a longer way is
         // divided depends on its own proofs alone.
         let boxes = start <= 0.0 && end >= 1.0 && !self.parameters_move;
-        let mut reached = self.reach(path, [start, end], boxes)?;
+        let reached = self.reach(path, [start, end], boxes);
+        let mut reached = reached.map_err(Reason::Value)?;
         if reached.is_none() && self.tubes.relied_on_box {
             self.stand_at(path, start);
-            reached = self.reach(path, [start, end], false)?;
+            let again = self.reach(path, [start, end], false);
+            reached = again.map_err(Reason::Value)?;
         }
         let Some(correction) = reached else {
             return Ok(false);
         };
+        if let Some(joint) = self.opened() {
+            return Err(Reason::Contradiction(joint));
+        }
         // The pose takes the new values with the new q, or keeps both as they are.
         std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
         self.at.copy_pose(&mut self.pose.q);

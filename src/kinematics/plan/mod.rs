@@ -19,6 +19,7 @@ mod coupled;
 mod dyad;
 mod elimination;
 mod pinned;
+mod reach;
 mod slide;
 
 use super::certificate::Tubes;
@@ -32,10 +33,11 @@ pub(super) use bridged::Bridged;
 pub(super) use coupled::Coupled;
 use dyad::Dyad;
 use pinned::Pinned;
+pub(super) use reach::Miss;
 use slide::Slide;
 
 /// The kernels in the order in which they run.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) kernels: Vec<Kernel>,
 }

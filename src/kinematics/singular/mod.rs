@@ -8,7 +8,8 @@
 //!
 //! A crossing belongs to the pose: while the driver's value is within its ends, the block's
 //! unknowns and their rates come from it. Blocks that several drivers move, and those with more
-//! than [`LARGEST_BLOCK`] unknowns, are not crossed; nor is anything while parameters move.
+//! than [`LARGEST_BLOCK`] unknowns, are not crossed; nor is anything while parameters move, or
+//! where redundant rows are set aside.
 
 mod approach;
 mod crossing;
@@ -241,6 +242,10 @@ impl Solver {
         path: &Path,
         s: f64,
     ) -> Result<Option<Careful>, Box<SingularPoint>> {
+        if !self.set_aside.is_empty() {
+            // Other rows may be regular here.
+            return Ok(None);
+        }
         let near = self.near_singular();
         let mut ahead: Option<(usize, Careful)> = None;
         for &kernel in &near {
