@@ -148,6 +148,30 @@ fn a_mechanism_that_does_not_close_is_shown_at_its_nearest() {
 }
 
 #[test]
+fn redundant_constraints_are_named_and_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let again = "A_again = { type = \"revolute\", markers = [\"crank.A\", \"coupler.A\"] }";
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("\n[drivers]", &format!("{again}\n\n[drivers]"))],
+    );
+    let assert = biela(&["check", &file]).success();
+    assert_eq!(
+        stderr(&assert),
+        "warning: constraint equations of joint `A_again` are redundant: 2 of its 2 follow from \
+         the others; they are set aside and watched\n"
+    );
+    let text = stdout(&assert);
+    let line = "  redundant              2    2 of the 2 of joint `A_again`\n";
+    assert!(text.contains(line), "{text}");
+    assert!(
+        text.contains("  degrees of freedom     1    all driven\n"),
+        "{text}"
+    );
+}
+
+#[test]
 fn a_bad_file_exits_with_1_and_shows_the_line() {
     let folder = tempfile::tempdir().unwrap();
     let file = altered(
@@ -191,7 +215,7 @@ fn a_mechanism_without_driver_exits_with_1_and_says_what_is_loose() {
     let assert = biela(&["check", &file]).code(1);
     // What can be counted is shown all the same.
     assert!(stdout(&assert).contains("constraints            8"));
-    assert!(stderr(&assert).contains("not fully driven: body `crank`"));
+    assert!(stderr(&assert).contains("free to move: body `crank`"));
 }
 
 #[test]

@@ -142,7 +142,21 @@ fn describe_pose(solver: &mut Solver) -> String {
     let mechanism = std::sync::Arc::clone(solver.mechanism());
     let rcond = solver.rcond();
     let mut out = String::new();
-    // The Jacobian with all drivers is regular, so the constraints alone have full rank.
+    let redundancies = solver.redundancies();
+    if !redundancies.is_empty() {
+        let count: usize = redundancies.iter().map(|r| r.redundant).sum();
+        let names: Vec<_> = redundancies
+            .iter()
+            .map(|r| format!("{} of the {} of {}", r.redundant, r.equations, r.element))
+            .collect();
+        let _ = writeln!(
+            out,
+            "  {:<20}{count:>4}    {}",
+            "redundant",
+            names.join(", ")
+        );
+    }
+    // The Jacobian with all drivers is regular, so the drivers are as many as what is free.
     let _ = writeln!(
         out,
         "  {:<20}{:>4}    all driven",

@@ -62,8 +62,12 @@ impl Input {
     }
 }
 
-/// Warns on stderr of joints that do not fit their own numbers where the solver stands.
+/// Warns on stderr of joints that do not fit their own numbers where the solver stands, and of
+/// redundant ones.
 pub(super) fn warn_of_misfits(solver: &Solver) {
+    for redundancy in solver.redundancies() {
+        anstream::eprintln!("warning: {redundancy}");
+    }
     for misfit in solver.misfits() {
         anstream::eprintln!("warning: {misfit}");
     }

@@ -173,6 +173,7 @@ impl Motion {
         if let Err(blocked) = self.solver.follow(&self.path) {
             let why = match &blocked.reason {
                 Reason::Value(error) => error.to_string(),
+                Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
                 Reason::TooLong => "the motion is too fast for the steps".to_owned(),
                 _ => "dead point".to_owned(),
             };

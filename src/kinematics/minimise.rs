@@ -30,7 +30,8 @@ const SAME: f64 = 1e-6;
 /// A part of more unknowns than this is too large for dense matrices to be the first choice.
 pub(super) const SMALL_PART: usize = 120;
 
-/// Rows of Phi and as many unknowns, assembled while all others stay where they are.
+/// Rows of Phi and unknowns, assembled while all others stay where they are. There may be more rows
+/// than unknowns, or fewer.
 #[derive(Debug)]
 pub(super) struct Part {
     /// Ascending.
@@ -259,9 +260,8 @@ impl Part {
         work: &Work<'_>,
         weight: impl Fn(usize) -> f64,
     ) -> (DVector<f64>, DMatrix<f64>) {
-        let order = self.columns.len();
-        let mut residual = DVector::zeros(order);
-        let mut jacobian = DMatrix::zeros(order, order);
+        let mut residual = DVector::zeros(self.rows.len());
+        let mut jacobian = DMatrix::zeros(self.rows.len(), self.columns.len());
         for (local, &row) in self.rows.iter().enumerate() {
             let weight = weight(row);
             let entry = |column, value: f64| {

@@ -36,6 +36,7 @@ mod newton;
 mod path;
 mod plan;
 mod rates;
+mod redundancy;
 #[cfg(test)]
 mod reference;
 mod solver;
@@ -53,6 +54,7 @@ pub use fit::{Misfit, MisfitKind};
 pub use modes::{Mode, Modes};
 pub use path::{Curve, Path};
 pub use rates::Rates;
+pub use redundancy::Redundancy;
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress, Reason};
 pub use structure::{Dependencies, Structure};

@@ -57,6 +57,9 @@ impl Solver {
         for q in self.close_in_all_ways(&estimate, &mut modes) {
             self.pose.q.copy_from_slice(&q);
             self.choose_turns(&estimate);
+            if self.opened().is_some() {
+                continue;
+            }
             let known = std::iter::once(&home.q).chain(modes.others.iter().map(|mode| &mode.q));
             if known.into_iter().any(|known| self.is_at(known)) {
                 continue;

@@ -15,6 +15,7 @@ use super::newton::SINGULAR;
 use super::solver::{Pose, Solver};
 use super::stepping::Progress;
 use super::{Error, Path};
+pub(super) use search::Deadlock;
 pub(super) use ways::{Effort, Ways};
 
 /// How the pose for the first values was found.
@@ -59,6 +60,45 @@ impl Solver {
     /// make no mechanism. The solver is then without a valid pose until it is assembled or
     /// [restored](Self::restore); after the first of these it stands at the nearest one.
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
+        match self.assemble_rows(path, !self.set_aside.is_empty()) {
+            // Or redundant in a way that only numbers tell.
+            Err(Error::Singular { .. }) => {
+                self.choose_rows(path)?;
+                self.assemble_rows(path, true)
+            }
+            assembled => assembled,
+        }
+    }
+
+    /// Assembles with the rows chosen so far, with an eye on all if some are redundant.
+    fn assemble_rows(&mut self, path: &Path, on_all: bool) -> Result<Assembly, Error> {
+        let estimate = self.go_to_estimate(path)?;
+        let iterations = if on_all {
+            self.assemble_on_all(&estimate)?
+        } else {
+            match self.search(&estimate) {
+                Ok(iterations) => iterations,
+                Err(deadlock) => self.search_at_once(deadlock, &estimate)?,
+            }
+        };
+        self.choose_turns(&estimate);
+        self.refresh()?;
+        let rcond = self.plan.rcond();
+        if rcond < SINGULAR {
+            return Err(Error::Singular {
+                rcond,
+                bodies: Vec::new(),
+            });
+        }
+        Ok(Assembly {
+            iterations,
+            distance: self.distance_from(&estimate),
+        })
+    }
+
+    /// Takes all values from the end of `path`, and puts the bodies at the estimates, which are
+    /// returned.
+    pub(super) fn go_to_estimate(&mut self, path: &Path) -> Result<Vec<f64>, Error> {
         self.pose.parameters.copy_from_slice(&path.to);
         self.take_over_parameters()?;
         self.parameters_move = path.moves_parameters();
@@ -68,21 +108,7 @@ impl Solver {
         self.pose.q.copy_from_slice(&estimate);
         self.stand_at_pose();
         self.fix_turns();
-
-        let iterations = match self.search(&estimate) {
-            Ok(iterations) => iterations,
-            Err(deadlock) => self.search_at_once(deadlock, &estimate)?,
-        };
-        self.choose_turns(&estimate);
-        self.refresh()?;
-        let rcond = self.plan.rcond();
-        if rcond < SINGULAR {
-            return Err(Error::Singular { rcond });
-        }
-        Ok(Assembly {
-            iterations,
-            distance: self.distance_from(&estimate),
-        })
+        Ok(estimate)
     }
 
     /// The largest move of a body from its estimate, in radians and characteristic lengths.

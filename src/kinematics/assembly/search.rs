@@ -25,11 +25,11 @@ const BOXES_PER_WORK: f64 = 20.0;
 
 /// What is known where the kernels did not all close.
 #[derive(Debug)]
-pub(super) struct Deadlock {
+pub(in crate::kinematics) struct Deadlock {
     /// A kernel that did not close.
-    pub(super) kernel: usize,
+    pub(in crate::kinematics) kernel: usize,
     /// Whether all ways are excluded.
-    pub(super) proved: bool,
+    pub(in crate::kinematics) proved: bool,
     /// In how many ways of those before them kernels did not close.
     pub(super) dead_ends: usize,
     /// From how many starts the search has looked.
@@ -68,7 +68,7 @@ impl Solver {
     /// # Errors
     ///
     /// What is known if they do not all close.
-    pub(super) fn search(&mut self, estimate: &[f64]) -> Result<u32, Deadlock> {
+    pub(in crate::kinematics) fn search(&mut self, estimate: &[f64]) -> Result<u32, Deadlock> {
         let unknowns = self.system.unknowns();
         let (plan, mut work) = self.work();
         let kernels = &mut plan.kernels;

@@ -25,7 +25,7 @@ impl Solver {
     /// # Errors
     ///
     /// The verdict.
-    pub(super) fn search_at_once(
+    pub(in crate::kinematics) fn search_at_once(
         &mut self,
         mut deadlock: Deadlock,
         estimate: &[f64],
@@ -90,7 +90,7 @@ impl Solver {
 
     /// Newton–Raphson, kernel by kernel, from where the bodies are. Returns the most corrections
     /// that one needed; `None` leaves the pose as it was.
-    fn close(&mut self) -> Option<u32> {
+    pub(in crate::kinematics) fn close(&mut self) -> Option<u32> {
         let (plan, mut work) = self.work();
         let mut iterations = 0;
         for kernel in &mut plan.kernels {
@@ -144,7 +144,10 @@ impl Solver {
         }
         if !deadlock.proved && largest <= CLOSED {
             let rcond = self.rcond();
-            return Error::Singular { rcond };
+            return Error::Singular {
+                rcond,
+                bodies: Vec::new(),
+            };
         }
         let rows: Vec<_> = (0..self.system.equations().len()).collect();
         let open = self.open_joints(&rows, largest);
@@ -234,6 +237,7 @@ impl Solver {
             let singular = jacobian.singular_values();
             return Error::Singular {
                 rcond: singular.min() / singular.max(),
+                bodies: Vec::new(),
             };
         }
         let spread = self.open_joints(&part.rows, residual.amax());
@@ -290,7 +294,11 @@ impl Solver {
     }
 
     /// Joints, constraints and drivers with a noticeable part of the largest scaled residual.
-    fn open_joints(&self, rows: &[usize], largest: f64) -> Vec<(Element, OpenJoint)> {
+    pub(in crate::kinematics) fn open_joints(
+        &self,
+        rows: &[usize],
+        largest: f64,
+    ) -> Vec<(Element, OpenJoint)> {
         let least = 0.01 * largest;
         let mut open: Vec<(Element, OpenJoint)> = Vec::new();
         for &row in rows {

@@ -34,7 +34,7 @@ pub(super) use reach::Miss;
 use slide::Slide;
 
 /// The kernels in the order in which they run.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) kernels: Vec<Kernel>,
 }
