@@ -4,7 +4,7 @@ mod law;
 
 pub use law::Law;
 
-use super::{Ends, Expression, Interval, Jet, Jet3, ParameterId, Spline, Table};
+use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, Table};
 
 /// A prescribed motion u(t, parameters) \[m or rad\].
 #[derive(Clone, Debug)]
