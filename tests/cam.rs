@@ -73,7 +73,7 @@ fn the_contact_counts_turns() {
 #[test]
 fn a_large_step_does_not_pass_over_a_narrow_bump() {
     let bump = "\"0.04 + 0.002*exp(-(sin((theta - 3)/2)/0.05)^2)\"";
-    for way in [1.0, 3.0, 6.2] {
+    for way in [1.0_f64, 3.0, 6.2] {
         for turn in [way, -way] {
             // The face is above the axle: it touches where theta = 90° − u, at u = −82° the bump.
             let mut solver = with_profile("cam_flat", bump);

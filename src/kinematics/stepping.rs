@@ -6,6 +6,7 @@
 //! else it is shortened by as much as the certificate finds it too long.
 
 use super::Error;
+use super::error::OpenJoint;
 use super::newton::Correction;
 use super::path::Path;
 use super::plan::{Advance, Substep, Work};
@@ -20,6 +21,9 @@ pub enum Reason {
     DeadPoint,
     /// A value on the way is one for which the mechanism does not exist.
     Value(Error),
+    /// Beyond here a constraint that was redundant so far contradicts the others: what it would
+    /// be open by where it first was found open.
+    Contradiction(OpenJoint),
     /// The path asks for more sub-steps than anyone would wait for.
     TooLong,
 }
@@ -74,6 +78,8 @@ impl Solver {
         let mut progress = Progress::default();
         let mut s = 0.0;
         let mut substep: f64 = 1.0;
+        // What a redundant constraint would have been open by, and where.
+        let mut opened: Option<(f64, OpenJoint)> = None;
         let blocked = |s, reason, progress| {
             Err(Blocked {
                 s,
@@ -116,12 +122,29 @@ impl Solver {
                 }
                 self.stand_at(path, start);
                 reaches_point = false;
-                substep = self.shortened(next - start);
+                if let Err(Reason::Contradiction(joint)) = &reached {
+                    opened.get_or_insert_with(|| (next, joint.clone()));
+                }
+                if self.change_rows() {
+                    self.stand_at(path, start);
+                    continue;
+                }
+                substep = match reached {
+                    // The rows that are solved have nothing against it.
+                    Err(Reason::Contradiction(_)) => HALVE * (next - start),
+                    _ => self.shortened(next - start),
+                };
                 if substep < SMALLEST_SUBSTEP {
-                    let reason = reached.map_or_else(Reason::Value, |_| Reason::DeadPoint);
+                    let reason = match (reached, opened) {
+                        (Err(Reason::Contradiction(_)), Some((_, joint))) => {
+                            Reason::Contradiction(joint)
+                        }
+                        (reached, _) => reached.err().unwrap_or(Reason::DeadPoint),
+                    };
                     return blocked(start, reason, progress);
                 }
             }
+            opened.take_if(|(place, _)| *place <= s);
             let suggested = self.lengthened(s - start);
             // What a point cut short was possible as well.
             substep = if reaches_point {
@@ -180,24 +203,30 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// A value on the way is one for which the mechanism does not exist.
+    /// A value on the way is one for which the mechanism does not exist, or a redundant
+    /// constraint is one no longer.
     fn try_substep(
         &mut self,
         path: &Path,
         [start, end]: [f64; 2],
         progress: &mut Progress,
-    ) -> Result<bool, Error> {
+    ) -> Result<bool, Reason> {
         // What holds for several steps is for steps that are taken as a whole: how a longer way is
         // divided depends on its own proofs alone.
         let boxes = start <= 0.0 && end >= 1.0 && !self.parameters_move;
-        let mut reached = self.reach(path, [start, end], boxes)?;
+        let reached = self.reach(path, [start, end], boxes);
+        let mut reached = reached.map_err(Reason::Value)?;
         if reached.is_none() && self.tubes.relied_on_box {
             self.stand_at(path, start);
-            reached = self.reach(path, [start, end], false)?;
+            let again = self.reach(path, [start, end], false);
+            reached = again.map_err(Reason::Value)?;
         }
         let Some(correction) = reached else {
             return Ok(false);
         };
+        if let Some(joint) = self.opened() {
+            return Err(Reason::Contradiction(joint));
+        }
         // The pose takes the new values with the new q, or keeps both as they are.
         std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
         self.at.copy_pose(&mut self.pose.q);

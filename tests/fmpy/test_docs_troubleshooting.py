@@ -38,6 +38,8 @@ PARTS = {
     "crank_length=120*mm": "the example for --set",
     "about the solver": "cannot be set: it is …",
     "the running program": "cannot read `…`",
+    "degree of freedom": "the mechanism has … and …",
+    "degrees of freedom": "the mechanism has … and …",
     "the estimate of body `…`": "… has no finite value",
     "an equation of the mechanism": "… has no finite value",
     "the radius of joint `…`": "… has no finite value",

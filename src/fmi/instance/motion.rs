@@ -224,6 +224,10 @@ impl Instance {
                 parts.push(error.to_string());
                 "no mechanism"
             }
+            Reason::Contradiction(open) => {
+                parts.push(format!("beyond, {open}, redundant up to here"));
+                "contradiction"
+            }
             Reason::TooLong => {
                 parts.push("the step asks for more sub-steps than can be taken".to_owned());
                 "given up"

@@ -297,7 +297,7 @@ impl Search<'_> {
             let markers = match self.system.equations()[row].constraint.relation() {
                 Relation::Coincidence(c) => [Some(c.from), Some(c.to), None],
                 Relation::Projection(p) => [Some(p.from), Some(p.to), Some(p.axes)],
-                Relation::Angle(_) | Relation::Other => [None; 3],
+                Relation::Angle(_) | Relation::Distance(_) | Relation::Other => [None; 3],
             };
             markers.into_iter().flatten()
         });

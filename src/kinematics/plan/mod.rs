@@ -17,6 +17,7 @@ mod coupled;
 mod dyad;
 mod elimination;
 mod pinned;
+mod reach;
 mod slide;
 
 use super::certificate::Tubes;
@@ -29,10 +30,11 @@ use crate::mechanism::Jet;
 pub(super) use coupled::Coupled;
 use dyad::Dyad;
 use pinned::Pinned;
+pub(super) use reach::Miss;
 use slide::Slide;
 
 /// The kernels in the order in which they run.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) kernels: Vec<Kernel>,
 }
@@ -259,7 +261,7 @@ impl Kernel {
     }
 
     /// Scaled reciprocal condition: 1 is best, 0 singular.
-    fn rcond(&mut self) -> f64 {
+    pub(super) fn rcond(&mut self) -> f64 {
         match self {
             Self::Pinned(_) => 1.0,
             Self::Dyad(kernel) => kernel.rcond(),

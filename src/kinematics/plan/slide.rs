@@ -3,13 +3,14 @@
 
 mod certify;
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector2;
 
 use certify::Before;
 
 use super::anchor::{Anchor, Moving, Place, compact};
+use super::reach::Miss;
 use super::{Substep, Work};
 use crate::kinematics::certificate::Tubes;
 use crate::kinematics::configuration::{self, BodyPose, Configuration, perp};
@@ -542,29 +543,41 @@ impl Slide {
         if rcond.is_finite() { rcond } else { 0.0 }
     }
 
-    /// Closes the way that is nearest the estimates: the minimum of Ec. 3.6.9 for r → ∞, which a
-    /// circle and a line have in two places.
+    /// Closes from this angle of body a.
+    pub(in crate::kinematics) fn close_from(
+        &mut self,
+        work: &mut Work<'_>,
+        phi: f64,
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        Ok(self.correct(work, phi, max_iterations)?.correction)
+    }
+
+    /// The angles of body a at which it closes, nearest the estimates first: the minima of
+    /// Ec. 3.6.9 for r → ∞, which a circle and a line have in two places. Leaves the bodies
+    /// anywhere.
     ///
     /// # Errors
     ///
-    /// [`Rejected`] if they do not reach each other.
-    pub(in crate::kinematics) fn assemble(
-        &mut self,
+    /// [`Miss`] if they do not reach each other.
+    pub(in crate::kinematics) fn ways(
+        &self,
         work: &mut Work<'_>,
         estimate: &[f64],
-    ) -> Result<Correction, Rejected> {
+    ) -> Result<[f64; 2], Miss> {
         let known = self.known(work);
-        let size = work.at.size();
-        let ratio = -known.kappa / (known.w.norm() * known.g.norm());
-        // A gap that no one could measure is left to the corrections.
-        if ratio.is_nan() || ratio.abs() > 1.0 + 1e-12 {
-            return Err(Rejected);
+        let scale = known.w.norm() * known.g.norm();
+        let miss = Miss::new(known.kappa.abs() - scale, known.reach + scale);
+        let ratio = -known.kappa / scale;
+        if miss.certain || ratio.is_nan() {
+            return Err(miss);
         }
+        let size = work.at.size();
         let middle = known.w.y.atan2(known.w.x) - known.g.y.atan2(known.g.x);
+        // A gap that no one could measure is left to the corrections.
         let away = ratio.clamp(-1.0, 1.0).acos();
         let guess = estimate[3 * self.place as usize + 2];
-        let mut best: Option<(f64, f64)> = None;
-        for angle in [middle + away, middle - away] {
+        let ways = [middle + away, middle - away].map(|angle| {
             let phi = angle + TAU * ((guess - angle) / TAU).round();
             self.put(work.at.frames_mut(), &known, BodyPose::turned(phi));
             let columns = self.parts.columns.iter();
@@ -574,13 +587,30 @@ impl Slide {
                     (off / work.system.column_scale(column, size)).powi(2)
                 })
                 .sum::<f64>();
-            // The first of two that are equally far.
-            if best.is_none_or(|(least, _)| distance < least * (1.0 - 1e-9)) {
-                best = Some((distance, phi));
-            }
+            (distance, phi)
+        });
+        // The first of two that are equally far.
+        let [first, second] = ways;
+        if second.0 < first.0 * (1.0 - 1e-9) {
+            Ok([second.1, first.1])
+        } else {
+            Ok([first.1, second.1])
         }
-        let (_, phi) = best.ok_or(Rejected)?;
-        Ok(self.correct(work, phi, MAX_ITERATIONS)?.correction)
+    }
+
+    /// Body a, whose angle is looked for.
+    pub(in crate::kinematics) fn body(&self) -> usize {
+        self.parts.body
+    }
+
+    /// Puts the bodies as near to closing as they come, where the point does not reach its line.
+    pub(in crate::kinematics) fn stretch(&self, work: &mut Work<'_>, estimate: &[f64]) {
+        let known = self.known(work);
+        let away = if known.kappa > 0.0 { PI } else { 0.0 };
+        let angle = known.w.y.atan2(known.w.x) - known.g.y.atan2(known.g.x) + away;
+        let guess = estimate[3 * self.place as usize + 2];
+        let phi = angle + TAU * ((guess - angle) / TAU).round();
+        self.put(work.at.frames_mut(), &known, BodyPose::turned(phi));
     }
 }
 

@@ -132,13 +132,11 @@ impl Coupled {
                 moved / work.system.column_scale(column, size)
             })
             .fold(0.0, f64::max);
-        if largest == 0.0 {
-            return;
-        }
+        // What stands still is given some room, too.
+        let largest = largest.max(f64::EPSILON);
         self.invert();
         // The region of the single step was about half as wide as the step.
-        let mut width =
-            (0.5 * largest * GOOD_CONTRACTION / contraction.max(1e-9)).min(LARGEST_WIDTH);
+        let mut width = (0.5 * largest * GOOD_CONTRACTION / contraction).min(LARGEST_WIDTH);
         for _ in 0..2 {
             if !self.measure_box(work, substep, largest, width) {
                 return;
