@@ -297,7 +297,7 @@ impl Solver {
     /// Closes the mechanism on these rows from the estimates, or starts near them. `None` if they
     /// are satisfied; else the largest scaled residual of the nearest pose found, where the
     /// mechanism then is.
-    fn close_on(&mut self, rows: &[usize], estimate: &[f64]) -> Option<f64> {
+    pub(super) fn close_on(&mut self, rows: &[usize], estimate: &[f64]) -> Option<f64> {
         let unknowns: Vec<_> = (0..self.system.unknowns()).collect();
         let part = Part::new(rows, &unknowns);
         let small = self.is_small();
