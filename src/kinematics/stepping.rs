@@ -188,11 +188,14 @@ impl Solver {
                 };
                 if substep < smallest {
                     let reason = match (reached, opened) {
-                        (Err(Reason::Contradiction(_)), Some((_, joint))) => {
+                        // Next to a singular position nothing holds to rounding.
+                        (Err(Reason::Contradiction(_)), Some((_, joint)))
+                            if !self.is_nearly_singular() =>
+                        {
                             Reason::Contradiction(joint)
                         }
-                        (Err(reason), _) => reason,
-                        (Ok(_), _) => self.reason_to_stop(path, start, substep),
+                        (Err(Reason::Value(error)), _) => Reason::Value(error),
+                        _ => self.reason_to_stop(path, start, substep),
                     };
                     return blocked(start, reason, progress);
                 }
