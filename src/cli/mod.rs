@@ -10,15 +10,20 @@
 )]
 
 mod check;
+mod columns;
 mod conditions;
 mod draw;
 mod error;
 mod export;
 mod input;
+mod motion;
 mod output;
+mod picture;
+mod progress;
 pub mod render;
 mod run;
 mod runtime;
+mod signals;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

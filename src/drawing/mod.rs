@@ -22,6 +22,7 @@
 //! assert!(picture.contains("coupler"));
 //! ```
 
+mod chart;
 mod compose;
 mod labels;
 mod lettering;
@@ -33,7 +34,9 @@ mod scene;
 mod sheet;
 pub mod svg;
 mod symbols;
+mod ticks;
 
+pub use chart::{Axis, Chart, Line, Panel};
 pub use palette::Colour;
 pub use scene::{Anchor, Frame, Held, Scene, Symbol, WaySide};
 pub use sheet::Sheet;

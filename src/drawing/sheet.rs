@@ -51,6 +51,7 @@ pub(super) struct Stroke {
 /// What a mark shows; later ones cover earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Layer {
+    Grid,
     Ground,
     Slider,
     Plate,
@@ -62,11 +63,13 @@ pub(super) enum Layer {
     Joint,
     Driver,
     Point,
+    Curve,
     Scale,
 }
 
 impl Layer {
-    pub(super) const ALL: [Self; 12] = [
+    pub(super) const ALL: [Self; 14] = [
+        Self::Grid,
         Self::Ground,
         Self::Slider,
         Self::Plate,
@@ -78,12 +81,14 @@ impl Layer {
         Self::Joint,
         Self::Driver,
         Self::Point,
+        Self::Curve,
         Self::Scale,
     ];
 
     /// What it shows, in a word.
     pub(super) fn name(self) -> &'static str {
         match self {
+            Self::Grid => "grid",
             Self::Ground => "ground",
             Self::Slider => "sliders",
             Self::Plate => "plates",
@@ -95,6 +100,7 @@ impl Layer {
             Self::Joint => "joints",
             Self::Driver => "drivers",
             Self::Point => "points",
+            Self::Curve => "curves",
             Self::Scale => "scale",
         }
     }
