@@ -20,6 +20,7 @@ mod motion;
 mod output;
 mod picture;
 mod progress;
+mod recording;
 pub mod render;
 mod run;
 mod runtime;

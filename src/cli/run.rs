@@ -11,13 +11,15 @@ use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
 use super::motion::Motion;
+use super::output::write;
 use super::picture::Format;
 use super::progress::Progress;
+use super::recording::Recording;
 use super::signals::Signals;
-use crate::drawing::Sheet;
+use crate::drawing::{Sheet, animation};
 use crate::mechanism::Mechanism;
 
-/// Run a mechanism: write its motion as CSV, plot it.
+/// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
 /// Each row has the time, then value, velocity and acceleration of every driver, then all
 /// outputs of the FMU under their names there, in SI units. Drivers that are FMI inputs stay at
@@ -57,13 +59,18 @@ pub(super) struct Run {
     /// measures, or points of interest, or bodies].
     #[arg(short, long, value_name = "NAMES", value_delimiter = ',')]
     variables: Vec<String>,
-    /// The CSV file to write, `-` for stdout [default: stdout, if there is no --plot].
+    /// The CSV file to write, `-` for stdout [default: stdout, if there is neither --plot nor
+    /// --animate].
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
     /// Plot positions, velocities and accelerations over time; the picture's extension, .svg or
     /// .png, decides.
     #[arg(short, long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
+    /// Write a page, .html, on which the mechanism moves; it needs nothing from elsewhere. Of more
+    /// than 10,000 rows it shows every second, third and so on.
+    #[arg(short, long, value_name = "PAGE")]
+    animate: Option<PathBuf>,
 }
 
 /// More rows than this are a slip in --step.
@@ -86,25 +93,31 @@ impl Run {
         };
         self.conditions.refuse_twice(&signals, &driven)?;
         signals.take_over(&mut driven);
+        let pictured = self.plot.is_some() || self.animate.is_some();
+        if pictured && self.input.is_none() && driven.drivers.iter().all(|d| d.motion().is_none()) {
+            eprintln!("note: nothing moves; --drive or --input say how drivers move");
+        }
         let driven = Arc::new(driven);
         let all = Column::all(&driven);
-        let (written, plotted) = if self.variables.is_empty() {
+        let (written, plotted, told) = if self.variables.is_empty() {
             let plotted = Column::of_interest(&all);
-            (all, plotted)
+            let told = Recording::of_interest(&all);
+            (all, plotted, told)
         } else {
             let chosen = Column::named(&all, &self.variables)?;
-            (chosen.clone(), chosen)
+            (chosen.clone(), chosen.clone(), chosen)
         };
         let (home_solver, _) = input.assemble()?;
         let mut results = Results {
             table: self.table(&written)?,
             record: format.map(|_| Record::new(plotted)),
+            recording: (self.animate.as_ref()).map(|_| Recording::new(told, times.steps)),
         };
         let motion = Motion::start(
             home_solver,
             Arc::clone(&driven),
             signals,
-            parameters,
+            parameters.clone(),
             times.start,
         )
         .map_err(|error| input.error(error))?;
@@ -116,6 +129,11 @@ impl Run {
                 Format::Png => 2 * PLOT_WIDTH,
             };
             format.write(path, &sheet, width, false)?;
+        }
+        if let (Some(path), Some(recording)) = (&self.animate, results.recording) {
+            let clock = [times.start, times.step];
+            let animation = recording.animation(&driven, &parameters, clock);
+            write(path, animation::page(&animation).as_bytes())?;
         }
         outcome
     }
@@ -158,7 +176,8 @@ impl Run {
     /// Where the CSV goes, if there is one.
     fn csv(&self) -> Option<PathBuf> {
         let output = self.output.clone();
-        output.or_else(|| self.plot.is_none().then(|| PathBuf::from("-")))
+        let pictured = self.plot.is_some() || self.animate.is_some();
+        output.or_else(|| (!pictured).then(|| PathBuf::from("-")))
     }
 
     /// Whether the CSV scrolls over the terminal.
@@ -185,6 +204,7 @@ impl Run {
 struct Results<'a> {
     table: Option<Table<'a>>,
     record: Option<Record>,
+    recording: Option<Recording>,
 }
 
 impl Results<'_> {
@@ -209,6 +229,9 @@ impl Results<'_> {
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
         if let Some(record) = &mut self.record {
             record.add(motion);
+        }
+        if let Some(recording) = &mut self.recording {
+            recording.add(motion);
         }
         match &mut self.table {
             Some(table) => table.write_row(motion),
