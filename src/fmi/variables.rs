@@ -58,13 +58,15 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    fn place(self) -> Place {
+    /// The place of a coordinate of a body, or of its rate, among all of these: first all
+    /// coordinates, then their first, then their second derivatives.
+    fn place(self, bodies: usize) -> Option<u32> {
         match self {
             Self::Body(body, component, order) => {
-                let column = u32::try_from(3 * body.index() + component);
-                column.map_or(Place::Elsewhere, |column| Place::Coordinate(order, column))
+                let place = 3 * (order as usize * bodies + body.index()) + component;
+                u32::try_from(place).ok()
             }
-            _ => Place::Elsewhere,
+            _ => None,
         }
     }
 
@@ -246,17 +248,10 @@ pub static EXTRAPOLATIONS: Enumeration = Enumeration {
 #[derive(Clone, Debug)]
 pub struct Variables {
     list: Vec<Variable>,
-    /// Where each value stands, side by side: hosts read many at a time.
-    places: Vec<Place>,
-}
-
-/// Where the value of a variable stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In q, its first or its second derivative, at this index.
-    Coordinate(Order, u32),
-    /// Anywhere else, or nowhere before it is computed.
-    Elsewhere,
+    /// What each input is; they come first.
+    inputs: Vec<(DriverId, Order)>,
+    /// The [places](Self::places), side by side: hosts read many at a time.
+    places: Vec<u32>,
 }
 
 impl Variables {
@@ -266,6 +261,7 @@ impl Variables {
     pub fn new(mechanism: &Mechanism) -> Self {
         let mut table = Self {
             list: Vec::new(),
+            inputs: Vec::new(),
             places: Vec::new(),
         };
         table.add_inputs(mechanism);
@@ -284,8 +280,12 @@ impl Variables {
             (Causality::Independent, Variability::Continuous),
             real(Some(Unit::SECOND), None),
         );
-        let quantities = table.list.iter().map(|variable| variable.quantity);
-        table.places = quantities.map(Quantity::place).collect();
+        let bodies = mechanism.bodies.len();
+        let places = table.list.iter().map(|variable| {
+            let place = variable.quantity.place(bodies);
+            place.unwrap_or(Self::ELSEWHERE)
+        });
+        table.places = places.collect();
         table
     }
 
@@ -301,12 +301,20 @@ impl Variables {
         self.list.get(usize::try_from(value_reference).ok()?)
     }
 
-    /// Where the value of a variable stands; elsewhere for a variable that there is not.
-    #[must_use]
-    pub fn place(&self, value_reference: u32) -> Place {
-        let index = usize::try_from(value_reference).ok();
-        let place = index.and_then(|index| self.places.get(index));
-        place.copied().unwrap_or(Place::Elsewhere)
+    /// For each variable the place of a coordinate of a body, or of its rate, among all of
+    /// these: first all coordinates, then their first, then their second derivatives. All other
+    /// variables are [`ELSEWHERE`](Self::ELSEWHERE).
+    pub(super) fn places(&self) -> &[u32] {
+        &self.places
+    }
+
+    /// No place at all.
+    pub(super) const ELSEWHERE: u32 = u32::MAX;
+
+    /// Driver and order of an input.
+    #[inline]
+    pub(super) fn input(&self, value_reference: u32) -> Option<(DriverId, Order)> {
+        self.inputs.get(value_reference as usize).copied()
     }
 
     fn add(
@@ -333,6 +341,7 @@ impl Variables {
                 continue;
             };
             for order in Order::ALL {
+                self.inputs.push((DriverId(index), order));
                 let what = describe_coordinate(mechanism, &driver.coordinate);
                 let start = if order == Order::Position { start } else { 0.0 };
                 self.add(

@@ -124,6 +124,7 @@ impl Instance {
             path: _,
             // Computed from the pose when asked for.
             rates: _,
+            coordinates: _,
             guid,
             home,
             state,

@@ -275,6 +275,8 @@ pub struct Instance {
     /// Those at the last communication point.
     committed_rates: Vec<Jet>,
     rates: Rates,
+    /// q of the bodies, then its rates, where these are fresh: side by side for who reads many.
+    coordinates: Vec<f64>,
     freshness: Freshness,
     path: Path,
     progress: Progress,
@@ -342,6 +344,7 @@ impl Instance {
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             rates: Rates::new(home.q.len()),
+            coordinates: vec![0.0; 9 * mechanism.bodies.len()],
             freshness: Freshness::Stale,
             path: Path::new(&mechanism),
             progress: Progress::default(),

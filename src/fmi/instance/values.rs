@@ -1,9 +1,11 @@
 //! Setting and getting variables.
 
+use std::slice::Iter;
+
 use super::{Error, Freshness, Instance, check_finite};
 use crate::fmi::inputs::{Extrapolation, RateSource};
 use crate::fmi::state::{Call, State};
-use crate::fmi::variables::{Causality, Kind, Order, Place, Quantity, Variability, Variable};
+use crate::fmi::variables::{Causality, Kind, Order, Quantity, Variability, Variable, Variables};
 
 impl Instance {
     /// `fmi2SetReal`. Either all values are taken or none.
@@ -15,13 +17,20 @@ impl Instance {
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
         for (&value_reference, &value) in value_references.iter().zip(values) {
-            let variable = self.settable(value_reference, "Real")?;
-            check_value(variable, value)?;
+            // Inputs have no limits.
+            let is_input = self.variables.input(value_reference).is_some();
+            if !(is_input && value.is_finite()) {
+                let variable = self.settable(value_reference, "Real")?;
+                check_value(variable, value)?;
+            }
         }
         let mut parameters_changed = false;
         for (&value_reference, &value) in value_references.iter().zip(values) {
+            if let Some((driver, order)) = self.variables.input(value_reference) {
+                self.inputs[driver.index()].set(order, value);
+                continue;
+            }
             match self.variables.list()[value_reference as usize].quantity {
-                Quantity::Input(driver, order) => self.inputs[driver.index()].set(order, value),
                 Quantity::Parameter(parameter) => {
                     self.settings.parameters[parameter.index()] = value;
                     parameters_changed = true;
@@ -161,10 +170,30 @@ impl Instance {
         value_references: &'a [u32],
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
+        // Coordinates of bodies and their rates are what most hosts ask for, and nothing else.
+        let places = self.variables.places();
+        let last = value_references.iter().map(|&value_reference| {
+            let place = places.get(value_reference as usize);
+            place.copied().unwrap_or(Variables::ELSEWHERE)
+        });
+        let last = last.fold(0, u32::max) as usize;
+        let value_references_left = value_references.iter();
+        if last < self.coordinates.len() && !value_references.is_empty() {
+            let coordinates = 3 * self.mechanism.bodies.len();
+            let values = if last < coordinates {
+                self.refresh_pose()?;
+                &self.solver.pose().q[..coordinates]
+            } else {
+                self.refresh_rates()?;
+                &self.coordinates
+            };
+            return Ok(Reals::Coordinates {
+                places: self.variables.places(),
+                values,
+                value_references: value_references_left,
+            });
+        }
         for &value_reference in value_references {
-            if self.is_known(value_reference) {
-                continue;
-            }
             let variable = self.variable(value_reference)?;
             if !matches!(variable.kind, Kind::Real { .. }) {
                 return Err(Error::Type {
@@ -175,19 +204,10 @@ impl Instance {
             }
             self.make_ready(variable.quantity)?;
         }
-        Ok(value_references.iter().map(|&value_reference| {
-            match self.variables.place(value_reference) {
-                Place::Coordinate(order, column) => {
-                    let coordinates = match order {
-                        Order::Position => &self.solver.pose().q[..],
-                        Order::Velocity => self.rates.velocity(),
-                        Order::Acceleration => self.rates.acceleration(),
-                    };
-                    coordinates[column as usize]
-                }
-                _ => self.real(self.variables.list()[value_reference as usize].quantity),
-            }
-        }))
+        Ok(Reals::Any {
+            instance: self,
+            value_references: value_references_left,
+        })
     }
 
     /// `fmi2GetInteger`: counts of the last step, and the choices.
@@ -267,19 +287,6 @@ impl Instance {
             let derivative = output.derivative(order as usize);
             self.real(derivative.expect("checked above"))
         }))
-    }
-
-    /// Whether it is a coordinate or its rate, and that has been computed.
-    #[inline]
-    fn is_known(&self, value_reference: u32) -> bool {
-        let Place::Coordinate(order, _) = self.variables.place(value_reference) else {
-            return false;
-        };
-        let since = match order {
-            Order::Position => Freshness::Pose,
-            Order::Velocity | Order::Acceleration => Freshness::Rates,
-        };
-        self.freshness >= since
     }
 
     fn variable(&self, value_reference: u32) -> Result<&Variable, Error> {
@@ -364,6 +371,44 @@ impl Instance {
             _ => unreachable!("all other variables are Reals"),
         };
         i32::try_from(count).unwrap_or(i32::MAX)
+    }
+}
+
+/// The values of Real variables that are ready, in the order of their references.
+enum Reals<'a> {
+    Coordinates {
+        places: &'a [u32],
+        values: &'a [f64],
+        value_references: Iter<'a, u32>,
+    },
+    Any {
+        instance: &'a mut Instance,
+        value_references: Iter<'a, u32>,
+    },
+}
+
+impl Iterator for Reals<'_> {
+    type Item = f64;
+
+    #[inline]
+    fn next(&mut self) -> Option<f64> {
+        match self {
+            Self::Coordinates {
+                places,
+                values,
+                value_references,
+            } => {
+                let place = places[*value_references.next()? as usize];
+                Some(values[place as usize])
+            }
+            Self::Any {
+                instance,
+                value_references,
+            } => {
+                let index = *value_references.next()? as usize;
+                Some(instance.real(instance.variables.list()[index].quantity))
+            }
+        }
     }
 }
 
