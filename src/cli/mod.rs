@@ -11,12 +11,14 @@
 
 mod check;
 mod columns;
+mod completions;
 mod conditions;
 mod draw;
 mod error;
 mod export;
 mod input;
 mod motion;
+mod new;
 mod output;
 mod picture;
 mod progress;
@@ -24,6 +26,7 @@ mod recording;
 pub mod render;
 mod run;
 mod runtime;
+mod schema;
 mod signals;
 
 use std::ffi::OsString;
@@ -46,10 +49,13 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    New(new::New),
     Check(check::Check),
     Run(run::Run),
     Draw(draw::Draw),
     Export(export::Export),
+    Schema(schema::Schema),
+    Completions(completions::Completions),
 }
 
 /// Runs the program with these arguments, the first being its own name.
@@ -63,10 +69,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let outcome = match arguments.command {
+        Command::New(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Run(command) => command.run(),
         Command::Draw(command) => command.run(),
         Command::Export(command) => command.run(),
+        Command::Schema(command) => command.run(),
+        Command::Completions(command) => command.run(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
