@@ -15,6 +15,7 @@ mod completions;
 mod conditions;
 mod draw;
 mod error;
+mod estimates;
 mod export;
 mod input;
 mod motion;

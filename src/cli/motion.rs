@@ -96,6 +96,7 @@ impl Motion {
         };
         let why = match &blocked.reason {
             Reason::Value(error) => error.to_string(),
+            Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
             Reason::TooLong => "the motion is too fast for the steps".to_owned(),
             _ => "dead point".to_owned(),
         };

@@ -92,13 +92,8 @@ impl New {
                 self.name
             )));
         }
-        // The parser of the arguments knows the same names.
-        let Some(template) = TEMPLATES.iter().find(|template| template.name == self.from) else {
-            return Err(Error::Usage(format!(
-                "there is no mechanism `{}`",
-                self.from
-            )));
-        };
+        let template = TEMPLATES.iter().find(|template| template.name == self.from);
+        let template = template.expect("the parser of arguments knows the same names");
         let folder = self.folder.unwrap_or_default();
         let text = renamed(template, &self.name);
         let mut files = vec![(format!("{}.toml", self.name), text.as_str())];

@@ -107,7 +107,7 @@ impl Run {
             let chosen = Column::named(&all, &self.variables)?;
             (chosen.clone(), chosen.clone(), chosen)
         };
-        let (home_solver, _) = input.assemble()?;
+        let home_solver = input.assemble()?;
         let mut results = Results {
             table: self.table(&written)?,
             record: format.map(|_| Record::new(plotted)),

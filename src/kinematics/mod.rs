@@ -21,6 +21,7 @@
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.
 
 mod assembly;
+mod certificate;
 mod configuration;
 pub mod constraint;
 mod element;
@@ -29,11 +30,13 @@ mod factor;
 mod fit;
 mod joint;
 mod minimise;
+mod modes;
 mod motions;
 mod newton;
 mod path;
 mod plan;
 mod rates;
+mod redundancy;
 #[cfg(test)]
 mod reference;
 mod solver;
@@ -41,15 +44,17 @@ mod stepping;
 mod structure;
 mod system;
 
-pub use assembly::{Assembly, Start};
+pub use assembly::{Assembly, Move, Start};
 pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
 pub use element::Element;
-pub use error::{Error, OpenJoint};
+pub use error::{Error, OpenJoint, Proof, Verdict};
 pub use fit::{Misfit, MisfitKind};
+pub use modes::{Mode, Modes};
 pub use path::{Curve, Path};
 pub use rates::Rates;
+pub use redundancy::Redundancy;
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress, Reason};
 pub use structure::{Dependencies, Structure};

@@ -340,6 +340,7 @@ impl FmuState {
         codec.finite(last_successful_time)?;
         codec.count(&mut progress.iterations)?;
         codec.count(&mut progress.substeps)?;
+        codec.count(&mut progress.checked)?;
         // Derived parameters may be anything until values are looked at together.
         for value in &mut settings.parameters {
             codec.real(value)?;

@@ -486,9 +486,12 @@ impl Instance {
         }
         self.commit();
         self.state = State::StepComplete;
-        for misfit in self.solver.misfits() {
+        let redundancies = self.solver.redundancies().into_iter();
+        let redundancies = redundancies.map(|redundancy| redundancy.to_string());
+        let misfits = self.solver.misfits().into_iter();
+        for warning in redundancies.chain(misfits.map(|misfit| misfit.to_string())) {
             self.logger
-                .write(Status::Warning, Category::Warning, &misfit.to_string());
+                .write(Status::Warning, Category::Warning, &warning);
         }
         if self.logger.wants(Category::Events) {
             let message = format!(

@@ -224,6 +224,10 @@ impl Instance {
                 parts.push(error.to_string());
                 "no mechanism"
             }
+            Reason::Contradiction(open) => {
+                parts.push(format!("beyond, {open}, redundant up to here"));
+                "contradiction"
+            }
             Reason::TooLong => {
                 parts.push("the step asks for more sub-steps than can be taken".to_owned());
                 "given up"
@@ -242,9 +246,11 @@ impl Instance {
             let Progress {
                 iterations,
                 substeps,
+                checked,
             } = self.progress;
             let message = format!(
-                "t = {} s: {substeps} sub-steps, {iterations} iterations, residual {:.1e}",
+                "t = {} s: {substeps} sub-steps, {checked} of them checked, not proved; \
+                 {iterations} iterations, residual {:.1e}",
                 self.time,
                 self.solver.residual()
             );
@@ -310,6 +316,7 @@ impl Instance {
                 self.progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
+                    checked: 0,
                 };
                 self.logger.write(
                     Status::Warning,

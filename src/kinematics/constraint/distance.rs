@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, Region, centripetal,
+    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, centripetal,
     centripetal_bound, chord, point_velocity, speed_bound,
 };
 use crate::mechanism::{MarkerId, Mechanism};
@@ -12,7 +12,7 @@ use crate::mechanism::{MarkerId, Mechanism};
 ///
 /// Not smooth where the points coincide; there the gradient is taken along the x-axis, so that
 /// an assembly that starts from coinciding points has a direction to leave in.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Distance {
     /// Marker i.
     pub from: MarkerId,
@@ -36,6 +36,10 @@ impl Distance {
 impl Constraint for Distance {
     fn dimension(&self) -> Dimension {
         Dimension::Length
+    }
+
+    fn relation(&self) -> Relation {
+        Relation::Distance(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {
