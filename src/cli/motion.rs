@@ -14,8 +14,12 @@ pub(super) struct Motion {
     pub(super) rates: Rates,
     /// Value, velocity and acceleration of each driver.
     pub(super) driver_rates: Vec<Jet>,
+    /// What people should know of the way: singular positions that are near, or passed.
+    pub(super) notices: Vec<String>,
     path: Path,
     signals: Signals,
+    /// Whether a notice told of the singular position that is near.
+    near_singular: bool,
 }
 
 impl Motion {
@@ -43,8 +47,10 @@ impl Motion {
             rates: Rates::new(start.q.len()),
             driver_rates: start.drivers.iter().map(|u| Jet::constant(*u)).collect(),
             solver,
+            notices: Vec::new(),
             path,
             signals,
+            near_singular: false,
         };
         motion.solve_rates()?;
         Ok(motion)
@@ -92,16 +98,29 @@ impl Motion {
         self.path.start = self.solver.pose().time;
         self.path.duration = time - self.path.start;
         let Err(blocked) = self.solver.follow(&self.path) else {
+            if let Some(approach) = self.solver.approach(&mut self.near_singular) {
+                self.notices
+                    .push(format!("warning: t = {time} s: {approach}"));
+            }
+            for crossing in self.solver.crossed() {
+                let passed = self.solver.describe_crossing(crossing);
+                self.notices.push(format!("note: t = {time} s: {passed}"));
+            }
             return Ok(());
         };
         let why = match &blocked.reason {
             Reason::Value(error) => error.to_string(),
             Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
             Reason::TooLong => "the motion is too fast for the steps".to_owned(),
-            _ => "dead point".to_owned(),
+            Reason::Singular(point) => point.to_string(),
+            _ => "no continuous motion".to_owned(),
         };
         let pose = self.solver.pose();
-        let drivers = self.solver.mechanism().drivers.iter().zip(&pose.drivers);
+        let limits = match &blocked.reason {
+            Reason::Singular(point) => &point.drivers,
+            _ => &pose.drivers,
+        };
+        let drivers = self.solver.mechanism().drivers.iter().zip(limits);
         let moving: Vec<_> = drivers
             .enumerate()
             .filter(|(index, (driver, _))| {

@@ -46,14 +46,18 @@ impl Progress {
         let _ = std::io::stderr().flush();
         self.shown = Some(Instant::now());
     }
+
+    /// Clears the line, for others to write.
+    pub(super) fn clear(&mut self) {
+        if self.shown.take().is_some() {
+            eprint!("\r\x1b[K");
+        }
+    }
 }
 
 impl Drop for Progress {
-    /// Clears the line.
     fn drop(&mut self) {
-        if self.shown.is_some() {
-            eprint!("\r\x1b[K");
-        }
+        self.clear();
     }
 }
 

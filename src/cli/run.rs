@@ -216,7 +216,12 @@ impl Results<'_> {
         }
         self.add(&motion)?;
         for row in 1..=times.steps {
-            motion.advance(times.at(row))?;
+            let advanced = motion.advance(times.at(row));
+            for notice in motion.notices.drain(..) {
+                progress.clear();
+                anstream::eprintln!("{notice}");
+            }
+            advanced?;
             self.add(&motion)?;
             progress.done(row);
         }

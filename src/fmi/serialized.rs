@@ -17,7 +17,7 @@ use super::instance::StateError;
 const BEGINNING: [u8; 8] = *b"\x8bbiela\x1a\n";
 
 /// Raised whenever states are written in another way.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 const GUID: usize = 38;
 const CHECKSUM: usize = 4;

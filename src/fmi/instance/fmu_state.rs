@@ -9,8 +9,8 @@ use crate::fmi::log::Category;
 use crate::fmi::serialized;
 use crate::fmi::state::{Call, State};
 use crate::fmi::variables::Causality;
-use crate::kinematics::{Pose, Progress};
-use crate::mechanism::Jet;
+use crate::kinematics::{Crossing, Pose, Progress};
+use crate::mechanism::{DriverId, Jet};
 
 /// The residual below which a pose counts as one of the mechanism, relative to its largest
 /// coordinate in characteristic lengths and radians. Newton leaves what rounding does, some
@@ -41,6 +41,7 @@ pub struct FmuState {
     stop_time: Option<f64>,
     last_successful_time: f64,
     terminated: bool,
+    near_singular: bool,
 }
 
 /// Why bytes are no FMU state of this FMU.
@@ -141,6 +142,7 @@ impl Instance {
             stop_time,
             last_successful_time,
             terminated,
+            near_singular,
         } = self;
         let at_committed = *at_committed || *freshness == Freshness::Stale;
         Ok(FmuState {
@@ -164,6 +166,7 @@ impl Instance {
             stop_time: *stop_time,
             last_successful_time: *last_successful_time,
             terminated: *terminated,
+            near_singular: *near_singular,
         })
     }
 
@@ -192,6 +195,7 @@ impl Instance {
         self.stop_time = state.stop_time;
         self.last_successful_time = state.last_successful_time;
         self.terminated = state.terminated;
+        self.near_singular = state.near_singular;
         if self.logger.wants(Category::Events) {
             let message = format!("FMU state set: {} at t = {} s", self.state, self.time);
             self.logger.write(Status::Ok, Category::Events, &message);
@@ -201,7 +205,7 @@ impl Instance {
 
     /// `fmi2SerializedFMUstateSize`: how many bytes
     /// [`serialize_fmu_state`](Self::serialize_fmu_state) gives, which is the same for all states
-    /// of a mechanism.
+    /// of a mechanism but those next to a change point.
     ///
     /// # Errors
     ///
@@ -294,6 +298,9 @@ impl Instance {
         let largest = (pose.q.iter().enumerate()).fold(1.0, |largest: f64, (column, q)| {
             largest.max((q / system.column_scale(column, at.size())).abs())
         });
+        if !self.solver.admits_crossings(pose) {
+            return Err(impossible("its change points are none of this mechanism"));
+        }
         self.solver.restore(pose);
         let residual = self.solver.residual();
         // Not a number is not closed either.
@@ -330,16 +337,19 @@ impl FmuState {
             stop_time,
             last_successful_time,
             terminated,
+            near_singular,
         } = self;
         codec.one_of(state, &State::SAVED)?;
         codec.one_of(freshness, &[Freshness::Stale, Freshness::Pose])?;
         codec.flag(at_committed)?;
         codec.flag(terminated)?;
+        codec.flag(near_singular)?;
         codec.finite(time)?;
         codec.option(stop_time, 0.0, |codec, time| codec.finite(time))?;
         codec.finite(last_successful_time)?;
         codec.count(&mut progress.iterations)?;
         codec.count(&mut progress.substeps)?;
+        codec.count(&mut progress.crossings)?;
         codec.count(&mut progress.checked)?;
         // Derived parameters may be anything until values are looked at together.
         for value in &mut settings.parameters {
@@ -370,10 +380,50 @@ fn walk_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> 
         drivers,
         q,
         turns,
+        crossings,
     } = pose;
     codec.finite(time)?;
-    for value in parameters.iter_mut().chain(drivers).chain(q) {
+    for value in parameters.iter_mut().chain(drivers).chain(&mut *q) {
         codec.finite(value)?;
     }
-    turns.iter_mut().try_for_each(|turn| codec.signed(turn))
+    turns.iter_mut().try_for_each(|turn| codec.signed(turn))?;
+    let unknowns = q.len();
+    codec.resize(crossings, unknowns, || {
+        Arc::new(Crossing {
+            kernel: 0,
+            driver: DriverId(0),
+            center: 0.0,
+            half_width: 0.0,
+            coefficients: Vec::new(),
+            free: Vec::new(),
+        })
+    })?;
+    crossings
+        .iter_mut()
+        .try_for_each(|crossing| walk_crossing(Arc::make_mut(crossing), unknowns, codec))
+}
+
+fn walk_crossing(
+    crossing: &mut Crossing,
+    unknowns: usize,
+    codec: &mut impl Codec,
+) -> Result<(), Unreadable> {
+    let Crossing {
+        kernel,
+        driver,
+        center,
+        half_width,
+        coefficients,
+        free,
+    } = crossing;
+    codec.place(kernel)?;
+    codec.place(&mut driver.0)?;
+    codec.finite(center)?;
+    codec.finite(half_width)?;
+    codec.resize(coefficients, unknowns, || [0.0; 6])?;
+    for value in coefficients.iter_mut().flatten() {
+        codec.finite(value)?;
+    }
+    codec.resize(free, unknowns, || 0.0)?;
+    free.iter_mut().try_for_each(|value| codec.finite(value))
 }

@@ -285,6 +285,8 @@ pub struct Instance {
     last_successful_time: f64,
     /// Set by a discarded step: the host should end or go back.
     terminated: bool,
+    /// Whether the host has been warned of the singular position that the mechanism is near.
+    near_singular: bool,
 }
 
 impl Instance {
@@ -352,6 +354,7 @@ impl Instance {
             stop_time: None,
             last_successful_time: home.time,
             terminated: false,
+            near_singular: false,
             own_home: Arc::clone(&home),
             home,
             solver,
@@ -539,6 +542,7 @@ impl Instance {
         self.last_successful_time = self.home.time;
         self.stop_time = None;
         self.terminated = false;
+        self.near_singular = false;
         self.logger.write(Status::Ok, Category::Events, "reset");
         Ok(())
     }

@@ -6,7 +6,7 @@ use crate::fmi::log::Category;
 use crate::fmi::state::{Call, State};
 use crate::fmi::variables::Order;
 use crate::kinematics::{Blocked, Curve, Progress, Reason, Start};
-use crate::mechanism::{CoordinateKind, DriverId, DriverSource, Jet};
+use crate::mechanism::{DriverId, DriverSource, Jet};
 
 /// Hosts add up step sizes: communication points may be off by this much, relative to the
 /// larger of time and step.
@@ -41,6 +41,7 @@ impl Instance {
                     input.complete_step(start);
                 }
                 self.time = communication_point + h;
+                self.warn_of_approach();
                 self.commit();
                 self.log_step();
                 Ok(())
@@ -154,6 +155,7 @@ impl Instance {
     fn fail_step(&mut self, blocked: Blocked, start: f64, h: f64) -> Error {
         let message = self.describe_dead_point(&blocked, start, h);
         self.progress = blocked.progress;
+        self.log_crossings();
         // Held inputs and parameters reach their values only at the very end of the step; what
         // runs along its own curve has been right up to here. A host's polynomials do not meet
         // exactly where one ends and the next begins; that is no jump.
@@ -185,9 +187,31 @@ impl Instance {
         Error::DeadPoint { message }
     }
 
+    /// Warns once of each approach to a singular position.
+    fn warn_of_approach(&mut self) {
+        if let Some(approach) = self.solver.approach(&mut self.near_singular) {
+            let message = format!("t = {} s: {approach}", self.time);
+            self.logger
+                .write(Status::Warning, Category::Warning, &message);
+        }
+    }
+
+    /// Tells of the change points passed on the path followed last.
+    fn log_crossings(&self) {
+        if self.progress.crossings > 0 && self.logger.wants(Category::Events) {
+            for crossing in self.solver.crossed() {
+                let message = self.solver.describe_crossing(crossing);
+                self.logger.write(Status::Ok, Category::Events, &message);
+            }
+        }
+    }
+
     /// Which drivers move along the path, how far they came and what was asked for.
     fn describe_dead_point(&mut self, blocked: &Blocked, start: f64, h: f64) -> String {
-        let reached = self.solver.pose().drivers.clone();
+        let (limit, s) = match &blocked.reason {
+            Reason::Singular(point) => (point.drivers.clone(), point.s),
+            _ => (self.solver.pose().drivers.clone(), blocked.s),
+        };
         let asked = self.solver.drivers_at_end(&self.path);
         let mut parts: Vec<String> = self
             .mechanism
@@ -199,20 +223,20 @@ impl Instance {
                 driver.motion().is_some() || way.abs() > 0.0
             })
             .map(|(index, driver)| {
-                let show = |value| show(driver.coordinate.kind, value);
+                let show = |value| driver.coordinate.kind.show(value);
                 if driver.motion().is_some() {
-                    let time = start + blocked.s * h;
+                    let time = start + s * h;
                     return format!(
                         "driver `{}` cannot follow its motion beyond {} at t = {time} s",
                         driver.name,
-                        show(reached[index])
+                        show(limit[index])
                     );
                 }
                 format!(
                     "driver `{}` was asked for {} and cannot go beyond {}",
                     driver.name,
                     show(asked[index]),
-                    show(reached[index])
+                    show(limit[index])
                 )
             })
             .collect();
@@ -232,21 +256,24 @@ impl Instance {
                 parts.push("the step asks for more sub-steps than can be taken".to_owned());
                 "given up"
             }
-            _ => "dead point",
+            Reason::Singular(point) => &point.to_string(),
+            _ => "no continuous motion",
         };
         format!(
-            "{what} after {:.4} of the step from {start} s over {h} s: {}",
+            "{what}, after {:.4} of the step from {start} s over {h} s: {}",
             blocked.s,
             parts.join("; ")
         )
     }
 
     fn log_step(&self) {
+        self.log_crossings();
         if self.logger.wants(Category::Solver) {
             let Progress {
                 iterations,
                 substeps,
                 checked,
+                ..
             } = self.progress;
             let message = format!(
                 "t = {} s: {substeps} sub-steps, {checked} of them checked, not proved; \
@@ -311,11 +338,15 @@ impl Instance {
         }
         self.at_committed = false;
         match self.solver.start(&self.home, &self.path)? {
-            Start::Continuous(progress) => self.progress = progress,
+            Start::Continuous(progress) => {
+                self.progress = progress;
+                self.log_crossings();
+            }
             Start::Reassembled(assembly) => {
                 self.progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
+                    crossings: 0,
                     checked: 0,
                 };
                 self.logger.write(
@@ -346,13 +377,5 @@ impl Instance {
                 Err(self.warn_of_dead_point(message))
             }
         }
-    }
-}
-
-/// A driver's value for people.
-fn show(kind: CoordinateKind, value: f64) -> String {
-    match kind {
-        CoordinateKind::Angle => format!("{value:.9} rad ({:.6} deg)", value.to_degrees()),
-        _ => format!("{value:.9} m"),
     }
 }
