@@ -159,7 +159,8 @@ fn split<'a>(
         })
 }
 
-fn unknown<'a>(what: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Error {
+/// What to say of a name that stands for nothing.
+pub(super) fn unknown<'a>(what: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Error {
     let names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
     let help = match names[..] {
         [] => "the mechanism has none".to_owned(),

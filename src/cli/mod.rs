@@ -23,6 +23,7 @@ mod new;
 mod output;
 mod picture;
 mod progress;
+mod range;
 mod recording;
 pub mod render;
 mod run;
@@ -53,6 +54,7 @@ enum Command {
     New(new::New),
     Check(check::Check),
     Run(run::Run),
+    Range(range::Range),
     Draw(draw::Draw),
     Export(export::Export),
     Schema(schema::Schema),
@@ -73,6 +75,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::New(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Run(command) => command.run(),
+        Command::Range(command) => command.run(),
         Command::Draw(command) => command.run(),
         Command::Export(command) => command.run(),
         Command::Schema(command) => command.run(),

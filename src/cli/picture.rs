@@ -13,7 +13,19 @@ pub(super) enum Format {
     Png,
 }
 
+/// Width of a chart in pixels.
+pub(super) const PLOT_WIDTH: u32 = 800;
+
 impl Format {
+    /// The pixels for a picture of this width: a PNG has twice as many, so that it is sharp on
+    /// most screens.
+    pub(super) fn width(self, width: u32) -> u32 {
+        match self {
+            Self::Svg => width,
+            Self::Png => 2 * width,
+        }
+    }
+
     /// The format of a file; `-` is SVG.
     pub(super) fn of(path: &Path) -> Result<Self, Error> {
         if path.as_os_str() == "-" {

@@ -12,7 +12,7 @@ use super::error::Error;
 use super::input::Input;
 use super::motion::Motion;
 use super::output::write;
-use super::picture::Format;
+use super::picture::{Format, PLOT_WIDTH};
 use super::progress::Progress;
 use super::recording::Recording;
 use super::signals::Signals;
@@ -77,9 +77,6 @@ pub(super) struct Run {
 const MOST_ROWS: f64 = 1e9;
 /// More rows than this are not held for a picture.
 const MOST_PLOTTED: u64 = 1_000_000;
-/// Width of a chart in pixels; twice that for a PNG, so that it is sharp on most screens.
-const PLOT_WIDTH: u32 = 800;
-
 impl Run {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
@@ -124,11 +121,7 @@ impl Run {
         let outcome = results.follow(motion, &times, self.fills_terminal());
         if let (Some(path), Some(format), Some(record)) = (&self.plot, format, results.record) {
             let sheet = Sheet::chart(&record.chart(&driven));
-            let width = match format {
-                Format::Svg => PLOT_WIDTH,
-                Format::Png => 2 * PLOT_WIDTH,
-            };
-            format.write(path, &sheet, width, false)?;
+            format.write(path, &sheet, format.width(PLOT_WIDTH), false)?;
         }
         if let (Some(path), Some(recording)) = (&self.animate, results.recording) {
             let clock = [times.start, times.step];
