@@ -2,6 +2,7 @@
 
 mod common;
 
+use std::io::Read as _;
 use std::path::Path;
 
 use assert_cmd::Command;
@@ -892,6 +893,38 @@ fn draw_shows_the_pose_that_is_asked_for() {
         "crank = 1",
     ])
     .code(2);
+}
+
+#[test]
+fn an_fmu_carries_its_picture_and_its_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let hostile = "description = \"<script>alert('&')</script>";
+    let file = altered(
+        folder.path(),
+        "tlv",
+        &[("description = \"Variable", hostile)],
+    );
+    let path = folder.path().join("tlv.fmu");
+    biela(&["export", &file, "-o", path.to_str().unwrap()]).success();
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(path).unwrap()).unwrap();
+    let mut content = |name: &str| {
+        let mut bytes = Vec::new();
+        let mut entry = archive.by_name(name).unwrap();
+        entry.read_to_end(&mut bytes).unwrap();
+        bytes
+    };
+    assert!(content("model.png").starts_with(b"\x89PNG"));
+    let page = String::from_utf8(content("documentation/index.html")).unwrap();
+    assert!(page.contains("&lt;script&gt;alert(") && !page.contains("<script>alert"));
+    for wanted in [
+        "down to 0.15 m: dead point where body arm and body rod line up",
+        "up to 0.65 m: dead point",
+        "<td>arm_length</td><td>0.25</td><td>m</td><td>≥ 0.001</td>",
+        "<td>arm.omega</td><td>output</td><td>rad/s</td>",
+        "<td>rates</td>",
+    ] {
+        assert!(page.contains(wanted), "{wanted}");
+    }
 }
 
 #[test]

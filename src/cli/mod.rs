@@ -13,6 +13,7 @@ mod check;
 mod columns;
 mod completions;
 mod conditions;
+mod documentation;
 mod draw;
 mod error;
 mod estimates;

@@ -33,8 +33,18 @@ impl Motion {
     ) -> Result<Self, crate::kinematics::Error> {
         let given = |driver| Some(signals.at(driver, time)?.value);
         let solver = conditions::start(home_solver, &driven, &parameters, time, given)?;
+        Self::from(solver, signals, parameters, time)
+    }
+
+    /// From where a solver stands, at a time at which its drivers are there.
+    pub(super) fn from(
+        solver: Solver,
+        signals: Signals,
+        parameters: Vec<f64>,
+        time: f64,
+    ) -> Result<Self, crate::kinematics::Error> {
         let start = solver.pose();
-        let mut path = Path::new(&driven);
+        let mut path = Path::new(solver.mechanism());
         path.start = time;
         path.from.clone_from(&parameters);
         path.to = parameters;

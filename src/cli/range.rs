@@ -155,7 +155,7 @@ fn describe(
     }
 }
 
-fn end_text(end: &End, driver: DriverId, value: &impl Fn(f64) -> String) -> String {
+pub(super) fn end_text(end: &End, driver: DriverId, value: &impl Fn(f64) -> String) -> String {
     match end {
         End::Turns(_) => "no limit".to_owned(),
         End::Singular(point) => {
@@ -185,7 +185,7 @@ fn end_text(end: &End, driver: DriverId, value: &impl Fn(f64) -> String) -> Stri
 }
 
 /// Ten decimals: limits are located to rounding.
-fn with_unit(kind: CoordinateKind, value: f64) -> String {
+pub(super) fn with_unit(kind: CoordinateKind, value: f64) -> String {
     let (value, unit) = match kind {
         CoordinateKind::Angle => (value.to_degrees(), "deg"),
         _ => (value, "m"),

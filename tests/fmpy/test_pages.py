@@ -240,3 +240,30 @@ def test_a_phone_is_wide_enough(animated, tmp_path):
     button, slider = seen["boxes"][:2]
     assert button["width"] >= 44 and button["height"] >= 44
     assert slider["width"] >= 150
+
+
+@pytest.mark.parametrize("name", ["four_bar", "tlv", "cam_points"])
+def test_an_fmu_documents_itself(fmu, name, tmp_path):
+    browser()
+    folder = fmu(name).folder
+    seen = visit(
+        tmp_path,
+        folder / "documentation" / "index.html",
+        """
+        const first = places();
+        await pause(500);
+        return {
+          moved: places().join() !== first.join(),
+          title: document.title,
+          names: all("td:first-child").map((cell) => cell.textContent),
+        };
+        """,
+    )
+    assert seen["moved"]
+    assert seen["title"] == name
+    # Drivers, then parameters and settings, then the other variables.
+    variables = fmu(name).variables.values()
+    listed = [v.name for v in variables if v.causality in {"input", "output", "local"}]
+    assert seen["names"][-len(listed) :] == listed
+    parameters = [v.name for v in variables if v.causality in {"parameter", "calculatedParameter"}]
+    assert seen["names"][-len(listed) - len(parameters) : -len(listed)] == parameters

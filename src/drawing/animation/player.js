@@ -49,7 +49,9 @@
     );
     const readings = film.readings.map((reading, index) => {
       const [low, high] = film.scales[readingsAt + index];
-      const size = Math.max(Math.abs(low), Math.abs(high), 1e-9);
+      const most = Math.max(Math.abs(low), Math.abs(high));
+      // What is smaller than this is rounding.
+      const size = most < 1e-9 ? 1 : most;
       const decimals = Math.min(9, Math.max(0, 3 - Math.floor(Math.log10(size))));
       const row = document.createElement("div");
       const name = row.appendChild(document.createElement("dt"));
