@@ -329,6 +329,7 @@ fn help_goes_to_stdout() {
         &["export", "-h"],
         &["new", "-h"],
         &["range", "--help"],
+        &["watch", "--help"],
         &["schema", "--help"],
         &["completions", "-h"],
     ] {

@@ -43,23 +43,25 @@ const INSIDE: f64 = 0.01;
 /// The part that is shown of a way on which no limit was found.
 const SHOWN: f64 = 1.0 / 3.0;
 
+/// A mechanism as it moves.
+pub(super) struct Shown {
+    pub(super) animation: Animation,
+    /// What moves, in words.
+    pub(super) moving: String,
+    /// For each driver that is an input its range, from where the mechanism stands.
+    ranges: Vec<Option<Range>>,
+}
+
 /// The picture and the page of a mechanism that stands at its own pose.
 pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, Error> {
-    let mechanism = &input.mechanism;
-    let mut solver = Solver::new(Arc::clone(mechanism)).map_err(|error| input.error(error))?;
+    let refuse = |error| input.error(error);
+    let mut solver = Solver::new(Arc::clone(&input.mechanism)).map_err(refuse)?;
     solver.restore(home.pose());
-    let ranges: Vec<Option<Range>> = (mechanism.drivers.iter().enumerate())
-        .map(|(index, driver)| {
-            let moved = driver.motion().is_none();
-            moved.then(|| solver.range(DriverId(index), &RANGE))
-        })
-        .collect();
     let scene = Scene::new(&mut solver, true);
     let sheet = Sheet::new(&scene, &solver.pose().q);
     let picture = png::write(&sheet, ICON_WIDTH, false)
         .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
-    let (animation, moving) = animation(&solver, &ranges).map_err(|error| input.error(error))?;
-    let page = page(mechanism, &sheet, &animation, &moving, &ranges);
+    let shown = show(&mut solver).map_err(refuse)?;
     Ok(vec![
         Document {
             path: "model.png".to_owned(),
@@ -67,39 +69,40 @@ pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, E
         },
         Document {
             path: "documentation/index.html".to_owned(),
-            content: page.into_bytes(),
+            content: page(&input.mechanism, &sheet, &shown).into_bytes(),
         },
     ])
 }
 
-/// The mechanism along its prescribed motions, or over the range of its first driver; and what
-/// moves, in words.
-fn animation(
-    home: &Solver,
-    ranges: &[Option<Range>],
-) -> Result<(Animation, String), crate::kinematics::Error> {
-    let own = home.mechanism();
+/// A mechanism from where it stands: along its prescribed motions, or over the range of its
+/// first driver, best an angle.
+pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Error> {
+    let own = Arc::clone(solver.mechanism());
+    let ranges: Vec<Option<Range>> = (own.drivers.iter().enumerate())
+        .map(|(index, driver)| {
+            let is_input = driver.motion().is_none();
+            is_input.then(|| solver.range(DriverId(index), &RANGE))
+        })
+        .collect();
+    let home = solver.pose().clone();
     let simulation = &own.simulation;
-    let mut driven = Mechanism::clone(own);
-    let is_moved = own
-        .drivers
-        .iter()
-        .any(|driver| driver.motion().is_some_and(Prescribed::uses_time));
+    let mut driven = Mechanism::clone(&own);
+    let moves = |motion: &Prescribed| motion.uses_time();
+    let is_moved = own.drivers.iter().any(|d| d.motion().is_some_and(moves));
     let angle = |driver: &usize| own.drivers[*driver].coordinate.kind == CoordinateKind::Angle;
     let inputs = || (0..ranges.len()).filter(|driver| ranges[*driver].is_some());
     let first = inputs().find(angle).or_else(|| inputs().next());
     let (duration, moving) = match first.and_then(|first| Some((first, ranges[first].as_ref()?))) {
         _ if is_moved => (
             simulation.stop - simulation.start,
-            "The motion that the file prescribes, until its stop time.".to_owned(),
+            "The prescribed motion, until the stop time.".to_owned(),
         ),
         Some((driver, range)) => {
-            let start = home.pose().drivers[driver];
-            let (motion, duration) = way(start, range, simulation.start);
+            let (motion, duration) = way(home.drivers[driver], range, simulation.start);
             // What the way is made of are finite numbers.
             if let Ok(motion) = own.parse_expression(&motion, Some(Of::Time)) {
-                driven.drivers[driver].source =
-                    DriverSource::Motion(Prescribed::Expression(motion));
+                let motion = Prescribed::Expression(motion);
+                driven.drivers[driver].source = DriverSource::Motion(motion);
             }
             let name = &own.drivers[driver].name;
             let held = match own.drivers.len() {
@@ -112,9 +115,9 @@ fn animation(
     };
     let driven = Arc::new(driven);
     let mut solver = Solver::new(Arc::clone(&driven))?;
-    solver.restore(home.pose());
-    let parameters = home.pose().parameters.clone();
+    solver.restore(&home);
     let start = simulation.start;
+    let parameters = home.parameters;
     let mut motion = Motion::from(solver, Signals::default(), parameters.clone(), start)?;
     let told = Recording::of_interest(&Column::all(&driven));
     let mut recording = Recording::new(told, MOMENTS);
@@ -129,10 +132,11 @@ fn animation(
             recording.add(&motion);
         }
     }
-    Ok((
-        recording.animation(&driven, &parameters, [start, step]),
+    Ok(Shown {
+        animation: recording.animation(&driven, &parameters, [start, step]),
         moving,
-    ))
+        ranges,
+    })
 }
 
 /// An expression in time that leads over a range from where the driver is, and how long it
@@ -171,13 +175,7 @@ fn way(from: f64, range: &Range, start: f64) -> (String, f64) {
     (motion, PERIOD)
 }
 
-fn page(
-    mechanism: &Mechanism,
-    sheet: &Sheet,
-    animation: &Animation,
-    moving: &str,
-    ranges: &[Option<Range>],
-) -> String {
+fn page(mechanism: &Mechanism, sheet: &Sheet, shown: &Shown) -> String {
     let variables = Variables::new(mechanism);
     let [player_style, script] = style_and_script();
     let drawing = svg::write(sheet, DRAWING_WIDTH, false);
@@ -191,9 +189,9 @@ fn page(
             ("description", &escape(&mechanism.description)),
             ("about", &about(mechanism)),
             ("drawing", drawing),
-            ("moving", &escape(moving)),
-            ("player", &player(animation)),
-            ("drivers", &drivers(mechanism, ranges)),
+            ("moving", &escape(&shown.moving)),
+            ("player", &player(&shown.animation)),
+            ("drivers", &drivers(mechanism, &shown.ranges)),
             ("parameters", &parameters(&variables)),
             ("outputs", &outputs(&variables)),
             ("version", env!("CARGO_PKG_VERSION")),

@@ -31,6 +31,7 @@ mod run;
 mod runtime;
 mod schema;
 mod signals;
+mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -57,6 +58,7 @@ enum Command {
     Run(run::Run),
     Range(range::Range),
     Draw(draw::Draw),
+    Watch(watch::Watch),
     Export(export::Export),
     Schema(schema::Schema),
     Completions(completions::Completions),
@@ -78,6 +80,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Run(command) => command.run(),
         Command::Range(command) => command.run(),
         Command::Draw(command) => command.run(),
+        Command::Watch(command) => command.run(),
         Command::Export(command) => command.run(),
         Command::Schema(command) => command.run(),
         Command::Completions(command) => command.run(),
