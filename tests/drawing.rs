@@ -741,3 +741,37 @@ fn lines_of_a_chart_are_where_their_values_are() {
         .expect("a number");
     assert!(begin > 0.5 * (first[0] + last[0]));
 }
+
+/// A row of bars on pins, the first driven, each turning with the one before.
+fn row(count: usize) -> String {
+    let mut ground = String::from("[ground.markers]\n");
+    let mut rest = String::new();
+    for k in 0..count {
+        ground += &format!("O{k} = [{}, 0]\n", 0.2 * k as f64);
+        rest += &format!(
+            "[bodies.b{k}]\nmarkers = {{ O = [0, 0], A = [0.1, 0] }}\n\
+             [joints.j{k}]\ntype = 'revolute'\nmarkers = ['ground.O{k}', 'b{k}.O']\n"
+        );
+        if let Some(before) = k.checked_sub(1) {
+            rest += &format!(
+                "[constraints.c{k}]\ncoordinate = 'angle'\n\
+                 markers = ['b{before}.O', 'b{k}.O']\nvalue = 0\n"
+            );
+        }
+    }
+    format!(
+        "format = 1\nname = 'row'\n{ground}{rest}[drivers.d]\ncoordinate = 'angle'\n\
+         markers = ['ground.O0', 'b0.O']\nstart = 0.3\n"
+    )
+}
+
+#[test]
+fn the_names_of_very_many_bodies_are_left_out() {
+    for (count, named) in [(60, true), (61, false)] {
+        let (mut solver, _) = assembled(&parse(&row(count)));
+        let scene = Scene::new(&mut solver, false);
+        let picture = svg::write(&Sheet::new(&scene, &solver.pose().q), WIDTH, false);
+        assert_eq!(picture.contains(">b59<"), named, "{count}");
+        assert!(picture.contains(">d<"));
+    }
+}

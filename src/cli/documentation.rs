@@ -26,8 +26,9 @@ const STYLE: &str = include_str!("documentation.css");
 const ICON_WIDTH: u32 = 512;
 /// Width of the drawing on the page.
 const DRAWING_WIDTH: u32 = 640;
-/// Pictures of the motion.
-const MOMENTS: u64 = 240;
+/// Pictures of the motion, and how many bodies there are in all of them at most.
+const MOMENTS: usize = 240;
+const MOST_PLACED: usize = 24_000;
 /// How long a turn of the driver, or its way there and back, is shown \[s\].
 const PERIOD: f64 = 4.0;
 /// Looked at less closely than by `biela range`: a turn in steps of three degrees, a few of
@@ -120,11 +121,12 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     let parameters = home.parameters;
     let mut motion = Motion::from(solver, Signals::default(), parameters.clone(), start)?;
     let told = Recording::of_interest(&Column::all(&driven));
-    let mut recording = Recording::new(told, MOMENTS);
+    let moments = (MOST_PLACED / own.bodies.len().max(1)).clamp(MOMENTS / 10, MOMENTS);
+    let mut recording = Recording::new(told, moments as u64);
     recording.add(&motion);
-    let step = duration / MOMENTS as f64;
+    let step = duration / moments as f64;
     if duration > 0.0 {
-        for moment in 1..=MOMENTS {
+        for moment in 1..=moments {
             // What is in the way ends the film there.
             if motion.advance(start + moment as f64 * step).is_err() {
                 break;

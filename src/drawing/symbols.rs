@@ -51,6 +51,9 @@ pub(super) const DRIVER_INSET: f64 = PIN + 1.0;
 /// Length and half the width of an arrow.
 const ARROW: [f64; 2] = [8.0, 2.9];
 
+/// The names of more bodies than this would hide them.
+const MOST_NAMES: usize = 60;
+
 const THIN: f64 = 0.9;
 const LINE: f64 = 1.4;
 const DASHES: &[f64] = &[4.0, 3.0];
@@ -120,13 +123,18 @@ impl<'a> Pen<'a> {
         let mut labels = self.driver_labels;
         labels.extend(self.point_labels);
         let bodies = self.scene.bodies.iter().zip(self.body_places).enumerate();
-        labels.extend(bodies.map(|(index, (name, candidates))| Label {
-            content: name.clone(),
-            // Dark enough to be read: half the colour's light.
-            colour: Colour::of_body(index).shade(0.55),
-            follows: Rider::Body(BodyId(index)),
-            candidates,
-        }));
+        let named = self.scene.bodies.len() <= MOST_NAMES;
+        labels.extend(
+            bodies
+                .filter(|_| named)
+                .map(|(index, (name, candidates))| Label {
+                    content: name.clone(),
+                    // Dark enough to be read: half the colour's light.
+                    colour: Colour::of_body(index).shade(0.55),
+                    follows: Rider::Body(BodyId(index)),
+                    candidates,
+                }),
+        );
         (self.marks, labels)
     }
 
