@@ -16,8 +16,6 @@ pub(super) struct Progress {
 const PATIENCE: Duration = Duration::from_millis(700);
 const REFRESH: Duration = Duration::from_millis(100);
 const WIDTH: usize = 30;
-/// Rows between two looks at the clock.
-const ROWS: u64 = 64;
 
 impl Progress {
     /// Of a run of so many rows; `hidden` where the terminal shows something else.
@@ -33,9 +31,6 @@ impl Progress {
     /// So many rows are done.
     pub(super) fn done(&mut self, rows: u64) {
         let Some(since) = self.since else { return };
-        if !rows.is_multiple_of(ROWS) {
-            return;
-        }
         let elapsed = since.elapsed();
         let fresh = self.shown.is_some_and(|shown| shown.elapsed() < REFRESH);
         if elapsed < PATIENCE || fresh {
