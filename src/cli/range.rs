@@ -51,7 +51,7 @@ impl Range {
         let drivers = self.drivers(&input.mechanism)?;
         let parameters = self.conditions.parameters(&input.mechanism)?;
         let driven = Arc::new(self.conditions.driven(&input.mechanism)?);
-        let (home_solver, _) = input.assemble()?;
+        let home_solver = input.assemble()?;
         let time = input.mechanism.simulation.start;
         let mut solver = conditions::start(home_solver, &driven, &parameters, time, |_| None)
             .map_err(|error| input.error(error))?;

@@ -128,7 +128,7 @@ impl View {
         let conditions = &self.watch.conditions;
         let parameters = conditions.parameters(&input.mechanism).map_err(text)?;
         let driven = Arc::new(conditions.driven(&input.mechanism).map_err(text)?);
-        let (home, _) = input.assemble().map_err(text)?;
+        let home = input.assemble().map_err(text)?;
         let time = input.mechanism.simulation.start;
         let mut solver = conditions::start(home, &driven, &parameters, time, |_| None)
             .map_err(|error| error.to_string())?;

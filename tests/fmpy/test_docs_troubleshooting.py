@@ -15,6 +15,9 @@ PAGE = ROOT / "docs" / "troubleshooting.md"
 
 FILES_WITHOUT_MESSAGES = {
     "cli/check.rs": "its report, which is the answer and not a complaint",
+    "cli/range.rs": "likewise",
+    "cli/documentation.rs": "the page in the FMU",
+    "cli/watch/server.rs": "what a browser is told",
     "fmi/variables.rs": "descriptions in the FMU",
     "fmi/model_description.rs": "the FMU's XML",
     "fmi/log.rs": "descriptions of the log categories",
