@@ -188,18 +188,17 @@ impl Solver {
                 }
             }
             opened.take_if(|(place, _)| *place <= s);
-            let suggested = self.lengthened(s - start);
             progress.crossings += self.note_crossings();
             careful = match self.look_ahead(path, s) {
                 Ok(careful) => careful,
                 Err(end) => return blocked(s, Reason::Singular(end), progress),
             };
-            // What a point cut short was possible as well.
-            substep = if reaches_point {
-                suggested.max(substep)
-            } else {
-                suggested
-            };
+            if s < 1.0 {
+                let suggested = self.lengthened(s - start);
+                // What a point cut short was possible as well.
+                let possible = if reaches_point { substep } else { 0.0 };
+                substep = suggested.max(possible);
+            }
         }
         Ok(progress)
     }

@@ -44,6 +44,10 @@ pub(super) struct Plan {
 
 /// What finds the unknowns of one part of the mechanism.
 #[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "most kernels are dyads, which lie side by side as they are"
+)]
 pub(super) enum Kernel {
     Pinned(Box<Pinned>),
     Dyad(Dyad),
