@@ -173,6 +173,62 @@ fn redundant_constraints_are_named_and_warned_of() {
 }
 
 #[test]
+fn check_tells_scripts_what_it_finds() {
+    let folder = tempfile::tempdir().unwrap();
+    let check = |arguments: &[&str], code: i32| {
+        let mut all = vec!["check", "--format", "json"];
+        all.extend(arguments);
+        let assert = biela(&all).code(code);
+        assert_eq!(stderr(&assert), "");
+        serde_json::from_str::<serde_json::Value>(&stdout(&assert)).unwrap()
+    };
+    let good = check(&["mechanisms/four_bar.toml", "--modes"], 0);
+    assert_eq!(good["ok"], true);
+    assert_eq!(good["diagnostics"].as_array().map(Vec::len), Some(0));
+    assert_eq!(good["mechanism"]["name"], "four_bar");
+    assert_eq!(good["mechanism"]["unknowns"], 9);
+    let joint = serde_json::json!({ "name": "O2", "equations": 2 });
+    assert_eq!(good["mechanism"]["joints"][0], joint);
+    let crank = &good["assembled"]["bodies"][0];
+    assert!((crank["phi"].as_f64().unwrap() - 60_f64.to_radians()).abs() < 1e-12);
+    assert_eq!(good["assembled"]["measures"][0]["unit"], "rad");
+    assert_eq!(
+        good["assembled"]["modes"]["others"]
+            .as_array()
+            .map(Vec::len),
+        Some(1)
+    );
+
+    // A file that is wrong, with the places.
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("\"crank.A\", ", "\"crank.AA\", ")],
+    );
+    let bad = check(&[&file], 1);
+    assert_eq!(bad["ok"], false);
+    let diagnostic = &bad["diagnostics"][0];
+    assert_eq!(diagnostic["severity"], "error");
+    assert_eq!(diagnostic["code"], "unknown-marker");
+    let start = &diagnostic["labels"][0]["start"];
+    let text = std::fs::read_to_string(&file).unwrap();
+    let line = usize::try_from(start["line"].as_u64().unwrap()).unwrap();
+    assert!(text.lines().nth(line - 1).unwrap().contains("crank.AA"));
+    assert!(bad.get("mechanism").is_none() && bad.get("assembled").is_none());
+
+    // One that does not close: the coupler is too short by 50 mm at 60 deg or more.
+    let short = [("value = 0.25", "value = 0.01")];
+    let open = check(&[&altered(folder.path(), "four_bar", &short)], 1);
+    assert_eq!(open["ok"], false);
+    assert!(
+        open["error"]["message"].as_str().unwrap().contains("open"),
+        "{open}"
+    );
+    assert!(open["error"]["open"][0]["gap"].as_f64().unwrap() > 0.0);
+    assert_eq!(open["error"]["nearest"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
 fn a_bad_file_exits_with_1_and_shows_the_line() {
     let folder = tempfile::tempdir().unwrap();
     let file = altered(
@@ -817,8 +873,8 @@ fn range_tells_the_limits() {
     // Base minus and plus arm: 0.4 m and 0.25 m.
     for wanted in [
         "side_length, from 0.35 m\n",
-        "  down to 0.15 m: dead point where body `arm` and body `rod` line up\n",
-        "  up to   0.65 m: dead point where body `arm` and body `rod` line up\n",
+        "  down to 0.15 m: dead point, where body `arm`, body `rod` line up\n",
+        "  up to   0.65 m: dead point, where body `arm`, body `rod` line up\n",
     ] {
         assert!(stdout(&tlv).contains(wanted), "{}", stdout(&tlv));
     }
@@ -977,7 +1033,7 @@ fn an_fmu_carries_its_picture_and_its_page() {
     let page = String::from_utf8(content("documentation/index.html")).unwrap();
     assert!(page.contains("&lt;script&gt;alert(") && !page.contains("<script>alert"));
     for wanted in [
-        "down to 0.15 m: dead point where body arm and body rod line up",
+        "down to 0.15 m: dead point, where body arm, body rod line up",
         "up to 0.65 m: dead point",
         "<td>arm_length</td><td>0.25</td><td>m</td><td>≥ 0.001</td>",
         "<td>arm.omega</td><td>output</td><td>rad/s</td>",

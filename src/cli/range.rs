@@ -14,7 +14,7 @@ use super::output::write;
 use super::picture::{Format, PLOT_WIDTH};
 use super::run::print;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
-use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, SingularKind};
+use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample};
 use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit};
 
 /// Find how far a driver can go.
@@ -125,7 +125,7 @@ fn describe(
             text,
             "  passes a change point at {} where {} line up",
             value(point.value),
-            point.bodies.join(" and ")
+            point.bodies.join(", ")
         );
     }
     let extreme = |of: fn(&Sample) -> Option<f64>| {
@@ -158,20 +158,7 @@ fn describe(
 pub(super) fn end_text(end: &End, driver: DriverId, value: &impl Fn(f64) -> String) -> String {
     match end {
         End::Turns(_) => "no limit".to_owned(),
-        End::Singular(point) => {
-            let kind = match point.kind {
-                SingularKind::DeadPoint => "dead point",
-                SingularKind::ChangePoint => "change point that is not crossed",
-                SingularKind::Cusp => "cusp",
-                SingularKind::TangentBranches => "singular position where two motions touch",
-                SingularKind::HigherRank => "singular position with more than two motions",
-            };
-            let bodies = match &point.bodies[..] {
-                [] => String::new(),
-                bodies => format!(" where {} line up", bodies.join(" and ")),
-            };
-            format!("{}: {kind}{bodies}", value(point.drivers[driver.index()]))
-        }
+        End::Singular(point) => format!("{}: {point}", value(point.drivers[driver.index()])),
         End::Blocked { value: at, reason } => {
             let reason = match reason {
                 Reason::Value(error) => error.to_string(),
