@@ -132,10 +132,8 @@ impl Solver {
             if progress.substeps >= MOST_SUBSTEPS {
                 return blocked(s, Reason::TooLong, progress);
             }
-            if substep < smallest {
-                let reason = self.reason_to_stop(path, s, substep);
-                return blocked(s, reason, progress);
-            }
+            // What is too small to go on with is tried once more, to tell what is in the way.
+            substep = substep.max(smallest);
             // Between its points a motion given by a table tells at its ends where it has been.
             let most = path.next_point(start, &self.motions);
             let mut reaches_point = false;
