@@ -15,6 +15,9 @@ PAGE = ROOT / "docs" / "troubleshooting.md"
 
 FILES_WITHOUT_MESSAGES = {
     "cli/check.rs": "its report, which is the answer and not a complaint",
+    "cli/range.rs": "likewise",
+    "cli/documentation.rs": "the page in the FMU",
+    "cli/watch/server.rs": "what a browser is told",
     "fmi/variables.rs": "descriptions in the FMU",
     "fmi/model_description.rs": "the FMU's XML",
     "fmi/log.rs": "descriptions of the log categories",
@@ -36,6 +39,8 @@ PARTS = {
     "the mechanism has none": "no … `…`; …",
     "crank_angle=60*deg + 10*t": "the example for --drive",
     "crank_length=120*mm": "the example for --set",
+    "; did you mean `…`?": "--variables: there is no `…`…",
+    "beyond, …, redundant up to here": "… at t = … s: the mechanism cannot go on, with …",
     "about the solver": "cannot be set: it is …",
     "note: t = … s: …": "change point passed on the smooth motion",
     "the running program": "cannot read `…`",
