@@ -21,7 +21,7 @@ mod variables;
 pub use guid::guid;
 pub use instance::{Error, FmuState, Instance, StateError, Status};
 pub use log::{Category, Sink};
-pub use package::{PackageError, Platform, RESOURCE, RuntimeLibrary, write_fmu};
+pub use package::{Document, PackageError, Platform, RESOURCE, RuntimeLibrary, write_fmu};
 pub use state::{Call, State};
 pub use uri::{UriError, resource_path};
 pub use variables::{

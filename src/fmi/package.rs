@@ -79,7 +79,17 @@ pub enum PackageError {
     Write(#[from] std::io::Error),
 }
 
-/// Writes the FMU of a mechanism: its file, its model description and the runtime libraries.
+/// A file for people that goes into the archive.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Document {
+    /// Where in the archive: `model.png`, `documentation/index.html`.
+    pub path: String,
+    /// Its content.
+    pub content: Vec<u8>,
+}
+
+/// Writes the FMU of a mechanism: its file, its model description, the runtime libraries and
+/// what documents it.
 ///
 /// The same input gives the same bytes: entries have a fixed order and a fixed time.
 ///
@@ -92,6 +102,7 @@ pub fn write_fmu(
     mechanism: &Mechanism,
     structure: &Structure,
     libraries: &[RuntimeLibrary],
+    documents: &[Document],
     generated: Option<&str>,
 ) -> Result<(), PackageError> {
     let mut zip = ZipWriter::new(out);
@@ -103,6 +114,10 @@ pub fn write_fmu(
 
     zip.start_file("modelDescription.xml", text)?;
     zip.write_all(&model_description::write(mechanism, structure, generated))?;
+    for Document { path, content } in documents {
+        zip.start_file(path.as_str(), text)?;
+        zip.write_all(content)?;
+    }
     let mut libraries = libraries.to_vec();
     libraries.sort();
     for RuntimeLibrary { platform, path } in libraries {
