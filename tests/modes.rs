@@ -292,7 +292,7 @@ fn a_coupled_six_bar_has_as_many_modes_as_its_circles_say() {
         corners: [[0.0, 0.0], [0.1, 0.0], [0.1 * cos_60, 0.1 * sin_60]],
     };
     let expected = triad.count();
-    assert!(expected >= 2 && expected % 2 == 0);
+    assert!(expected >= 2 && expected.is_multiple_of(2));
     let modes = modes_of(&text);
     assert_eq!(modes.others.len() + 1, expected);
     assert!(modes.complete);

@@ -187,7 +187,7 @@ impl Solver {
                 if off > settings.lengths * size {
                     return End::NotFound { value };
                 }
-            } else if count % per_turn == 0 {
+            } else if count.is_multiple_of(per_turn) {
                 let turns = count / per_turn;
                 if self.is_where_it_was(&start) {
                     return End::Turns(turns);

@@ -39,7 +39,8 @@ impl Bridged {
     /// [`Rejected`] outside of the crossing.
     pub(super) fn close(&mut self, work: &mut Work<'_>) -> Result<Correction, Rejected> {
         let value = work.drivers[self.crossing.driver.index()];
-        if !(self.crossing.place(value).abs() <= SEAM) {
+        let place = self.crossing.place(value).abs();
+        if place.is_nan() || place > SEAM {
             return Err(Rejected);
         }
         for (local, &column) in self.kernel.columns().iter().enumerate() {

@@ -166,7 +166,8 @@ impl End {
             let sheet = block.sheet(alpha, tau)?;
             let step = -sheet.epsilon / sheet.first[0];
             alpha += step;
-            if !((alpha - expected).abs() <= OFF * apart) {
+            let astray = (alpha - expected).abs();
+            if astray.is_nan() || astray > OFF * apart {
                 return None;
             }
             if step.abs() <= 1e-15 || (step.abs() < 1e-9 && step.abs() >= 0.5 * last) {

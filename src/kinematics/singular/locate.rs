@@ -191,7 +191,7 @@ fn crossing(block: &Reduced<'_>, sheet: Sheet) -> Finding {
     let (b, c) = (b / speed, c / (speed * speed));
     let discriminant = b * b - a * c;
     let largest = a.abs().max(b.abs()).max(c.abs());
-    if !(discriminant > TOUCHING * largest * largest) {
+    if discriminant.is_nan() || discriminant <= TOUCHING * largest * largest {
         return refuse(SingularKind::TangentBranches, sheet);
     }
     let sum = -(b + discriminant.sqrt().copysign(b));

@@ -418,7 +418,7 @@ impl Solver {
                 } else {
                     outside = middle;
                 }
-                if there <= 1.0 && there >= 1.0 - 0.5 * END {
+                if (1.0 - 0.5 * END..=1.0).contains(&there) {
                     break;
                 }
             }

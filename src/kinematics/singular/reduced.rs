@@ -334,8 +334,7 @@ impl<'a> Reduced<'a> {
                 return None;
             }
             let length = step.amax();
-            // Not a number is no step either.
-            if !(length <= LARGEST_STEP) {
+            if length.is_nan() || length > LARGEST_STEP {
                 return None;
             }
             let largest = (self.columns.iter().zip(&self.scales))
