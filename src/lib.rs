@@ -60,3 +60,4 @@ pub mod drawing;
 pub mod fmi;
 pub mod kinematics;
 pub mod mechanism;
+pub mod unit;

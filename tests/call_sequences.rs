@@ -2,16 +2,10 @@
 
 mod common;
 
-use biela::fmi::{Call, Category, Error, FmuState, Instance, Kind, Sink, State, Status};
-use common::shipped;
+use biela::fmi::{Call, Error, Interface, Kind, State, Status};
+use common::{FmuState, Instance, instance_of, shipped};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
-
-struct Silent;
-
-impl Sink for Silent {
-    fn write(&self, _: Status, _: Category, _: &str) {}
-}
 
 /// A call with its arguments; an [`Index`] chooses among the variables or the states saved.
 #[derive(Clone, Debug)]
@@ -77,7 +71,7 @@ fn make(
     time: f64,
     request: &Request,
 ) -> (Call, Result<(), Error>) {
-    let count = instance.variables().list().len();
+    let count = instance.variables().len();
     // One more than there are.
     let reference = |index: &Index| index.index(count + 1) as u32;
     match request {
@@ -119,7 +113,7 @@ fn make(
         ),
         Request::GetAll => {
             let reals: Vec<u32> = (0..)
-                .zip(instance.variables().list())
+                .zip(instance.variables())
                 .filter(|(_, variable)| matches!(variable.kind, Kind::Real { .. }))
                 .map(|(reference, _)| reference)
                 .collect();
@@ -162,8 +156,7 @@ proptest! {
         initialized in any::<bool>(),
         requests in prop::collection::vec(request(), 1..40),
     ) {
-        let mut instance =
-            Instance::new(shipped(name), Box::new(Silent), true).expect("it assembles");
+        let mut instance = instance_of(shipped(name), Interface::CoSimulation);
         if initialized {
             instance.enter_initialization_mode().unwrap();
             instance.exit_initialization_mode().unwrap();
@@ -174,7 +167,7 @@ proptest! {
             let before = instance.fmu_state();
             let time = instance.last_successful_time();
             let (call, outcome) = make(&mut instance, &mut saved, time, request);
-            let allowed = call.allowed_in().contains(&state);
+            let allowed = call.allowed_in(Interface::CoSimulation).contains(&state);
             prop_assert_eq!(!allowed, matches!(outcome, Err(Error::State { .. })), "{:?}", request);
             let Err(error) = outcome else { continue };
             match (call, error.status()) {

@@ -9,7 +9,7 @@ use clap::Args;
 use super::conditions::{self, Conditions};
 use super::error::Error;
 use super::input::Input;
-use crate::fmi::{Causality, Order, Quantity, Variables};
+use crate::fmi::{Causality, Order, Quantity, variables};
 use crate::kinematics::{Curve, Path, Rates, Reason, Solver};
 use crate::mechanism::{DriverId, Jet, Mechanism};
 
@@ -231,9 +231,8 @@ impl Table {
                         (name, Quantity::Motion(DriverId(index), order))
                     })
             });
-        let variables = Variables::new(mechanism);
+        let variables = variables(mechanism);
         let outputs = variables
-            .list()
             .iter()
             .filter(|variable| {
                 variable.causality == Causality::Output

@@ -9,6 +9,7 @@
 //! | position | Phi_q Δq = −Phi | Newton–Raphson, Ec. 3.6.7 and 3.6.8 |
 //! | velocity | Phi_q q̇ = −Phi_t = ν | Ec. 3.6.10 |
 //! | acceleration | Phi_q q̈ = −(Phi_q q̇)_q q̇ − 2 Phi_qt q̇ − Phi_tt = γ | Ec. 3.6.11 |
+//! | sensitivity | Phi_q δq = δu − Phi_p δp | and the derivatives of Ec. 3.6.10 and 3.6.11 |
 //! | assembly | min (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi, r growing | Ec. 3.6.9 |
 //!
 //! The system is solved block by block: [`Structure`] finds which equations determine which
@@ -36,10 +37,12 @@ mod plan;
 mod rates;
 #[cfg(test)]
 mod reference;
+mod sensitivity;
 mod solver;
 mod stepping;
 mod structure;
 mod system;
+pub mod variation;
 
 pub use assembly::{Assembly, Start};
 pub use configuration::{
@@ -50,6 +53,7 @@ pub use error::{Error, OpenJoint};
 pub use fit::{Misfit, MisfitKind};
 pub use path::{Curve, Path};
 pub use rates::Rates;
+pub use sensitivity::{Direction, Sensitivity};
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress, Reason};
 pub use structure::{Dependencies, Structure};

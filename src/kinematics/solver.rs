@@ -61,8 +61,8 @@ impl Pose {
 #[derive(Debug)]
 pub struct Solver {
     pub(super) system: System,
-    structure: Structure,
-    measures: Vec<Box<dyn Constraint>>,
+    pub(super) structure: Structure,
+    pub(super) measures: Vec<Box<dyn Constraint>>,
     pub(super) plan: Plan,
     pub(super) pose: Pose,
     /// The bodies at the pose, outside of the calls that look for another one.

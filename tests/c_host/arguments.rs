@@ -43,7 +43,7 @@ SetRealInputDerivatives A 1 @crank_angle.position 1 nan -> not a finite number
 GetRealOutputDerivatives A 1 9999 1 room -> no variable with value reference 9999
 GetRealOutputDerivatives A 1 @crank_angle.position 1 room -> `crank_angle.position` is no output
 GetRealOutputDerivatives A 1 @solver.residual 1 room -> only outputs have output derivatives
-GetRealOutputDerivatives A 1 @crank.phi 0 room -> cannot be of order 0; expected 1 or 2
+GetRealOutputDerivatives A 1 @crank.phi 0 room -> cannot be of order 0; expected 1 or more
 GetRealOutputDerivatives A 2 @crank.phi,@crank.phi 1,-2147483648 room -> cannot be of order -2147483648
 # Steps.
 DoStep A 0.5 0.1 1 -> is not where the last step ended, 0 s

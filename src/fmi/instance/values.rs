@@ -1,11 +1,11 @@
-//! Setting and getting variables.
+//! Setting and getting variables, and their derivatives.
 
-use super::{Error, Freshness, Instance, check_finite};
-use crate::fmi::inputs::{Extrapolation, RateSource};
+use super::{Error, Instance, check_finite};
+use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
-use crate::fmi::variables::{Causality, Kind, Order, Place, Quantity, Variability, Variable};
+use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 
-impl Instance {
+impl<M: Model> Instance<M> {
     /// `fmi2SetReal`. Either all values are taken or none.
     ///
     /// # Errors
@@ -18,28 +18,14 @@ impl Instance {
             let variable = self.settable(value_reference, "Real")?;
             check_value(variable, value)?;
         }
-        let mut parameters_changed = false;
-        for (&value_reference, &value) in value_references.iter().zip(values) {
-            match self.variables.list()[value_reference as usize].quantity {
-                Quantity::Input(driver, order) => self.inputs[driver.index()].set(order, value),
-                Quantity::Parameter(parameter) => {
-                    self.settings.parameters[parameter.index()] = value;
-                    parameters_changed = true;
-                }
-                _ => unreachable!("`settable` passes inputs and parameters only"),
-            }
-        }
-        if parameters_changed {
-            self.mechanism
-                .derive_parameters(&mut self.settings.parameters);
-        }
-        if !value_references.is_empty() {
-            self.freshness = Freshness::Stale;
-        }
+        let quantities = &self.quantities;
+        let values = value_references.iter().zip(values);
+        self.model
+            .set_reals(values.map(|(&vr, &value)| (quantities[vr as usize], value)));
         Ok(())
     }
 
-    /// `fmi2SetInteger`: the choices `rates` and `extrapolation`.
+    /// `fmi2SetInteger`, for enumerations as well. Either all values are taken or none.
     ///
     /// # Errors
     ///
@@ -59,15 +45,10 @@ impl Instance {
                 });
             }
         }
-        for (&value_reference, &value) in value_references.iter().zip(values) {
-            let item = value as usize - 1;
-            match self.variables.list()[value_reference as usize].quantity {
-                Quantity::RateSource => self.settings.rates = RateSource::ALL[item],
-                Quantity::Extrapolation => self.settings.extrapolation = Extrapolation::ALL[item],
-                _ => unreachable!("`settable` passes the two choices only"),
-            }
-            self.freshness = Freshness::Stale;
-        }
+        let quantities = &self.quantities;
+        let values = value_references.iter().zip(values);
+        self.model
+            .set_integers(values.map(|(&vr, &value)| (quantities[vr as usize], value)));
         Ok(())
     }
 
@@ -86,14 +67,7 @@ impl Instance {
         self.allow(call)?;
         match value_references {
             [] => Ok(()),
-            [first, ..] => {
-                let variable = self.variable(*first)?;
-                Err(Error::Type {
-                    name: variable.name.clone(),
-                    actual: type_name(variable),
-                    expected,
-                })
-            }
+            [first, ..] => Err(wrong_type(self.variable(*first)?, expected)),
         }
     }
 
@@ -110,8 +84,8 @@ impl Instance {
         values: &[f64],
     ) -> Result<(), Error> {
         self.allow(Call::SetRealInputDerivatives)?;
-        let entries = || value_references.iter().zip(orders).zip(values);
-        for ((&value_reference, &order), &value) in entries() {
+        let entries = value_references.iter().zip(orders).zip(values);
+        for ((&value_reference, &order), &value) in entries.clone() {
             let variable = self.variable(value_reference)?;
             if variable.causality != Causality::Input {
                 return Err(Error::NotSettable {
@@ -127,15 +101,10 @@ impl Instance {
             }
             check_finite(&variable.name, value)?;
         }
-        for ((&value_reference, &order), &value) in entries() {
-            let quantity = self.variables.list()[value_reference as usize].quantity;
-            if let Quantity::Input(driver, input) = quantity {
-                self.inputs[driver.index()].set_derivative(input, order as usize, value);
-            }
-        }
-        if !value_references.is_empty() {
-            self.freshness = Freshness::Stale;
-        }
+        let quantities = &self.quantities;
+        self.model.set_input_derivatives(
+            entries.map(|((&vr, &order), &value)| (quantities[vr as usize], order as usize, value)),
+        );
         Ok(())
     }
 
@@ -155,42 +124,29 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// A variable is unknown or no Real; or there is no pose, or no rates, for the values set.
+    /// A variable is unknown or no Real; or it has no value for the values set.
     pub fn reals<'a>(
         &'a mut self,
         value_references: &'a [u32],
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
         for &value_reference in value_references {
-            if self.is_known(value_reference) {
+            let quantity = self.quantities.get(value_reference as usize);
+            if quantity.is_some_and(|&quantity| self.model.is_ready(quantity)) {
                 continue;
             }
             let variable = self.variable(value_reference)?;
-            if !matches!(variable.kind, Kind::Real { .. }) {
-                return Err(Error::Type {
-                    name: variable.name.clone(),
-                    actual: type_name(variable),
-                    expected: "Real",
-                });
+            if !variable.kind.is_real() {
+                return Err(wrong_type(variable, "Real"));
             }
             self.make_ready(variable.quantity)?;
         }
-        Ok(value_references.iter().map(|&value_reference| {
-            match self.variables.place(value_reference) {
-                Place::Coordinate(order, column) => {
-                    let coordinates = match order {
-                        Order::Position => &self.solver.pose().q[..],
-                        Order::Velocity => self.rates.velocity(),
-                        Order::Acceleration => self.rates.acceleration(),
-                    };
-                    coordinates[column as usize]
-                }
-                _ => self.real(self.variables.list()[value_reference as usize].quantity),
-            }
-        }))
+        let (model, quantities) = (&mut self.model, &self.quantities);
+        let values = value_references.iter();
+        Ok(values.map(|&vr| model.real(quantities[vr as usize])))
     }
 
-    /// `fmi2GetInteger`: counts of the last step, and the choices.
+    /// `fmi2GetInteger`, for enumerations as well.
     ///
     /// # Errors
     ///
@@ -210,7 +166,8 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// A variable is unknown or neither Integer nor Enumeration; or there is no pose.
+    /// A variable is unknown or neither Integer nor Enumeration; or it has no value for the
+    /// values set.
     pub fn integers<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -218,27 +175,23 @@ impl Instance {
         self.allow(Call::GetInteger)?;
         for &value_reference in value_references {
             let variable = self.variable(value_reference)?;
-            if matches!(variable.kind, Kind::Real { .. }) {
-                return Err(Error::Type {
-                    name: variable.name.clone(),
-                    actual: type_name(variable),
-                    expected: "Integer or Enumeration",
-                });
+            if variable.kind.is_real() {
+                return Err(wrong_type(variable, "Integer or Enumeration"));
             }
             self.make_ready(variable.quantity)?;
         }
-        Ok(value_references.iter().map(|&value_reference| {
-            self.integer(self.variables.list()[value_reference as usize].quantity)
-        }))
+        let (model, quantities) = (&mut self.model, &self.quantities);
+        let values = value_references.iter();
+        Ok(values.map(|&vr| model.integer(quantities[vr as usize])))
     }
 
-    /// `fmi2GetRealOutputDerivatives`: exact derivatives of outputs with respect to time, in the
-    /// order of their references.
+    /// `fmi2GetRealOutputDerivatives`: derivatives of outputs with respect to time, in the order
+    /// of their references.
     ///
     /// # Errors
     ///
     /// [`Error::NoOutputDerivative`] for one that does not exist; a variable is no output, an
-    /// order is below 1; or there is no pose, or no rates, for the values set.
+    /// order is below 1; or it has no value for the values set.
     pub fn output_derivatives<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -256,61 +209,120 @@ impl Instance {
                 let name = name();
                 return Err(Error::OutputDerivativeOrder { name, order });
             }
-            let Some(derivative) = variable.quantity.derivative(order as usize) else {
+            let derivative = self.model.time_derivative(variable.quantity, order as u32);
+            let Some(derivative) = derivative else {
                 let name = name();
                 return Err(Error::NoOutputDerivative { name, order });
             };
             self.make_ready(derivative)?;
         }
-        Ok(entries.map(|(&value_reference, &order)| {
-            let output = self.variables.list()[value_reference as usize].quantity;
-            let derivative = output.derivative(order as usize);
-            self.real(derivative.expect("checked above"))
+        let (model, quantities) = (&mut self.model, &self.quantities);
+        Ok(entries.map(|(&vr, &order)| {
+            let derivative = model.time_derivative(quantities[vr as usize], order as u32);
+            model.real(derivative.expect("checked above"))
         }))
     }
 
-    /// Whether it is a coordinate or its rate, and that has been computed.
-    #[inline]
-    fn is_known(&self, value_reference: u32) -> bool {
-        let Place::Coordinate(order, _) = self.variables.place(value_reference) else {
-            return false;
+    /// `fmi2GetDirectionalDerivative`: how outputs change along a direction in the space of
+    /// inputs; in initialization mode also calculated parameters, and along parameters.
+    ///
+    /// # Errors
+    ///
+    /// A variable is not one of these, or given twice; a change is not finite; or there is no
+    /// derivative for the values set.
+    pub fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        changes: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        self.allow(Call::GetDirectionalDerivative)?;
+        let initializing = self.state == State::InitializationMode;
+        let refuse = |variable: &Variable<_>, role| {
+            Err(Error::NoDerivative {
+                name: variable.name.clone(),
+                role,
+            })
         };
-        let since = match order {
-            Order::Position => Freshness::Pose,
-            Order::Velocity | Order::Acceleration => Freshness::Rates,
-        };
-        self.freshness >= since
+        let mut directions = Vec::with_capacity(knowns.len());
+        for (&value_reference, &change) in knowns.iter().zip(changes) {
+            let variable = self.variable(value_reference)?;
+            let known = match variable.causality {
+                Causality::Input => true,
+                Causality::Parameter => initializing && variable.kind.is_real(),
+                _ => false,
+            };
+            if !known {
+                return refuse(variable, "derivatives are taken by inputs");
+            }
+            check_finite(&variable.name, change)?;
+            directions.push((variable.quantity, change));
+        }
+        let mut wanted = Vec::with_capacity(unknowns.len());
+        for &value_reference in unknowns {
+            let variable = self.variable(value_reference)?;
+            let unknown = match variable.causality {
+                Causality::Output => true,
+                Causality::CalculatedParameter => initializing,
+                _ => false,
+            };
+            if !unknown {
+                return refuse(variable, "derivatives are taken of outputs");
+            }
+            wanted.push(variable.quantity);
+        }
+        for &quantity in &wanted {
+            self.make_ready(quantity)?;
+        }
+        let phase = self.state.phase();
+        let logger = &self.logger;
+        Ok(self
+            .model
+            .directional_derivatives(&wanted, &directions, phase, logger)?)
     }
 
-    fn variable(&self, value_reference: u32) -> Result<&Variable, Error> {
-        self.variables
-            .get(value_reference)
+    fn make_ready(&mut self, quantity: M::Quantity) -> Result<(), Error> {
+        let phase = self.state.phase();
+        Ok(self.model.make_ready(quantity, phase, &self.logger)?)
+    }
+
+    fn variable(&self, value_reference: u32) -> Result<&Variable<M::Quantity>, Error> {
+        let variables = self.variables();
+        variables
+            .get(value_reference as usize)
             .ok_or_else(|| Error::ValueReference {
                 value_reference,
-                last: self.variables.list().len() - 1,
+                last: variables.len().saturating_sub(1),
             })
     }
 
     /// The variable, if it has this type and can be set in the present state.
-    fn settable(&self, value_reference: u32, expected: &'static str) -> Result<&Variable, Error> {
+    fn settable(
+        &self,
+        value_reference: u32,
+        expected: &'static str,
+    ) -> Result<&Variable<M::Quantity>, Error> {
         let variable = self.variable(value_reference)?;
-        let is_real = matches!(variable.kind, Kind::Real { .. });
-        if is_real != (expected == "Real") {
-            return Err(Error::Type {
-                name: variable.name.clone(),
-                actual: type_name(variable),
-                expected,
-            });
+        if variable.kind.is_real() != (expected == "Real") {
+            return Err(wrong_type(variable, expected));
         }
+        let initializing = matches!(self.state, State::Instantiated | State::InitializationMode);
         let why = match variable.causality {
-            Causality::Input => return Ok(variable),
-            Causality::Parameter
-                if variable.variability == Variability::Tunable
-                    || self.state != State::StepComplete =>
+            Causality::Input
+                if variable.variability == Variability::Continuous
+                    || self.state != State::ContinuousTimeMode =>
             {
                 return Ok(variable);
             }
-            Causality::Parameter => "a fixed parameter, and initialization has ended",
+            Causality::Input => "a discrete input, which changes in event mode",
+            Causality::Parameter if initializing => return Ok(variable),
+            Causality::Parameter if variable.variability == Variability::Fixed => {
+                "a fixed parameter, and initialization has ended"
+            }
+            Causality::Parameter if self.state == State::ContinuousTimeMode => {
+                "a tunable parameter, which changes in event mode"
+            }
+            Causality::Parameter => return Ok(variable),
             Causality::CalculatedParameter => "a parameter derived from others",
             Causality::Output => "an output",
             Causality::Local => "about the solver",
@@ -321,53 +333,10 @@ impl Instance {
             why,
         })
     }
-
-    /// Computes what the value of a variable is read from.
-    fn make_ready(&mut self, quantity: Quantity) -> Result<(), Error> {
-        match quantity {
-            Quantity::Input(..)
-            | Quantity::Parameter(_)
-            | Quantity::RateSource
-            | Quantity::Extrapolation
-            | Quantity::Time => Ok(()),
-            Quantity::Body(_, _, order)
-            | Quantity::Marker(_, _, order)
-            | Quantity::Measure(_, order)
-            | Quantity::Motion(_, order)
-                if order > Order::Position =>
-            {
-                self.refresh_rates()
-            }
-            _ => self.refresh_pose(),
-        }
-    }
-
-    /// The value of a Real variable that is [ready](Self::make_ready).
-    fn real(&mut self, quantity: Quantity) -> f64 {
-        match quantity {
-            Quantity::Input(driver, order) => self.inputs[driver.index()].get(order),
-            Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
-            Quantity::Time => self.time,
-            Quantity::Residual => self.solver.residual(),
-            Quantity::Rcond => self.solver.rcond(),
-            output => output.read(&self.solver, &self.rates, &self.driver_rates),
-        }
-    }
-
-    /// The value of an Integer or Enumeration variable that is [ready](Self::make_ready).
-    fn integer(&self, quantity: Quantity) -> i32 {
-        let count = match quantity {
-            Quantity::RateSource => return self.settings.rates as i32,
-            Quantity::Extrapolation => return self.settings.extrapolation as i32,
-            Quantity::Iterations => self.progress.iterations,
-            Quantity::Substeps => self.progress.substeps,
-            _ => unreachable!("all other variables are Reals"),
-        };
-        i32::try_from(count).unwrap_or(i32::MAX)
-    }
 }
 
-pub(super) fn check_value(variable: &Variable, value: f64) -> Result<(), Error> {
+/// Whether a Real variable can have a value.
+pub(in crate::fmi) fn check_value<Q>(variable: &Variable<Q>, value: f64) -> Result<(), Error> {
     check_finite(&variable.name, value)?;
     if let Kind::Real { min, max, .. } = variable.kind
         && (min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max))
@@ -382,10 +351,10 @@ pub(super) fn check_value(variable: &Variable, value: f64) -> Result<(), Error> 
     Ok(())
 }
 
-fn type_name(variable: &Variable) -> &'static str {
-    match variable.kind {
-        Kind::Real { .. } => "a Real",
-        Kind::Integer => "an Integer",
-        Kind::Enumeration(_) => "an Enumeration",
+fn wrong_type<Q>(variable: &Variable<Q>, expected: &'static str) -> Error {
+    Error::Type {
+        name: variable.name.clone(),
+        actual: variable.kind.name(),
+        expected,
     }
 }

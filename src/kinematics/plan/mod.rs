@@ -16,6 +16,7 @@ mod compile;
 mod coupled;
 mod dyad;
 mod elimination;
+mod general;
 mod pinned;
 mod slide;
 
@@ -27,6 +28,7 @@ use crate::mechanism::Jet;
 
 pub(super) use coupled::Coupled;
 use dyad::Dyad;
+pub(super) use general::General;
 use pinned::Pinned;
 use slide::Slide;
 

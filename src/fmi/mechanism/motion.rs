@@ -1,32 +1,26 @@
 //! Where the mechanism is: initialization, steps, and poses between communication points.
 
-use super::{Error, Freshness, Instance, Status};
-use crate::fmi::inputs::DriverRates;
-use crate::fmi::log::Category;
-use crate::fmi::state::{Call, State};
-use crate::fmi::variables::Order;
+use super::inputs::DriverRates;
+use super::variables::Order;
+use super::{Freshness, MechanismModel, RateSource, failed};
+use crate::fmi::error::{Failure, Status};
+use crate::fmi::log::{Category, Logger};
+use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve, Progress, Reason, Start};
 use crate::mechanism::{CoordinateKind, DriverId, DriverSource, Jet};
-
-/// Hosts add up step sizes: communication points may be off by this much, relative to the
-/// larger of time and step.
-const TIME_ROUNDING: f64 = 1e-9;
 
 /// The part of a step's own travel below which two polynomials of an input count as meeting.
 const SEAM: f64 = 0.01;
 
-impl Instance {
-    /// `fmi2DoStep`: goes from the last communication point over `h` seconds. Allocates nothing
-    /// if it succeeds.
+impl MechanismModel {
+    /// Takes a step of size `h` from the last communication point. Allocates nothing if it
+    /// succeeds.
     ///
     /// # Errors
     ///
-    /// [`Error::DeadPoint`] if no continuous motion leads there: the instance is in state
-    /// `stepFailed` and stands at the last time whose driver values were reached. Anything else
-    /// leaves it as it was.
-    pub fn do_step(&mut self, communication_point: f64, h: f64) -> Result<(), Error> {
-        self.allow(Call::DoStep)?;
-        self.check_step(communication_point, h)?;
+    /// [`Failure::Discarded`] if no continuous motion leads there: the mechanism stands at the
+    /// last time whose driver values were reached.
+    pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
         let start = self.time;
         if !self.at_committed {
             self.solver.restore(&self.committed);
@@ -40,35 +34,13 @@ impl Instance {
                 for input in &mut self.inputs {
                     input.complete_step(start);
                 }
-                self.time = communication_point + h;
-                self.commit();
-                self.log_step();
+                self.time = end;
+                self.freshness = Freshness::Pose;
+                self.commit_pose();
+                self.log_step(log);
                 Ok(())
             }
-            Err(blocked) => Err(self.fail_step(blocked, start, h)),
-        }
-    }
-
-    fn check_step(&self, communication_point: f64, h: f64) -> Result<(), Error> {
-        super::check_finite("currentCommunicationPoint", communication_point)?;
-        super::check_finite("communicationStepSize", h)?;
-        let refuse = |message: String| Err(Error::Time { message });
-        if h <= 0.0 {
-            return refuse(format!("the step size {h} s is not positive"));
-        }
-        let rounding = TIME_ROUNDING * self.time.abs().max(h);
-        if (communication_point - self.time).abs() > rounding {
-            return refuse(format!(
-                "the communication point {communication_point} s is not where the last step \
-                 ended, {} s",
-                self.time
-            ));
-        }
-        match self.stop_time {
-            Some(stop) if communication_point + h > stop + rounding => refuse(format!(
-                "the step from {communication_point} s over {h} s passes the stop time {stop} s"
-            )),
-            _ => Ok(()),
+            Err(blocked) => Err(self.fail_step(blocked, start, h, log)),
         }
     }
 
@@ -80,6 +52,7 @@ impl Instance {
             committed,
             settings,
             inputs,
+            interface,
             ..
         } = self;
         path.start = start;
@@ -96,7 +69,13 @@ impl Instance {
                 jump,
             } = curve
             {
-                let rates = input.path_rates(settings.rates, settings.extrapolation, start);
+                let rates = match interface {
+                    // The host integrates; a value that it has not set yet is none of ours.
+                    Interface::ModelExchange => DriverRates::default(),
+                    Interface::CoSimulation => {
+                        input.path_rates(settings.rates, settings.extrapolation, start)
+                    }
+                };
                 *position = input.get(Order::Position);
                 *velocity = rates.velocity;
                 *acceleration = rates.acceleration;
@@ -113,6 +92,7 @@ impl Instance {
             inputs,
             settings,
             solver,
+            interface,
             ..
         } = self;
         let drivers = mechanism.drivers.iter().enumerate();
@@ -122,7 +102,13 @@ impl Instance {
                     let DriverRates {
                         velocity,
                         acceleration,
-                    } = input.rates_after(settings.rates, settings.extrapolation, start, s * h);
+                    } = match interface {
+                        Interface::ModelExchange => input.given_rates(),
+                        Interface::CoSimulation => {
+                            let (source, extrapolation) = (settings.rates, settings.extrapolation);
+                            input.rates_after(source, extrapolation, start, s * h)
+                        }
+                    };
                     Jet {
                         value: 0.0,
                         first: velocity,
@@ -134,13 +120,33 @@ impl Instance {
         }
     }
 
-    /// Makes the solver's pose the one of the communication point.
-    pub(super) fn commit(&mut self) {
+    /// Makes the pose of the values set the one that is gone on from.
+    pub(super) fn commit_values(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        let starting = phase == Phase::Initialization;
+        if starting
+            && self.interface == Interface::ModelExchange
+            && self.settings.rates == RateSource::Estimated
+        {
+            let why = "`rates` is `estimated`, which needs communication points; in model exchange \
+                       the velocity and acceleration inputs have to be given";
+            return Err(Failure::Failed(why.to_owned()));
+        }
+        self.refresh_pose(phase, log)?;
+        self.commit_pose();
+        if starting {
+            for misfit in self.solver.misfits() {
+                log.write(Status::Warning, Category::Warning, &misfit.to_string());
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes the solver's pose the one that is gone on from.
+    fn commit_pose(&mut self) {
         self.solver.save(&mut self.committed);
         self.committed_rates.copy_from_slice(&self.driver_rates);
         self.at_committed = true;
-        self.last_successful_time = self.time;
-        self.freshness = Freshness::Pose;
+        self.freshness = self.freshness.max(Freshness::Pose);
     }
 
     /// Goes back to the last communication point.
@@ -151,7 +157,7 @@ impl Instance {
     }
 
     /// Deals with a dead point at the part `blocked.s` of a step.
-    fn fail_step(&mut self, blocked: Blocked, start: f64, h: f64) -> Error {
+    fn fail_step(&mut self, blocked: Blocked, start: f64, h: f64, log: &Logger) -> Failure {
         let message = self.describe_dead_point(&blocked, start, h);
         self.progress = blocked.progress;
         // Held inputs and parameters reach their values only at the very end of the step; what
@@ -173,16 +179,9 @@ impl Instance {
             self.time = start + blocked.s * h;
             self.collect_driver_rates(start, h, blocked.s);
         }
-        self.commit();
-        self.state = State::StepFailed;
-        self.terminated = true;
-        self.warn_of_dead_point(message)
-    }
-
-    fn warn_of_dead_point(&self, message: String) -> Error {
-        self.logger
-            .write(Status::Warning, Category::Warning, &message);
-        Error::DeadPoint { message }
+        self.freshness = Freshness::Pose;
+        self.commit_pose();
+        discard(message, log)
     }
 
     /// Which drivers move along the path, how far they came and what was asked for.
@@ -237,8 +236,8 @@ impl Instance {
         )
     }
 
-    fn log_step(&self) {
-        if self.logger.wants(Category::Solver) {
+    fn log_step(&self, log: &Logger) {
+        if log.wants(Category::Solver) {
             let Progress {
                 iterations,
                 substeps,
@@ -248,32 +247,32 @@ impl Instance {
                 self.time,
                 self.solver.residual()
             );
-            self.logger.write(Status::Ok, Category::Solver, &message);
+            log.write(Status::Ok, Category::Solver, &message);
         }
     }
 
     /// Makes sure that the solver stands at the pose of the values set.
-    pub(super) fn refresh_pose(&mut self) -> Result<(), Error> {
+    pub(super) fn refresh_pose(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         if self.freshness != Freshness::Stale {
             return Ok(());
         }
-        match self.state {
-            State::InitializationMode => self.initialize()?,
-            State::StepComplete => self.look_ahead()?,
-            // Nothing can be set in any other state that allows reading.
-            _ => self.stand_at_committed(),
+        match phase {
+            Phase::Initialization => self.initialize(log)?,
+            Phase::Running => self.look_ahead(log)?,
+            Phase::Halted => self.stand_at_committed(),
         }
         self.freshness = Freshness::Pose;
         Ok(())
     }
 
     /// Makes sure that the rates of q are those of the values set.
-    pub(super) fn refresh_rates(&mut self) -> Result<(), Error> {
-        self.refresh_pose()?;
+    pub(super) fn refresh_rates(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        self.refresh_pose(phase, log)?;
         if self.freshness == Freshness::Pose {
             let driver_rates = &self.driver_rates;
             self.solver
-                .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)?;
+                .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
+                .map_err(failed)?;
             self.freshness = Freshness::Rates;
         }
         Ok(())
@@ -281,7 +280,7 @@ impl Instance {
 
     /// Finds the pose at the start: moves from the file's own pose to the values set, or, if
     /// something is in the way, assembles at these values from the estimates.
-    fn initialize(&mut self) -> Result<(), Error> {
+    fn initialize(&mut self, log: &Logger) -> Result<(), Failure> {
         self.committed.clone_from(&self.home);
         self.lay_path(self.home.time, self.time - self.home.time);
         for curve in &mut self.path.curves {
@@ -295,14 +294,14 @@ impl Instance {
             }
         }
         self.at_committed = false;
-        match self.solver.start(&self.home, &self.path)? {
+        match self.solver.start(&self.home, &self.path).map_err(failed)? {
             Start::Continuous(progress) => self.progress = progress,
             Start::Reassembled(assembly) => {
                 self.progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
                 };
-                self.logger.write(
+                log.write(
                     Status::Warning,
                     Category::Warning,
                     "no continuous motion leads from the mechanism file's own pose to the start \
@@ -315,22 +314,34 @@ impl Instance {
         Ok(())
     }
 
-    /// Finds the pose for values set since the last communication point, without a step. The
-    /// standard forbids reading it in co-simulation; biela answers it, committing nothing.
-    fn look_ahead(&mut self) -> Result<(), Error> {
+    /// Finds the pose for values set since the last one was committed, committing nothing. In
+    /// co-simulation the standard forbids reading it without a step; biela answers it.
+    fn look_ahead(&mut self, log: &Logger) -> Result<(), Failure> {
         self.solver.restore(&self.committed);
-        self.lay_path(self.time, 0.0);
+        let (start, h) = match self.interface {
+            Interface::ModelExchange => (self.committed.time, self.time - self.committed.time),
+            Interface::CoSimulation => (self.time, 0.0),
+        };
+        self.lay_path(start, h);
         let followed = self.solver.follow(&self.path);
         self.at_committed = false;
-        self.collect_driver_rates(self.time, 0.0, 0.0);
+        self.collect_driver_rates(start, h, 1.0);
         match followed {
-            Ok(_) => Ok(()),
-            Err(blocked) => {
-                let message = self.describe_dead_point(&blocked, self.time, 0.0);
-                Err(self.warn_of_dead_point(message))
+            Ok(progress) => {
+                if self.interface == Interface::ModelExchange {
+                    self.progress = progress;
+                }
+                Ok(())
             }
+            Err(blocked) => Err(discard(self.describe_dead_point(&blocked, start, h), log)),
         }
     }
+}
+
+/// Tells why something is discarded: users see a warning with any settings.
+fn discard(message: String, log: &Logger) -> Failure {
+    log.write(Status::Warning, Category::Warning, &message);
+    Failure::Discarded(message)
 }
 
 /// A driver's value for people.

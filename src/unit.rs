@@ -1,4 +1,4 @@
-//! The units of a mechanism file. All inside is SI; a unit serves the FMU's description and labels.
+//! Units of quantities. All inside is SI; a unit serves the FMU's description and labels.
 
 /// A unit of the International System with its exponents of the base units.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! What the host has said about one driver, and what follows for its path and its rates.
 
-use super::codec::{Codec, Unreadable};
 use super::variables::Order;
+use crate::fmi::codec::{Codec, Unreadable};
 
 /// Where velocity and acceleration of inputs come from: the FMU's parameter `rates`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +84,14 @@ impl DriverInput {
     pub(super) fn set_derivative(&mut self, order: Order, derivative: usize, value: f64) {
         self.derivatives[order as usize][derivative - 1] = value;
         self.derivative_given[order as usize] = true;
+    }
+
+    /// The rate inputs as they stand.
+    pub(super) fn given_rates(&self) -> DriverRates {
+        DriverRates {
+            velocity: self.values[1],
+            acceleration: self.values[2],
+        }
     }
 
     /// Velocity and acceleration that carry the position along during a step from `time`.

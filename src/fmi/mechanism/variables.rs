@@ -1,5 +1,7 @@
-//! The table of variables: getters, setters and `modelDescription.xml` all read it.
+//! The table of variables of a mechanism's FMU: getters, setters and `modelDescription.xml` all
+//! read it.
 
+use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
 use crate::kinematics::{Dependencies, Rates, Solver, Structure};
 use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, DriverId, DriverSource, Jet, MarkerId, Mechanism,
@@ -8,23 +10,6 @@ use crate::mechanism::{
 
 /// Goes into the GUID: raised whenever the table below changes for the same mechanism.
 pub const TABLE_VERSION: u32 = 1;
-
-/// One scalar variable of the FMU. Its value reference is its place in the table.
-#[derive(Clone, Debug)]
-pub struct Variable {
-    /// Structured name: `crank.phi`, `crank_angle.position`.
-    pub name: String,
-    /// One line for people, empty if there is nothing to add to the name.
-    pub description: String,
-    /// What it stands for.
-    pub quantity: Quantity,
-    /// FMI causality.
-    pub causality: Causality,
-    /// FMI variability.
-    pub variability: Variability,
-    /// Type, with what depends on it.
-    pub kind: Kind,
-}
 
 /// What a variable stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,13 +43,15 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    fn place(self) -> Place {
+    /// Which derivative with respect to time an output is; `None` for what is no output.
+    #[must_use]
+    pub fn order(self) -> Option<Order> {
         match self {
-            Self::Body(body, component, order) => {
-                let column = u32::try_from(3 * body.index() + component);
-                column.map_or(Place::Elsewhere, |column| Place::Coordinate(order, column))
-            }
-            _ => Place::Elsewhere,
+            Self::Body(_, _, order)
+            | Self::Marker(_, _, order)
+            | Self::Measure(_, order)
+            | Self::Motion(_, order) => Some(order),
+            _ => None,
         }
     }
 
@@ -74,6 +61,7 @@ impl Quantity {
     /// # Panics
     ///
     /// If the quantity is another.
+    #[inline]
     #[must_use]
     pub fn read(self, solver: &Solver, rates: &Rates, driver_rates: &[Jet]) -> f64 {
         match self {
@@ -125,7 +113,7 @@ impl Order {
     pub const ALL: [Self; 3] = [Self::Position, Self::Velocity, Self::Acceleration];
 
     /// The derivative of this order.
-    fn of(self, jet: Jet) -> f64 {
+    pub(super) fn of(self, jet: Jet) -> f64 {
         match self {
             Self::Position => jet.value,
             Self::Velocity => jet.first,
@@ -140,65 +128,6 @@ impl Order {
             Self::Acceleration => "acceleration",
         }
     }
-}
-
-/// FMI causality, as far as biela uses it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Causality {
-    /// Can be set, does not depend on anything.
-    Parameter,
-    /// Computed from parameters.
-    CalculatedParameter,
-    /// Set by the host at each communication point.
-    Input,
-    /// Computed for the host.
-    Output,
-    /// Computed, about the solver rather than the mechanism.
-    Local,
-    /// Time.
-    Independent,
-}
-
-/// FMI variability, as far as biela uses it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Variability {
-    /// Fixed after initialization.
-    Fixed,
-    /// May change between steps.
-    Tunable,
-    /// Changes at communication points only.
-    Discrete,
-    /// Changes at any time.
-    Continuous,
-}
-
-/// A variable's type.
-#[derive(Clone, Debug)]
-pub enum Kind {
-    /// A real number.
-    Real {
-        /// Unit of the values, if they have one.
-        unit: Option<Unit>,
-        /// Start value, for what the host can set.
-        start: Option<f64>,
-        /// Smallest permitted value.
-        min: Option<f64>,
-        /// Largest permitted value.
-        max: Option<f64>,
-    },
-    /// A whole number.
-    Integer,
-    /// One of a few named choices, counted from 1; the start value is 1.
-    Enumeration(&'static Enumeration),
-}
-
-/// A choice among named items, counted from 1.
-#[derive(Debug)]
-pub struct Enumeration {
-    /// Type name.
-    pub name: &'static str,
-    /// Name and description of each item.
-    pub items: &'static [(&'static str, &'static str)],
 }
 
 /// Where the velocity and acceleration of driver inputs come from.
@@ -227,73 +156,37 @@ pub static EXTRAPOLATIONS: Enumeration = Enumeration {
     ],
 };
 
-/// The variables of a mechanism's FMU, in the order of their value references.
-#[derive(Clone, Debug)]
-pub struct Variables {
-    list: Vec<Variable>,
-    /// Where each value stands, side by side: hosts read many at a time.
-    places: Vec<Place>,
+/// The variables of a mechanism's FMU, in the order of their value references: inputs,
+/// parameters, settings, bodies, markers, measures and motions, solver, time; in file order
+/// within each.
+#[must_use]
+pub fn variables(mechanism: &Mechanism) -> Vec<Variable<Quantity>> {
+    let mut table = Table::default();
+    table.add_inputs(mechanism);
+    table.add_parameters(mechanism);
+    if has_inputs(mechanism) {
+        table.add_settings();
+    }
+    table.add_bodies(mechanism);
+    table.add_markers(mechanism);
+    table.add_measures(mechanism);
+    table.add_solver();
+    table.add(
+        "time",
+        "",
+        Quantity::Time,
+        (Causality::Independent, Variability::Continuous),
+        Kind::real(Some(Unit::SECOND), None),
+    );
+    table.list
 }
 
-/// Where the value of a variable stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In q, its first or its second derivative, at this index.
-    Coordinate(Order, u32),
-    /// Anywhere else, or nowhere before it is computed.
-    Elsewhere,
+#[derive(Default)]
+struct Table {
+    list: Vec<Variable<Quantity>>,
 }
 
-impl Variables {
-    /// Makes the table: inputs, parameters, settings, bodies, markers, measures and motions,
-    /// solver, time; in file order within each.
-    #[must_use]
-    pub fn new(mechanism: &Mechanism) -> Self {
-        let mut table = Self {
-            list: Vec::new(),
-            places: Vec::new(),
-        };
-        table.add_inputs(mechanism);
-        table.add_parameters(mechanism);
-        if has_inputs(mechanism) {
-            table.add_settings();
-        }
-        table.add_bodies(mechanism);
-        table.add_markers(mechanism);
-        table.add_measures(mechanism);
-        table.add_solver();
-        table.add(
-            "time",
-            "",
-            Quantity::Time,
-            (Causality::Independent, Variability::Continuous),
-            real(Some(Unit::SECOND), None),
-        );
-        let quantities = table.list.iter().map(|variable| variable.quantity);
-        table.places = quantities.map(Quantity::place).collect();
-        table
-    }
-
-    /// All variables; the value reference of each is its index.
-    #[must_use]
-    pub fn list(&self) -> &[Variable] {
-        &self.list
-    }
-
-    /// The variable with this value reference.
-    #[must_use]
-    pub fn get(&self, value_reference: u32) -> Option<&Variable> {
-        self.list.get(usize::try_from(value_reference).ok()?)
-    }
-
-    /// Where the value of a variable stands; elsewhere for a variable that there is not.
-    #[must_use]
-    pub fn place(&self, value_reference: u32) -> Place {
-        let index = usize::try_from(value_reference).ok();
-        let place = index.and_then(|index| self.places.get(index));
-        place.copied().unwrap_or(Place::Elsewhere)
-    }
-
+impl Table {
     fn add(
         &mut self,
         name: impl Into<String>,
@@ -325,7 +218,7 @@ impl Variables {
                     describe(&driver.description, order, &what),
                     Quantity::Input(DriverId(index), order),
                     (Causality::Input, Variability::Continuous),
-                    real(
+                    Kind::real(
                         Some(coordinate_unit(&driver.coordinate, order)),
                         Some(start),
                     ),
@@ -389,7 +282,7 @@ impl Variables {
             description,
             quantity,
             (Causality::Output, Variability::Continuous),
-            real(Some(unit), None),
+            Kind::real(Some(unit), None),
         );
     }
 
@@ -492,14 +385,14 @@ impl Variables {
             "largest residual of the constraint equations, in characteristic lengths and radians",
             Quantity::Residual,
             local,
-            real(Some(Unit::ONE), None),
+            Kind::real(Some(Unit::ONE), None),
         );
         self.add(
             "solver.rcond",
             "scaled reciprocal condition of the Jacobian: 1 is best, 0 a singular position",
             Quantity::Rcond,
             local,
-            real(Some(Unit::ONE), None),
+            Kind::real(Some(Unit::ONE), None),
         );
         self.add(
             "solver.iterations",
@@ -573,15 +466,6 @@ fn derived_from_tunable(mechanism: &Mechanism, parameter: ParameterId) -> bool {
         .parameters
         .iter()
         .any(|root| mechanism.parameters[root.index()].tunable)
-}
-
-fn real(unit: Option<Unit>, start: Option<f64>) -> Kind {
-    Kind::Real {
-        unit,
-        start,
-        min: None,
-        max: None,
-    }
 }
 
 fn length_unit(order: Order) -> Unit {

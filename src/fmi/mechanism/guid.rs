@@ -27,7 +27,7 @@ mod tests {
 
     #[test]
     fn comments_and_layout_do_not_matter_and_values_do() {
-        let text = include_str!("../../mechanisms/pendulum.toml");
+        let text = include_str!("../../../mechanisms/pendulum.toml");
         let original = guid_of(text);
         let reworded = text
             .replace("# Simple", "# A simple")
