@@ -178,11 +178,21 @@ pub trait Model: Sized {
         derivatives.for_each(drop);
     }
 
-    /// Whether a quantity is a Real whose value can be read as things stand. A short cut: right
-    /// if it is always false.
-    fn is_ready(&self, quantity: Self::Quantity) -> bool {
+    /// The place of a Real in the [table](Self::table), if it has one. Always the same; hosts
+    /// that read many values at a time get them from there much faster than one by one.
+    fn place(&self, quantity: Self::Quantity) -> Option<u32> {
         let _ = quantity;
-        false
+        None
+    }
+
+    /// The values of Reals side by side, up to date at the places up to `last` at least.
+    ///
+    /// # Errors
+    ///
+    /// They have no values for the values set.
+    fn table(&mut self, last: u32, phase: Phase, log: &Logger) -> Result<&[f64], Failure> {
+        let _ = (phase, log);
+        unreachable!("place {last} is none unless this is overridden")
     }
 
     /// Computes what the value of a quantity is read from.

@@ -35,6 +35,8 @@ impl<M: Model> Instance<M> {
         // Field by field, so that a new one cannot be forgotten.
         let Self {
             quantities: _,
+            places: _,
+            free_inputs: _,
             logger: _,
             guid,
             model,

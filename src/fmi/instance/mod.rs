@@ -19,7 +19,7 @@ use super::log::{Category, Logger, Sink};
 use super::model::Model;
 use super::resource_path;
 use super::state::{Call, Interface, State};
-use super::variable::Variable;
+use super::variable::{Causality, Kind, Variability, Variable};
 
 /// An instance of an FMU: a model, and what the standard asks for around it.
 #[derive(Debug)]
@@ -28,6 +28,10 @@ pub struct Instance<M: Model> {
     guid: Arc<str>,
     /// Those of the variables, side by side: hosts read many at a time.
     quantities: Box<[M::Quantity]>,
+    /// The place of each in the model's table; [`ELSEWHERE`] if it has none.
+    places: Box<[u32]>,
+    /// Whether each is an input that can have any finite value at any time.
+    free_inputs: Box<[bool]>,
     interface: Interface,
     logger: Logger,
     state: State,
@@ -35,6 +39,23 @@ pub struct Instance<M: Model> {
     last_successful_time: f64,
     /// Set by a discarded step: the host should end or go back.
     terminated: bool,
+}
+
+/// No place in a model's table.
+const ELSEWHERE: u32 = u32::MAX;
+
+fn is_free_input<Q>(variable: &Variable<Q>) -> bool {
+    let unlimited = matches!(
+        variable.kind,
+        Kind::Real {
+            min: None,
+            max: None,
+            ..
+        }
+    );
+    unlimited
+        && variable.causality == Causality::Input
+        && variable.variability == Variability::Continuous
 }
 
 impl<M: Model> Instance<M> {
@@ -74,8 +95,15 @@ impl<M: Model> Instance<M> {
     /// Makes an instance of a model.
     pub fn new(model: M, sink: Box<dyn Sink + Send>, logging_on: bool) -> Self {
         let variables = model.variables().iter();
+        let quantities: Box<[_]> = variables.map(|variable| variable.quantity).collect();
+        let places = quantities.iter();
+        let variables = model.variables().iter();
         Self {
-            quantities: variables.map(|variable| variable.quantity).collect(),
+            places: places
+                .map(|&quantity| model.place(quantity).unwrap_or(ELSEWHERE))
+                .collect(),
+            free_inputs: variables.map(is_free_input).collect(),
+            quantities,
             guid: model.guid().into(),
             interface: model.interface(),
             logger: Logger::new(sink, logging_on),

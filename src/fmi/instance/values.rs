@@ -1,6 +1,8 @@
 //! Setting and getting variables, and their derivatives.
 
-use super::{Error, Instance, check_finite};
+use std::slice::Iter;
+
+use super::{ELSEWHERE, Error, Instance, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
@@ -15,8 +17,11 @@ impl<M: Model> Instance<M> {
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
         for (&value_reference, &value) in value_references.iter().zip(values) {
-            let variable = self.settable(value_reference, "Real")?;
-            check_value(variable, value)?;
+            let free = self.free_inputs.get(value_reference as usize);
+            if !(free == Some(&true) && value.is_finite()) {
+                let variable = self.settable(value_reference, "Real")?;
+                check_value(variable, value)?;
+            }
         }
         let quantities = &self.quantities;
         let values = value_references.iter().zip(values);
@@ -130,20 +135,35 @@ impl<M: Model> Instance<M> {
         value_references: &'a [u32],
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
+        let Self { places, .. } = self;
+        // What most hosts ask for stands side by side.
+        let last = value_references.iter().map(|&value_reference| {
+            let place = places.get(value_reference as usize);
+            place.copied().unwrap_or(ELSEWHERE)
+        });
+        let last = last.fold(0, u32::max);
+        let left = value_references.iter();
+        if last != ELSEWHERE && !value_references.is_empty() {
+            let values = self.model.table(last, self.state.phase(), &self.logger)?;
+            let places = &self.places;
+            return Ok(Reals::InTable {
+                places,
+                values,
+                left,
+            });
+        }
         for &value_reference in value_references {
-            let quantity = self.quantities.get(value_reference as usize);
-            if quantity.is_some_and(|&quantity| self.model.is_ready(quantity)) {
-                continue;
-            }
             let variable = self.variable(value_reference)?;
             if !variable.kind.is_real() {
                 return Err(wrong_type(variable, "Real"));
             }
             self.make_ready(variable.quantity)?;
         }
-        let (model, quantities) = (&mut self.model, &self.quantities);
-        let values = value_references.iter();
-        Ok(values.map(|&vr| model.real(quantities[vr as usize])))
+        Ok(Reals::OneByOne {
+            model: &mut self.model,
+            quantities: &self.quantities,
+            left,
+        })
     }
 
     /// `fmi2GetInteger`, for enumerations as well.
@@ -332,6 +352,43 @@ impl<M: Model> Instance<M> {
             name: variable.name.clone(),
             why,
         })
+    }
+}
+
+/// The values of Real variables that are ready, in the order of their references.
+enum Reals<'a, M: Model> {
+    InTable {
+        places: &'a [u32],
+        values: &'a [f64],
+        left: Iter<'a, u32>,
+    },
+    OneByOne {
+        model: &'a mut M,
+        quantities: &'a [M::Quantity],
+        left: Iter<'a, u32>,
+    },
+}
+
+impl<M: Model> Iterator for Reals<'_, M> {
+    type Item = f64;
+
+    #[inline]
+    fn next(&mut self) -> Option<f64> {
+        match self {
+            Self::InTable {
+                places,
+                values,
+                left,
+            } => {
+                let place = places[*left.next()? as usize];
+                Some(values[place as usize])
+            }
+            Self::OneByOne {
+                model,
+                quantities,
+                left,
+            } => Some(model.real(quantities[*left.next()? as usize])),
+        }
     }
 }
 

@@ -74,6 +74,8 @@ pub struct MechanismModel {
     /// Those of the committed pose.
     committed_rates: Vec<Jet>,
     rates: Rates,
+    /// q of the bodies, then its rates, where these are fresh: side by side for who reads many.
+    coordinates: Vec<f64>,
     freshness: Freshness,
     path: Path,
     progress: Progress,
@@ -102,6 +104,7 @@ impl MechanismModel {
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             rates: Rates::new(home.q.len()),
+            coordinates: vec![0.0; 9 * mechanism.bodies.len()],
             freshness: Freshness::Stale,
             path,
             progress: Progress::default(),
@@ -204,15 +207,27 @@ impl Model for MechanismModel {
         }
     }
 
+    /// Coordinates of bodies and their rates are what most hosts ask for, and nothing else.
+    fn place(&self, quantity: Quantity) -> Option<u32> {
+        match quantity {
+            Quantity::Body(body, component, order) => {
+                let row = order as usize * self.mechanism.bodies.len() + body.index();
+                u32::try_from(3 * row + component).ok()
+            }
+            _ => None,
+        }
+    }
+
     #[inline]
-    fn is_ready(&self, quantity: Quantity) -> bool {
-        quantity.order().is_some_and(|order| {
-            let since = match order {
-                Order::Position => Freshness::Pose,
-                Order::Velocity | Order::Acceleration => Freshness::Rates,
-            };
-            self.freshness >= since
-        })
+    fn table(&mut self, last: u32, phase: Phase, log: &Logger) -> Result<&[f64], Failure> {
+        let coordinates = 3 * self.mechanism.bodies.len();
+        if (last as usize) < coordinates {
+            self.refresh_pose(phase, log)?;
+            Ok(&self.solver.pose().q[..coordinates])
+        } else {
+            self.refresh_rates(phase, log)?;
+            Ok(&self.coordinates)
+        }
     }
 
     fn make_ready(

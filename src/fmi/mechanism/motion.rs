@@ -273,6 +273,15 @@ impl MechanismModel {
             self.solver
                 .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
                 .map_err(failed)?;
+            let part = 3 * self.mechanism.bodies.len();
+            let all = [
+                &self.solver.pose().q,
+                self.rates.velocity(),
+                self.rates.acceleration(),
+            ];
+            for (to, from) in self.coordinates.chunks_exact_mut(part.max(1)).zip(all) {
+                to.copy_from_slice(&from[..part]);
+            }
             self.freshness = Freshness::Rates;
         }
         Ok(())

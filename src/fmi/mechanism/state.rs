@@ -54,6 +54,7 @@ impl MechanismModel {
             path: _,
             // Computed from the pose when asked for.
             rates: _,
+            coordinates: _,
             home,
             settings,
             inputs,
