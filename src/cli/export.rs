@@ -11,7 +11,7 @@ use super::output::write;
 use super::runtime;
 use crate::fmi::{describe, write_fmu};
 
-/// Export a mechanism as an FMI 2.0 co-simulation FMU.
+/// Export a mechanism as an FMI 2.0 FMU, for co-simulation and for model exchange.
 ///
 /// The FMU's inputs are the drivers without a prescribed motion, its parameters those of the
 /// file, its outputs position, velocity and acceleration of all bodies. The mechanism is
