@@ -146,13 +146,18 @@ fn a_tunable_table_allocates_nothing() {
 }
 
 /// The same for the solver by itself, on mechanisms of every kind of block: dyads and slides,
-/// blocks small enough for dense matrices, and large ones, driven by one or more drivers.
+/// blocks small enough for dense matrices, and large ones, driven by one or more drivers, with
+/// and without redundant constraints.
 #[test]
 fn a_step_of_the_solver_allocates_nothing() {
     let generated = [
         ("chain", chain(20, Ground::Zigzag)),
         ("small lift", scissor_lift(2)),
         ("large lift", scissor_lift(12)),
+        ("chain with a pin doubled", {
+            let pin = "A_again = { type = \"revolute\", markers = [\"crank.A\", \"coupler_1.A\"] }";
+            chain(5, Ground::Zigzag).replace("[drivers]", &format!("{pin}\n[drivers]"))
+        }),
     ];
     let shipped = [
         "slider_crank",

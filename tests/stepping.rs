@@ -76,8 +76,9 @@ fn a_whole_turn_in_one_step_is_a_whole_turn() {
     let target = solver.pose().drivers[0] + TAU;
     straight_to(&solver, &mut path, target);
     let progress = solver.follow(&path).expect("the crank turns fully");
-    // No body turns by more than half a radian in a sub-step.
-    assert!(progress.substeps >= 13, "{progress:?}");
+    // A sub-step of more than half a turn has chords that tell nothing of the way between.
+    assert!((3..20).contains(&progress.substeps), "{progress:?}");
+    assert_eq!(progress.checked, 0);
     let mut expected = before;
     expected[2] += TAU;
     assert!(difference(&solver.pose().q, &expected) < SAME_POSE);
@@ -209,8 +210,8 @@ fn a_motion_at_rest_at_both_ends_is_followed_in_between() {
 
 #[test]
 fn a_path_that_never_ends_is_given_up() {
-    let (mut solver, mut path) = assembled(&shipped("pendulum"));
-    for target in [1e8, 1e12, 1e17] {
+    let (mut solver, mut path) = assembled(&shipped("four_bar"));
+    for target in [1e8, 1e17] {
         straight_to(&solver, &mut path, target);
         let blocked = solver.follow(&path).expect_err("that is too far to follow");
         assert_eq!(blocked.reason, Reason::TooLong);

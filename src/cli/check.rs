@@ -6,20 +6,30 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::Error;
+use super::estimates::as_estimates;
 use super::input::{Input, warn_of_misfits};
 use super::run::print;
-use crate::kinematics::{Assembly, Element, Rates, Solver};
+use crate::kinematics::{self, Element, Modes, Path, Rates, Solver};
 use crate::mechanism::{CoordinateKind, DriverSource, Mechanism};
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
 ///
 /// Prints the bodies, joints and drivers with the equations that they stand for, the degrees of
-/// freedom, the assembled pose at the drivers' start values, and how well conditioned it is
-/// (reciprocal condition: 1 is best, 0 a singular position).
+/// freedom, the assembled pose at the drivers' start values, how far each body is from its
+/// estimate, and how well conditioned the pose is (reciprocal condition: 1 is best, 0 a singular
+/// position). Where the mechanism does not close it says whether that is proved, which joints
+/// stay open and by how much, and prints the pose that comes nearest.
 #[derive(Args, Debug)]
 pub(super) struct Check {
     /// The mechanism file.
     file: PathBuf,
+    /// Print the pose, or the one that comes nearest, as estimates to paste into the file.
+    #[arg(long)]
+    estimates: bool,
+    /// Look for the other ways in which the mechanism closes at the start values, and print each
+    /// as estimates to paste.
+    #[arg(long)]
+    modes: bool,
 }
 
 /// Below this the assembled pose is called nearly singular.
@@ -30,9 +40,27 @@ impl Check {
         let input = Input::read(&self.file)?;
         let mechanism = &input.mechanism;
         print(&describe_equations(mechanism))?;
-        let (mut solver, assembly) = input.assemble()?;
+        let mut solver = input.solver()?;
+        let assembled = solver.assemble(&Path::new(mechanism));
+        if let Err(error) = assembled {
+            if let kinematics::Error::NotAssembled { .. } = &error {
+                print("\nnot assembled; the pose that comes nearest\n")?;
+                print(&describe_bodies(&solver))?;
+                if self.estimates {
+                    print(&estimates(&solver))?;
+                }
+            }
+            return Err(input.error(error));
+        }
         warn_of_misfits(&solver);
-        print(&describe_pose(&mut solver, assembly))?;
+        print(&describe_pose(&mut solver))?;
+        if self.estimates {
+            print(&estimates(&solver))?;
+        }
+        if self.modes {
+            let modes = solver.modes().map_err(|error| input.error(error))?;
+            print(&describe_modes(mechanism, &modes))?;
+        }
         Ok(())
     }
 }
@@ -110,11 +138,25 @@ fn contacts_text(system: &crate::kinematics::System) -> String {
     }
 }
 
-fn describe_pose(solver: &mut Solver, assembly: Assembly) -> String {
+fn describe_pose(solver: &mut Solver) -> String {
     let mechanism = std::sync::Arc::clone(solver.mechanism());
     let rcond = solver.rcond();
     let mut out = String::new();
-    // The Jacobian with all drivers is regular, so the constraints alone have full rank.
+    let redundancies = solver.redundancies();
+    if !redundancies.is_empty() {
+        let count: usize = redundancies.iter().map(|r| r.redundant).sum();
+        let names: Vec<_> = redundancies
+            .iter()
+            .map(|r| format!("{} of the {} of {}", r.redundant, r.equations, r.element))
+            .collect();
+        let _ = writeln!(
+            out,
+            "  {:<20}{count:>4}    {}",
+            "redundant",
+            names.join(", ")
+        );
+    }
+    // The Jacobian with all drivers is regular, so the drivers are as many as what is free.
     let _ = writeln!(
         out,
         "  {:<20}{:>4}    all driven",
@@ -130,25 +172,7 @@ fn describe_pose(solver: &mut Solver, assembly: Assembly) -> String {
             with_unit(driver.coordinate.kind, *value)
         );
     }
-    let width = (mechanism.bodies.iter())
-        .map(|body| body.name.len())
-        .max()
-        .unwrap_or(0);
-    let _ = writeln!(
-        out,
-        "\n  {:<width$}  {:>12}  {:>12}  {:>12}",
-        "body", "x [m]", "y [m]", "phi [deg]"
-    );
-    for (body, q) in mechanism.bodies.iter().zip(solver.pose().q.chunks_exact(3)) {
-        let _ = writeln!(
-            out,
-            "  {:<width$}  {:>12.6}  {:>12.6}  {:>12.6}",
-            body.name,
-            tidy(q[0]),
-            tidy(q[1]),
-            tidy(q[2].to_degrees())
-        );
-    }
+    out += &describe_bodies(solver);
     let still = Rates::new(solver.pose().q.len());
     if !mechanism.measures.is_empty() {
         out.push('\n');
@@ -164,15 +188,75 @@ fn describe_pose(solver: &mut Solver, assembly: Assembly) -> String {
     }
     let _ = writeln!(
         out,
-        "\n  residual {:.1e}, reciprocal condition {rcond:.2e}, largest move from the estimates \
-         {:.2}",
+        "\n  residual {:.1e}, reciprocal condition {rcond:.2e}",
         solver.residual(),
-        assembly.distance
     );
     if rcond < NEARLY_SINGULAR {
         let _ = writeln!(
             out,
             "  this is nearly a singular position: small changes of a driver have large effects"
+        );
+    }
+    out
+}
+
+/// A table of the bodies where the solver stands, and of how far that is from their estimates.
+fn describe_bodies(solver: &Solver) -> String {
+    let (mechanism, q) = (solver.mechanism(), &solver.pose().q);
+    let names = mechanism.bodies.iter().map(|body| body.name.len());
+    let width = names.chain(["body".len()]).max().unwrap_or(0);
+    let mut out = format!(
+        "\n  {:<width$}  {:>12}  {:>12}  {:>12}  {:>12}  {:>12}\n",
+        "body", "x [m]", "y [m]", "phi [deg]", "moved [m]", "turned [deg]"
+    );
+    // Estimates without a value would have been an error before.
+    let moves = solver.moves().unwrap_or_default();
+    let bodies = mechanism.bodies.iter().zip(q.chunks_exact(3));
+    for ((body, q), moved) in bodies.zip(moves) {
+        let _ = writeln!(
+            out,
+            "  {:<width$}  {:>12.6}  {:>12.6}  {:>12.6}  {:>12.6}  {:>12.6}",
+            body.name,
+            tidy(q[0]),
+            tidy(q[1]),
+            tidy(q[2].to_degrees()),
+            tidy(moved.length),
+            tidy(moved.angle.to_degrees())
+        );
+    }
+    out
+}
+
+fn estimates(solver: &Solver) -> String {
+    let lines = as_estimates(solver.mechanism(), &solver.pose().q);
+    format!("\nestimates of this pose, to paste into the tables of the bodies\n\n{lines}")
+}
+
+fn describe_modes(mechanism: &Mechanism, modes: &Modes) -> String {
+    let count = match modes.others.len() {
+        0 => "no other way".to_owned(),
+        1 => "1 other way".to_owned(),
+        count => format!("{count} other ways"),
+    };
+    let certainty = match (modes.complete, modes.starts) {
+        (true, _) => "these are all".to_owned(),
+        (false, 0) => "there are more".to_owned(),
+        (false, starts) => format!("found from {starts} starts; there may be more"),
+    };
+    let mut out = format!("\n{count} to close at these values ({certainty})\n");
+    for (index, mode) in modes.others.iter().enumerate() {
+        let nearly = if mode.rcond < NEARLY_SINGULAR {
+            ", nearly a singular position"
+        } else {
+            ""
+        };
+        let _ = writeln!(
+            out,
+            "\n# {}: reciprocal condition {:.2e}{nearly}, largest move from the estimates {:.2}\n\n{}",
+            index + 1,
+            mode.rcond,
+            mode.distance,
+            as_estimates(mechanism, &mode.q).trim_end()
         );
     }
     out

@@ -62,7 +62,7 @@ impl Draw {
         let input = Input::read(&self.file)?;
         let parameters = self.conditions.parameters(&input.mechanism)?;
         let driven = self.conditions.driven(&input.mechanism)?;
-        let (home_solver, _) = input.assemble()?;
+        let home_solver = input.assemble()?;
         let time = input.mechanism.simulation.start;
         let mut solver = conditions::start(home_solver, &driven, &parameters, time)
             .map_err(|error| input.error(error))?;

@@ -40,7 +40,7 @@ impl Export {
     pub(super) fn run(self) -> Result<(), Error> {
         let generated = generation_time()?;
         let input = Input::read(&self.file)?;
-        let (solver, _) = input.assemble()?;
+        let solver = input.assemble()?;
         warn_of_misfits(&solver);
         let mechanism = &input.mechanism;
         if let Some(path) = self.model_description {

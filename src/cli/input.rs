@@ -47,19 +47,27 @@ impl Input {
         }
     }
 
-    /// A solver at the file's own assembled pose, and how it got there.
-    pub(super) fn assemble(&self) -> Result<(Solver, crate::kinematics::Assembly), Error> {
-        let mut solver =
-            Solver::new(Arc::clone(&self.mechanism)).map_err(|error| self.error(error))?;
-        let assembly = solver
+    /// A solver that stands nowhere yet.
+    pub(super) fn solver(&self) -> Result<Solver, Error> {
+        Solver::new(Arc::clone(&self.mechanism)).map_err(|error| self.error(error))
+    }
+
+    /// A solver at the file's own assembled pose.
+    pub(super) fn assemble(&self) -> Result<Solver, Error> {
+        let mut solver = self.solver()?;
+        solver
             .assemble(&Path::new(&self.mechanism))
             .map_err(|error| self.error(error))?;
-        Ok((solver, assembly))
+        Ok(solver)
     }
 }
 
-/// Warns on stderr of joints that do not fit their own numbers where the solver stands.
+/// Warns on stderr of joints that do not fit their own numbers where the solver stands, and of
+/// redundant ones.
 pub(super) fn warn_of_misfits(solver: &Solver) {
+    for redundancy in solver.redundancies() {
+        anstream::eprintln!("warning: {redundancy}");
+    }
     for misfit in solver.misfits() {
         anstream::eprintln!("warning: {misfit}");
     }

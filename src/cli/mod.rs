@@ -13,6 +13,7 @@ mod check;
 mod conditions;
 mod draw;
 mod error;
+mod estimates;
 mod export;
 mod input;
 mod output;

@@ -54,7 +54,7 @@ impl Run {
         let times = self.times(&input.mechanism)?;
         let parameters = self.conditions.parameters(&input.mechanism)?;
         let driven = self.conditions.driven(&input.mechanism)?;
-        let (home_solver, _) = input.assemble()?;
+        let home_solver = input.assemble()?;
         let mut table = Table::new(&driven, self.writer()?, self.output.clone());
         let mut motion = Motion::start(home_solver, driven, parameters, times.start)
             .map_err(|error| input.error(error))?;
@@ -173,6 +173,7 @@ impl Motion {
         if let Err(blocked) = self.solver.follow(&self.path) {
             let why = match &blocked.reason {
                 Reason::Value(error) => error.to_string(),
+                Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
                 Reason::TooLong => "the motion is too fast for the steps".to_owned(),
                 _ => "dead point".to_owned(),
             };

@@ -8,17 +8,32 @@ use crate::mechanism::ProfileError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// Too few or too many equations, or equations that meet the wrong unknowns.
-    #[error("{}", structure_message(*.equations, *.unknowns, .loose, .excess))]
+    /// More or less is driven than is free to move.
+    #[error("{}", structure_message(*.freedom, *.drivers, *.free, .loose, .excess))]
     Structure {
-        /// Number of constraint and driver equations.
-        equations: usize,
-        /// Number of generalized coordinates.
-        unknowns: usize,
-        /// Names of the bodies with a coordinate that nothing determines.
+        /// Degrees of freedom that joints and constraints leave.
+        freedom: usize,
+        /// The number of drivers.
+        drivers: usize,
+        /// Degrees of freedom that no driver drives.
+        free: usize,
+        /// What can move though no driver does: kind and name of each body.
         loose: Vec<String>,
-        /// Descriptions of the joints, constraints and drivers among which some are too many.
+        /// Drivers of which one is too many, or joints and constraints that hold what a driver
+        /// would drive: kind and name of each.
         excess: Vec<String>,
+    },
+    /// Constraints that cannot be satisfied together, whatever the mechanism's pose.
+    #[error(
+        "{} contradict each other: all others closed, {open}; remove one of them, or make them \
+         agree",
+        .elements.join(", ")
+    )]
+    Contradiction {
+        /// The smallest set: kind and name of each.
+        elements: Vec<String>,
+        /// What stays open in the one declared last when the others are closed.
+        open: OpenJoint,
     },
     /// An expression has no finite value for the parameter values in force.
     #[error("{what} has no finite value with these parameter values")]
@@ -42,26 +57,94 @@ pub enum Error {
         /// What is wrong with the contour.
         error: ProfileError,
     },
-    /// No pose was found that satisfies all equations.
-    #[error(
-        "the mechanism was not found to close, from {starts} starts at and near the estimates: {}",
-        open_message(.open)
-    )]
+    /// No pose satisfies all equations, or none was found that does.
+    #[error("{}", not_assembled_message(verdict, open))]
     NotAssembled {
-        /// From how many starts it was tried.
-        starts: usize,
+        /// Which of the two.
+        verdict: Verdict,
         /// What stays open in the nearest pose found.
         open: Vec<OpenJoint>,
+        /// q of that pose.
+        nearest: Vec<f64>,
     },
     /// The equations can be satisfied, but the Jacobian is singular there.
-    #[error(
-        "the mechanism is in a singular position (a dead point or change point, or redundant \
-         constraints): the Jacobian has a reciprocal condition of {rcond:.1e}"
-    )]
+    #[error("{}", singular_message(*.rcond, .bodies))]
     Singular {
         /// Scaled reciprocal condition of the Jacobian.
         rcond: f64,
+        /// The bodies that can move there without any driver, as far as they were looked for.
+        bodies: Vec<String>,
     },
+}
+
+/// What is known of a mechanism that was not assembled.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// There is no pose that satisfies all equations.
+    Impossible {
+        /// Why, in the nearest pose.
+        proof: Box<Proof>,
+        /// In how many ways the bodies found before can stand; each has been excluded.
+        ways: usize,
+    },
+    /// None was found, which is no proof.
+    NotFound {
+        /// From how many starts, all of them deterministic.
+        starts: usize,
+    },
+}
+
+/// Why a part of a mechanism cannot close.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Proof {
+    /// Two links do not reach from one point to another.
+    Reach {
+        /// The bodies that are the links.
+        bodies: [String; 2],
+        /// The markers that they are to join.
+        points: [String; 2],
+        /// How far these are apart \[m\].
+        distance: f64,
+        /// The least and the largest distance that the links span \[m\].
+        span: [f64; 2],
+    },
+    /// A point does not reach its line, whatever the angle of a body.
+    Line {
+        /// The body.
+        body: String,
+    },
+    /// All angles of some bodies are excluded, by bounds of the equations over intervals.
+    Excluded {
+        /// The bodies.
+        bodies: Vec<String>,
+        /// Into how many boxes their angles had to be divided.
+        boxes: usize,
+    },
+}
+
+impl fmt::Display for Proof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reach {
+                bodies: [a, b],
+                points: [from, to],
+                distance,
+                span: [shortest, longest],
+            } => write!(
+                f,
+                "`{from}` and `{to}` are {} apart, `{a}` and `{b}` together span {} to {}",
+                millimetres(*distance),
+                millimetres(*shortest),
+                millimetres(*longest)
+            ),
+            Self::Line { body } => write!(f, "whatever the angle of `{body}`"),
+            Self::Excluded { bodies, .. } => {
+                let bodies: Vec<_> = bodies.iter().map(|body| format!("`{body}`")).collect();
+                write!(f, "bounds exclude all angles of {}", bodies.join(", "))
+            }
+        }
+    }
 }
 
 /// A joint, constraint or driver that cannot be satisfied together with the rest.
@@ -98,32 +181,88 @@ fn degrees(angle: f64) -> String {
 
 fn four_digits(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
-        let decimals = 3 - value.abs().max(1e-3).log10().floor() as i32;
+        // What rounds up to a power of ten has its digits.
+        let rounded = value.abs().max(1e-3) * (1.0 + 5e-5);
+        let decimals = 3 - rounded.log10().floor() as i32;
         format!("{value:.*}", decimals.max(0) as usize)
     } else {
         format!("{value:.3e}")
     }
 }
 
-fn open_message(open: &[OpenJoint]) -> String {
-    let parts: Vec<_> = open.iter().map(OpenJoint::to_string).collect();
-    parts.join(", ")
+/// A message names so many open joints.
+const MOST_NAMED: usize = 8;
+
+fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {
+    let mut parts: Vec<_> = open
+        .iter()
+        .take(MOST_NAMED)
+        .map(OpenJoint::to_string)
+        .collect();
+    if open.len() > MOST_NAMED {
+        parts.push(format!("and {} others", open.len() - MOST_NAMED));
+    }
+    let open = parts.join(", ");
+    match verdict {
+        Verdict::Impossible { proof, ways: 1 } => {
+            format!("the mechanism cannot close: {open}; {proof}")
+        }
+        Verdict::Impossible { proof, ways } => format!(
+            "the mechanism cannot close in any of the {ways} ways in which its other parts close; \
+             in the nearest {open}; {proof}"
+        ),
+        Verdict::NotFound { starts: 1 } => format!(
+            "the mechanism was not found to close from 1 deterministic start, which is no proof \
+             that it cannot; in the nearest pose found {open}"
+        ),
+        Verdict::NotFound { starts } => format!(
+            "the mechanism was not found to close from {starts} deterministic starts, which is \
+             no proof that it cannot; in the nearest pose found {open}"
+        ),
+    }
+}
+
+fn singular_message(rcond: f64, bodies: &[String]) -> String {
+    let mut message = format!(
+        "the mechanism is in a singular position (a dead point or change point): the Jacobian has \
+         a reciprocal condition of {rcond:.1e}"
+    );
+    if !bodies.is_empty() {
+        message += &format!(
+            "; {} can move there while all drivers stand still",
+            bodies.join(", ")
+        );
+    }
+    message
 }
 
 fn structure_message(
-    equations: usize,
-    unknowns: usize,
+    freedom: usize,
+    drivers: usize,
+    free: usize,
     loose: &[String],
     excess: &[String],
 ) -> String {
+    let count = |number: usize, singular: &str, plural: &str| match number {
+        0 => format!("no {singular}"),
+        1 => format!("1 {singular}"),
+        _ => format!("{number} {plural}"),
+    };
     let mut message = format!(
-        "the joints, constraints and drivers give {equations} equations for {unknowns} unknowns"
+        "the mechanism has {} and {}",
+        count(freedom, "degree of freedom", "degrees of freedom"),
+        count(drivers, "driver", "drivers")
     );
-    if !loose.is_empty() {
-        message += &format!("; not fully driven: {}", loose.join(", "));
+    if free > 0 {
+        let add = if free == 1 {
+            "add a driver for one of them".to_owned()
+        } else {
+            format!("add {free} drivers for them")
+        };
+        message += &format!("; free to move: {}: {add}", loose.join(", "));
     }
     if !excess.is_empty() {
-        message += &format!("; too many among: {}", excess.join(", "));
+        message += &format!("; too many: remove one of {}", excess.join(", "));
     }
     message
 }

@@ -1,9 +1,13 @@
 //! Assembly of a part of the mechanism: minimises Ec. 3.6.9 from several starts.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{DMatrix, DVector};
 
+use super::constraint::{Gradient, Relation};
 use super::newton::{Correction, Rejected};
 use super::plan::Work;
+use super::system::System;
 
 /// The weights r of Ec. 3.6.9, from one where the estimates count as much as the constraints to
 /// one where the minimum is within Newton's reach.
@@ -15,10 +19,20 @@ pub(super) const MAX_ITERATIONS: u32 = 30;
 /// The estimates themselves, and this many less one deterministic shifts of them: estimates of
 /// zero often lie on a symmetry from which no minimisation can choose a side.
 pub(super) const STARTS: usize = 8;
+/// A part is tried straight from the estimates, then by minimisation from each of the starts.
+pub(super) const ATTEMPTS: usize = 1 + STARTS;
+/// Minimisation steps from anywhere; a start that needs more is one of many.
+const STEPS_FROM_ANYWHERE: usize = 40;
+/// Points nearer than this part of the mechanism's size lie on each other.
+const TOUCHING: f64 = 1e-6;
+/// Unknowns that differ by less than this, scaled, are the same.
+const SAME: f64 = 1e-6;
 /// A part of more unknowns than this is too large for dense matrices to be the first choice.
 pub(super) const SMALL_PART: usize = 120;
 
-/// Rows of Phi and as many unknowns, assembled while all others stay where they are.
+/// Rows of Phi and unknowns, assembled while all others stay where they are. There may be more rows
+/// than unknowns, or fewer.
+#[derive(Debug)]
 pub(super) struct Part {
     /// Ascending.
     pub(super) rows: Vec<usize>,
@@ -39,8 +53,18 @@ impl Part {
         }
     }
 
+    /// Its unknowns, ascending.
+    pub(super) fn columns(&self) -> &[usize] {
+        &self.columns
+    }
+
+    /// How many unknowns it has.
+    pub(super) fn unknowns(&self) -> usize {
+        self.columns.len()
+    }
+
     /// The unknowns as they are.
-    fn read(&self, work: &Work<'_>) -> DVector<f64> {
+    pub(super) fn read(&self, work: &Work<'_>) -> DVector<f64> {
         let columns = self.columns.iter();
         DVector::from_iterator(
             self.columns.len(),
@@ -48,7 +72,13 @@ impl Part {
         )
     }
 
-    fn write(&self, work: &mut Work<'_>, values: &DVector<f64>) {
+    /// Whether these unknowns put the bodies in the same places, whole turns apart.
+    pub(super) fn is_same(&self, work: &Work<'_>, a: &DVector<f64>, b: &DVector<f64>) -> bool {
+        let (size, mut columns) = (work.at.size(), self.columns.iter().enumerate());
+        columns.all(|(k, &column)| is_same(work.system, size, column, a[k], b[k]))
+    }
+
+    pub(super) fn write(&self, work: &mut Work<'_>, values: &DVector<f64>) {
         for (&column, &value) in self.columns.iter().zip(values) {
             work.at.set_coordinate(column, value);
         }
@@ -67,46 +97,87 @@ impl Part {
     /// Goes to the estimates, or to one of the starts near them. What joints bring with them
     /// comes last in the list, and starts where it suits the bodies.
     pub(super) fn start(&self, work: &mut Work<'_>, estimate: &[f64], attempt: usize) {
+        self.start_off(work, estimate, |column| shift(attempt, column));
+        self.leave_zero_distances(work);
+    }
+
+    /// Goes to the estimates and as far from them, scaled, as `off` says.
+    fn start_off(&self, work: &mut Work<'_>, estimate: &[f64], off: impl Fn(usize) -> f64) {
         let size = work.at.size();
         for &column in &self.columns {
             let start = match work.system.estimate_joint_unknown(column, work.at) {
                 Some(start) => start,
-                None => {
-                    let scale = work.system.column_scale(column, size);
-                    estimate[column] + shift(attempt, column) * scale
-                }
+                None => estimate[column] + off(column) * work.system.column_scale(column, size),
             };
             work.at.set_coordinate(column, start);
         }
     }
 
-    /// Assembles from several starts, `correct` being Newton–Raphson with at most so many
-    /// corrections.
+    /// Where points whose distance is held lie on each other, their rows have no slope to go
+    /// along: takes their bodies a little away.
+    fn leave_zero_distances(&self, work: &mut Work<'_>) {
+        let size = work.at.size();
+        for &row in &self.rows {
+            let constraint = &work.system.equations()[row].constraint;
+            if !matches!(constraint.relation(), Relation::Distance(_))
+                || constraint.value(work.at) > TOUCHING * size
+            {
+                continue;
+            }
+            let mut gradient = Gradient::new();
+            constraint.gradient(work.at, &mut gradient);
+            for (column, _) in gradient.entries() {
+                if self.columns.binary_search(&column).is_ok() {
+                    let off = shift(1, column) * work.system.column_scale(column, size);
+                    let value = work.at.coordinate(column) + off;
+                    work.at.set_coordinate(column, value);
+                }
+            }
+        }
+    }
+
+    /// Tries to assemble from one of [`ATTEMPTS`] starts at and near the estimates, `correct`
+    /// being Newton–Raphson with at most so many corrections.
     ///
     /// # Errors
     ///
-    /// [`Rejected`] if none of them led to a pose.
-    pub(super) fn assemble(
+    /// [`Rejected`] if this did not lead to a pose.
+    pub(super) fn attempt(
         &self,
         work: &mut Work<'_>,
         estimate: &[f64],
-        mut correct: impl FnMut(&mut Work<'_>, u32) -> Result<Correction, Rejected>,
+        attempt: usize,
+        correct: impl FnOnce(&mut Work<'_>, u32) -> Result<Correction, Rejected>,
     ) -> Result<Correction, Rejected> {
-        // One correction solves linear rows, from wherever it starts, and estimates as good as
-        // that need no more. For a large part Newton is worth a try by itself.
-        let large = self.columns.len() > SMALL_PART;
-        self.start(work, estimate, 0);
-        if let Ok(correction) = correct(work, if large { MAX_ITERATIONS } else { 1 }) {
-            return Ok(correction);
-        }
-        for attempt in 0..STARTS {
-            self.start(work, estimate, attempt);
-            self.minimise_growing(work);
-            if let Ok(correction) = correct(work, MAX_ITERATIONS) {
-                return Ok(correction);
-            }
-        }
-        Err(Rejected)
+        let Some(attempt) = attempt.checked_sub(1) else {
+            // One correction solves linear rows, from wherever it starts, and estimates as good
+            // as that need no more. For a large part Newton is worth a try by itself.
+            self.start(work, estimate, 0);
+            let large = self.columns.len() > SMALL_PART;
+            return correct(work, if large { MAX_ITERATIONS } else { 1 });
+        };
+        self.start(work, estimate, attempt);
+        self.minimise_growing(work);
+        correct(work, MAX_ITERATIONS)
+    }
+
+    /// Tries to assemble from anywhere: angles all around, points within a length or so of the
+    /// estimates.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] if this did not lead to a pose.
+    pub(super) fn attempt_anywhere(
+        &self,
+        work: &mut Work<'_>,
+        estimate: &[f64],
+        attempt: usize,
+        correct: impl FnOnce(&mut Work<'_>, u32) -> Result<Correction, Rejected>,
+    ) -> Result<Correction, Rejected> {
+        let anywhere = |column| TAU * (scattered(attempt, column) - 0.5);
+        self.start_off(work, estimate, anywhere);
+        self.minimise(work, None, |_| 1.0, STEPS_FROM_ANYWHERE);
+        correct(work, MAX_ITERATIONS)
     }
 
     /// Minimises Ec. 3.6.9 for growing r from where the part is, which counts as the estimate.
@@ -189,9 +260,8 @@ impl Part {
         work: &Work<'_>,
         weight: impl Fn(usize) -> f64,
     ) -> (DVector<f64>, DMatrix<f64>) {
-        let order = self.columns.len();
-        let mut residual = DVector::zeros(order);
-        let mut jacobian = DMatrix::zeros(order, order);
+        let mut residual = DVector::zeros(self.rows.len());
+        let mut jacobian = DMatrix::zeros(self.rows.len(), self.columns.len());
         for (local, &row) in self.rows.iter().enumerate() {
             let weight = weight(row);
             let entry = |column, value: f64| {
@@ -199,13 +269,48 @@ impl Part {
                     jacobian[(local, column)] += value * weight;
                 }
             };
-            let value = work
-                .system
-                .evaluate_row(row, work.at, work.targets, work.drivers, entry);
-            residual[local] = value.value * weight;
+            residual[local] = evaluate_smoothly(work, row, entry) * weight;
         }
         (residual, jacobian)
     }
+}
+
+/// A row of Phi and its gradient, scaled as [`System::evaluate_row`] has them. That of a distance
+/// u is (d·d − u²)/(2u), which is smooth where the points lie on each other.
+fn evaluate_smoothly(work: &Work<'_>, row: usize, mut entry: impl FnMut(usize, f64)) -> f64 {
+    let equation = &work.system.equations()[row];
+    let distance = matches!(equation.constraint.relation(), Relation::Distance(_));
+    let stretch = if distance {
+        let target = work.system.target(row, work.targets, work.drivers);
+        equation.constraint.value(work.at) / target
+    } else {
+        1.0
+    };
+    let entry = |column, value: f64| entry(column, value * stretch);
+    let value = work
+        .system
+        .evaluate_row(row, work.at, work.targets, work.drivers, entry);
+    // (d·d − u²)/(2u) = (‖d‖ − u)(1 + ‖d‖/u)/2.
+    value.value * 0.5 * (1.0 + stretch)
+}
+
+/// Whether two values of an unknown put a body in the same place, whole turns apart.
+pub(super) fn is_same(system: &System, size: f64, column: usize, a: f64, b: f64) -> bool {
+    let off = (a - b) / system.column_scale(column, size);
+    if system.is_angle(column) {
+        (off - TAU * (off / TAU).round()).abs() < SAME
+    } else {
+        off.abs() < SAME
+    }
+}
+
+/// A number from 0 to 1 for attempt and coordinate, one as likely as any other and all of them
+/// as if by chance (the finalizer of SplitMix64).
+fn scattered(attempt: usize, column: usize) -> f64 {
+    let mut z = ((attempt as u64) << 32 | column as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (z ^ (z >> 31)) as f64 / u64::MAX as f64
 }
 
 /// By how much start `attempt` differs from the estimates in coordinate k, scaled: nothing the

@@ -22,6 +22,7 @@
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.
 
 mod assembly;
+mod certificate;
 mod configuration;
 pub mod constraint;
 mod element;
@@ -30,11 +31,13 @@ mod factor;
 mod fit;
 mod joint;
 mod minimise;
+mod modes;
 mod motions;
 mod newton;
 mod path;
 mod plan;
 mod rates;
+mod redundancy;
 #[cfg(test)]
 mod reference;
 mod sensitivity;
@@ -44,15 +47,17 @@ mod structure;
 mod system;
 pub mod variation;
 
-pub use assembly::{Assembly, Start};
+pub use assembly::{Assembly, Move, Start};
 pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
 pub use element::Element;
-pub use error::{Error, OpenJoint};
+pub use error::{Error, OpenJoint, Proof, Verdict};
 pub use fit::{Misfit, MisfitKind};
+pub use modes::{Mode, Modes};
 pub use path::{Curve, Path};
 pub use rates::Rates;
+pub use redundancy::Redundancy;
 pub use sensitivity::{Direction, Sensitivity};
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress, Reason};

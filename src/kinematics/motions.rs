@@ -1,6 +1,6 @@
 //! The prescribed motions of a mechanism with parameter values in force.
 
-use crate::mechanism::{DriverId, Jet, Mechanism, MotionInForce, ParameterId};
+use crate::mechanism::{DriverId, Interval, Jet, Jet3, Mechanism, MotionInForce, ParameterId};
 
 /// The motions of all drivers that have one.
 #[derive(Clone, Debug)]
@@ -34,6 +34,26 @@ impl Motions {
         self.in_force[driver.index()]
             .as_ref()
             .map_or(Jet::constant(f64::NAN), |motion| motion.evaluate(t))
+    }
+
+    /// An upper bound of a driver's |d²u/dt²| over a stretch of time; see
+    /// [`MotionInForce::curvature`].
+    pub(super) fn curvature(&self, driver: DriverId, from: f64, to: f64) -> Option<f64> {
+        self.in_force[driver.index()]
+            .as_ref()
+            .and_then(|motion| motion.curvature(from, to))
+    }
+
+    /// Encloses a driver's value; see [`MotionInForce::enclose`].
+    pub(super) fn enclose(
+        &self,
+        driver: DriverId,
+        t: Jet3<Interval>,
+        parameter: &impl Fn(ParameterId) -> Jet3<Interval>,
+    ) -> Option<Jet3<Interval>> {
+        self.in_force[driver.index()]
+            .as_ref()
+            .and_then(|motion| motion.enclose(t, parameter))
     }
 
     /// The next time after `t` at which a motion given by a table begins another piece.

@@ -5,8 +5,6 @@
 pub(super) struct Correction {
     /// Corrections applied.
     pub(super) iterations: u32,
-    /// Largest ratio of a correction to the one before: below one while Newton contracts.
-    pub(super) contraction: f64,
 }
 
 /// No pose was found, or one that may not be on the motion that led here.
@@ -18,13 +16,7 @@ pub(super) const AT_ROUNDING: f64 = 4.0;
 /// So does one that has stopped falling and is below this many times its rounding error: the
 /// estimate leaves out what sums and products inside a row add.
 pub(super) const STALLED: f64 = 100.0;
-/// Corrections below this, scaled, are near rounding level and do not shrink any more.
-pub(super) const SMALL: f64 = 1e-8;
 
-/// Newton has to shrink its corrections at least by this factor from one to the next.
-pub(super) const CONTRACTION: f64 = 0.25;
-/// The largest correction of a prediction, in radians and characteristic lengths.
-pub(super) const LARGEST_CORRECTION: f64 = 0.1;
 /// Newton converges quadratically from a good prediction; one that needs more is halved.
 pub(super) const MAX_ITERATIONS: u32 = 8;
 

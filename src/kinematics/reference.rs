@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 #[path = "../../tests/common/generated.rs"]
 #[allow(dead_code, reason = "also used by `benches/`")]
-mod generated;
+pub(super) mod generated;
 
 use super::constraint::Gradient;
 use super::system::Target;
@@ -80,7 +80,7 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
     rcond
 }
 
-fn assembled(source: &Source) -> (Solver, Path) {
+pub(super) fn assembled(source: &Source) -> (Solver, Path) {
     let what = source.name();
     let (mechanism, _) =
         Mechanism::parse(source).unwrap_or_else(|diagnostics| panic!("{what}: {diagnostics:#?}"));
@@ -164,7 +164,7 @@ fn generated_mechanisms_agree() {
 }
 
 /// A mechanism that grows part by part on points that already move.
-fn grown(parts: &[Part]) -> String {
+pub(super) fn grown(parts: &[Part]) -> String {
     use std::fmt::Write as _;
     let mut bodies = String::new();
     let mut joints = String::new();
@@ -248,13 +248,13 @@ fn grown(parts: &[Part]) -> String {
 }
 
 #[derive(Clone, Debug)]
-struct Part {
-    kind: u32,
-    size: f64,
-    frame: f64,
+pub(super) struct Part {
+    pub(super) kind: u32,
+    pub(super) size: f64,
+    pub(super) frame: f64,
 }
 
-fn part() -> impl Strategy<Value = Part> {
+pub(super) fn part() -> impl Strategy<Value = Part> {
     (0..4_u32, 0.0..1.0_f64, -0.2..0.2_f64).prop_map(|(kind, size, frame)| Part {
         kind,
         size,

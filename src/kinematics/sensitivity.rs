@@ -14,6 +14,7 @@
 use super::constraint::Constraint;
 use super::newton::Rejected;
 use super::plan::{General, Work};
+use super::solver::SINGULAR_HERE;
 use super::system::Target;
 use super::variation::{Varied, VariedConfiguration, VariedVector, evaluate};
 use super::{Error, Rates, Solver};
@@ -140,7 +141,7 @@ impl Solver {
         };
         jacobian
             .factorise(&work)
-            .map_err(|Rejected| Error::Singular { rcond: 0.0 })?;
+            .map_err(|Rejected| SINGULAR_HERE)?;
         let targets: Vec<_> = system
             .equations()
             .iter()
@@ -161,7 +162,7 @@ impl Solver {
             at.change(order, &change);
         }
         if !change.iter().all(|change| change.is_finite()) {
-            return Err(Error::Singular { rcond: 0.0 });
+            return Err(SINGULAR_HERE);
         }
         Ok(Sensitivity {
             at,

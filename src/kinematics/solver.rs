@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use super::certificate::Tubes;
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration, point_velocity};
 use super::motions::Motions;
 use super::newton::Rejected;
 use super::plan::{Plan, Work};
 use super::rates::Rates;
+use super::redundancy::SetAside;
 use super::structure::Structure;
 use super::system::{System, Targets};
 use super::{Error, Path};
@@ -62,6 +64,8 @@ impl Pose {
 pub struct Solver {
     pub(super) system: System,
     pub(super) structure: Structure,
+    /// Redundant rows.
+    pub(super) set_aside: SetAside,
     pub(super) measures: Vec<Box<dyn Constraint>>,
     pub(super) plan: Plan,
     pub(super) pose: Pose,
@@ -93,9 +97,17 @@ pub struct Solver {
     pub(super) origin_drivers: Vec<Jet>,
     /// The values of all drivers that a step goes to.
     pub(super) next_drivers: Vec<f64>,
+    /// Where everything stays in a sub-step.
+    pub(super) tubes: Tubes,
     /// Rates of the drivers that the host gives.
     host_drivers: Vec<Jet>,
 }
+
+/// Rates were asked for where there are none.
+pub(super) const SINGULAR_HERE: Error = Error::Singular {
+    rcond: 0.0,
+    bodies: Vec::new(),
+};
 
 /// The rates of a single driver with respect to its own value.
 pub(super) const UNIT: [Jet; 1] = [Jet {
@@ -109,11 +121,15 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// [`Error::Structure`] if the drivers do not match the degrees of freedom.
+    /// [`Error::Structure`] if the drivers do not match the degrees of freedom. Where equations and
+    /// unknowns do not pair up, the mechanism is looked at in numbers, at the file's own values;
+    /// then also those of [`assemble`](Self::assemble).
     pub fn new(mechanism: Arc<Mechanism>) -> Result<Self, Error> {
         let path = Path::new(&mechanism);
         let system = System::new(Arc::clone(&mechanism));
-        let structure = Structure::new(&system)?;
+        let structure = Structure::new(&system, &[]);
+        let pairs_up = structure.is_some();
+        let structure = structure.unwrap_or_else(|| Structure::of_nothing(&system));
         let order = system.unknowns();
         let drivers = mechanism.drivers.len();
         let pose = Pose {
@@ -121,13 +137,14 @@ impl Solver {
             parameters: path.from,
             drivers: vec![0.0; drivers],
             q: vec![0.0; order],
-            turns: vec![0; order],
+            turns: vec![0; system.equations().len()],
         };
         let motions = Motions::new(&mechanism);
         let measures = mechanism.measures.iter();
-        Ok(Self {
+        let mut solver = Self {
             plan: Plan::new(&system, &structure),
             structure,
+            set_aside: SetAside::default(),
             measures: measures
                 .map(|measure| of_coordinate(&measure.coordinate))
                 .collect(),
@@ -143,13 +160,18 @@ impl Solver {
             path_drivers: vec![Jet::constant(0.0); drivers],
             origin_drivers: vec![Jet::constant(0.0); drivers],
             next_drivers: vec![0.0; drivers],
+            tubes: Tubes::new(&system),
             host_drivers: vec![Jet::constant(0.0); drivers],
             pose,
             at: system.configuration(),
             factorised: false,
             flow: Rates::new(order),
             system,
-        })
+        };
+        if !pairs_up {
+            solver.choose_rows(&Path::new(&mechanism))?;
+        }
+        Ok(solver)
     }
 
     /// The mechanism.
@@ -164,7 +186,7 @@ impl Solver {
         &self.system
     }
 
-    /// Which equations determine which unknowns.
+    /// Which equations determine which unknowns; redundant ones take no part.
     #[must_use]
     pub fn structure(&self) -> &Structure {
         &self.structure
@@ -190,14 +212,19 @@ impl Solver {
                 .expect("the parameters of a pose were valid when it was solved");
         }
         self.targets.turns.copy_from_slice(&self.pose.turns);
+        self.plan.forget_boxes();
         self.stand_at_pose();
     }
 
     /// Lets go of what the way to the present pose has left behind, the pivots of sparse
-    /// matrices: from here on everything depends on the pose alone, to the last bit.
+    /// matrices, proofs that hold for several steps and the choice among redundant rows: from here
+    /// on everything depends on the pose alone, to the last bit.
     pub fn forget_way(&mut self) {
         self.plan.forget_pivots();
+        self.plan.forget_boxes();
         self.stand_at_pose();
+        // Where no choice of rows is regular, whoever goes on from here is told.
+        let _ = self.stand_on_fit_rows();
     }
 
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates
@@ -253,11 +280,7 @@ impl Solver {
             self.plan.solve_rates(&mut work, &self.host_drivers);
             rates.is_finite()
         };
-        if finite {
-            Ok(())
-        } else {
-            Err(Error::Singular { rcond: 0.0 })
-        }
+        if finite { Ok(()) } else { Err(SINGULAR_HERE) }
     }
 
     /// Value, rate and acceleration of a measure of the mechanism at the present pose. Allocates
@@ -301,7 +324,8 @@ impl Solver {
         self.parameters_taken = false;
         self.system
             .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
-        self.plan.set_parameters(&self.at, &self.targets);
+        self.plan
+            .set_parameters(&self.at, &self.targets, &mut self.tubes);
         if !self.pivots_chosen {
             self.plan
                 .choose_pivots(&self.system, &self.at, &self.targets);
@@ -343,7 +367,7 @@ impl Solver {
             let unit = self.has_unit();
             let (plan, mut work) = self.work();
             plan.factorise(&mut work)
-                .map_err(|Rejected| Error::Singular { rcond: 0.0 })?;
+                .map_err(|Rejected| SINGULAR_HERE)?;
             if unit {
                 plan.solve_rates(&mut work, &UNIT);
             }

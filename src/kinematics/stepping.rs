@@ -1,15 +1,15 @@
 //! Following a path from one pose to the next without changing the assembly mode.
 //!
 //! The mechanism is carried along the path in sub-steps. Each starts from the tangent and
-//! curvature of the motion, ends with Newton–Raphson, and is halved unless each part of the
-//! mechanism shows that it stayed on its motion: Newton contracts, the correction is small, the
-//! Jacobian is regular and its determinant keeps its sign, as it must while no singular position
-//! is crossed.
+//! curvature of the motion, ends with Newton–Raphson, and is accepted with the
+//! [certificate](super::certificate) that one and only one continuous motion joins its two ends;
+//! else it is shortened by as much as the certificate finds it too long.
 
 use super::Error;
-use super::newton::LARGEST_CORRECTION;
+use super::error::OpenJoint;
+use super::newton::Correction;
 use super::path::Path;
-use super::plan::Advance;
+use super::plan::{Advance, Substep, Work};
 use super::solver::{Solver, UNIT};
 use crate::mechanism::Jet;
 
@@ -21,6 +21,9 @@ pub enum Reason {
     DeadPoint,
     /// A value on the way is one for which the mechanism does not exist.
     Value(Error),
+    /// Beyond here a constraint that was redundant so far contradicts the others: what it would
+    /// be open by where it first was found open.
+    Contradiction(OpenJoint),
     /// The path asks for more sub-steps than anyone would wait for.
     TooLong,
 }
@@ -33,6 +36,10 @@ pub struct Progress {
     pub iterations: u32,
     /// Sub-steps, failed ones included; one for an ordinary step.
     pub substeps: u32,
+    /// How many of those that succeeded are *checked*, not proved: that one continuous motion
+    /// joins their ends rests on an estimate. So it is for blocks of more than 32 torn unknowns,
+    /// and while parameters move those of relations without straight code, or a motion's table.
+    pub checked: u32,
 }
 
 /// The path could not be followed to its end: a dead point is in the way, or values for which
@@ -47,14 +54,16 @@ pub struct Blocked {
     pub progress: Progress,
 }
 
-/// The largest turn of a body in one sub-step \[rad\]. A four-bar's sub-steps can be proved safe
-/// up to 0.66–1.13 rad, depending on the pose.
-const LARGEST_TURN: f64 = 0.5;
 /// Some thousand turns; a path that asks for more is a slip, and the host waits.
 const MOST_SUBSTEPS: u32 = 100_000;
-/// Where a sub-step looks whether a prescribed motion does what its start foretells: at places
-/// that no simple period hits all.
-const LOOK_AT: [f64; 3] = [0.29, 0.53, 0.83];
+/// A sub-step that fails is shortened to no less than this part, one that nothing is known of to
+/// half: what the certificate tells of a much too long one is not to be relied on.
+const SHORTEN: f64 = 0.1;
+const HALVE: f64 = 0.5;
+/// A sub-step follows one that succeeded at no more than this many times its length.
+const LENGTHEN: f64 = 4.0;
+/// What a sub-step is chosen shorter by than the certificate of another one suggests.
+const ROOM: f64 = 0.85;
 /// A sub-step of this part of the path that still fails means that the path is blocked.
 const SMALLEST_SUBSTEP: f64 = 1e-12;
 
@@ -69,6 +78,8 @@ impl Solver {
         let mut progress = Progress::default();
         let mut s = 0.0;
         let mut substep: f64 = 1.0;
+        // What a redundant constraint would have been open by, and where.
+        let mut opened: Option<(f64, OpenJoint)> = None;
         let blocked = |s, reason, progress| {
             Err(Blocked {
                 s,
@@ -84,9 +95,6 @@ impl Solver {
         self.drive(path, 0.0);
         while s < 1.0 {
             self.predict();
-            while self.turn_within(substep) > LARGEST_TURN && substep >= SMALLEST_SUBSTEP {
-                substep *= 0.5;
-            }
             self.origin_time = self.pose.time;
             if self.parameters_move {
                 self.origin_parameters
@@ -114,15 +122,36 @@ impl Solver {
                 }
                 self.stand_at(path, start);
                 reaches_point = false;
-                substep = 0.5 * (next - start);
+                if let Err(Reason::Contradiction(joint)) = &reached {
+                    opened.get_or_insert_with(|| (next, joint.clone()));
+                }
+                if self.change_rows() {
+                    self.stand_at(path, start);
+                    continue;
+                }
+                substep = match reached {
+                    // The rows that are solved have nothing against it.
+                    Err(Reason::Contradiction(_)) => HALVE * (next - start),
+                    _ => self.shortened(next - start),
+                };
                 if substep < SMALLEST_SUBSTEP {
-                    let reason = reached.map_or_else(Reason::Value, |_| Reason::DeadPoint);
+                    let reason = match (reached, opened) {
+                        (Err(Reason::Contradiction(_)), Some((_, joint))) => {
+                            Reason::Contradiction(joint)
+                        }
+                        (reached, _) => reached.err().unwrap_or(Reason::DeadPoint),
+                    };
                     return blocked(start, reason, progress);
                 }
             }
-            // Twice the sub-step that was possible here; what a point cut short was no less.
-            let possible = if reaches_point { substep } else { s - start };
-            substep = 2.0 * possible;
+            opened.take_if(|(place, _)| *place <= s);
+            let suggested = self.lengthened(s - start);
+            // What a point cut short was possible as well.
+            substep = if reaches_point {
+                suggested.max(substep)
+            } else {
+                suggested
+            };
         }
         Ok(progress)
     }
@@ -154,46 +183,19 @@ impl Solver {
         }
     }
 
-    /// A bound of how far a body turns over the part `h` of the path \[rad\], by tangent and
-    /// curvature of the motion there. What parameters add that move as well is left out.
-    fn turn_within(&self, h: f64) -> f64 {
-        let way = match self.origin_drivers[..] {
-            [u] => h * (u.first.abs() + 0.5 * h * u.second.abs()),
-            _ => h,
-        };
-        let bodies = 3 * self.system.mechanism().bodies.len();
-        let rates = self.flow.velocity().iter().zip(self.flow.acceleration());
-        let angles = rates
-            .enumerate()
-            .filter(|(column, _)| *column >= bodies || column % 3 == 2);
-        angles.fold(0.0, |most: f64, (_, (first, second))| {
-            most.max(way * (first.abs() + 0.5 * way * second.abs()))
-        })
+    /// How long to try instead of a sub-step of length `h` that failed.
+    fn shortened(&self, h: f64) -> f64 {
+        let load = self.tubes.load();
+        if load.is_finite() && load > 1.0 {
+            h * (ROOM / load.sqrt()).max(SHORTEN)
+        } else {
+            h * HALVE
+        }
     }
 
-    /// Whether the prescribed motions between the two ends go where their value, velocity and
-    /// acceleration at the start lead: only then do the ends tell of the way between them.
-    fn is_as_foretold(&mut self, path: &Path, [start, end]: [f64; 2]) -> Result<bool, Error> {
-        if !path.has_motions() {
-            return Ok(true);
-        }
-        for part in LOOK_AT {
-            let h = part * (end - start);
-            self.set_path(path, start + h)?;
-            let size = self.at.size();
-            let foretold = self
-                .origin_drivers
-                .iter()
-                .zip(&self.path_drivers)
-                .all(|(from, at)| {
-                    let value = from.value + h * (from.first + 0.5 * h * from.second);
-                    (value - at.value).abs() <= LARGEST_CORRECTION * size.min(1.0)
-                });
-            if !foretold {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+    /// How long to try after a sub-step of length `h` that succeeded.
+    fn lengthened(&self, h: f64) -> f64 {
+        h * (ROOM / self.tubes.load().sqrt()).min(LENGTHEN)
     }
 
     /// Goes from the pose to the end of a sub-step; true if that kept to the motion. If not, the
@@ -201,29 +203,65 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// A value on the way is one for which the mechanism does not exist.
+    /// A value on the way is one for which the mechanism does not exist, or a redundant
+    /// constraint is one no longer.
     fn try_substep(
         &mut self,
         path: &Path,
         [start, end]: [f64; 2],
         progress: &mut Progress,
-    ) -> Result<bool, Error> {
-        if !self.is_as_foretold(path, [start, end])? {
-            return Ok(false);
+    ) -> Result<bool, Reason> {
+        // What holds for several steps is for steps that are taken as a whole: how a longer way is
+        // divided depends on its own proofs alone.
+        let boxes = start <= 0.0 && end >= 1.0 && !self.parameters_move;
+        let reached = self.reach(path, [start, end], boxes);
+        let mut reached = reached.map_err(Reason::Value)?;
+        if reached.is_none() && self.tubes.relied_on_box {
+            self.stand_at(path, start);
+            let again = self.reach(path, [start, end], false);
+            reached = again.map_err(Reason::Value)?;
         }
-        self.set_path(path, end)?;
-        let advance = self.advance_of(end - start);
-        let unit = self.has_unit().then_some(&UNIT[..]);
-        // The pose takes the new values with the new q, or keeps both as they are.
-        std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
-        let (plan, mut work) = self.work();
-        let Ok(correction) = plan.advance(&mut work, advance, unit) else {
-            std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
+        let Some(correction) = reached else {
             return Ok(false);
         };
+        if let Some(joint) = self.opened() {
+            return Err(Reason::Contradiction(joint));
+        }
+        // The pose takes the new values with the new q, or keeps both as they are.
+        std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
         self.at.copy_pose(&mut self.pose.q);
         progress.iterations = progress.iterations.saturating_add(correction.iterations);
+        progress.checked = progress.checked.saturating_add(self.tubes.checked.into());
         Ok(true)
+    }
+
+    /// Moves the bodies to the end of a sub-step, the pose apart; `None` if that is not proved.
+    fn reach(
+        &mut self,
+        path: &Path,
+        [start, end]: [f64; 2],
+        boxes: bool,
+    ) -> Result<Option<Correction>, Error> {
+        self.set_path(path, end)?;
+        self.tubes.begin(boxes);
+        if !self.bound_course(path, [start, end])? {
+            return Ok(None);
+        }
+        let advance = self.advance_of(end - start);
+        let unit = self.has_unit().then_some(&UNIT[..]);
+        let mut work = Work {
+            system: &self.system,
+            targets: &self.targets,
+            drivers: &self.next_drivers,
+            at: &mut self.at,
+            flow: &mut self.flow,
+        };
+        let mut substep = Substep {
+            advance,
+            from: &self.pose.q,
+            tubes: &mut self.tubes,
+        };
+        Ok(self.plan.advance(&mut work, &mut substep, unit).ok())
     }
 
     /// Takes time, parameters and drivers from the path at s, leaving q and the pose's drivers,

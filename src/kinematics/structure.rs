@@ -1,9 +1,9 @@
 //! Which equation determines which unknown, found without numbers.
 //!
-//! A maximum matching pairs equations with unknowns; what stays unmatched names the
-//! under- and over-determined parts (Dulmage–Mendelsohn). With all matched, the strongly
-//! connected components of the paired graph are the blocks that must be solved together, in
-//! block lower triangular order.
+//! A maximum matching pairs equations with unknowns. With all matched, the strongly connected
+//! components of the paired graph are the blocks that must be solved together, in block lower
+//! triangular order (Dulmage–Mendelsohn). Where some stay unmatched, numbers have to tell which
+//! rows are redundant and what is free to move: see `redundancy`.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, OnceLock};
@@ -11,9 +11,9 @@ use std::sync::{Arc, OnceLock};
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
+use super::constraint;
 use super::constraint::Incidence;
 use super::system::{System, Target};
-use super::{Element, Error, constraint};
 use crate::mechanism::{
     Coordinate, DriverId, Expression, MarkerId, Mechanism, Motion, ParameterId,
 };
@@ -88,40 +88,24 @@ impl Dependencies {
 }
 
 impl Structure {
-    /// Analyses a system.
+    /// Analyses a system without the rows `set_aside`, which are ascending. `None` unless each
+    /// row left can be paired with an unknown of its own and none is left over.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Structure`] unless each equation can be paired with an unknown of its own and
-    /// none is left over.
-    pub fn new(system: &System) -> Result<Self, Error> {
-        let incidences: Vec<Incidence> = system
-            .equations()
-            .iter()
-            .map(|equation| {
-                let mut incidence = Incidence::default();
-                equation
-                    .constraint
-                    .incidence(system.mechanism(), &mut incidence);
-                incidence.unknowns.sort_unstable();
-                incidence.unknowns.dedup();
-                incidence
-            })
-            .collect();
-        let matching = Matching::new(&incidences, system.unknowns());
+    /// What depends on what goes through the rows left only: parameters in the others decide
+    /// whether the mechanism closes, not where it is.
+    pub(super) fn new(system: &System, set_aside: &[usize]) -> Option<Self> {
+        let rows = 0..system.equations().len();
+        let incidences: Vec<_> = rows.clone().map(|row| system.incidence(row)).collect();
+        let kept = rows.filter(|row| set_aside.binary_search(row).is_err());
+        let matching = Matching::new(&incidences, system.unknowns(), kept);
         if !matching.is_perfect() {
-            return Err(matching.problem(system, &incidences));
+            return None;
         }
-        let mut structure = Self {
-            mechanism: Arc::clone(system.mechanism()),
-            blocks: Vec::new(),
-            block_of: vec![usize::MAX; system.unknowns()],
-            dependencies: OnceLock::new(),
-        };
+        let mut structure = Self::of_nothing(system);
         for rows in matching.components(&incidences) {
             let columns: Vec<_> = rows
                 .iter()
-                .map(|&row| matching.column_of[row].expect("the matching is perfect"))
+                .map(|&row| matching.column_of[row].expect("only paired rows are in components"))
                 .collect();
             for &column in &columns {
                 structure.block_of[column] = structure.blocks.len();
@@ -129,7 +113,31 @@ impl Structure {
             let block = structure.block(system, &incidences, rows, columns);
             structure.blocks.push(block);
         }
-        Ok(structure)
+        Some(structure)
+    }
+
+    /// Pairs as many of these rows as can be, earlier ones first. Returns the rows of the system
+    /// that are then left, ascending; `None` if an unknown is left.
+    pub(super) fn left_over(
+        system: &System,
+        rows: impl Iterator<Item = usize>,
+    ) -> Option<Vec<usize>> {
+        let all = 0..system.equations().len();
+        let incidences: Vec<_> = all.clone().map(|row| system.incidence(row)).collect();
+        let matching = Matching::new(&incidences, system.unknowns(), rows);
+        let complete = matching.row_of.iter().all(Option::is_some);
+        let unpaired = all.filter(|&row| matching.column_of[row].is_none());
+        complete.then(|| unpaired.collect())
+    }
+
+    /// The structure of a system that has still to be analysed.
+    pub(super) fn of_nothing(system: &System) -> Self {
+        Self {
+            mechanism: Arc::clone(system.mechanism()),
+            blocks: Vec::new(),
+            block_of: vec![usize::MAX; system.unknowns()],
+            dependencies: OnceLock::new(),
+        }
     }
 
     /// The blocks, each after those it depends on.
@@ -250,17 +258,20 @@ impl Structure {
 struct Matching {
     column_of: Vec<Option<usize>>,
     row_of: Vec<Option<usize>>,
+    /// Whether no row was left without an unknown.
+    pairs_all_rows: bool,
 }
 
 impl Matching {
     /// Augments row by row along alternating paths, breadth first.
-    fn new(incidences: &[Incidence], unknowns: usize) -> Self {
+    fn new(incidences: &[Incidence], unknowns: usize, rows: impl Iterator<Item = usize>) -> Self {
         let mut matching = Self {
             column_of: vec![None; incidences.len()],
             row_of: vec![None; unknowns],
+            pairs_all_rows: true,
         };
         let mut reached_from = vec![None; unknowns];
-        for row in 0..incidences.len() {
+        for row in rows {
             // Most rows find a free unknown at once.
             let free = incidences[row]
                 .unknowns
@@ -272,6 +283,7 @@ impl Matching {
             } else {
                 matching.augment(incidences, row, &mut reached_from);
             }
+            matching.pairs_all_rows &= matching.column_of[row].is_some();
         }
         matching
     }
@@ -318,18 +330,23 @@ impl Matching {
     }
 
     fn is_perfect(&self) -> bool {
-        self.column_of.iter().all(Option::is_some) && self.row_of.iter().all(Option::is_some)
+        self.pairs_all_rows && self.row_of.iter().all(Option::is_some)
     }
 
-    /// Strongly connected components of the rows, in an order in which each comes after those
-    /// whose unknowns it uses.
+    /// Strongly connected components of the paired rows, in an order in which each comes after
+    /// those whose unknowns it uses.
     fn components(&self, incidences: &[Incidence]) -> Vec<Vec<usize>> {
         let mut graph =
             DiGraph::<(), (), usize>::with_capacity(incidences.len(), 3 * incidences.len());
         for _ in incidences {
             graph.add_node(());
         }
-        for (row, incidence) in incidences.iter().enumerate() {
+        let paired = |row: usize| self.column_of[row].is_some();
+        for (row, incidence) in incidences
+            .iter()
+            .enumerate()
+            .filter(|(row, _)| paired(*row))
+        {
             for &column in &incidence.unknowns {
                 let owner = self.row_of[column].expect("the matching is perfect");
                 if owner != row {
@@ -346,72 +363,7 @@ impl Matching {
                 rows.sort_unstable();
                 rows
             })
+            .filter(|rows| paired(rows[0]))
             .collect()
     }
-
-    /// Names the under-determined part (unknowns that alternating paths reach from an unmatched
-    /// unknown) and the over-determined one (rows reached from an unmatched row).
-    fn problem(&self, system: &System, incidences: &[Incidence]) -> Error {
-        let mechanism = system.mechanism();
-        let mut rows_with = vec![Vec::new(); system.unknowns()];
-        for (row, incidence) in incidences.iter().enumerate() {
-            for &column in &incidence.unknowns {
-                rows_with[column].push(row);
-            }
-        }
-        let loose = reach(
-            unmatched(&self.row_of),
-            |column| rows_with[column].clone(),
-            |row| self.column_of[row],
-        );
-        let excess = reach(
-            unmatched(&self.column_of),
-            |row| incidences[row].unknowns.clone(),
-            |column| self.row_of[column],
-        );
-        let mut loose_parts: Vec<_> = loose
-            .into_iter()
-            .map(|column| system.describe_unknown(column))
-            .collect();
-        // The unknowns of a body are next to each other.
-        loose_parts.dedup();
-        let elements: BTreeSet<Element> = excess
-            .into_iter()
-            .map(|row| system.equations()[row].element)
-            .collect();
-        Error::Structure {
-            equations: incidences.len(),
-            unknowns: system.unknowns(),
-            loose: loose_parts,
-            excess: elements
-                .into_iter()
-                .map(|element| element.describe(mechanism))
-                .collect(),
-        }
-    }
-}
-
-fn unmatched(partner: &[Option<usize>]) -> Vec<usize> {
-    (0..partner.len())
-        .filter(|&k| partner[k].is_none())
-        .collect()
-}
-
-/// All nodes of one side that alternating paths reach from `start`: any edge across, a matched
-/// one back.
-fn reach(
-    start: Vec<usize>,
-    across: impl Fn(usize) -> Vec<usize>,
-    back: impl Fn(usize) -> Option<usize>,
-) -> BTreeSet<usize> {
-    let mut seen: BTreeSet<_> = start.iter().copied().collect();
-    let mut queue = start;
-    while let Some(node) = queue.pop() {
-        for next in across(node).into_iter().filter_map(&back) {
-            if seen.insert(next) {
-                queue.push(next);
-            }
-        }
-    }
-    seen
 }

@@ -9,7 +9,9 @@ use std::sync::Arc;
 use super::configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, ProfileId,
 };
-use super::constraint::{self, Constraint, Dimension, Gradient, JointUnknown, TurnEffect};
+use super::constraint::{
+    self, Constraint, Dimension, Gradient, Incidence, JointUnknown, TurnEffect,
+};
 use super::variation::{Varied, VariedConfiguration};
 use super::{Element, Error, joint};
 use crate::mechanism::{DriverId, Expression, Mechanism, ParameterId, Profile, ProfileInForce};
@@ -201,6 +203,16 @@ impl System {
                 self.joint_parts.unknowns[place].0.describe(&self.mechanism)
             }
         }
+    }
+
+    /// The unknowns and parameters in row `row`, each unknown once, ascending.
+    pub(super) fn incidence(&self, row: usize) -> Incidence {
+        let mut incidence = Incidence::default();
+        let constraint = &self.equations[row].constraint;
+        constraint.incidence(&self.mechanism, &mut incidence);
+        incidence.unknowns.sort_unstable();
+        incidence.unknowns.dedup();
+        incidence
     }
 
     /// A configuration for this system, its parameter values still to be set.

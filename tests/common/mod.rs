@@ -179,6 +179,26 @@ pub(crate) fn assembled(mechanism: &Arc<Mechanism>) -> (Solver, Path) {
     (solver, path)
 }
 
+/// The text of a mechanism file with other estimates: `estimates` has, one after the other, the
+/// header of each body's table and its line.
+pub(crate) fn pasted(text: &str, estimates: &str) -> String {
+    let mut out = text.to_owned();
+    let mut lines = estimates.lines().filter(|line| !line.is_empty());
+    while let (Some(header), Some(estimate)) = (lines.next(), lines.next()) {
+        let start = out.find(header).expect("the body has a table");
+        let start = start + out[start..].find('\n').expect("the table is not empty") + 1;
+        let table = &out[start..];
+        let end = start + table.find("\n[").map_or(table.len(), |end| end + 1);
+        let old = out[start..end].lines();
+        let others: String = old
+            .filter(|line| !line.starts_with("estimate"))
+            .flat_map(|line| [line, "\n"])
+            .collect();
+        out.replace_range(start..end, &format!("{estimate}\n{others}"));
+    }
+    out
+}
+
 /// Lays a path for the first driver, an input, to `target` in a straight line.
 pub(crate) fn straight_to(solver: &Solver, path: &mut Path, target: f64) {
     let now = solver.pose().drivers[0];

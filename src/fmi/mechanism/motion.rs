@@ -134,8 +134,11 @@ impl MechanismModel {
         self.refresh_pose(phase, log)?;
         self.commit_pose();
         if starting {
-            for misfit in self.solver.misfits() {
-                log.write(Status::Warning, Category::Warning, &misfit.to_string());
+            let redundancies = self.solver.redundancies().into_iter();
+            let redundancies = redundancies.map(|redundancy| redundancy.to_string());
+            let misfits = self.solver.misfits().into_iter();
+            for warning in redundancies.chain(misfits.map(|misfit| misfit.to_string())) {
+                log.write(Status::Warning, Category::Warning, &warning);
             }
         }
         Ok(())
@@ -223,6 +226,10 @@ impl MechanismModel {
                 parts.push(error.to_string());
                 "no mechanism"
             }
+            Reason::Contradiction(open) => {
+                parts.push(format!("beyond, {open}, redundant up to here"));
+                "contradiction"
+            }
             Reason::TooLong => {
                 parts.push("the step asks for more sub-steps than can be taken".to_owned());
                 "given up"
@@ -241,9 +248,11 @@ impl MechanismModel {
             let Progress {
                 iterations,
                 substeps,
+                checked,
             } = self.progress;
             let message = format!(
-                "t = {} s: {substeps} sub-steps, {iterations} iterations, residual {:.1e}",
+                "t = {} s: {substeps} sub-steps, {checked} of them checked, not proved; \
+                 {iterations} iterations, residual {:.1e}",
                 self.time,
                 self.solver.residual()
             );
@@ -309,6 +318,7 @@ impl MechanismModel {
                 self.progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
+                    checked: 0,
                 };
                 log.write(
                     Status::Warning,

@@ -166,6 +166,7 @@ impl MechanismState {
         codec.finite(time)?;
         codec.count(&mut progress.iterations)?;
         codec.count(&mut progress.substeps)?;
+        codec.count(&mut progress.checked)?;
         // Derived parameters may be anything until values are looked at together.
         for value in &mut settings.parameters {
             codec.real(value)?;

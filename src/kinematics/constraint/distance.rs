@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Varied, VariedConfiguration,
-    centripetal, centripetal_bound, chord, point_velocity, speed_bound,
+    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, Varied,
+    VariedConfiguration, centripetal, centripetal_bound, chord, point_velocity, speed_bound,
 };
 use crate::kinematics::variation::subtract;
 use crate::mechanism::{MarkerId, Mechanism, Number};
@@ -13,7 +13,7 @@ use crate::mechanism::{MarkerId, Mechanism, Number};
 ///
 /// Not smooth where the points coincide; there the gradient is taken along the x-axis, so that
 /// an assembly that starts from coinciding points has a direction to leave in.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Distance {
     /// Marker i.
     pub from: MarkerId,
@@ -37,6 +37,10 @@ impl Distance {
 impl Constraint for Distance {
     fn dimension(&self) -> Dimension {
         Dimension::Length
+    }
+
+    fn relation(&self) -> Relation {
+        Relation::Distance(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {

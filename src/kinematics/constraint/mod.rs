@@ -137,6 +137,8 @@ pub enum Relation {
     Angle(Angle),
     /// [`Coincidence`].
     Coincidence(Coincidence),
+    /// [`Distance`].
+    Distance(Distance),
     /// [`Projection`].
     Projection(Projection),
     /// Known by its trait only.

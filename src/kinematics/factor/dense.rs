@@ -97,26 +97,6 @@ impl DenseLu {
         }
         Ok(())
     }
-
-    /// Whether the determinant is negative.
-    #[must_use]
-    pub fn determinant_is_negative(&self) -> bool {
-        self.pivots
-            .iter()
-            .enumerate()
-            .fold(false, |negative, (k, &pivot_row)| {
-                negative ^ (pivot_row != k) ^ (self.matrix[(k, k)] < 0.0)
-            })
-    }
-
-    /// The magnitudes of the smallest and the largest pivot.
-    #[must_use]
-    pub fn pivot_range(&self) -> (f64, f64) {
-        let pivots = (0..self.pivots.len()).map(|k| self.matrix[(k, k)].abs());
-        pivots.fold((f64::INFINITY, 0.0_f64), |(low, high), pivot| {
-            (low.min(pivot), high.max(pivot))
-        })
-    }
 }
 
 impl Factors for DenseLu {
@@ -194,7 +174,6 @@ mod tests {
             lu.solve_transposed(x.as_mut_slice());
             let truth = inverse.transpose() * &b;
             prop_assert!((&x - &truth).amax() <= tolerance * truth.amax().max(b.amax()));
-            prop_assert_eq!(lu.determinant_is_negative(), matrix.determinant() < 0.0);
             // Hager's estimate is an upper bound of rcond and seldom off by more than three.
             let estimate = Condition::new(order).rcond(&mut lu);
             prop_assert!(estimate >= rcond * (1.0 - 1e-6), "{estimate} {rcond}");

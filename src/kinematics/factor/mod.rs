@@ -49,23 +49,56 @@ impl Condition {
     /// Estimate of 1 / (‖A‖₁ ‖A⁻¹‖₁), by Hager's method with Higham's extra vector
     /// (N. J. Higham, ACM Trans. Math. Softw. 14 (1988) 381–396). Never below the true value.
     pub fn rcond(&mut self, factors: &mut impl Factors) -> f64 {
-        let Self { probe, signs } = self;
         if factors.order() == 0 {
             return 1.0;
         }
+        let inverse_norm = self.norm(
+            factors,
+            |factors, x| factors.solve(x),
+            |factors, x| factors.solve_transposed(x),
+        );
+        let rcond = 1.0 / (factors.norm() * inverse_norm);
+        if rcond.is_finite() { rcond } else { 0.0 }
+    }
+
+    /// Estimate of the largest component of |A⁻¹| b, for b ≥ 0, by the same method: it is the
+    /// 1-norm of diag(b) A⁻ᵀ. Never above the true value.
+    pub fn largest_row(&mut self, factors: &mut impl Factors, b: &[f64]) -> f64 {
+        let scale = |x: &mut [f64]| x.iter_mut().zip(b).for_each(|(x, b)| *x *= b);
+        self.norm(
+            factors,
+            |factors, x| {
+                factors.solve_transposed(x);
+                scale(x);
+            },
+            |factors, x| {
+                scale(x);
+                factors.solve(x);
+            },
+        )
+    }
+
+    /// Estimate of the 1-norm of a matrix that can be applied, and whose transpose can be.
+    fn norm<F: Factors>(
+        &mut self,
+        factors: &mut F,
+        apply: impl Fn(&mut F, &mut [f64]),
+        apply_transposed: impl Fn(&mut F, &mut [f64]),
+    ) -> f64 {
+        let Self { probe, signs } = self;
         let n = factors.order() as f64;
         probe.fill(1.0 / n);
-        let mut inverse_norm = 0.0_f64;
+        let mut norm = 0.0_f64;
         let mut previous = usize::MAX;
         // Higham: more than five rounds are never needed in practice.
         for _ in 0..5 {
-            factors.solve(probe);
-            inverse_norm = inverse_norm.max(norm1(probe));
+            apply(factors, probe);
+            norm = norm.max(norm1(probe));
             for (sign, value) in signs.iter_mut().zip(probe.iter()) {
                 *sign = 1.0_f64.copysign(*value);
             }
             probe.copy_from_slice(signs);
-            factors.solve_transposed(probe);
+            apply_transposed(factors, probe);
             let steepest = steepest(probe);
             if steepest == previous {
                 break;
@@ -79,10 +112,8 @@ impl Condition {
             let grown = 1.0 + k as f64 / (n - 1.0).max(1.0);
             *value = if k % 2 == 0 { grown } else { -grown };
         }
-        factors.solve(probe);
-        inverse_norm = inverse_norm.max(2.0 * norm1(probe) / (3.0 * n));
-        let rcond = 1.0 / (factors.norm() * inverse_norm);
-        if rcond.is_finite() { rcond } else { 0.0 }
+        apply(factors, probe);
+        norm.max(2.0 * norm1(probe) / (3.0 * n))
     }
 }
 
@@ -144,26 +175,6 @@ impl Lu {
         if let Self::Sparse(lu) = self {
             lu.forget_pivots();
         }
-    }
-
-    /// Whether the determinant is negative.
-    #[must_use]
-    pub fn determinant_is_negative(&self) -> bool {
-        match self {
-            Self::Dense(lu) => lu.determinant_is_negative(),
-            Self::Sparse(lu) => lu.determinant_is_negative(),
-        }
-    }
-
-    /// Whether the reciprocal condition is below `limit`. Cheap where it clearly is not.
-    pub fn is_singular(&mut self, limit: f64, condition: &mut Condition) -> bool {
-        let (low, high) = match self {
-            Self::Dense(lu) => lu.pivot_range(),
-            Self::Sparse(lu) => lu.pivot_range(),
-        };
-        // With rows and columns scaled, pivots of similar size mean a good condition; the factor
-        // leaves room for the cases where they hide a bad one.
-        low < 1e3 * limit * high.max(self.norm()) && condition.rcond(self) < limit
     }
 }
 

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector2;
 
-use crate::kinematics::configuration::{BodyPose, Configuration, perp};
+use crate::kinematics::certificate::{Tube, Tubes};
+use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// A marker on ground or on a body that an earlier kernel has found.
@@ -12,6 +13,9 @@ pub(super) struct Anchor {
     place: u32,
     /// s, its point in the body's frame.
     s: Vector2<f64>,
+    /// From the body's pivot to it, in the body's frame, and how far that is.
+    lever: Vector2<f64>,
+    length: f64,
 }
 
 const GROUND: u32 = u32::MAX;
@@ -87,12 +91,40 @@ impl Anchor {
         Self {
             place: body.map_or(GROUND, |body| compact(body.index())),
             s: Vector2::zeros(),
+            lever: Vector2::zeros(),
+            length: 0.0,
         }
     }
 
-    /// Takes over the place of its marker.
-    pub(super) fn set_parameters(&mut self, at: &Configuration, marker: MarkerId) {
+    /// Takes over the place of its marker, and the pivot of its body.
+    pub(super) fn set_parameters(&mut self, at: &Configuration, tubes: &Tubes, marker: MarkerId) {
         self.s = at.local(marker).0;
+        if self.place != GROUND {
+            self.lever = self.s - tubes.pivot(self.place as usize);
+            self.length = self.lever.norm();
+        }
+    }
+
+    /// How its body moves in a sub-step; `None` on ground.
+    #[inline(always)]
+    pub(super) fn carried<'a>(&self, tubes: &'a Tubes) -> Option<(&'a Tube, f64)> {
+        (self.place != GROUND).then(|| (tubes.body(self.place as usize), self.length))
+    }
+
+    /// From its body's pivot to it, where the sub-step starts and where it ends. Not on ground.
+    #[inline(always)]
+    pub(super) fn levers(&self, tube: &Tube, frames: &[BodyPose]) -> [Vector2<f64>; 2] {
+        [
+            rotate(tube.cos, tube.sin, self.lever),
+            frames[self.place as usize].rotate(self.lever),
+        ]
+    }
+
+    /// How far it may be off the straight line between its two ends in a sub-step \[m\].
+    #[inline(always)]
+    pub(super) fn strays(&self, tubes: &Tubes) -> f64 {
+        self.carried(tubes)
+            .map_or(0.0, |(tube, length)| tube.stray + tube.arc(length))
     }
 
     /// P.

@@ -297,7 +297,7 @@ impl Search<'_> {
             let markers = match self.system.equations()[row].constraint.relation() {
                 Relation::Coincidence(c) => [Some(c.from), Some(c.to), None],
                 Relation::Projection(p) => [Some(p.from), Some(p.to), Some(p.axes)],
-                Relation::Angle(_) | Relation::Other => [None; 3],
+                Relation::Angle(_) | Relation::Distance(_) | Relation::Other => [None; 3],
             };
             markers.into_iter().flatten()
         });
@@ -496,10 +496,8 @@ impl Search<'_> {
                 Recipe::Slide(parts) => Kernel::Slide(Box::new(Slide::new(self.mechanism, parts))),
                 Recipe::Coupled => {
                     let order = orders.next().expect("each group of this kind has one");
-                    let lu = order.matrix(self.system);
                     let places = Arc::clone(&places);
-                    let (rows, columns) = (order.rows, order.columns);
-                    Kernel::Coupled(Box::new(Coupled::new(index, rows, columns, lu, places)))
+                    Kernel::Coupled(Box::new(Coupled::new(index, order, self.system, places)))
                 }
             })
             .collect()

@@ -1,15 +1,19 @@
 //! Any block of equations that have to be solved together.
 
+mod certify;
+mod neighbourhood;
+
 use std::sync::Arc;
 
-use super::{Advance, Work};
+use certify::Proof;
+use neighbourhood::Neighbourhood;
+
+use super::elimination::Order;
+use super::{Substep, Work};
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::factor::{Condition, Factors, Lu};
-use crate::kinematics::newton::{
-    AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
-    SMALL, STALLED,
-};
-use crate::kinematics::system::{Target, nan_or_larger};
+use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
+use crate::kinematics::system::{System, Target, nan_or_larger};
 use crate::mechanism::Jet;
 
 /// Where an unknown is found: the kernel, and its place among the unknowns of that kernel.
@@ -29,26 +33,22 @@ pub(in crate::kinematics) struct Coupled {
     places: Arc<[Place]>,
     lu: Lu,
     condition: Condition,
-    /// Whether the determinant is negative at the pose last factorised.
-    negative: bool,
     /// Entries of the rows at unknowns found before: row of the block, column, scaled value.
     upstream: Vec<(usize, usize, f64)>,
     residual: Vec<f64>,
     /// The largest residual in multiples of its rounding error.
     excess: f64,
     correction: Vec<f64>,
-    predicted: Vec<f64>,
+    proof: Box<Proof>,
+    neighbourhood: Neighbourhood,
 }
 
 impl Coupled {
-    /// The block with these rows and unknowns, in the order in which `lu` has them.
-    pub(super) fn new(
-        index: usize,
-        rows: Vec<usize>,
-        columns: Vec<usize>,
-        lu: Lu,
-        places: Arc<[Place]>,
-    ) -> Self {
+    /// The block in this order of its rows and unknowns.
+    pub(super) fn new(index: usize, order: Order, system: &System, places: Arc<[Place]>) -> Self {
+        let lu = order.matrix(system);
+        let proof = Box::new(Proof::new(system, &order, &lu, &places, index));
+        let Order { rows, columns, .. } = order;
         let order = rows.len();
         /// Three bodies and an unknown of its own at the most.
         const ENTRIES: usize = 10;
@@ -56,12 +56,12 @@ impl Coupled {
             index,
             lu,
             condition: Condition::new(order),
-            negative: false,
             upstream: Vec::with_capacity(ENTRIES * order),
             residual: vec![0.0; order],
             excess: 0.0,
             correction: vec![0.0; order],
-            predicted: vec![0.0; order],
+            neighbourhood: Neighbourhood::new(order + proof.known.len()),
+            proof,
             rows,
             columns,
             places,
@@ -81,9 +81,22 @@ impl Coupled {
         matches!(self.lu, Lu::Sparse(_))
     }
 
+    /// Lets go of the box that earlier steps have left.
+    pub(super) fn forget_box(&mut self) {
+        self.neighbourhood.forget();
+    }
+
     /// Lets a sparse matrix choose its pivots anew.
     pub(super) fn forget_pivots(&mut self) {
         self.lu.forget_pivots();
+        self.proof.forget_pivots();
+    }
+
+    /// Chooses the pivots of its sparse matrices at the pose in `work`, unless that is singular.
+    pub(super) fn choose_pivots(&mut self, work: &Work<'_>) {
+        if self.factorise(work).is_ok() {
+            self.proof.choose_pivots(&self.lu);
+        }
     }
 
     /// Evaluates the rows and their Jacobian at the pose in `work`, not yet factorised.
@@ -128,9 +141,7 @@ impl Coupled {
         let upstream = self.upstream.iter().map(|(_, _, value)| value.abs());
         self.lu
             .factorise(upstream.fold(0.0, f64::max))
-            .map_err(|_| Rejected)?;
-        self.negative = self.lu.determinant_is_negative();
-        Ok(())
+            .map_err(|_| Rejected)
     }
 
     /// Factorises at the pose in `work`.
@@ -139,31 +150,23 @@ impl Coupled {
         self.decompose()
     }
 
-    /// Predicts the unknowns and corrects them until the rows are at rounding.
+    /// Predicts the unknowns, corrects them until the rows are at rounding, and proves that the
+    /// motion leads there.
     pub(super) fn advance(
         &mut self,
         work: &mut Work<'_>,
-        advance: Advance,
+        substep: &mut Substep<'_>,
     ) -> Result<Correction, Rejected> {
-        let before = self.negative;
-        for (predicted, &column) in self.predicted.iter_mut().zip(&self.columns) {
-            *predicted = advance.predict(column, work.at.coordinate(column), work.flow);
-            work.at.set_coordinate(column, *predicted);
+        self.note_start(work, substep);
+        for &column in &self.columns {
+            let before = work.at.coordinate(column);
+            let predicted = substep.advance.predict(column, before, work.flow);
+            work.at.set_coordinate(column, predicted);
         }
-        let correction = self.correct(work, MAX_ITERATIONS)?;
-        let size = work.at.size();
-        let moved = self.predicted.iter().zip(&self.columns);
-        let largest = moved
-            .map(|(predicted, &column)| {
-                let moved = (work.at.coordinate(column) - predicted).abs();
-                moved / work.system.column_scale(column, size)
-            })
-            .fold(0.0, nan_or_larger);
-        let kept = correction.contraction <= CONTRACTION
-            && largest <= LARGEST_CORRECTION
-            && self.negative == before
-            && !self.lu.is_singular(SINGULAR, &mut self.condition);
-        if kept { Ok(correction) } else { Err(Rejected) }
+        let correction = self.correct(work, MAX_ITERATIONS);
+        let correction = correction.map_err(|_| substep.tubes.break_off())?;
+        self.certify(work, substep)?;
+        Ok(correction)
     }
 
     /// Corrects the block's unknowns from where they are until Phi = 0 to rounding: solves
@@ -182,7 +185,6 @@ impl Coupled {
         };
         let mut outcome = Correction::default();
         let mut last_excess = f64::INFINITY;
-        let mut last_correction = f64::INFINITY;
         loop {
             self.evaluate(work);
             let excess = self.excess;
@@ -205,10 +207,6 @@ impl Coupled {
                 let value = work.at.coordinate(column) - step;
                 work.at.set_coordinate(column, value);
             }
-            let steps = self.correction.iter().map(|step| step.abs());
-            let correction = steps.fold(0.0, nan_or_larger);
-            outcome.contraction = outcome.contraction.max(correction / last_correction);
-            last_correction = correction.max(SMALL);
             last_excess = excess;
             outcome.iterations += 1;
         }

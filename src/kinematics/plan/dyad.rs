@@ -1,16 +1,17 @@
 //! Two bodies joined to each other and each to something already found, by revolutes.
 
+mod certify;
+
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
 use super::anchor::{Anchor, Moving, compact, larger, largest};
-use super::{Advance, Work};
+use super::reach::{Miss, Reach};
+use super::{Advance, Substep, Work};
+use crate::kinematics::certificate::Tubes;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
-use crate::kinematics::newton::{
-    AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
-    SMALL, STALLED,
-};
+use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// x, y and phi of two bodies: P_a + A_a l_a = P_b + A_b l_b with both P already found. The two
@@ -111,11 +112,18 @@ impl Side {
         }
     }
 
-    fn set_parameters(&mut self, at: &Configuration, parts: &SideParts) {
-        self.anchor.set_parameters(at, parts.anchor);
+    fn set_parameters(&mut self, at: &Configuration, tubes: &mut Tubes, parts: &SideParts) {
+        self.anchor.set_parameters(at, tubes, parts.anchor);
         self.s = at.local(parts.outer).0;
+        tubes.set_pivot(self.place as usize, self.s);
         self.l = at.local(parts.inner).0 - self.s;
         self.length = self.l.norm();
+    }
+
+    /// The angle at which its link points along `direction`, on the turn nearest to `guess`.
+    fn turned_along(&self, direction: Vector2<f64>, guess: f64) -> f64 {
+        let angle = direction.y.atan2(direction.x) - self.l.y.atan2(self.l.x);
+        angle + TAU * ((guess - angle) / TAU).round()
     }
 
     /// How far its angle is expected to turn.
@@ -166,44 +174,41 @@ impl Dyad {
         &self.parts.columns
     }
 
-    pub(super) fn set_parameters(&mut self, at: &Configuration) {
+    pub(super) fn set_parameters(&mut self, at: &Configuration, tubes: &mut Tubes) {
         for (side, parts) in self.sides.iter_mut().zip(&self.parts.sides) {
-            side.set_parameters(at, parts);
+            side.set_parameters(at, tubes, parts);
         }
     }
 
-    /// Predicts both angles and corrects them until the loop closes to rounding.
+    /// Predicts both angles, corrects them until the loop closes to rounding, and proves that the
+    /// motion leads there.
     #[inline(always)]
     pub(super) fn advance(
         &mut self,
         work: &mut Work<'_>,
-        advance: Advance,
+        substep: &mut Substep<'_>,
     ) -> Result<Correction, Rejected> {
         let [a, b] = &self.sides;
         let frames = work.at.frames();
-        let (frame_a, frame_b) = (&frames[a.place as usize], &frames[b.place as usize]);
-        let (turn_a, turn_b) = (a.turn(work, advance), b.turn(work, advance));
-        let (phi_a, phi_b) = (frame_a.phi + turn_a, frame_b.phi + turn_b);
-        let before = self.determinant;
+        let before = [frames[a.place as usize], frames[b.place as usize]];
+        let turns = [a.turn(work, substep.advance), b.turn(work, substep.advance)];
         let start = Turned {
-            frames: [
-                turned_on(frame_a, turn_a, phi_a),
-                turned_on(frame_b, turn_b, phi_b),
-            ],
+            frames: [0, 1].map(|k| turned_on(&before[k], turns[k], before[k].phi + turns[k])),
             exact: false,
         };
-        let found = self.correct(work, start, MAX_ITERATIONS)?;
-        // An angle that is not a number fails all of these.
-        let kept = found.correction.contraction <= CONTRACTION
-            && (found.phi[0] - phi_a).abs() <= LARGEST_CORRECTION
-            && (found.phi[1] - phi_b).abs() <= LARGEST_CORRECTION
-            && self.determinant * before > 0.0
-            && !self.is_singular();
-        if kept {
-            Ok(found.correction)
-        } else {
-            Err(Rejected)
-        }
+        let links = [a.link, b.link];
+        let found = self.correct(work, start, MAX_ITERATIONS);
+        let found = found.map_err(|_| substep.tubes.break_off())?;
+        self.certify(
+            work,
+            substep.tubes,
+            &Before {
+                frames: before,
+                links,
+            },
+            &found,
+        )?;
+        Ok(found.correction)
     }
 
     /// Newton–Raphson on the two angles. The angles accepted are those of exact sines and
@@ -221,7 +226,6 @@ impl Dyad {
         let base = outer_a.from(outer_b);
         let reach = outer_a.reach_from(outer_b);
         let mut correction = Correction::default();
-        let mut last = f64::INFINITY;
         let mut last_gap = f64::INFINITY;
         loop {
             let [frame_a, frame_b] = &now.frames;
@@ -251,8 +255,8 @@ impl Dyad {
                     [a.link, b.link] = links;
                     self.determinant = determinant;
                     return Ok(Found {
-                        phi: [phi_a, phi_b],
                         correction,
+                        open: open + rounding,
                     });
                 }
             } else if correction.iterations == max_iterations {
@@ -267,8 +271,6 @@ impl Dyad {
                 phi_a += step_a;
                 phi_b += step_b;
                 size = larger(step_a.abs(), step_b.abs());
-                correction.contraction = larger(correction.contraction, size / last);
-                last = larger(size, SMALL);
                 last_gap = open;
                 correction.iterations += 1;
                 if size > LIKELY_ANOTHER {
@@ -287,7 +289,7 @@ impl Dyad {
     }
 
     /// Closes the loop from these angles.
-    fn close_from(
+    pub(in crate::kinematics) fn close_from(
         &mut self,
         work: &mut Work<'_>,
         phi: [f64; 2],
@@ -342,13 +344,6 @@ impl Dyad {
         b.set_rates(frames, velocity, acceleration, outer_b, omega_b, alpha_b);
     }
 
-    /// Whether the links are in line, to what makes a position singular. Cheaper than
-    /// [`rcond`](Self::rcond), from which it differs by a factor of two at most.
-    fn is_singular(&self) -> bool {
-        let [a, b] = &self.sides;
-        self.determinant.abs() < SINGULAR * a.length * b.length
-    }
-
     /// 1 / (‖J‖₁ ‖J⁻¹‖₁), each column of J divided by its link's length: it depends on the angle
     /// between the links only.
     pub(super) fn rcond(&self) -> f64 {
@@ -361,59 +356,121 @@ impl Dyad {
         if rcond.is_finite() { rcond } else { 0.0 }
     }
 
-    /// Closes the loop the way that is nearest the estimates: the minimum of Ec. 3.6.9 for
-    /// r → ∞, which two circles have in two places. Leaves `work` at it.
+    /// The pairs of angles at which the loop closes, nearest the estimates first: the minima of
+    /// Ec. 3.6.9 for r → ∞, which two circles have in two places.
     ///
     /// # Errors
     ///
-    /// [`Rejected`] if the links do not reach each other.
-    pub(in crate::kinematics) fn assemble(
-        &mut self,
-        work: &mut Work<'_>,
+    /// [`Miss`] if the links do not reach each other.
+    pub(in crate::kinematics) fn ways(
+        &self,
+        work: &Work<'_>,
         estimate: &[f64],
-    ) -> Result<Correction, Rejected> {
+    ) -> Result<[[f64; 2]; 2], Miss> {
+        let reach = self.reach(work);
+        let miss = Miss::new(reach.gap(), reach.distance + reach.longest);
+        if miss.certain {
+            return Err(miss);
+        }
         let size = work.at.size();
-        let mut best: Option<(f64, [f64; 2])> = None;
-        for side in [1.0, -1.0] {
-            let Some(links) = self.meet(work, estimate, side) else {
-                return Err(Rejected);
-            };
-            let mut phi = [0.0; 2];
-            let mut distance = 0.0;
+        let mut ways = [(0.0, [0.0; 2]); 2];
+        for (way, side) in ways.iter_mut().zip([1.0, -1.0]) {
+            let links = self.meet(work, estimate, side).ok_or(miss)?;
             for (k, side) in self.sides.iter().enumerate() {
                 let column = 3 * side.place as usize;
                 let guess = &estimate[column..column + 3];
-                let angle = links[k].y.atan2(links[k].x) - side.l.y.atan2(side.l.x);
-                phi[k] = angle + TAU * ((guess[2] - angle) / TAU).round();
+                let phi = side.turned_along(links[k], guess[2]);
                 let point = side.anchor.point(work.at.frames());
-                let (sin, cos) = phi[k].sin_cos();
+                let (sin, cos) = phi.sin_cos();
                 let origin = point - rotate(cos, sin, side.s);
-                distance += ((origin.x - guess[0]) / size).powi(2)
+                way.0 += ((origin.x - guess[0]) / size).powi(2)
                     + ((origin.y - guess[1]) / size).powi(2)
-                    + (phi[k] - guess[2]).powi(2);
-            }
-            // The first of two that are equally far.
-            if best.is_none_or(|(least, _)| distance < least * (1.0 - 1e-9)) {
-                best = Some((distance, phi));
+                    + (phi - guess[2]).powi(2);
+                way.1[k] = phi;
             }
         }
-        let (_, phi) = best.ok_or(Rejected)?;
-        self.close_from(work, phi, MAX_ITERATIONS)
+        // The first of two that are equally far.
+        if ways[1].0 < ways[0].0 * (1.0 - 1e-9) {
+            ways.swap(0, 1);
+        }
+        Ok(ways.map(|(_, phi)| phi))
+    }
+
+    /// How far apart the anchors are and what the links can span.
+    pub(in crate::kinematics) fn reach(&self, work: &Work<'_>) -> Reach {
+        let [a, b] = &self.sides;
+        let frames = work.at.frames();
+        Reach {
+            distance: b.anchor.place(frames).from(a.anchor.place(frames)).norm(),
+            shortest: (a.length - b.length).abs(),
+            longest: a.length + b.length,
+        }
+    }
+
+    /// Its bodies, and for each the point on what is already found that it is pinned to.
+    pub(in crate::kinematics) fn ends(&self) -> [(usize, MarkerId); 2] {
+        [0, 1].map(|k| (self.parts.sides[k].body, self.parts.sides[k].anchor))
+    }
+
+    /// Puts the bodies as near to closing as they come, where the links do not reach each other:
+    /// in line, all of the gap in the joint declared last.
+    pub(in crate::kinematics) fn stretch(&self, work: &mut Work<'_>, estimate: &[f64]) {
+        let [a, b] = &self.sides;
+        let frames = work.at.frames_mut();
+        let (point_a, point_b) = (a.anchor.point(frames), b.anchor.point(frames));
+        let span = point_b - point_a;
+        let distance = span.norm();
+        let e = if distance > 0.0 {
+            span / distance
+        } else {
+            let (sin, cos) = estimate[3 * a.place as usize + 2].sin_cos();
+            Vector2::new(cos, sin)
+        };
+        // Too long a way is spanned by both; in too short a one the longer link overshoots.
+        let (along_a, along_b) = if distance > a.length + b.length {
+            (e, -e)
+        } else if a.length > b.length {
+            (e, e)
+        } else {
+            (-e, -e)
+        };
+        let turned = |side: &Side, along| {
+            let guess = estimate[3 * side.place as usize + 2];
+            BodyPose::turned(side.turned_along(along, guess))
+        };
+        let (frame_a, frame_b) = (turned(a, along_a), turned(b, along_b));
+        let rows = &self.parts.rows;
+        let last = (0..6).max_by_key(|&k| rows[k]).map_or(0, |k| k / 2);
+        let (end_a, end_b) = (frame_a.rotate(a.l), frame_b.rotate(b.l));
+        let outer_a = if last == 0 {
+            point_b + end_b - end_a
+        } else {
+            point_a
+        };
+        let outer_b = if last == 1 {
+            point_a + end_a - end_b
+        } else {
+            point_b
+        };
+        frames[a.place as usize] = BodyPose {
+            origin: outer_a - frame_a.rotate(a.s),
+            ..frame_a
+        };
+        frames[b.place as usize] = BodyPose {
+            origin: outer_b - frame_b.rotate(b.s),
+            ..frame_b
+        };
     }
 
     /// d_a and d_b where the links meet, on one side of the line between the anchors.
-    fn meet(&mut self, work: &Work<'_>, estimate: &[f64], side: f64) -> Option<[Vector2<f64>; 2]> {
+    fn meet(&self, work: &Work<'_>, estimate: &[f64], side: f64) -> Option<[Vector2<f64>; 2]> {
         let [a, b] = &self.sides;
         let frames = work.at.frames();
         let span = b.anchor.place(frames).from(a.anchor.place(frames));
         let distance = span.norm();
         let along = 0.5 * (distance + (a.length - b.length) * (a.length + b.length) / distance);
+        // Negative where the links do not quite reach: that is left to the corrections.
         let across = (a.length - along) * (a.length + along);
-        // A gap that no one could measure is left to the corrections.
-        let reach = a.length.max(b.length);
-        if across < -1e-12 * reach * reach {
-            return None;
-        }
         let link = if distance > 0.0 {
             let e = span / distance;
             e * along + perp(e) * (side * across.max(0.0).sqrt())
@@ -436,6 +493,13 @@ struct Turned {
 
 /// Where Newton ended.
 struct Found {
-    phi: [f64; 2],
     correction: Correction,
+    /// What the loop is left open by, at the most \[m\].
+    open: f64,
+}
+
+/// Where a sub-step started.
+struct Before {
+    frames: [BodyPose; 2],
+    links: [Vector2<f64>; 2],
 }

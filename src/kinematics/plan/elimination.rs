@@ -97,9 +97,14 @@ impl Order {
         }
     }
 
+    /// How many unknowns are left once those with pivots of ±1 are eliminated.
+    pub(super) fn torn(&self) -> usize {
+        self.rows.len() - self.fixed
+    }
+
     /// An empty matrix for rows and columns in this order.
     pub(super) fn matrix(&self, system: &System) -> Lu {
-        if self.rows.len() - self.fixed <= DENSE {
+        if self.torn() <= DENSE {
             return Lu::Dense(DenseLu::new(self.rows.len(), self.fixed));
         }
         let mut places: Vec<_> = (0..self.columns.len()).collect();

@@ -34,10 +34,10 @@ impl General {
             orders.push(order);
         }
         let places: Arc<[Place]> = places.into();
-        let blocks = orders.into_iter().enumerate().map(|(index, order)| {
-            let lu = order.matrix(system);
-            Coupled::new(index, order.rows, order.columns, lu, Arc::clone(&places))
-        });
+        let blocks = orders
+            .into_iter()
+            .enumerate()
+            .map(|(index, order)| Coupled::new(index, order, system, Arc::clone(&places)));
         Self {
             blocks: blocks.collect(),
         }

@@ -18,8 +18,10 @@ mod dyad;
 mod elimination;
 mod general;
 mod pinned;
+mod reach;
 mod slide;
 
+use super::certificate::Tubes;
 use super::configuration::Configuration;
 use super::newton::{Correction, Rejected};
 use super::rates::Rates;
@@ -30,10 +32,11 @@ pub(super) use coupled::Coupled;
 use dyad::Dyad;
 pub(super) use general::General;
 use pinned::Pinned;
+pub(super) use reach::Miss;
 use slide::Slide;
 
 /// The kernels in the order in which they run.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) kernels: Vec<Kernel>,
 }
@@ -65,6 +68,14 @@ pub(super) struct Advance {
     pub(super) second: f64,
 }
 
+/// One sub-step: what leads to its end, and what is known of the way there.
+pub(super) struct Substep<'a> {
+    pub(super) advance: Advance,
+    /// q where it starts.
+    pub(super) from: &'a [f64],
+    pub(super) tubes: &'a mut Tubes,
+}
+
 impl Advance {
     /// Where the unknown q\[column\] is expected to go.
     #[inline]
@@ -75,13 +86,18 @@ impl Advance {
 
 impl Plan {
     /// Takes over what depends on the parameters alone. Allocates nothing.
-    pub(super) fn set_parameters(&mut self, at: &Configuration, targets: &Targets) {
+    pub(super) fn set_parameters(
+        &mut self,
+        at: &Configuration,
+        targets: &Targets,
+        tubes: &mut Tubes,
+    ) {
         for kernel in &mut self.kernels {
             match kernel {
-                Kernel::Pinned(kernel) => kernel.set_parameters(at),
-                Kernel::Dyad(kernel) => kernel.set_parameters(at),
-                Kernel::Slide(kernel) => kernel.set_parameters(at, targets),
-                Kernel::Coupled(_) => {}
+                Kernel::Pinned(kernel) => kernel.set_parameters(at, tubes),
+                Kernel::Dyad(kernel) => kernel.set_parameters(at, tubes),
+                Kernel::Slide(kernel) => kernel.set_parameters(at, targets, tubes),
+                Kernel::Coupled(kernel) => kernel.forget_box(),
             }
         }
     }
@@ -114,7 +130,16 @@ impl Plan {
         };
         for kernel in sparse {
             // Should the pose be singular, the pivots are chosen at the first one that is not.
-            let _ = kernel.factorise(&work);
+            kernel.choose_pivots(&work);
+        }
+    }
+
+    /// Lets go of what proofs for earlier steps are kept for others.
+    pub(super) fn forget_boxes(&mut self) {
+        for kernel in &mut self.kernels {
+            if let Kernel::Coupled(kernel) = kernel {
+                kernel.forget_box();
+            }
         }
     }
 
@@ -128,46 +153,46 @@ impl Plan {
     }
 
     /// Goes from the pose at which all kernels are factorised to the one that belongs to new
-    /// values of the drivers: predicts along the flow, then corrects, kernel by kernel. With
-    /// `unit`, the flow becomes the one for these rates of the drivers at the new pose on the
-    /// way.
+    /// values of the drivers: predicts along the flow, corrects, and proves that the motion leads
+    /// there, kernel by kernel. With `unit`, the flow becomes the one for these rates of the
+    /// drivers at the new pose on the way.
     ///
     /// # Errors
     ///
-    /// A kernel cannot show that it stayed on its motion. What was found up to there is then in
-    /// `work`, to be put back.
+    /// A kernel cannot show that it stayed on its motion; [`Tubes::load`] tells by how much. What
+    /// was found up to there is then in `work`, to be put back.
     pub(super) fn advance(
         &mut self,
         work: &mut Work<'_>,
-        advance: Advance,
+        substep: &mut Substep<'_>,
         unit: Option<&[Jet]>,
     ) -> Result<Correction, Rejected> {
         let mut most = Correction::default();
         for kernel in &mut self.kernels {
             let correction = match kernel {
                 Kernel::Pinned(kernel) => {
-                    let correction = kernel.advance(work, advance)?;
+                    let correction = kernel.advance(work, substep);
                     if let Some(unit) = unit {
                         kernel.solve_rates(work, unit);
                     }
                     correction
                 }
                 Kernel::Dyad(kernel) => {
-                    let correction = kernel.advance(work, advance)?;
+                    let correction = kernel.advance(work, substep)?;
                     if unit.is_some() {
                         kernel.solve_rates(work);
                     }
                     correction
                 }
                 Kernel::Slide(kernel) => {
-                    let correction = kernel.advance(work, advance)?;
+                    let correction = kernel.advance(work, substep)?;
                     if let Some(unit) = unit {
                         kernel.solve_rates(work, unit);
                     }
                     correction
                 }
                 Kernel::Coupled(kernel) => {
-                    let correction = kernel.advance(work, advance)?;
+                    let correction = kernel.advance(work, substep)?;
                     if let Some(unit) = unit {
                         kernel.solve_rates(work, unit);
                     }
@@ -238,7 +263,7 @@ impl Kernel {
     }
 
     /// Scaled reciprocal condition: 1 is best, 0 singular.
-    fn rcond(&mut self) -> f64 {
+    pub(super) fn rcond(&mut self) -> f64 {
         match self {
             Self::Pinned(_) => 1.0,
             Self::Dyad(kernel) => kernel.rcond(),

@@ -3,9 +3,10 @@
 use nalgebra::Vector2;
 
 use super::anchor::Anchor;
-use super::{Advance, Work};
+use super::{Substep, Work};
+use crate::kinematics::certificate::{Tube, Tubes};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
-use crate::kinematics::newton::{Correction, LARGEST_CORRECTION, Rejected};
+use crate::kinematics::newton::Correction;
 use crate::kinematics::system::Target;
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
@@ -62,9 +63,10 @@ impl Pinned {
         &self.columns
     }
 
-    pub(super) fn set_parameters(&mut self, at: &Configuration) {
+    pub(super) fn set_parameters(&mut self, at: &Configuration, tubes: &mut Tubes) {
         self.s = at.local(self.parts.pin).0;
-        self.anchor.set_parameters(at, self.parts.anchor);
+        self.anchor.set_parameters(at, tubes, self.parts.anchor);
+        tubes.set_pivot(self.parts.body, self.s);
         self.zero = at.local(self.parts.reference).1 - at.local(self.parts.angle).1;
     }
 
@@ -86,26 +88,38 @@ impl Pinned {
         };
     }
 
-    /// Puts the body where it belongs, if that is where it is expected.
-    pub(super) fn advance(
-        &self,
-        work: &mut Work<'_>,
-        advance: Advance,
-    ) -> Result<Correction, Rejected> {
-        let place = self.parts.body;
-        let before = work.at.frames()[place].phi;
-        let predicted = advance.predict(self.columns[2], before, work.flow);
+    /// Puts the body where it belongs. There is nothing to solve, and so nothing to prove: it
+    /// strays as far as what it hangs on does.
+    #[inline(always)]
+    pub(super) fn advance(&self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> Correction {
+        let parts = &self.parts;
+        let place = parts.body;
+        let before = work.at.frames()[place];
         self.locate(work);
-        let moved = work.at.frames()[place].phi - predicted;
-        if moved.abs() <= LARGEST_CORRECTION {
-            // Linear equations are solved by one.
-            Ok(Correction {
-                iterations: 1,
-                contraction: 0.0,
-            })
-        } else {
-            Err(Rejected)
+        let tubes = &mut *substep.tubes;
+        let phi = work.at.frames()[place].phi;
+        let mut radius = f64::EPSILON * (1.0 + phi.abs() + before.phi.abs());
+        if let Some(body) = self.reference {
+            radius += tubes.body(body).radius;
         }
+        if let Target::Driver(driver) = work.system.equations()[parts.rows[2]].target {
+            radius += tubes.drivers[driver.index()];
+        }
+        let mut stray = self.anchor.strays(tubes);
+        if let Some(slips) = tubes.slips() {
+            let angle = slips.angle(parts.angle) + slips.angle(parts.reference);
+            radius += 2.0 * (angle + slips.constant(parts.rows[2]));
+            stray += 2.0 * (slips.position(parts.pin) + slips.position(parts.anchor));
+        }
+        *tubes.body_mut(place) = Tube {
+            cos: before.cos,
+            sin: before.sin,
+            turn: phi - before.phi,
+            radius,
+            stray,
+        };
+        // Linear equations are solved by one.
+        Correction { iterations: 1 }
     }
 
     pub(super) fn solve_rates(&self, work: &mut Work<'_>, drivers: &[Jet]) {

@@ -1,18 +1,21 @@
 //! A body with a revolute to something already found and a point on a line, alone or with a
 //! second body that slides.
 
-use std::f64::consts::TAU;
+mod certify;
+
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector2;
 
+use certify::Before;
+
 use super::anchor::{Anchor, Moving, Place, compact};
-use super::{Advance, Work};
+use super::reach::Miss;
+use super::{Substep, Work};
+use crate::kinematics::certificate::Tubes;
 use crate::kinematics::configuration::{self, BodyPose, Configuration, perp};
 use crate::kinematics::constraint::{Axis, Projection};
-use crate::kinematics::newton::{
-    AT_ROUNDING, CONTRACTION, Correction, LARGEST_CORRECTION, MAX_ITERATIONS, Rejected, SINGULAR,
-    SMALL, STALLED,
-};
+use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::kinematics::system::{Target, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
@@ -34,9 +37,10 @@ pub(in crate::kinematics) struct Slide {
     /// Of i and j.
     points: [Point; 2],
     axis: Line,
-    /// A_a g at the pose last factorised, and ∂f/∂phi.
+    /// A_a g at the pose last factorised, ∂f/∂phi, and the known part of P_j − P_i.
     g: Vector2<f64>,
     slope: f64,
+    still: Vector2<f64>,
     /// |w| |g|, what the slope is measured against.
     scale: f64,
     parts: Box<Parts>,
@@ -130,6 +134,8 @@ struct Known {
     /// For a parallel b: its revolute, and by how much it is turned against a.
     second_point: Place,
     second_turn: f64,
+    /// The known part of P_j − P_i.
+    still: Vector2<f64>,
     w: Vector2<f64>,
     /// g in a's frame.
     g: Vector2<f64>,
@@ -182,6 +188,7 @@ impl Slide {
             second,
             g: zero,
             slope: 0.0,
+            still: zero,
             scale: 0.0,
             parts: Box::new(parts),
         }
@@ -195,15 +202,22 @@ impl Slide {
         &self.parts.columns
     }
 
-    pub(super) fn set_parameters(&mut self, at: &Configuration, targets: &Targets) {
+    pub(super) fn set_parameters(
+        &mut self,
+        at: &Configuration,
+        targets: &Targets,
+        tubes: &mut Tubes,
+    ) {
         let parts = &self.parts;
-        self.anchor.set_parameters(at, parts.anchor);
+        self.anchor.set_parameters(at, tubes, parts.anchor);
         self.s = at.local(parts.pin).0;
+        tubes.set_pivot(parts.body, self.s);
         let mut between = BodyPose::turned(0.0);
         let mut inner = Vector2::zeros();
         if let Some(b) = &parts.second {
             let offset = at.local(b.reference).1 - at.local(b.angle).1;
             inner = at.local(b.pin).0;
+            tubes.set_pivot(b.body, inner);
             match &mut self.second {
                 Second::None => {}
                 Second::Carried { zero, l, s, .. } => {
@@ -214,7 +228,7 @@ impl Slide {
                 Second::Parallel {
                     anchor, zero, s, ..
                 } => {
-                    anchor.set_parameters(at, b.partner);
+                    anchor.set_parameters(at, tubes, b.partner);
                     *zero = offset;
                     *s = inner;
                     // Without whole turns, which are no part of the parameters.
@@ -231,7 +245,7 @@ impl Slide {
         for (point, marker) in self.points.iter_mut().zip([from, to]) {
             let s = at.local(marker).0;
             match point {
-                Point::Known(anchor) => anchor.set_parameters(at, marker),
+                Point::Known(anchor) => anchor.set_parameters(at, tubes, marker),
                 Point::First(arm) => *arm = s - self.s,
                 Point::Carried(arm) => *arm = s - inner,
                 Point::Parallel(arm) => *arm = between.rotate(s - inner),
@@ -266,6 +280,7 @@ impl Slide {
             second: BodyPose::turned(0.0),
             second_point: point,
             second_turn: 0.0,
+            still: Vector2::zeros(),
             w: Vector2::zeros(),
             g: Vector2::zeros(),
             kappa: 0.0,
@@ -297,6 +312,7 @@ impl Slide {
         let (known_i, turning_i) = part(&self.points[0]);
         let (known_j, turning_j) = part(&self.points[1]);
         let (still, turning) = (known_j.from(known_i), turning_j - turning_i);
+        known.still = still;
         let held_at = target(self.parts.row);
         (known.w, known.g, known.kappa) = match self.axis {
             Line::Known(body, e) => {
@@ -341,22 +357,20 @@ impl Slide {
         frames[self.place as usize] = first;
     }
 
-    /// Predicts the angle of a and corrects it until the point is on its line to rounding.
+    /// Predicts the angle of a, corrects it until the point is on its line to rounding, and proves
+    /// that the motion leads there.
     pub(super) fn advance(
         &mut self,
         work: &mut Work<'_>,
-        advance: Advance,
+        substep: &mut Substep<'_>,
     ) -> Result<Correction, Rejected> {
         let column = 3 * self.place as usize + 2;
-        let phi = work.at.frames()[self.place as usize].phi;
-        let predicted = advance.predict(column, phi, work.flow);
-        let before = self.slope;
-        let (phi, correction) = self.correct(work, predicted, MAX_ITERATIONS)?;
-        let kept = correction.contraction <= CONTRACTION
-            && (phi - predicted).abs() <= LARGEST_CORRECTION
-            && self.slope * before > 0.0
-            && self.slope.abs() >= SINGULAR * self.scale;
-        if kept { Ok(correction) } else { Err(Rejected) }
+        let before = Before::new(self, work);
+        let predicted = substep.advance.predict(column, before.first.phi, work.flow);
+        let found = self.correct(work, predicted, MAX_ITERATIONS);
+        let found = found.map_err(|_| substep.tubes.break_off())?;
+        self.certify(work, substep.tubes, &before, &found)?;
+        Ok(found.correction)
     }
 
     /// Newton–Raphson on the angle of a.
@@ -365,11 +379,10 @@ impl Slide {
         work: &mut Work<'_>,
         mut phi: f64,
         max_iterations: u32,
-    ) -> Result<(f64, Correction), Rejected> {
+    ) -> Result<Found, Rejected> {
         let known = self.known(work);
         let scale = known.w.norm() * known.g.norm();
         let mut correction = Correction::default();
-        let mut last = f64::INFINITY;
         let mut last_gap = f64::INFINITY;
         loop {
             let frame = BodyPose::turned(phi);
@@ -383,16 +396,19 @@ impl Slide {
             {
                 self.put(work.at.frames_mut(), &known, frame);
                 // A line that turns about a point which the pin has reached turns freely.
-                (self.g, self.slope, self.scale) = (g, slope, scale.max(work.at.size()));
-                return Ok((phi, correction));
+                (self.g, self.slope, self.still) = (g, slope, known.still);
+                self.scale = scale.max(work.at.size());
+                return Ok(Found {
+                    known,
+                    correction,
+                    open: open + rounding,
+                });
             }
             let step = -f / slope;
             if correction.iterations == max_iterations || !step.is_finite() {
                 return Err(Rejected);
             }
             phi += step;
-            correction.contraction = correction.contraction.max(step.abs() / last);
-            last = step.abs().max(SMALL);
             last_gap = open;
             correction.iterations += 1;
         }
@@ -405,7 +421,7 @@ impl Slide {
         max_iterations: u32,
     ) -> Result<Correction, Rejected> {
         let phi = work.at.frames()[self.place as usize].phi;
-        Ok(self.correct(work, phi, max_iterations)?.1)
+        Ok(self.correct(work, phi, max_iterations)?.correction)
     }
 
     /// Notes the slope at the pose.
@@ -413,6 +429,7 @@ impl Slide {
         let known = self.known(work);
         self.g = work.at.frames()[self.place as usize].rotate(known.g);
         self.slope = known.w.dot(&perp(self.g));
+        self.still = known.still;
         self.scale = (known.w.norm() * known.g.norm()).max(work.at.size());
         if self.slope == 0.0 || !self.slope.is_finite() {
             return Err(Rejected);
@@ -526,29 +543,41 @@ impl Slide {
         if rcond.is_finite() { rcond } else { 0.0 }
     }
 
-    /// Closes the way that is nearest the estimates: the minimum of Ec. 3.6.9 for r → ∞, which a
-    /// circle and a line have in two places.
+    /// Closes from this angle of body a.
+    pub(in crate::kinematics) fn close_from(
+        &mut self,
+        work: &mut Work<'_>,
+        phi: f64,
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        Ok(self.correct(work, phi, max_iterations)?.correction)
+    }
+
+    /// The angles of body a at which it closes, nearest the estimates first: the minima of
+    /// Ec. 3.6.9 for r → ∞, which a circle and a line have in two places. Leaves the bodies
+    /// anywhere.
     ///
     /// # Errors
     ///
-    /// [`Rejected`] if they do not reach each other.
-    pub(in crate::kinematics) fn assemble(
-        &mut self,
+    /// [`Miss`] if they do not reach each other.
+    pub(in crate::kinematics) fn ways(
+        &self,
         work: &mut Work<'_>,
         estimate: &[f64],
-    ) -> Result<Correction, Rejected> {
+    ) -> Result<[f64; 2], Miss> {
         let known = self.known(work);
-        let size = work.at.size();
-        let ratio = -known.kappa / (known.w.norm() * known.g.norm());
-        // A gap that no one could measure is left to the corrections.
-        if ratio.is_nan() || ratio.abs() > 1.0 + 1e-12 {
-            return Err(Rejected);
+        let scale = known.w.norm() * known.g.norm();
+        let miss = Miss::new(known.kappa.abs() - scale, known.reach + scale);
+        let ratio = -known.kappa / scale;
+        if miss.certain || ratio.is_nan() {
+            return Err(miss);
         }
+        let size = work.at.size();
         let middle = known.w.y.atan2(known.w.x) - known.g.y.atan2(known.g.x);
+        // A gap that no one could measure is left to the corrections.
         let away = ratio.clamp(-1.0, 1.0).acos();
         let guess = estimate[3 * self.place as usize + 2];
-        let mut best: Option<(f64, f64)> = None;
-        for angle in [middle + away, middle - away] {
+        let ways = [middle + away, middle - away].map(|angle| {
             let phi = angle + TAU * ((guess - angle) / TAU).round();
             self.put(work.at.frames_mut(), &known, BodyPose::turned(phi));
             let columns = self.parts.columns.iter();
@@ -558,14 +587,39 @@ impl Slide {
                     (off / work.system.column_scale(column, size)).powi(2)
                 })
                 .sum::<f64>();
-            // The first of two that are equally far.
-            if best.is_none_or(|(least, _)| distance < least * (1.0 - 1e-9)) {
-                best = Some((distance, phi));
-            }
+            (distance, phi)
+        });
+        // The first of two that are equally far.
+        let [first, second] = ways;
+        if second.0 < first.0 * (1.0 - 1e-9) {
+            Ok([second.1, first.1])
+        } else {
+            Ok([first.1, second.1])
         }
-        let (_, phi) = best.ok_or(Rejected)?;
-        Ok(self.correct(work, phi, MAX_ITERATIONS)?.1)
     }
+
+    /// Body a, whose angle is looked for.
+    pub(in crate::kinematics) fn body(&self) -> usize {
+        self.parts.body
+    }
+
+    /// Puts the bodies as near to closing as they come, where the point does not reach its line.
+    pub(in crate::kinematics) fn stretch(&self, work: &mut Work<'_>, estimate: &[f64]) {
+        let known = self.known(work);
+        let away = if known.kappa > 0.0 { PI } else { 0.0 };
+        let angle = known.w.y.atan2(known.w.x) - known.g.y.atan2(known.g.x) + away;
+        let guess = estimate[3 * self.place as usize + 2];
+        let phi = angle + TAU * ((guess - angle) / TAU).round();
+        self.put(work.at.frames_mut(), &known, BodyPose::turned(phi));
+    }
+}
+
+/// Where Newton ended.
+struct Found {
+    known: Known,
+    correction: Correction,
+    /// What is left of f, at the most.
+    open: f64,
 }
 
 /// First and second derivative of an angle.

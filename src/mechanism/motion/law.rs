@@ -37,6 +37,21 @@ impl Law {
         self.first_half(tau)
     }
 
+    /// The largest magnitude of the second derivative of [`stroke`](Self::stroke), from where the
+    /// third is zero: at (1 − 2τ)² = 1/3 and 1/5 for the polynomials.
+    #[must_use]
+    pub fn peak_acceleration(self) -> f64 {
+        match self {
+            Self::Polynomial345 => 10.0 / 3_f64.sqrt(),
+            Self::Polynomial4567 => 16.8 / 5_f64.sqrt(),
+            Self::Cycloidal => 2.0 * PI,
+            Self::Harmonic => PI * PI / 2.0,
+            Self::ModifiedSine => 4.0 * PI * PI / (4.0 + PI),
+            Self::ModifiedTrapezoidal => 8.0 * PI / (2.0 + PI),
+            Self::Trapezoidal => 4.5,
+        }
+    }
+
     fn first_half<N: Number>(self, tau: N) -> N {
         let c = N::constant;
         let t = tau.value().number();
@@ -101,25 +116,22 @@ mod tests {
         Law::Trapezoidal,
     ];
 
-    /// Peak velocity and peak acceleration of a unit stroke in unit time, from where the next
-    /// derivative is zero: at τ = 1/2 for the velocities, and for the polynomials' accelerations
-    /// at (1 − 2τ)² = 1/3 and 1/5.
-    fn peaks(law: Law) -> (f64, f64) {
+    /// Peak velocity of a unit stroke in unit time, at τ = 1/2.
+    fn peak_velocity(law: Law) -> f64 {
         match law {
-            Law::Polynomial345 => (15.0 / 8.0, 10.0 / 3_f64.sqrt()),
-            Law::Polynomial4567 => (35.0 / 16.0, 16.8 / 5_f64.sqrt()),
-            Law::Cycloidal => (2.0, 2.0 * PI),
-            Law::Harmonic => (PI / 2.0, PI * PI / 2.0),
-            Law::ModifiedSine => (4.0 * PI / (4.0 + PI), 4.0 * PI * PI / (4.0 + PI)),
-            Law::ModifiedTrapezoidal => (2.0, 8.0 * PI / (2.0 + PI)),
-            Law::Trapezoidal => (1.5, 4.5),
+            Law::Polynomial345 => 15.0 / 8.0,
+            Law::Polynomial4567 => 35.0 / 16.0,
+            Law::Cycloidal | Law::ModifiedTrapezoidal => 2.0,
+            Law::Harmonic => PI / 2.0,
+            Law::ModifiedSine => 4.0 * PI / (4.0 + PI),
+            Law::Trapezoidal => 1.5,
         }
     }
 
     #[test]
     fn peaks_are_those_of_the_closed_forms() {
         for law in LAWS {
-            let (velocity, acceleration) = peaks(law);
+            let (velocity, acceleration) = (peak_velocity(law), law.peak_acceleration());
             let peak = |of: fn(Jet) -> f64| {
                 (0..=100_000)
                     .map(|k| of(law.stroke(Jet::variable(f64::from(k) / 1e5))).abs())

@@ -4,7 +4,7 @@ mod law;
 
 pub use law::Law;
 
-use super::{Ends, Expression, Jet, Number, ParameterId, Scalar, Spline, Table};
+use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Scalar, Spline, Table};
 
 /// A prescribed motion u(t, parameters) \[m or rad\].
 #[derive(Clone, Debug)]
@@ -122,6 +122,40 @@ impl<N: Number> MotionInForce<N> {
     }
 }
 
+impl MotionInForce {
+    /// An upper bound of |d²u/dt²| from `from` to `to`, between which no point of a table lies.
+    /// `None` where the motion cannot be shown to be smooth. Allocates nothing.
+    #[must_use]
+    pub fn curvature(&self, from: f64, to: f64) -> Option<f64> {
+        match (&self.motion, &self.spline) {
+            (Motion::Expression(expression), _) => {
+                let parameter = |p: ParameterId| self.parameters[p.index()].value;
+                let u = expression.enclose(&parameter, Interval::new(from, to))?;
+                Some(u.second.magnitude())
+            }
+            (Motion::Table(motion), Some(spline)) if self.valid => {
+                Some(motion.curvature(spline, from, to))
+            }
+            (Motion::Table(_), _) => None,
+        }
+    }
+
+    /// Encloses the value over the range of `t` and of the parameters, with derivatives with
+    /// respect to the variable along which these are given; what cannot be said is not finite.
+    /// `None` for a table. Allocates nothing.
+    #[must_use]
+    pub fn enclose(
+        &self,
+        t: Jet3<Interval>,
+        parameter: &impl Fn(ParameterId) -> Jet3<Interval>,
+    ) -> Option<Jet3<Interval>> {
+        match &self.motion {
+            Motion::Expression(expression) => Some(expression.evaluate(parameter, t)),
+            Motion::Table(_) => None,
+        }
+    }
+}
+
 impl<N: Number> MotionInForce<N> {
     /// The time of the next point of a table after `t`, where another piece of the motion
     /// begins. Infinite if there is none.
@@ -172,6 +206,28 @@ impl MotionTable {
         } else {
             value
         }
+    }
+
+    /// An upper bound of |d²u/dt²| between two times, between which no point lies.
+    fn curvature(&self, spline: &Spline<Jet>, from: f64, to: f64) -> f64 {
+        let times = spline.knots();
+        let (start, end) = (times[0].value, times[times.len() - 1].value);
+        let middle = from.midpoint(to);
+        let laps = match self.ends {
+            Ends::Periodic => ((middle - start) / (end - start)).floor() * (end - start),
+            // Beyond its ends it runs straight, if it moves at all.
+            _ if middle < start || middle >= end => return 0.0,
+            _ => 0.0,
+        };
+        let segment = spline.segment(middle - laps);
+        let Interpolation::Law(law) = self.interpolation else {
+            // Linear on each segment.
+            let at = |t: f64| spline.curvature_on_segment(segment, Jet::constant(t - laps))[0];
+            return at(from).value.abs().max(at(to).value.abs());
+        };
+        let time = times[segment + 1].value - times[segment].value;
+        let stroke = spline.values()[segment + 1].value - spline.values()[segment].value;
+        law.peak_acceleration() * stroke.abs() / (time * time)
     }
 
     fn between<N: Number>(&self, spline: &Spline<N>, t: N) -> N {

@@ -84,9 +84,12 @@ impl Constraint for FlatContact {
     ) -> Option<f64> {
         let follower = at.marker(self.follower);
         let (cam, contact) = self.contour.at(at);
+        let (sine, _) = lean(follower, &contact);
         let bounds = self.contour.bounds(at, region)?;
-        // The cosine changes by no more than its angle, and by two at the most.
-        let cosine = (bounds.tangent + region.turn(follower)).min(2.0);
+        // |cos(δ + a) − cos δ| ≤ |sin δ| |a| + a²/2, and two at the most: next to nothing while
+        // the contour touches the face.
+        let angle = bounds.tangent + region.turn(follower);
+        let cosine = (sine.abs() * angle + 0.5 * angle * angle).min(2.0);
         row.add_direction(cam, cosine);
         row.add_direction(follower, cosine);
         let column = self.contour.column(at);

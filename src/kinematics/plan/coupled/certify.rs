@@ -1,0 +1,497 @@
+//! The certificate of any block; see [`crate::kinematics::certificate`].
+//!
+//! A is the inverse of the Jacobian in the middle of the chord. Each relation bounds, over the
+//! region that chord and radii reach from there, its second derivative along the chord and the
+//! change of its gradient ([`Constraint::bend`]): the first divided by eight is what the chord
+//! leaves its row open by, the second makes K. Unknowns found before are part of chord and
+//! region; their radii open the rows by the gradient in the middle, whose effect on the block's
+//! unknowns adds up with its signs, and by the gradient's change.
+//!
+//! Rows and unknowns are scaled as for Newton–Raphson. The inverse is written down for blocks of
+//! up to [`MOST_TORN`] torn unknowns; beyond, the norms of A and K are estimated, with one radius
+//! for all unknowns, and the sub-step is *checked*. So it is while parameters move: how far they
+//! change each row is then looked at where the sub-step starts only.
+//!
+//! [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
+
+use super::{Coupled, Place};
+use crate::kinematics::configuration::BodyPose;
+use crate::kinematics::constraint::{Gradient, Incidence, Region};
+use crate::kinematics::factor::{Condition, Factors, Lu};
+use crate::kinematics::newton::{Rejected, STALLED};
+use crate::kinematics::plan::elimination::Order;
+use crate::kinematics::plan::{Substep, Work};
+use crate::kinematics::system::{System, Target};
+
+/// The most unknowns, once x and y of bodies are eliminated, of which an inverse is written down.
+const MOST_TORN: usize = 32;
+/// Radii tried first, as a part of the largest move of an unknown: a motion that turns by φ is
+/// off its chord by φ²/8 in radians, and rarely by several times that.
+const FIRST_RADIUS: f64 = 0.1;
+/// What radii are taken larger by than they have to be, where those tried were too small.
+const ROOM: f64 = 1.25;
+const MOST_TRIES: u32 = 3;
+/// The norm of K with which radii are no longer looked for, and the one that a next sub-step
+/// aims at. K grows with the sub-step.
+const LARGEST_CONTRACTION: f64 = 0.9;
+const GOOD_CONTRACTION: f64 = 0.6;
+/// η + K r has to be below r by a little more than the rounding of A changes it.
+const STRICTLY: f64 = 0.999;
+
+/// What the certificate of a block needs.
+#[derive(Debug)]
+pub(super) struct Proof {
+    /// Unknowns found before that the rows contain.
+    pub(super) known: Vec<usize>,
+    /// The drivers that rows of the block are held at.
+    pub(super) drivers: Vec<usize>,
+    /// The bodies of these and of the block's own unknowns, with their frames at the end.
+    bodies: Vec<usize>,
+    ends: Vec<BodyPose>,
+    /// The joints' own unknowns among them, likewise.
+    joint_unknowns: Vec<usize>,
+    joint_ends: Vec<f64>,
+    /// The Jacobian in the middle.
+    middle: Lu,
+    /// A by rows, empty where it is too large.
+    pub(super) inverse: Vec<f64>,
+    condition: Condition,
+    /// What the rows are open by on the way, and what of it comes from moving parameters.
+    pub(super) open: Vec<f64>,
+    pub(super) slack: Vec<f64>,
+    /// Entries of the middle's rows at known unknowns: row, place in `known`, scaled value.
+    upstream: Vec<(usize, usize, f64)>,
+    /// How far entries of the block's Jacobian may change: row, column, scaled value.
+    changes: Vec<(usize, usize, f64)>,
+    /// Scaled radii: of what is known, those tried, what η + K r makes of them.
+    known_radii: Vec<f64>,
+    pub(super) radii: Vec<f64>,
+    pub(super) eta: Vec<f64>,
+    pub(super) next: Vec<f64>,
+    /// Work space.
+    pub(super) row: Vec<f64>,
+}
+
+impl Proof {
+    pub(super) fn new(
+        system: &System,
+        order: &Order,
+        lu: &Lu,
+        places: &[Place],
+        kernel: usize,
+    ) -> Self {
+        let n = order.rows.len();
+        let mut incidence = Incidence::default();
+        for &row in &order.rows {
+            let constraint = &system.equations()[row].constraint;
+            constraint.incidence(system.mechanism(), &mut incidence);
+        }
+        let mut known = incidence.unknowns;
+        known.retain(|&column| places[column].kernel != kernel);
+        known.sort_unstable();
+        known.dedup();
+        let of_bodies = 3 * system.mechanism().bodies.len();
+        let moving = || order.columns.iter().chain(&known).copied();
+        let mut bodies: Vec<_> = moving().filter(|&k| k < of_bodies).map(|k| k / 3).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let joint_unknowns: Vec<_> = moving().filter(|&k| k >= of_bodies).collect();
+        let drivers = order.rows.iter();
+        let drivers = drivers.filter_map(|&row| match system.equations()[row].target {
+            Target::Driver(driver) => Some(driver.index()),
+            Target::Constant(_) => None,
+        });
+        let inverse = if order.torn() <= MOST_TORN { n * n } else { 0 };
+        let entries = 10 * n;
+        Self {
+            known_radii: vec![0.0; known.len()],
+            known,
+            drivers: drivers.collect(),
+            ends: Vec::with_capacity(bodies.len()),
+            bodies,
+            joint_ends: vec![0.0; joint_unknowns.len()],
+            joint_unknowns,
+            middle: lu.clone(),
+            inverse: vec![0.0; inverse],
+            condition: Condition::new(n),
+            open: vec![0.0; n],
+            slack: vec![0.0; n],
+            upstream: Vec::with_capacity(entries),
+            changes: Vec::with_capacity(entries),
+            radii: vec![0.0; n],
+            eta: vec![0.0; n],
+            next: vec![0.0; n],
+            row: vec![0.0; n],
+        }
+    }
+
+    pub(super) fn forget_pivots(&mut self) {
+        self.middle.forget_pivots();
+    }
+
+    /// Takes over the pivots of the block's own matrix.
+    pub(super) fn choose_pivots(&mut self, lu: &Lu) {
+        self.middle.clone_from(lu);
+    }
+
+    /// Notes where the bodies end.
+    fn note_ends(&mut self, work: &Work<'_>) {
+        let frames = work.at.frames();
+        self.ends.clear();
+        self.ends
+            .extend(self.bodies.iter().map(|&body| frames[body]));
+        for (end, &column) in self.joint_ends.iter_mut().zip(&self.joint_unknowns) {
+            *end = work.at.coordinate(column);
+        }
+    }
+
+    /// Puts the bodies back there.
+    fn put_back(&self, work: &mut Work<'_>) {
+        for (&body, &end) in self.bodies.iter().zip(&self.ends) {
+            work.at.frames_mut()[body] = end;
+        }
+        for (&column, &end) in self.joint_unknowns.iter().zip(&self.joint_ends) {
+            work.at.set_coordinate(column, end);
+        }
+    }
+
+    /// |A| b, b ≥ 0 being one value a row, added to `sum`; the same estimate everywhere where A
+    /// is not written down.
+    fn apply(&mut self, b: &[f64], sum: &mut [f64]) {
+        if self.inverse.is_empty() {
+            let most = self.condition.largest_row(&mut self.middle, b);
+            sum.iter_mut().for_each(|sum| *sum += most);
+            return;
+        }
+        let rows = self.inverse.chunks_exact(b.len());
+        for (sum, row) in sum.iter_mut().zip(rows) {
+            let parts = row.iter().zip(b).map(|(a, b)| a.abs() * b);
+            *sum += parts.sum::<f64>();
+        }
+    }
+}
+
+impl Coupled {
+    /// Notes how the bodies stand where the sub-step starts, and what moving parameters leave open
+    /// of the rows there. The block's unknowns are there, those found before at their ends.
+    pub(super) fn note_start(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) {
+        let bodies = 3 * work.system.mechanism().bodies.len();
+        for &column in &self.columns {
+            if column < bodies && column % 3 == 2 {
+                let frame = &work.at.frames()[column / 3];
+                let tube = substep.tubes.body_mut(column / 3);
+                (tube.cos, tube.sin) = (frame.cos, frame.sin);
+            }
+        }
+        if substep.tubes.slips().is_none() {
+            self.proof.slack.fill(0.0);
+            return;
+        }
+        substep.tubes.checked = true;
+        self.proof.note_ends(work);
+        for &column in &self.proof.known {
+            work.at.set_coordinate(column, substep.from[column]);
+        }
+        for (slack, &row) in self.proof.slack.iter_mut().zip(&self.rows) {
+            let equation = &work.system.equations()[row];
+            let target = match equation.target {
+                Target::Constant(_) => work.system.target(row, work.targets, work.drivers),
+                // Drivers have chords of their own.
+                Target::Driver(_) => {
+                    *slack = 0.0;
+                    continue;
+                }
+            };
+            let open = equation.constraint.value(work.at) - target;
+            *slack = 2.0 * open.abs() * equation.row_scale(work.at);
+        }
+        self.proof.put_back(work);
+    }
+
+    /// Proves that one motion joins the two ends of a sub-step, and writes its tube.
+    ///
+    /// # Errors
+    ///
+    /// There is no such proof.
+    pub(super) fn certify(
+        &mut self,
+        work: &mut Work<'_>,
+        substep: &mut Substep<'_>,
+    ) -> Result<(), Rejected> {
+        if substep.tubes.boxes && self.certify_in_box(work, substep) {
+            self.write_tubes(work, substep);
+            return Ok(());
+        }
+        if self.proof.inverse.is_empty() {
+            substep.tubes.checked = true;
+        }
+        self.proof.note_ends(work);
+        let largest = self.lay_chord(work, substep);
+        let tried = self.find_radii(work, substep, largest);
+        self.proof.put_back(work);
+        for &column in self.columns.iter().chain(&self.proof.known) {
+            substep.tubes.region[column] = 0.0;
+            substep.tubes.chord[column] = 0.0;
+        }
+        let contraction = match tried {
+            Ok(contraction) => contraction,
+            Err(None) => return Err(substep.tubes.break_off()),
+            Err(Some(contraction)) => {
+                let load = (contraction / GOOD_CONTRACTION).powi(2);
+                // At least so much that it is no longer borne.
+                let refused = substep.tubes.bear(load.max(1.5));
+                debug_assert!(refused.is_err());
+                return Err(Rejected);
+            }
+        };
+        self.write_tubes(work, substep);
+        if substep.tubes.boxes {
+            self.make_box(work, substep, contraction);
+        }
+        let load = (contraction / GOOD_CONTRACTION).powi(2);
+        substep.tubes.bear(load.min(1.0))
+    }
+
+    /// Writes chords and the radii of what is known, and goes to the middle. Returns the radii to
+    /// be tried first, scaled.
+    fn lay_chord(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> f64 {
+        let Substep { from, tubes, .. } = substep;
+        let size = work.at.size();
+        let (mut largest, mut uncertain) = (0.0_f64, 0.0_f64);
+        let known = self.proof.known.iter().zip(&mut self.proof.known_radii);
+        for (&column, radius) in known {
+            let scale = work.system.column_scale(column, size);
+            *radius = tubes.radius(column) / scale;
+            uncertain = uncertain.max(*radius);
+        }
+        for &column in self.columns.iter().chain(&self.proof.known) {
+            let end = work.at.coordinate(column);
+            let chord = end - from[column];
+            tubes.chord[column] = chord;
+            largest = largest.max(chord.abs() / work.system.column_scale(column, size));
+        }
+        for &column in self.columns.iter().chain(&self.proof.known) {
+            let middle = from[column] + 0.5 * tubes.chord[column];
+            work.at.set_coordinate(column, middle);
+        }
+        FIRST_RADIUS * largest + 2.0 * uncertain + f64::EPSILON
+    }
+
+    /// Looks for radii that pass the test; leaves them as small as they can be had in `next`.
+    /// Returns the norm of K for them.
+    ///
+    /// # Errors
+    ///
+    /// There are none; with the norm of K, if it is known.
+    fn find_radii(
+        &mut self,
+        work: &mut Work<'_>,
+        substep: &mut Substep<'_>,
+        first: f64,
+    ) -> Result<f64, Option<f64>> {
+        self.proof.radii.fill(first);
+        self.factorise_middle(work).map_err(|Rejected| None)?;
+        let mut last = None;
+        for _ in 0..MOST_TRIES {
+            self.bend_rows(work, substep).ok_or(last)?;
+            self.open_rows();
+            let contraction = self.contract(true);
+            if contraction.is_nan() {
+                return Err(None);
+            }
+            let proof = &mut self.proof;
+            let pairs = || proof.radii.iter().zip(&proof.next);
+            if pairs().all(|(radius, next)| *next <= STRICTLY * radius) {
+                // What maps a box into a smaller one has its root in the smaller one.
+                self.contract(false);
+                return Ok(contraction);
+            }
+            if contraction >= LARGEST_CONTRACTION {
+                return Err(Some(contraction));
+            }
+            last = Some(contraction);
+            for (radius, next) in proof.radii.iter_mut().zip(&proof.next) {
+                *radius = radius.max(ROOM * next / (1.0 - contraction));
+            }
+        }
+        Err(Some(1.0))
+    }
+
+    /// Makes A.
+    fn factorise_middle(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
+        let Self {
+            index,
+            rows,
+            places,
+            proof,
+            ..
+        } = self;
+        let Proof {
+            known,
+            middle,
+            upstream,
+            inverse,
+            open,
+            slack,
+            row: unit,
+            ..
+        } = &mut **proof;
+        middle.clear();
+        upstream.clear();
+        for (local, &row) in rows.iter().enumerate() {
+            let value = work.system.evaluate_row(
+                row,
+                work.at,
+                work.targets,
+                work.drivers,
+                |column, value| {
+                    let place = places[column];
+                    if place.kernel == *index {
+                        middle.add(local, place.local, value);
+                    } else if let Ok(place) = known.binary_search(&column) {
+                        upstream.push((local, place, value));
+                    }
+                },
+            );
+            // What rounding left of the rows at both ends.
+            unit[local] = 2.0 * STALLED * value.rounding;
+        }
+        open.copy_from_slice(unit);
+        for (slack, open) in slack.iter_mut().zip(&*open) {
+            *slack += open;
+        }
+        middle.factorise(0.0).map_err(|_| Rejected)?;
+        let order = rows.len();
+        for column in 0..inverse.len() / order.max(1) {
+            unit.fill(0.0);
+            unit[column] = 1.0;
+            middle.solve(unit);
+            for (row, value) in unit.iter().enumerate() {
+                inverse[row * order + column] = *value;
+            }
+        }
+        Ok(())
+    }
+
+    /// Bounds how the rows bend in the region that the chord and the radii reach.
+    fn bend_rows(&mut self, work: &Work<'_>, substep: &mut Substep<'_>) -> Option<()> {
+        let Self {
+            index,
+            rows,
+            columns,
+            places,
+            proof,
+            ..
+        } = self;
+        let tubes = &mut *substep.tubes;
+        let size = work.at.size();
+        let scale = |column: usize| work.system.column_scale(column, size);
+        let own = columns.iter().zip(&proof.radii);
+        let known = proof.known.iter().zip(&proof.known_radii);
+        for (&column, radius) in own.chain(known) {
+            tubes.region[column] = 0.5 * tubes.chord[column].abs() + radius * scale(column);
+        }
+        proof.changes.clear();
+        for (local, &row) in rows.iter().enumerate() {
+            let equation = &work.system.equations()[row];
+            let row_scale = equation.row_scale(work.at);
+            let region = Region {
+                radii: &tubes.region,
+            };
+            let mut change = Gradient::new();
+            let bend = equation
+                .constraint
+                .bend(work.at, &region, &tubes.chord, &mut change)?;
+            let mut open = 0.125 * bend * row_scale;
+            if let Target::Driver(driver) = equation.target {
+                open += tubes.drivers[driver.index()] * row_scale;
+            }
+            for (column, value) in change.entries() {
+                let value = value * row_scale * scale(column);
+                let place = places[column];
+                if value == 0.0 {
+                } else if place.kernel == *index {
+                    proof.changes.push((local, place.local, value));
+                } else if let Ok(place) = proof.known.binary_search(&column) {
+                    open += value * proof.known_radii[place];
+                }
+            }
+            proof.open[local] = open + proof.slack[local];
+        }
+        Some(())
+    }
+
+    /// η: |A| times what the rows are open by, and what comes from radii of what is known.
+    fn open_rows(&mut self) {
+        let proof = &mut *self.proof;
+        let order = self.rows.len();
+        if proof.inverse.is_empty() {
+            for &(row, place, value) in &proof.upstream {
+                proof.open[row] += value.abs() * proof.known_radii[place];
+            }
+        }
+        let mut eta = std::mem::take(&mut proof.eta);
+        let open = std::mem::take(&mut proof.open);
+        eta.fill(0.0);
+        proof.apply(&open, &mut eta);
+        proof.open = open;
+        if !proof.inverse.is_empty() {
+            for (place, radius) in proof.known_radii.iter().enumerate() {
+                let entries = proof.upstream.iter().filter(|entry| entry.1 == place);
+                for (eta, a) in eta.iter_mut().zip(proof.inverse.chunks_exact(order)) {
+                    let turned: f64 = entries.clone().map(|(row, _, value)| a[*row] * value).sum();
+                    *eta += turned.abs() * radius;
+                }
+            }
+        }
+        proof.eta = eta;
+    }
+
+    /// Writes η + K r to `next`, r being the radii tried or else `next` itself. Returns the norm
+    /// of K, weighted by the radii.
+    fn contract(&mut self, tried: bool) -> f64 {
+        let proof = &mut *self.proof;
+        let mut row = std::mem::take(&mut proof.row);
+        row.fill(0.0);
+        let radii = if tried { &proof.radii } else { &proof.next };
+        for &(local, column, value) in &proof.changes {
+            row[local] += value * radii[column];
+        }
+        let mut next = std::mem::take(&mut proof.next);
+        next.fill(0.0);
+        proof.apply(&row, &mut next);
+        let mut contraction = 0.0;
+        for ((next, eta), radius) in next.iter_mut().zip(&proof.eta).zip(&proof.radii) {
+            let part = *next / radius;
+            if part > contraction || part.is_nan() {
+                contraction = part;
+            }
+            *next += eta;
+        }
+        proof.next = next;
+        proof.row = row;
+        contraction
+    }
+
+    /// Writes the tubes of the block's unknowns. The bodies are back at their ends.
+    fn write_tubes(&mut self, work: &Work<'_>, substep: &mut Substep<'_>) {
+        let Substep { from, tubes, .. } = substep;
+        let bodies = 3 * work.system.mechanism().bodies.len();
+        let size = work.at.size();
+        for (&column, radius) in self.columns.iter().zip(&self.proof.next) {
+            let radius = radius * work.system.column_scale(column, size);
+            if column >= bodies {
+                tubes.set_joint_unknown(column, radius);
+                continue;
+            }
+            match column % 3 {
+                2 => {
+                    let turn = work.at.coordinate(column) - from[column];
+                    let tube = tubes.body_mut(column / 3);
+                    (tube.radius, tube.turn) = (radius, turn);
+                }
+                component => tubes.set_component(column / 3, component, radius),
+            }
+        }
+    }
+}

@@ -1,0 +1,159 @@
+"""Every command and script in README, docs/ and examples/ runs, and prints what the page shows.
+
+The blocks of a page run one after the other in one folder, which has what a checkout has. Blocks
+that name a file (```` ```toml piston.toml ````) write it; `console` blocks have commands after
+`$ ` with their output below, `sh` blocks commands alone; a `text` block right after a `python`
+block is what that prints.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from harness import ROOT, program, run_biela
+from manual import PAGES, Block, blocks, commands, page_name, same_output
+
+NOT_RUN = {
+    "make demo": "the demo has a test of its own, test_demo.py",
+    "make test": "that is what is running",
+    "make install": "builds for minutes, and writes outside of the checkout",
+    "python3 -m venv env": "for packages to be downloaded into",
+    "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
+    "python parameter_sweep.py": "test_examples.py runs it",
+    "python dask_sweep.py": "test_examples.py runs it",
+    'export PATH="$HOME/.local/bin:$PATH"': "of the user's own shell",
+}
+"""Commands in blocks marked `norun`, each with the reason."""
+
+SECONDS = 120
+"""More than any block may take, in a debug build on a busy machine."""
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_page(page, tmp_path):
+    checkout(tmp_path)
+    folder = tmp_path / "examples" if page.parent.name == "examples" else tmp_path
+    previous, printed = None, []
+    for block in blocks(page):
+        at = f"{page_name(page)}:{block.line}"
+        if block.language == "text":
+            assert previous == "python", f"{at}: output of nothing"
+            compare(at, block.text.splitlines(), printed)
+        elif "norun" in block.words:
+            check_not_run(at, block)
+        elif block.language == "console":
+            run_console(at, block, folder)
+        elif block.language == "sh":
+            run(at, ["bash", "-euo", "pipefail", "-c", block.text], folder)
+        elif block.language == "python":
+            script = folder / (block.words[0] if block.words else "script.py")
+            script.write_text(block.text, encoding="utf-8")
+            printed = run(at, [sys.executable, script.name], folder)
+        elif block.words:
+            (folder / block.words[0]).write_text(block.text, encoding="utf-8")
+        else:
+            assert block.language in {"toml", "csv"}, f"{at}: `{block.language}` is not run"
+        previous = block.language
+
+
+def checkout(folder):
+    """What pages refer to."""
+    for name in ("mechanisms", "examples", "demo"):
+        ignored = shutil.ignore_patterns("out", "__pycache__", "*.fmu")
+        shutil.copytree(ROOT / name, folder / name, ignore=ignored)
+
+
+def run_console(at, block: Block, folder):
+    for command in commands(block):
+        # What a page shows failing is meant to.
+        printed = run(at, ["bash", "-c", command.line], folder, may_fail=bool(command.shown))
+        if command.shown:
+            compare(f"{at}: {command.line}", command.shown, printed)
+
+
+def run(at, command, folder, *, may_fail=False) -> list[str]:
+    path = os.pathsep.join(
+        [str(program().parent), str(Path(sys.executable).parent), os.environ["PATH"]]
+    )
+    environment = {**os.environ, "PATH": path, "MPLBACKEND": "agg", "BIELA_EXAMPLE": "small"}
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        encoding="utf-8",
+        timeout=SECONDS,
+        check=False,
+    )
+    assert may_fail or done.returncode == 0, f"{at}:\n{done.stdout}"
+    return done.stdout.splitlines()
+
+
+def compare(at, shown, printed):
+    if not same_output(shown, printed):
+        pytest.fail(f"{at} shows\n" + "\n".join(shown) + "\nand prints\n" + "\n".join(printed))
+
+
+def check_not_run(at, block: Block):
+    for line in block.text.splitlines():
+        command = re.sub(r"\s+#.*", "", line.removeprefix("$ ")).strip()
+        assert command in NOT_RUN, f"{at}: `{command}` is not run, and NOT_RUN has no reason"
+
+
+def test_no_reason_without_a_command():
+    listed = {
+        re.sub(r"\s+#.*", "", line.removeprefix("$ ")).strip()
+        for page in PAGES
+        for block in blocks(page)
+        if "norun" in block.words
+        for line in block.text.splitlines()
+    }
+    assert set(NOT_RUN) <= listed, set(NOT_RUN) - listed
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_make_targets_exist(page):
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    # At the start of a line of a block, or in backquotes.
+    for target in re.findall(r"(?:^|`)make ([a-z]+)", page.read_text(encoding="utf-8"), re.M):
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_links_lead_somewhere(page):
+    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        path, _, anchor = target.partition("#")
+        if ":" in path:
+            continue
+        linked = (page.parent / path).resolve() if path else page
+        assert linked.exists(), f"{page_name(page)}: {target}"
+        if anchor:
+            assert anchor in anchors(linked), f"{page_name(page)}: {target}"
+
+
+def anchors(page):
+    """The anchors of a page's headings, made as on GitHub."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def test_every_command_and_option_is_there():
+    """docs/commands.md against what the program says of itself."""
+    text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    listed = run_biela("--help").stdout.partition("Commands:\n")[2].partition("\n\n")[0]
+    names = set(re.findall(r"^  (\w+)", listed, re.MULTILINE)) - {"help"}
+    sections = set(re.findall(r"^## (\w+)$", text, re.MULTILINE))
+    assert {"check", "run", "draw", "export"} <= names
+    assert names == sections
+    helps = [run_biela(name, "--help").stdout for name in names]
+    options = set(re.findall(r"^ +(?:-\w, )?(--[a-z-]+)", "\n".join(helps), re.MULTILINE))
+    documented = set(re.findall(r"--[a-z-]+", text))
+    assert options - {"--help"} <= documented, options - documented

@@ -1,0 +1,195 @@
+"""docs/troubleshooting.md explains every message that a user can meet, and no other.
+
+Messages are taken from the sources, and those about mechanism files also from the reviewed
+answers to bad files in tests/snapshots. What varies in a message is `…` on the page.
+"""
+
+import re
+
+import pytest
+from harness import ROOT
+from manual import tables
+from rust_text import Literal, literals, reported, sources
+
+PAGE = ROOT / "docs" / "troubleshooting.md"
+
+FILES_WITHOUT_MESSAGES = {
+    "cli/check.rs": "its report, which is the answer and not a complaint",
+    "fmi/mechanism/variables.rs": "descriptions in the FMU",
+    "fmi/model_description.rs": "the FMU's XML",
+    "fmi/log.rs": "descriptions of the log categories",
+    "kinematics/reference.rs": "the oracle of the tests",
+}
+
+NOT_FOR_PEOPLE = re.compile(
+    r"(?:expect|unreachable!|panic!|assert!|debug_assert!)\(\s*$"
+    r"|(?:assert|assert_eq|debug_assert)!\(.*,\s*$"
+    r"|(?:reason|after_help|doc|value_name|help) =$"
+)
+"""Code before a string that is for programmers, or part of `--help`."""
+
+PARTS = {
+    "a fixed parameter, and initialization has ended": "cannot be set: it is …",
+    "a parameter derived from others": "cannot be set: it is …",
+    "no input, and only inputs have input derivatives": "cannot be set: it is …",
+    "Integer or Enumeration": "`…` is …, not …",
+    "the mechanism has none": "no … `…`; …",
+    "crank_angle=60*deg + 10*t": "the example for --drive",
+    "crank_length=120*mm": "the example for --set",
+    "about the solver": "cannot be set: it is …",
+    "the running program": "cannot read `…`",
+    "the estimate of body `…`": "… has no finite value",
+    "an equation of the mechanism": "… has no finite value",
+    "the radius of joint `…`": "… has no finite value",
+    "a wheel's size in joint `…`": "… has no finite value",
+    "… bytes too many": "is none that an instance could be in: …",
+    "a value … bytes before its end": "is none that an instance could be in: …",
+    "its joints are open by …": "is none that an instance could be in: …",
+    "from theta = … to … deg": "does not fit into hollows: …",
+    ", and in … more places": "does not fit into hollows: …",
+    "initialized at t = … s": "an event",
+    "a discrete input, which changes in event mode": "cannot be set: it is …",
+    "a tunable parameter, which changes in event mode": "cannot be set: it is …",
+    "derivatives are taken by inputs": "`…`: …, in initialization mode",
+    "derivatives are taken of outputs": "`…`: …, in initialization mode",
+    "its GUID is longer than itself": "is none that an instance could be in: …",
+    "it is in state …": "is none that an instance could be in: …",
+    "this FMU provides no directional derivatives": "of a model without them, which none is",
+    "FMU state set: … at t = … s": "an event",
+    "t = … s: … sub-steps, … of them checked, not proved; … iterations, residual …": "solver detail",
+    ".hidden callback_log": "for the linker",
+    ".private_extern _callback_log": "for the linker",
+}
+"""Texts that are no messages by themselves, each with the message that it is a part of."""
+
+FILE_TABLE = "In the mechanism file"
+
+SYMPTOMS = "First aid"
+"""The table without messages."""
+
+
+def rows() -> list[tuple[str, str, str]]:
+    """Heading, code (empty elsewhere than in the table of the file) and message of each row."""
+    found = []
+    for heading, table in tables(PAGE):
+        for row in table:
+            if heading == FILE_TABLE:
+                found.append((heading, row[0].strip("`"), row[1]))
+            elif heading != SYMPTOMS:
+                found.append((heading, "", row[0]))
+    return found
+
+
+def plain(text: str) -> str:
+    """A message without what differs between sources and page: quotes round what varies."""
+    return text.removeprefix("warning: ").replace("`…`", "…").strip()
+
+
+def pattern(message: str) -> re.Pattern:
+    return re.compile(".*".join(map(re.escape, message.split("…"))))
+
+
+def explained(literal: Literal, among: list[tuple[str, str, str]]) -> bool:
+    """Whether a row shows the literal, as it is or within a larger message."""
+    text = plain(literal.text)
+    wanted = pattern(text)
+    messages = [plain(message) for _, _, message in among]
+    return any(wanted.search(m) or ("…" != m and pattern(m).fullmatch(text)) for m in messages)
+
+
+def words_in(text: str) -> int:
+    return len(re.findall(r"[A-Za-z]{2,}|\b[a-z]\b", text))
+
+
+def is_message(literal: Literal) -> bool:
+    """Whether people are to read it: three words or more, no markup, not for programmers."""
+    text = literal.text
+    is_text = " " in text and "<" not in text and words_in(text) >= 3
+    return is_text and not NOT_FOR_PEOPLE.search(literal.before)
+
+
+SOURCES = list(sources())
+
+MESSAGES = [
+    literal
+    for name, text in SOURCES
+    if not name.startswith(("mechanism/", "drawing/")) and name not in FILES_WITHOUT_MESSAGES
+    for literal in literals(name, text)
+    if is_message(literal)
+]
+"""Of the program, the solver and the FMU."""
+
+FILE_MESSAGES = [
+    literal
+    for name, text in SOURCES
+    if name.startswith("mechanism/")
+    for literal in reported(name, text)
+    if re.search(r" .*[a-z]", literal.text)
+]
+"""Of the reader."""
+
+ANSWER = re.compile(r"^(?:error|warning)\[([a-z-]+)\]: (.*)$", re.MULTILINE)
+
+SNAPSHOTS = sorted(
+    {
+        found
+        for path in (ROOT / "tests" / "snapshots").glob("diagnostics__*.snap")
+        for found in ANSWER.findall(path.read_text(encoding="utf-8"))
+    }
+)
+"""Codes and messages of the reviewed answers to bad files."""
+
+
+def test_there_is_something_to_compare():
+    assert min(map(len, (MESSAGES, FILE_MESSAGES, SNAPSHOTS))) > 50
+
+
+def test_every_message_is_explained():
+    missing = {str(m) for m in MESSAGES if m.text not in PARTS and not explained(m, rows())}
+    if missing:
+        pytest.fail(
+            "add to docs/troubleshooting.md (or to PARTS here, if it is a part of another):\n"
+            + "\n".join(sorted(missing))
+        )
+
+
+def test_every_message_about_a_file_is_explained():
+    of_files = [row for row in rows() if row[0] == FILE_TABLE]
+    missing = {str(m) for m in FILE_MESSAGES if not explained(m, of_files)}
+    assert not missing, "add to docs/troubleshooting.md:\n" + "\n".join(sorted(missing))
+
+
+@pytest.mark.parametrize("code", sorted({code for code, _ in SNAPSHOTS}))
+def test_reviewed_answers_are_explained(code):
+    patterns = [pattern(message) for _, known, message in rows() if known == code]
+    for known, message in SNAPSHOTS:
+        if known == code:
+            assert any(p.fullmatch(message) for p in patterns), f"{code}: {message}"
+
+
+def test_every_code_is_there():
+    text = dict(SOURCES)["mechanism/diagnostic.rs"]
+    codes = set(re.findall(r'^    [A-Z_]+ = "([a-z-]+)",$', text, re.MULTILINE))
+    assert codes == {code for heading, code, _ in rows() if heading == FILE_TABLE}
+
+
+def test_nothing_else_is_explained():
+    every = [plain(literal.text) for name, text in SOURCES for literal in literals(name, text)]
+    texts = {text for text in every if words_in(text) >= 1 and " " in text}
+    patterns = [pattern(text) for text in texts if words_in(text) >= 2]
+
+    def is_said(message: str) -> bool:
+        return any(text in message for text in texts) or any(p.search(message) for p in patterns)
+
+    stale = [
+        f"{heading}: {message}"
+        for heading, code, message in rows()
+        if not any(c == code and pattern(message).fullmatch(m) for c, m in SNAPSHOTS)
+        and not is_said(plain(message))
+    ]
+    assert not stale, stale
+
+
+def test_no_part_is_out_of_date():
+    texts = {literal.text for name, text in SOURCES for literal in literals(name, text)}
+    assert set(PARTS) <= texts, set(PARTS) - texts

@@ -1,0 +1,64 @@
+"""The examples run, in a small version, and what they find is what closed forms say."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from harness import ROOT, program
+
+
+@pytest.fixture
+def example(tmp_path):
+    """`example(name)`: what the example prints, run in an empty folder with `biela` on the PATH."""
+
+    def run(name):
+        path = f"{program().parent}{os.pathsep}{os.environ['PATH']}"
+        small = {"PATH": path, "MPLBACKEND": "agg", "BIELA_EXAMPLE": "small"}
+        done = subprocess.run(
+            [sys.executable, ROOT / "examples" / name],
+            cwd=tmp_path,
+            env={**os.environ, **small},
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    return run
+
+
+def test_parameter_sweep(example, tmp_path):
+    printed = example("parameter_sweep.py")
+    rows = re.findall(r"^ +(\d+) +([\d.]+) +([\d.]+) +([\d.]+)$", printed, re.MULTILINE)
+    assert len(rows) == 3
+    for _, swing, closed_form, transmission in rows:
+        # The two ends of the swing lie between samples, 3 deg = 0.0524 rad of the crank off at
+        # most; there the rocker's angle is level, with a second derivative with respect to the
+        # crank's below 1/rad for these lengths. The digits shown are rounded.
+        most = 2 * 0.5 * 0.0524**2 * 57.3 + 1e-3
+        assert -1e-3 <= float(closed_form) - float(swing) <= most
+        assert 0 < float(transmission) < 90
+    assert (tmp_path / "parameter_sweep.png").stat().st_size > 10_000
+
+
+def test_dask_sweep(example, tmp_path):
+    printed = example("dask_sweep.py")
+    assert re.search(r"^ 2 processes .* same bits$", printed, re.MULTILINE), printed
+    assert "cranks turn fully, as Grashof says" in printed
+    error = float(re.search(r"closed form (\S+) rad", printed)[1])
+    # The transmission angle comes out as a difference of two angles, each exact to some 1e-15;
+    # the arc cosine of the closed form loses as much again.
+    assert error < 1e-12
+    assert (tmp_path / "dask_sweep.png").stat().st_size > 10_000
+
+
+def test_requirements_are_those_of_the_lock():
+    """The pins in examples/requirements.txt are versions that the tests run with."""
+    lock = (ROOT / "tests" / "fmpy" / "requirements.txt").read_text(encoding="utf-8")
+    pins = (ROOT / "examples" / "requirements.txt").read_text(encoding="utf-8")
+    for pin in re.findall(r"^\w.*$", pins, re.MULTILINE):
+        assert re.search(rf"^{re.escape(pin)} ", lock, re.MULTILINE), pin
