@@ -434,7 +434,36 @@ fn run_stops_at_a_dead_point_and_keeps_the_rows_before() {
     assert_eq!(time.last(), Some(&2.5));
     let message = stderr(&assert);
     assert!(message.contains("dead point"), "{message}");
-    assert!(message.contains("`side_length` at 0.65"), "{message}");
+    assert!(
+        message.contains("`side_length` at 0.650000000"),
+        "{message}"
+    );
+    assert!(
+        message.contains("body `arm`, body `rod` line up"),
+        "{message}"
+    );
+}
+
+#[test]
+fn run_tells_of_change_points_and_of_approaches() {
+    let run = |file: &str, drive: &str| {
+        stderr(
+            &biela(&[
+                "run", file, "--drive", drive, "--stop", "1", "--step", "0.01",
+            ])
+            .success(),
+        )
+    };
+    let message = run("mechanisms/parallelogram.toml", "crank_angle = 1 + 6*t");
+    let passed = "note: t = 0.36 s: change point passed on the smooth motion";
+    assert!(message.contains(passed), "{message}");
+    assert_eq!(message.lines().count(), 2, "{message}");
+    let message = run("mechanisms/tlv.toml", "side_length = 0.35 + 0.29999999*t");
+    assert!(
+        message.contains("warning: t = 1 s: near a singular position"),
+        "{message}"
+    );
+    assert_eq!(message.lines().count(), 1, "{message}");
 }
 
 #[test]

@@ -2,11 +2,54 @@
 
 mod common;
 
-use biela::fmi::{Error, Failure, Interface, State};
+use std::f64::consts::{PI, TAU};
+use std::sync::{Arc, Mutex};
+
+use biela::fmi::{
+    Category, Error, Failure, Instance as Fmu, Interface, MechanismModel, Sink, State, Status,
+};
 use common::{Instance, instance_of, shipped};
 
+/// Messages of a category, as they come.
+#[derive(Clone, Default)]
+struct Heard(Arc<Mutex<Vec<(Category, String)>>>);
+
+impl Sink for Heard {
+    fn write(&self, _: Status, category: Category, message: &str) {
+        let mut heard = self.0.lock().expect("no test panics with it");
+        heard.push((category, message.to_owned()));
+    }
+}
+
+impl Heard {
+    /// Those of a category since the last call, all others being forgotten.
+    fn take(&self, wanted: Category) -> Vec<String> {
+        let heard = self.take_all().into_iter();
+        heard
+            .filter(|(category, _)| *category == wanted)
+            .map(|(_, message)| message)
+            .collect()
+    }
+
+    fn take_all(&self) -> Vec<(Category, String)> {
+        std::mem::take(&mut self.0.lock().expect("no test panics with it"))
+    }
+}
+
 fn running(name: &str) -> Instance {
-    let mut instance = instance_of(shipped(name), Interface::CoSimulation);
+    started(instance_of(shipped(name), Interface::CoSimulation))
+}
+
+fn running_with(name: &str, sink: Box<dyn Sink + Send>) -> Instance {
+    let model = MechanismModel::new(shipped(name), Interface::CoSimulation);
+    started(Fmu::new(
+        model.expect("the mechanism assembles"),
+        sink,
+        true,
+    ))
+}
+
+fn started(mut instance: Instance) -> Instance {
     instance.setup_experiment(0.0, None).expect("legal");
     instance.enter_initialization_mode().expect("legal");
     instance.exit_initialization_mode().expect("it starts");
@@ -78,4 +121,82 @@ fn the_last_successful_time_of_a_moving_input_is_where_it_stopped() {
     }
     // A nanometre is 5e-9 s of travel; the dead point itself is met to about as much.
     assert!((instance.last_successful_time() - 1.5).abs() < 1e-7);
+}
+
+/// At 0.65 m arm and rod are in line.
+#[test]
+fn a_dead_point_is_told_with_driver_value_limit_and_bodies() {
+    let heard = Heard::default();
+    let mut instance = running_with("tlv", Box::new(heard.clone()));
+    instance.set_real(&[0], &[0.7]).unwrap();
+    instance.do_step(0.0, 0.1).expect_err("0.7 m is too long");
+    assert_eq!(
+        heard.take(Category::Warning),
+        [
+            "dead point, where body `arm`, body `rod` line up, after 0.8571 of the step from 0 s \
+             over 0.1 s: driver `side_length` was asked for 0.700000000 m and cannot go beyond \
+             0.650000000 m"
+        ]
+    );
+}
+
+#[test]
+fn an_approach_to_a_dead_point_is_warned_of_once() {
+    let heard = Heard::default();
+    let mut instance = running_with("tlv", Box::new(heard.clone()));
+    let mut warned = Vec::new();
+    // Twice to within a nanometre of the limit, and back.
+    for (step, off) in [0.1, 1e-8, 1e-9, 1e-8, 1e-9, 0.1, 1e-9, 1e-8]
+        .into_iter()
+        .enumerate()
+    {
+        instance.set_real(&[0], &[0.65 - off]).unwrap();
+        instance.do_step(step as f64, 1.0).unwrap();
+        let messages = heard.take(Category::Warning);
+        warned.push(messages.len());
+        for message in messages {
+            assert!(
+                message.contains("near a singular position, with a reciprocal condition of")
+                    && message.ends_with("body `arm`, body `rod` all but line up"),
+                "{message}"
+            );
+        }
+    }
+    assert_eq!(warned, [0, 1, 0, 0, 0, 0, 1, 0]);
+}
+
+#[test]
+fn a_change_point_is_an_event_not_a_warning() {
+    let heard = Heard::default();
+    let mut instance = running_with("parallelogram", Box::new(heard.clone()));
+    heard.take(Category::Events);
+    let start = PI / 3.0;
+    let mut passed = 0;
+    for step in 1..=500 {
+        let angle = start + TAU * f64::from(step) / 500.0;
+        instance.set_real(&[0], &[angle]).unwrap();
+        instance.do_step(f64::from(step - 1), 1.0).unwrap();
+        let [q] = read(&mut instance, &["follower.phi"])[..] else {
+            panic!("one output was asked for")
+        };
+        assert!((q - angle).abs() < 1e-12);
+        let all = heard.take_all();
+        assert!(
+            all.iter()
+                .all(|(category, _)| *category != Category::Warning)
+        );
+        for (_, message) in all
+            .iter()
+            .filter(|(category, _)| *category == Category::Events)
+        {
+            assert!(
+                message.starts_with(
+                    "change point passed on the smooth motion, with driver `crank_angle` at "
+                ) && message.ends_with("body `coupler`, body `follower` line up there"),
+                "{message}"
+            );
+            passed += 1;
+        }
+    }
+    assert_eq!(passed, 2);
 }

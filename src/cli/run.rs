@@ -135,6 +135,8 @@ struct Motion {
     path: Path,
     rates: Rates,
     driver_rates: Vec<Jet>,
+    /// Whether it was warned of the singular position that is near.
+    near_singular: bool,
 }
 
 impl Motion {
@@ -159,6 +161,7 @@ impl Motion {
         let mut motion = Self {
             rates: Rates::new(start.q.len()),
             driver_rates: vec![Jet::constant(0.0); driven.drivers.len()],
+            near_singular: false,
             solver,
             path,
         };
@@ -175,14 +178,19 @@ impl Motion {
                 Reason::Value(error) => error.to_string(),
                 Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
                 Reason::TooLong => "the motion is too fast for the steps".to_owned(),
-                _ => "dead point".to_owned(),
+                Reason::Singular(point) => point.to_string(),
+                _ => "no continuous motion".to_owned(),
             };
             let pose = self.solver.pose();
+            let limits = match &blocked.reason {
+                Reason::Singular(point) => &point.drivers,
+                _ => &pose.drivers,
+            };
             let mechanism = self.solver.mechanism();
             let drivers: Vec<_> = mechanism
                 .drivers
                 .iter()
-                .zip(&pose.drivers)
+                .zip(limits)
                 .filter(|(driver, _)| driver.motion().is_some())
                 .map(|(driver, value)| format!("`{}` at {value:.9}", driver.name))
                 .collect();
@@ -191,6 +199,13 @@ impl Motion {
                 pose.time,
                 drivers.join(", ")
             )));
+        }
+        if let Some(approach) = self.solver.approach(&mut self.near_singular) {
+            anstream::eprintln!("warning: t = {time} s: {approach}");
+        }
+        for crossing in self.solver.crossed() {
+            let passed = self.solver.describe_crossing(crossing);
+            anstream::eprintln!("note: t = {time} s: {passed}");
         }
         self.solve_rates()
             .map_err(|error| Error::DeadPoint(format!("at t = {time} s: {error}")))

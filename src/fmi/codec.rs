@@ -45,6 +45,30 @@ pub trait Codec {
         Ok(())
     }
 
+    /// An index or a length.
+    fn place(&mut self, value: &mut usize) -> Result<(), Unreadable> {
+        let bytes = self.bytes((*value as u64).to_le_bytes())?;
+        *value = usize::try_from(u64::from_le_bytes(bytes)).map_err(|_| Unreadable)?;
+        Ok(())
+    }
+
+    /// The length of a list of at most `most` items, which gets that length; what is added is
+    /// `room`.
+    fn resize<T>(
+        &mut self,
+        list: &mut Vec<T>,
+        most: usize,
+        room: impl FnMut() -> T,
+    ) -> Result<(), Unreadable> {
+        let mut length = list.len();
+        self.place(&mut length)?;
+        if length > most {
+            return Err(Unreadable);
+        }
+        list.resize_with(length, room);
+        Ok(())
+    }
+
     /// Yes or no.
     fn flag(&mut self, value: &mut bool) -> Result<(), Unreadable> {
         self.one_of(value, &[false, true])

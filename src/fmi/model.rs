@@ -266,8 +266,8 @@ pub trait Model: Sized {
     /// Goes back to a state that was saved, or that [`check`](Self::check) has passed.
     fn restore(&mut self, state: &Self::State);
 
-    /// Takes a codec through a state: all of it, always in the same order and number of bytes.
-    /// Reading starts from the present state of a model with the same GUID.
+    /// Takes a codec through a state: all of it, always in the same order. Reading starts from the
+    /// present state of a model with the same GUID.
     ///
     /// # Errors
     ///

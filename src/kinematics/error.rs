@@ -211,13 +211,10 @@ fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {
             "the mechanism cannot close in any of the {ways} ways in which its other parts close; \
              in the nearest {open}; {proof}"
         ),
-        Verdict::NotFound { starts: 1 } => format!(
-            "the mechanism was not found to close from 1 deterministic start, which is no proof \
-             that it cannot; in the nearest pose found {open}"
-        ),
         Verdict::NotFound { starts } => format!(
-            "the mechanism was not found to close from {starts} deterministic starts, which is \
-             no proof that it cannot; in the nearest pose found {open}"
+            "the mechanism was not found to close from {starts} deterministic start{}, which is \
+             no proof that it cannot; in the nearest pose found {open}",
+            if *starts == 1 { "" } else { "s" }
         ),
     }
 }

@@ -49,6 +49,7 @@ impl Solver {
     pub fn modes(&mut self) -> Result<Modes, Error> {
         let estimate = self.estimate()?;
         let home = self.pose().clone();
+        self.release_crossings();
         let mut modes = Modes {
             others: Vec::new(),
             starts: 0,

@@ -1,10 +1,23 @@
 //! How Newton–Raphson on a part of the position equations (Ec. 3.6.7 and 3.6.8) is judged.
 
 /// How the correction of a prediction went.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Correction {
     /// Corrections applied.
     pub(super) iterations: u32,
+    /// A cheap measure of how far from singular the Jacobian is where it ended, one at best:
+    /// small wherever the reciprocal condition is, not the other way round.
+    pub(super) regularity: f64,
+}
+
+impl Default for Correction {
+    /// Nothing to correct.
+    fn default() -> Self {
+        Self {
+            iterations: 0,
+            regularity: 1.0,
+        }
+    }
 }
 
 /// No pose was found, or one that may not be on the motion that led here.

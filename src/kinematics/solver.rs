@@ -10,6 +10,7 @@ use super::newton::Rejected;
 use super::plan::{Plan, Work};
 use super::rates::Rates;
 use super::redundancy::SetAside;
+use super::singular::Crossing;
 use super::structure::Structure;
 use super::system::{System, Targets};
 use super::{Error, Path};
@@ -28,10 +29,18 @@ pub struct Pose {
     pub q: Vec<f64>,
     /// Whole turns of the angle rows, one a row of the system.
     pub turns: Vec<i32>,
+    /// The change points next to which the mechanism is, none as a rule.
+    pub crossings: Vec<Arc<Crossing>>,
 }
 
 impl Pose {
     fn copy_from(&mut self, other: &Self) {
+        self.crossings.clone_from(&other.crossings);
+        self.copy_place(other);
+    }
+
+    /// All but the crossings.
+    fn copy_place(&mut self, other: &Self) {
         self.time = other.time;
         self.parameters.copy_from_slice(&other.parameters);
         self.drivers.copy_from_slice(&other.drivers);
@@ -101,6 +110,10 @@ pub struct Solver {
     pub(super) tubes: Tubes,
     /// Rates of the drivers that the host gives.
     host_drivers: Vec<Jet>,
+    /// The least regularity of all kernels at the pose, when they are factorised there.
+    pub(super) regularity: f64,
+    /// The change points passed on the path followed last.
+    pub(super) crossed: Vec<Arc<Crossing>>,
 }
 
 /// Rates were asked for where there are none.
@@ -138,6 +151,7 @@ impl Solver {
             drivers: vec![0.0; drivers],
             q: vec![0.0; order],
             turns: vec![0; system.equations().len()],
+            crossings: Vec::new(),
         };
         let motions = Motions::new(&mechanism);
         let measures = mechanism.measures.iter();
@@ -164,6 +178,8 @@ impl Solver {
             host_drivers: vec![Jet::constant(0.0); drivers],
             pose,
             at: system.configuration(),
+            regularity: 0.0,
+            crossed: Vec::new(),
             factorised: false,
             flow: Rates::new(order),
             system,
@@ -206,12 +222,14 @@ impl Solver {
     /// If the pose belongs to another mechanism.
     pub fn restore(&mut self, pose: &Pose) {
         self.parameters_taken &= self.pose.parameters == pose.parameters;
-        self.pose.copy_from(pose);
+        self.release_crossings();
+        self.pose.copy_place(pose);
         if !self.parameters_taken {
             self.take_over_parameters()
                 .expect("the parameters of a pose were valid when it was solved");
         }
         self.targets.turns.copy_from_slice(&self.pose.turns);
+        self.bridge_all(&pose.crossings);
         self.plan.forget_boxes();
         self.stand_at_pose();
     }
@@ -371,6 +389,7 @@ impl Solver {
             if unit {
                 plan.solve_rates(&mut work, &UNIT);
             }
+            self.regularity = self.plan.regularity();
             self.factorised = true;
         }
         Ok(())

@@ -10,6 +10,7 @@ use super::error::OpenJoint;
 use super::newton::Correction;
 use super::path::Path;
 use super::plan::{Advance, Substep, Work};
+use super::singular::{Careful, NEAR, SingularPoint};
 use super::solver::{Solver, UNIT};
 use crate::mechanism::Jet;
 
@@ -17,8 +18,11 @@ use crate::mechanism::Jet;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// No continuous motion leads on: a dead point, a change point, or a motion that jumps.
-    DeadPoint,
+    /// The Jacobian loses rank ahead: a dead point, or what is not crossed.
+    Singular(Box<SingularPoint>),
+    /// No continuous motion was found to lead on, nor a singular position: the motion jumps, or
+    /// the part of the mechanism that stops is too large or moved by parameters.
+    Lost,
     /// A value on the way is one for which the mechanism does not exist.
     Value(Error),
     /// Beyond here a constraint that was redundant so far contradicts the others: what it would
@@ -36,6 +40,8 @@ pub struct Progress {
     pub iterations: u32,
     /// Sub-steps, failed ones included; one for an ordinary step.
     pub substeps: u32,
+    /// Change points passed; [`Solver::crossed`] has them.
+    pub crossings: u32,
     /// How many of those that succeeded are *checked*, not proved: that one continuous motion
     /// joins their ends rests on an estimate. So it is for blocks of more than 32 torn unknowns,
     /// and while parameters move those of relations without straight code, or a motion's table.
@@ -56,6 +62,9 @@ pub struct Blocked {
 
 /// Some thousand turns; a path that asks for more is a slip, and the host waits.
 const MOST_SUBSTEPS: u32 = 100_000;
+/// Drivers that still move by more than this in such a sub-step \[m or rad\] tell nothing of what
+/// is ahead: the path is too long.
+const TELLS_NOTHING: f64 = 1e-6;
 /// A sub-step that fails is shortened to no less than this part, one that nothing is known of to
 /// half: what the certificate tells of a much too long one is not to be relied on.
 const SHORTEN: f64 = 0.1;
@@ -66,9 +75,14 @@ const LENGTHEN: f64 = 4.0;
 const ROOM: f64 = 0.85;
 /// A sub-step of this part of the path that still fails means that the path is blocked.
 const SMALLEST_SUBSTEP: f64 = 1e-12;
+/// The same for the first sub-step: away from a dead point, from as near as the way there ended.
+/// From there on the motion slows down as it has come on.
+const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
 
 impl Solver {
-    /// Moves the mechanism along `path`, at whose start it must stand. Allocates nothing.
+    /// Moves the mechanism along `path`, at whose start it must stand. Change points on the way are
+    /// crossed on the smooth continuation of the motion. Allocates nothing, unless a part of the
+    /// mechanism comes near a singular position.
     ///
     /// # Errors
     ///
@@ -87,33 +101,61 @@ impl Solver {
                 progress,
             })
         };
+        self.crossed.clear();
+        self.parameters_move = path.moves_parameters();
+        if self.parameters_move && !self.pose.crossings.is_empty() {
+            // A crossing is one for these parameters.
+            self.release_crossings();
+            self.stand_at_pose();
+        }
         if self.refresh().is_err() {
-            return blocked(s, Reason::DeadPoint, progress);
+            return blocked(s, Reason::Lost, progress);
         }
         self.pose.time = path.time(0.0);
-        self.parameters_move = path.moves_parameters();
         self.drive(path, 0.0);
+        let mut careful = match self.look_ahead(path, s) {
+            Ok(careful) => careful,
+            Err(end) => return blocked(s, Reason::Singular(end), progress),
+        };
         while s < 1.0 {
+            if !self.pose.crossings.is_empty() {
+                self.leave_crossings();
+            }
             self.predict();
+            let smallest = (0.01 * s).clamp(SMALLEST_FIRST_SUBSTEP, SMALLEST_SUBSTEP);
             self.origin_time = self.pose.time;
             if self.parameters_move {
                 self.origin_parameters
                     .copy_from_slice(&self.pose.parameters);
             }
             let start = s;
-            if substep < SMALLEST_SUBSTEP || progress.substeps >= MOST_SUBSTEPS {
+            if progress.substeps >= MOST_SUBSTEPS {
                 return blocked(s, Reason::TooLong, progress);
+            }
+            if substep < smallest {
+                let reason = self.reason_to_stop(path, s, substep);
+                return blocked(s, reason, progress);
             }
             // Between its points a motion given by a table tells at its ends where it has been.
             let most = path.next_point(start, &self.motions);
             let mut reaches_point = false;
             loop {
-                let next = if start + substep < most {
+                let mut next = if start + substep < most {
                     start + substep
                 } else {
                     reaches_point = true;
                     most
                 };
+                if let Some(careful) = careful {
+                    let end = self.within_way(careful, start, next);
+                    reaches_point &= end >= next;
+                    next = end;
+                }
+                if !self.pose.crossings.is_empty() {
+                    let end = self.within_crossings(path, start, next);
+                    reaches_point |= end < next;
+                    next = end;
+                }
                 progress.substeps = progress.substeps.saturating_add(1);
                 let reached = self.try_substep(path, [start, next], &mut progress);
                 if reached == Ok(true) {
@@ -134,26 +176,59 @@ impl Solver {
                     Err(Reason::Contradiction(_)) => HALVE * (next - start),
                     _ => self.shortened(next - start),
                 };
-                if substep < SMALLEST_SUBSTEP {
+                if substep < smallest {
                     let reason = match (reached, opened) {
                         (Err(Reason::Contradiction(_)), Some((_, joint))) => {
                             Reason::Contradiction(joint)
                         }
-                        (reached, _) => reached.err().unwrap_or(Reason::DeadPoint),
+                        (Err(reason), _) => reason,
+                        (Ok(_), _) => self.reason_to_stop(path, start, substep),
                     };
                     return blocked(start, reason, progress);
                 }
             }
             opened.take_if(|(place, _)| *place <= s);
-            let suggested = self.lengthened(s - start);
-            // What a point cut short was possible as well.
-            substep = if reaches_point {
-                suggested.max(substep)
-            } else {
-                suggested
+            progress.crossings += self.note_crossings();
+            careful = match self.look_ahead(path, s) {
+                Ok(careful) => careful,
+                Err(end) => return blocked(s, Reason::Singular(end), progress),
             };
+            if s < 1.0 {
+                let suggested = self.lengthened(s - start);
+                // What a point cut short was possible as well.
+                let possible = if reaches_point { substep } else { 0.0 };
+                substep = suggested.max(possible);
+            }
         }
         Ok(progress)
+    }
+
+    /// Why not even a sub-step of length `h` leads on from where the mechanism stands, which is at
+    /// `s`.
+    fn reason_to_stop(&mut self, path: &Path, s: f64, h: f64) -> Reason {
+        if let Some(end) = self.find_end(path, s) {
+            return Reason::Singular(end);
+        }
+        // However small a part of the path it is.
+        let far = |driver: &Jet| (h * driver.first).abs() > TELLS_NOTHING;
+        if self.origin_drivers.iter().any(far) {
+            Reason::TooLong
+        } else {
+            Reason::Lost
+        }
+    }
+
+    /// Takes over the crossings of change points that are near, once a sub-step has ended.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be passed is right ahead.
+    fn look_ahead(&mut self, path: &Path, s: f64) -> Result<Option<Careful>, Box<SingularPoint>> {
+        if self.regularity < NEAR && !self.parameters_move {
+            self.take_crossings(path, s)
+        } else {
+            Ok(None)
+        }
     }
 
     /// Computes tangent and curvature of the motion along the path where the mechanism stands,
@@ -230,6 +305,7 @@ impl Solver {
         // The pose takes the new values with the new q, or keeps both as they are.
         std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
         self.at.copy_pose(&mut self.pose.q);
+        self.regularity = correction.regularity;
         progress.iterations = progress.iterations.saturating_add(correction.iterations);
         progress.checked = progress.checked.saturating_add(self.tubes.checked.into());
         Ok(true)
@@ -283,7 +359,7 @@ impl Solver {
     }
 
     /// The drivers along the path at s, with their derivatives.
-    fn drive(&mut self, path: &Path, s: f64) {
+    pub(super) fn drive(&mut self, path: &Path, s: f64) {
         let Self {
             system,
             motions,

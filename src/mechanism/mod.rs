@@ -139,6 +139,17 @@ pub enum CoordinateKind {
     Distance,
 }
 
+impl CoordinateKind {
+    /// A value of it for people, with its unit.
+    #[must_use]
+    pub fn show(self, value: f64) -> String {
+        match self {
+            Self::Angle => format!("{value:.9} rad ({:.6} deg)", value.to_degrees()),
+            _ => format!("{value:.9} m"),
+        }
+    }
+}
+
 /// A named bundle of constraints between two markers.
 #[derive(Clone, Debug)]
 pub struct Joint {

@@ -76,8 +76,7 @@ impl<M: Model> Instance<M> {
     }
 
     /// `fmi2SerializedFMUstateSize`: how many bytes
-    /// [`serialize_fmu_state`](Self::serialize_fmu_state) gives, which is the same for all states
-    /// of an FMU.
+    /// [`serialize_fmu_state`](Self::serialize_fmu_state) gives for this state.
     ///
     /// # Errors
     ///

@@ -80,6 +80,8 @@ pub struct MechanismModel {
     path: Path,
     progress: Progress,
     time: f64,
+    /// Whether the host has been warned of the singular position that the mechanism is near.
+    near_singular: bool,
 }
 
 impl MechanismModel {
@@ -109,6 +111,7 @@ impl MechanismModel {
             path,
             progress: Progress::default(),
             time: home.time,
+            near_singular: false,
             own_home: Arc::clone(&home),
             home,
             solver,
@@ -165,6 +168,7 @@ impl Model for MechanismModel {
         self.freshness = Freshness::Stale;
         self.progress = Progress::default();
         self.time = self.home.time;
+        self.near_singular = false;
     }
 
     fn set_reals(&mut self, values: impl Iterator<Item = (Quantity, f64)>) {

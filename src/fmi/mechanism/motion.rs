@@ -7,7 +7,7 @@ use crate::fmi::error::{Failure, Status};
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve, Progress, Reason, Start};
-use crate::mechanism::{CoordinateKind, DriverId, DriverSource, Jet};
+use crate::mechanism::{DriverId, DriverSource, Jet};
 
 /// The part of a step's own travel below which two polynomials of an input count as meeting.
 const SEAM: f64 = 0.01;
@@ -35,6 +35,7 @@ impl MechanismModel {
                     input.complete_step(start);
                 }
                 self.time = end;
+                self.warn_of_approach(log);
                 self.freshness = Freshness::Pose;
                 self.commit_pose();
                 self.log_step(log);
@@ -140,6 +141,9 @@ impl MechanismModel {
             for warning in redundancies.chain(misfits.map(|misfit| misfit.to_string())) {
                 log.write(Status::Warning, Category::Warning, &warning);
             }
+        } else {
+            self.log_crossings(log);
+            self.warn_of_approach(log);
         }
         Ok(())
     }
@@ -163,6 +167,7 @@ impl MechanismModel {
     fn fail_step(&mut self, blocked: Blocked, start: f64, h: f64, log: &Logger) -> Failure {
         let message = self.describe_dead_point(&blocked, start, h);
         self.progress = blocked.progress;
+        self.log_crossings(log);
         // Held inputs and parameters reach their values only at the very end of the step; what
         // runs along its own curve has been right up to here. A host's polynomials do not meet
         // exactly where one ends and the next begins; that is no jump.
@@ -187,9 +192,30 @@ impl MechanismModel {
         discard(message, log)
     }
 
+    /// Warns once of each approach to a singular position.
+    fn warn_of_approach(&mut self, log: &Logger) {
+        if let Some(approach) = self.solver.approach(&mut self.near_singular) {
+            let message = format!("t = {} s: {approach}", self.time);
+            log.write(Status::Warning, Category::Warning, &message);
+        }
+    }
+
+    /// Tells of the change points passed on the path followed last.
+    fn log_crossings(&self, log: &Logger) {
+        if self.progress.crossings > 0 && log.wants(Category::Events) {
+            for crossing in self.solver.crossed() {
+                let message = self.solver.describe_crossing(crossing);
+                log.write(Status::Ok, Category::Events, &message);
+            }
+        }
+    }
+
     /// Which drivers move along the path, how far they came and what was asked for.
     fn describe_dead_point(&mut self, blocked: &Blocked, start: f64, h: f64) -> String {
-        let reached = self.solver.pose().drivers.clone();
+        let (limit, s) = match &blocked.reason {
+            Reason::Singular(point) => (point.drivers.clone(), point.s),
+            _ => (self.solver.pose().drivers.clone(), blocked.s),
+        };
         let asked = self.solver.drivers_at_end(&self.path);
         let mut parts: Vec<String> = self
             .mechanism
@@ -201,20 +227,20 @@ impl MechanismModel {
                 driver.motion().is_some() || way.abs() > 0.0
             })
             .map(|(index, driver)| {
-                let show = |value| show(driver.coordinate.kind, value);
+                let show = |value| driver.coordinate.kind.show(value);
                 if driver.motion().is_some() {
-                    let time = start + blocked.s * h;
+                    let time = start + s * h;
                     return format!(
                         "driver `{}` cannot follow its motion beyond {} at t = {time} s",
                         driver.name,
-                        show(reached[index])
+                        show(limit[index])
                     );
                 }
                 format!(
                     "driver `{}` was asked for {} and cannot go beyond {}",
                     driver.name,
                     show(asked[index]),
-                    show(reached[index])
+                    show(limit[index])
                 )
             })
             .collect();
@@ -234,21 +260,24 @@ impl MechanismModel {
                 parts.push("the step asks for more sub-steps than can be taken".to_owned());
                 "given up"
             }
-            _ => "dead point",
+            Reason::Singular(point) => &point.to_string(),
+            _ => "no continuous motion",
         };
         format!(
-            "{what} after {:.4} of the step from {start} s over {h} s: {}",
+            "{what}, after {:.4} of the step from {start} s over {h} s: {}",
             blocked.s,
             parts.join("; ")
         )
     }
 
     fn log_step(&self, log: &Logger) {
+        self.log_crossings(log);
         if log.wants(Category::Solver) {
             let Progress {
                 iterations,
                 substeps,
                 checked,
+                ..
             } = self.progress;
             let message = format!(
                 "t = {} s: {substeps} sub-steps, {checked} of them checked, not proved; \
@@ -313,11 +342,15 @@ impl MechanismModel {
         }
         self.at_committed = false;
         match self.solver.start(&self.home, &self.path).map_err(failed)? {
-            Start::Continuous(progress) => self.progress = progress,
+            Start::Continuous(progress) => {
+                self.progress = progress;
+                self.log_crossings(log);
+            }
             Start::Reassembled(assembly) => {
                 self.progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
+                    crossings: 0,
                     checked: 0,
                 };
                 log.write(
@@ -361,12 +394,4 @@ impl MechanismModel {
 fn discard(message: String, log: &Logger) -> Failure {
     log.write(Status::Warning, Category::Warning, &message);
     Failure::Discarded(message)
-}
-
-/// A driver's value for people.
-fn show(kind: CoordinateKind, value: f64) -> String {
-    match kind {
-        CoordinateKind::Angle => format!("{value:.9} rad ({:.6} deg)", value.to_degrees()),
-        _ => format!("{value:.9} m"),
-    }
 }

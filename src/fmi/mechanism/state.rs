@@ -7,8 +7,8 @@ use super::{Freshness, MechanismModel, Settings};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
-use crate::kinematics::{Pose, Progress};
-use crate::mechanism::Jet;
+use crate::kinematics::{Crossing, Pose, Progress};
+use crate::mechanism::{DriverId, Jet};
 
 /// The residual below which a pose counts as one of the mechanism, relative to its largest
 /// coordinate in characteristic lengths and radians. Newton leaves what rounding does, some
@@ -31,6 +31,7 @@ pub struct MechanismState {
     freshness: Freshness,
     progress: Progress,
     time: f64,
+    near_singular: bool,
 }
 
 impl MechanismModel {
@@ -66,6 +67,7 @@ impl MechanismModel {
             freshness,
             progress,
             time,
+            near_singular,
         } = self;
         MechanismState {
             home: Arc::clone(home),
@@ -83,6 +85,7 @@ impl MechanismModel {
             freshness: *freshness,
             progress: *progress,
             time: *time,
+            near_singular: *near_singular,
         }
     }
 
@@ -99,6 +102,7 @@ impl MechanismModel {
         self.freshness = state.freshness;
         self.progress = state.progress;
         self.time = state.time;
+        self.near_singular = state.near_singular;
     }
 
     /// Makes sure that nothing in a state that was read can lead where no model could be. Leaves
@@ -135,6 +139,9 @@ impl MechanismModel {
         let largest = (pose.q.iter().enumerate()).fold(1.0, |largest: f64, (column, q)| {
             largest.max((q / system.column_scale(column, at.size())).abs())
         });
+        if !self.solver.admits_crossings(pose) {
+            return Err("its change points are none of this mechanism".to_owned());
+        }
         self.solver.restore(pose);
         let residual = self.solver.residual();
         // Not a number is not closed either.
@@ -160,12 +167,15 @@ impl MechanismState {
             freshness,
             progress,
             time,
+            near_singular,
         } = self;
         codec.one_of(freshness, &[Freshness::Stale, Freshness::Pose])?;
         codec.flag(at_committed)?;
+        codec.flag(near_singular)?;
         codec.finite(time)?;
         codec.count(&mut progress.iterations)?;
         codec.count(&mut progress.substeps)?;
+        codec.count(&mut progress.crossings)?;
         codec.count(&mut progress.checked)?;
         // Derived parameters may be anything until values are looked at together.
         for value in &mut settings.parameters {
@@ -196,10 +206,50 @@ fn walk_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> 
         drivers,
         q,
         turns,
+        crossings,
     } = pose;
     codec.finite(time)?;
-    for value in parameters.iter_mut().chain(drivers).chain(q) {
+    for value in parameters.iter_mut().chain(drivers).chain(&mut *q) {
         codec.finite(value)?;
     }
-    turns.iter_mut().try_for_each(|turn| codec.signed(turn))
+    turns.iter_mut().try_for_each(|turn| codec.signed(turn))?;
+    let unknowns = q.len();
+    codec.resize(crossings, unknowns, || {
+        Arc::new(Crossing {
+            kernel: 0,
+            driver: DriverId(0),
+            center: 0.0,
+            half_width: 0.0,
+            coefficients: Vec::new(),
+            free: Vec::new(),
+        })
+    })?;
+    crossings
+        .iter_mut()
+        .try_for_each(|crossing| walk_crossing(Arc::make_mut(crossing), unknowns, codec))
+}
+
+fn walk_crossing(
+    crossing: &mut Crossing,
+    unknowns: usize,
+    codec: &mut impl Codec,
+) -> Result<(), Unreadable> {
+    let Crossing {
+        kernel,
+        driver,
+        center,
+        half_width,
+        coefficients,
+        free,
+    } = crossing;
+    codec.place(kernel)?;
+    codec.place(&mut driver.0)?;
+    codec.finite(center)?;
+    codec.finite(half_width)?;
+    codec.resize(coefficients, unknowns, || [0.0; 6])?;
+    for value in coefficients.iter_mut().flatten() {
+        codec.finite(value)?;
+    }
+    codec.resize(free, unknowns, || 0.0)?;
+    free.iter_mut().try_for_each(|value| codec.finite(value))
 }

@@ -90,6 +90,7 @@ impl Solver {
                 bodies: Vec::new(),
             });
         }
+        self.settle();
         Ok(Assembly {
             iterations,
             distance: self.distance_from(&estimate),
@@ -99,6 +100,7 @@ impl Solver {
     /// Takes all values from the end of `path`, and puts the bodies at the estimates, which are
     /// returned.
     pub(super) fn go_to_estimate(&mut self, path: &Path) -> Result<Vec<f64>, Error> {
+        self.release_crossings();
         self.pose.parameters.copy_from_slice(&path.to);
         self.take_over_parameters()?;
         self.parameters_move = path.moves_parameters();

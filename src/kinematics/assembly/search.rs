@@ -152,7 +152,7 @@ impl Solver {
 /// What one start of a kernel costs, in units of a closed form.
 fn cost(kernel: &Kernel) -> f64 {
     match kernel {
-        Kernel::Pinned(_) | Kernel::Dyad(_) | Kernel::Slide(_) => 1.0,
+        Kernel::Pinned(_) | Kernel::Dyad(_) | Kernel::Slide(_) | Kernel::Bridged(_) => 1.0,
         Kernel::Coupled(kernel) => (kernel.columns().len() as f64 / UNIT_OF_WORK)
             .powi(3)
             .max(1.0),

@@ -94,16 +94,8 @@ impl Solver {
         let (plan, mut work) = self.work();
         let mut iterations = 0;
         for kernel in &mut plan.kernels {
-            let correction = match kernel {
-                Kernel::Pinned(kernel) => {
-                    kernel.locate(&mut work);
-                    continue;
-                }
-                Kernel::Dyad(kernel) => kernel.close(&mut work, MAX_ITERATIONS),
-                Kernel::Slide(kernel) => kernel.close(&mut work, MAX_ITERATIONS),
-                Kernel::Coupled(kernel) => kernel.correct(&mut work, MAX_ITERATIONS),
-            };
-            iterations = iterations.max(correction.ok()?.iterations);
+            let correction = kernel.close(&mut work, MAX_ITERATIONS).ok()?;
+            iterations = iterations.max(correction.iterations);
         }
         self.at.copy_pose(&mut self.pose.q);
         Some(iterations)
@@ -125,6 +117,8 @@ impl Solver {
                 Kernel::Pinned(kernel) => kernel.locate(&mut work),
                 Kernel::Dyad(kernel) => kernel.stretch(&mut work, estimate),
                 Kernel::Slide(kernel) => kernel.stretch(&mut work, estimate),
+                // None is in force where bodies are at their estimates.
+                Kernel::Bridged(_) => {}
                 Kernel::Coupled(kernel) => {
                     let part = Part::new(kernel.rows(), kernel.columns());
                     part.start(&mut work, estimate, 0);

@@ -59,7 +59,7 @@ impl Ways {
         effort: Effort,
     ) -> Self {
         let found = match kernel {
-            Kernel::Pinned(_) => Ok(Source::Explicit),
+            Kernel::Pinned(_) | Kernel::Bridged(_) => Ok(Source::Explicit),
             Kernel::Dyad(dyad) => dyad.ways(work, estimate).map(Source::ClosedForm),
             Kernel::Slide(slide) => {
                 let ways = slide.ways(work, estimate);
@@ -126,10 +126,7 @@ impl Ways {
         loop {
             let attempt = self.starts;
             let corrected = match (&mut self.source, &mut *kernel) {
-                (Source::Explicit, Kernel::Pinned(kernel)) if attempt == 0 => {
-                    kernel.locate(work);
-                    Ok(Correction::default())
-                }
+                (Source::Explicit, kernel) if attempt == 0 => kernel.close(work, MAX_ITERATIONS),
                 (Source::ClosedForm(ways), Kernel::Dyad(kernel)) if attempt < ways.len() => {
                     kernel.close_from(work, ways[attempt], MAX_ITERATIONS)
                 }

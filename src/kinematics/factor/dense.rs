@@ -97,6 +97,15 @@ impl DenseLu {
         }
         Ok(())
     }
+
+    /// The magnitudes of the smallest and the largest pivot.
+    #[must_use]
+    pub fn pivot_range(&self) -> (f64, f64) {
+        let pivots = (0..self.pivots.len()).map(|k| self.matrix[(k, k)].abs());
+        pivots.fold((f64::INFINITY, 0.0_f64), |(low, high), pivot| {
+            (low.min(pivot), high.max(pivot))
+        })
+    }
 }
 
 impl Factors for DenseLu {

@@ -176,6 +176,15 @@ impl Lu {
             lu.forget_pivots();
         }
     }
+
+    /// The magnitudes of the smallest and the largest pivot.
+    #[must_use]
+    pub fn pivot_range(&self) -> (f64, f64) {
+        match self {
+            Self::Dense(lu) => lu.pivot_range(),
+            Self::Sparse(lu) => lu.pivot_range(),
+        }
+    }
 }
 
 impl Factors for Lu {

@@ -256,6 +256,15 @@ impl SparseLu {
             },
         })
     }
+
+    /// The magnitudes of the smallest and the largest pivot.
+    #[must_use]
+    pub fn pivot_range(&self) -> (f64, f64) {
+        let pivots = self.diagonal.iter().map(|pivot| pivot.abs());
+        pivots.fold((f64::INFINITY, 0.0_f64), |(low, high), pivot| {
+            (low.min(pivot), high.max(pivot))
+        })
+    }
 }
 
 /// Rows that are looked at for a pivot: the shortest ones.

@@ -166,7 +166,16 @@ impl Coupled {
         let correction = self.correct(work, MAX_ITERATIONS);
         let correction = correction.map_err(|_| substep.tubes.break_off())?;
         self.certify(work, substep)?;
-        Ok(correction)
+        Ok(Correction {
+            regularity: self.regularity(),
+            ..correction
+        })
+    }
+
+    /// The ratio of the extreme pivots.
+    pub(super) fn regularity(&self) -> f64 {
+        let (low, high) = self.lu.pivot_range();
+        low / high.max(self.lu.norm())
     }
 
     /// Corrects the block's unknowns from where they are until Phi = 0 to rounding: solves

@@ -208,7 +208,10 @@ impl Dyad {
             },
             &found,
         )?;
-        Ok(found.correction)
+        Ok(Correction {
+            regularity: self.regularity(),
+            ..found.correction
+        })
     }
 
     /// Newton–Raphson on the two angles. The angles accepted are those of exact sines and
@@ -342,6 +345,13 @@ impl Dyad {
         let alpha_b = w.dot(&a.link) * inverse;
         a.set_rates(frames, velocity, acceleration, outer_a, omega_a, alpha_a);
         b.set_rates(frames, velocity, acceleration, outer_b, omega_b, alpha_b);
+    }
+
+    /// The sine of the angle between the links.
+    #[inline(always)]
+    pub(super) fn regularity(&self) -> f64 {
+        let [a, b] = &self.sides;
+        self.determinant.abs() / (a.length * b.length)
     }
 
     /// 1 / (‖J‖₁ ‖J⁻¹‖₁), each column of J divided by its link's length: it depends on the angle

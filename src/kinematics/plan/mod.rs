@@ -10,8 +10,10 @@
 //! | [`Dyad`] | x, y, phi of two bodies | Newton on two angles, 2×2 in closed form |
 //! | [`Slide`] | x, y, phi of one or two bodies, one point on a line | Newton on one angle |
 //! | [`Coupled`] | any block | Newton on its rows, whatever they are |
+//! | [`Bridged`] | those of any kernel near a change point | the interpolated motion |
 
 mod anchor;
+mod bridged;
 mod compile;
 mod coupled;
 mod dyad;
@@ -28,6 +30,7 @@ use super::rates::Rates;
 use super::system::{System, Targets};
 use crate::mechanism::Jet;
 
+pub(super) use bridged::Bridged;
 pub(super) use coupled::Coupled;
 use dyad::Dyad;
 pub(super) use general::General;
@@ -43,11 +46,16 @@ pub(super) struct Plan {
 
 /// What finds the unknowns of one part of the mechanism.
 #[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "most kernels are dyads, which lie side by side as they are"
+)]
 pub(super) enum Kernel {
     Pinned(Box<Pinned>),
     Dyad(Dyad),
     Slide(Box<Slide>),
     Coupled(Box<Coupled>),
+    Bridged(Box<Bridged>),
 }
 
 /// What kernels read and change: the mechanism at the pose that is being found.
@@ -98,6 +106,8 @@ impl Plan {
                 Kernel::Dyad(kernel) => kernel.set_parameters(at, tubes),
                 Kernel::Slide(kernel) => kernel.set_parameters(at, targets, tubes),
                 Kernel::Coupled(kernel) => kernel.forget_box(),
+                // Parameters do not move while a crossing is in force.
+                Kernel::Bridged(_) => {}
             }
         }
     }
@@ -146,8 +156,14 @@ impl Plan {
     /// Lets sparse matrices choose their pivots anew; the plan has then to be factorised again.
     pub(super) fn forget_pivots(&mut self) {
         for kernel in &mut self.kernels {
-            if let Kernel::Coupled(kernel) = kernel {
-                kernel.forget_pivots();
+            match kernel {
+                Kernel::Coupled(kernel) => kernel.forget_pivots(),
+                Kernel::Bridged(bridged) => {
+                    if let Kernel::Coupled(kernel) = &mut bridged.kernel {
+                        kernel.forget_pivots();
+                    }
+                }
+                _ => {}
             }
         }
     }
@@ -198,8 +214,16 @@ impl Plan {
                     }
                     correction
                 }
+                Kernel::Bridged(kernel) => {
+                    let correction = kernel.advance(work, substep)?;
+                    if let Some(unit) = unit {
+                        kernel.solve_rates(work, unit);
+                    }
+                    correction
+                }
             };
             most.iterations = most.iterations.max(correction.iterations);
+            most.regularity = most.regularity.min(correction.regularity);
         }
         Ok(most)
     }
@@ -210,28 +234,29 @@ impl Plan {
     ///
     /// [`Rejected`] where a Jacobian is singular to the last bit.
     pub(super) fn factorise(&mut self, work: &mut Work<'_>) -> Result<(), Rejected> {
-        for kernel in &mut self.kernels {
-            match kernel {
-                Kernel::Pinned(_) => {}
-                Kernel::Dyad(kernel) => kernel.factorise(work)?,
-                Kernel::Slide(kernel) => kernel.factorise(work)?,
-                Kernel::Coupled(kernel) => kernel.factorise(work)?,
-            }
-        }
-        Ok(())
+        let mut kernels = self.kernels.iter_mut();
+        kernels.try_for_each(|kernel| kernel.factorise(work))
     }
 
     /// Makes the flow the one for these rates of the drivers (`first` and `second` of each) at
     /// the pose at which all kernels are factorised.
     pub(super) fn solve_rates(&mut self, work: &mut Work<'_>, drivers: &[Jet]) {
         for kernel in &mut self.kernels {
-            match kernel {
-                Kernel::Pinned(kernel) => kernel.solve_rates(work, drivers),
-                Kernel::Dyad(kernel) => kernel.solve_rates(work),
-                Kernel::Slide(kernel) => kernel.solve_rates(work, drivers),
-                Kernel::Coupled(kernel) => kernel.solve_rates(work, drivers),
-            }
+            kernel.solve_rates(work, drivers);
         }
+    }
+
+    /// The least [regularity](Correction::regularity) of all kernels, which are factorised.
+    pub(super) fn regularity(&self) -> f64 {
+        let kernels = self.kernels.iter();
+        kernels.fold(1.0, |least: f64, kernel| least.min(kernel.regularity()))
+    }
+
+    /// The smallest transmission angle of all dyads and slides, which are factorised \[rad\].
+    pub(super) fn transmission(&self) -> Option<f64> {
+        let sines = self.kernels.iter().filter_map(Kernel::transmission);
+        let least = sines.fold(f64::INFINITY, f64::min);
+        least.is_finite().then(|| least.min(1.0).asin())
     }
 
     /// Scaled reciprocal condition: the smallest of all kernels, which are factorised.
@@ -249,6 +274,7 @@ impl Kernel {
             Self::Dyad(kernel) => kernel.rows(),
             Self::Slide(kernel) => kernel.rows(),
             Self::Coupled(kernel) => kernel.rows(),
+            Self::Bridged(bridged) => bridged.kernel.rows(),
         }
     }
 
@@ -259,6 +285,7 @@ impl Kernel {
             Self::Dyad(kernel) => kernel.columns(),
             Self::Slide(kernel) => kernel.columns(),
             Self::Coupled(kernel) => kernel.columns(),
+            Self::Bridged(bridged) => bridged.kernel.columns(),
         }
     }
 
@@ -269,6 +296,72 @@ impl Kernel {
             Self::Dyad(kernel) => kernel.rcond(),
             Self::Slide(kernel) => kernel.rcond(),
             Self::Coupled(kernel) => kernel.rcond(),
+            Self::Bridged(kernel) => kernel.rcond(),
+        }
+    }
+
+    /// A cheap measure of how far from singular the pose is at which it is factorised.
+    pub(super) fn regularity(&self) -> f64 {
+        match self {
+            Self::Pinned(_) => 1.0,
+            Self::Dyad(kernel) => kernel.regularity(),
+            Self::Slide(kernel) => kernel.regularity(),
+            Self::Coupled(kernel) => kernel.regularity(),
+            // It is past the worst.
+            Self::Bridged(_) => 1.0,
+        }
+    }
+
+    /// The sine of its transmission angle, if it has one.
+    fn transmission(&self) -> Option<f64> {
+        match self {
+            Self::Dyad(kernel) => Some(kernel.regularity()),
+            Self::Slide(kernel) => Some(kernel.regularity()),
+            Self::Pinned(_) | Self::Coupled(_) => None,
+            Self::Bridged(bridged) => bridged.kernel.transmission(),
+        }
+    }
+
+    /// Newton–Raphson from where the bodies are, behind the kernels before it.
+    pub(super) fn close(
+        &mut self,
+        work: &mut Work<'_>,
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        match self {
+            Self::Pinned(kernel) => {
+                kernel.locate(work);
+                Ok(Correction::default())
+            }
+            Self::Dyad(kernel) => kernel.close(work, max_iterations),
+            Self::Slide(kernel) => kernel.close(work, max_iterations),
+            Self::Coupled(kernel) => kernel.correct(work, max_iterations),
+            Self::Bridged(kernel) => kernel.close(work),
+        }
+    }
+
+    /// Factorises it at the pose in `work`.
+    pub(super) fn factorise(&mut self, work: &mut Work<'_>) -> Result<(), Rejected> {
+        match self {
+            Self::Pinned(_) => Ok(()),
+            Self::Dyad(kernel) => kernel.factorise(work),
+            Self::Slide(kernel) => kernel.factorise(work),
+            Self::Coupled(kernel) => kernel.factorise(work),
+            Self::Bridged(kernel) => {
+                kernel.factorise(work);
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes the rates of its unknowns at the pose at which it is factorised.
+    pub(super) fn solve_rates(&mut self, work: &mut Work<'_>, drivers: &[Jet]) {
+        match self {
+            Self::Pinned(kernel) => kernel.solve_rates(work, drivers),
+            Self::Dyad(kernel) => kernel.solve_rates(work),
+            Self::Slide(kernel) => kernel.solve_rates(work, drivers),
+            Self::Coupled(kernel) => kernel.solve_rates(work, drivers),
+            Self::Bridged(kernel) => kernel.solve_rates(work, drivers),
         }
     }
 }
@@ -293,6 +386,7 @@ mod tests {
             Kernel::Dyad(_) => "D".to_owned(),
             Kernel::Slide(_) => "S".to_owned(),
             Kernel::Coupled(coupled) => format!("C{}", coupled.columns().len()),
+            Kernel::Bridged(_) => "B".to_owned(),
         });
         letters.collect::<Vec<_>>().join(" ")
     }

@@ -119,7 +119,10 @@ impl Pinned {
             stray,
         };
         // Linear equations are solved by one.
-        Correction { iterations: 1 }
+        Correction {
+            iterations: 1,
+            ..Correction::default()
+        }
     }
 
     pub(super) fn solve_rates(&self, work: &mut Work<'_>, drivers: &[Jet]) {

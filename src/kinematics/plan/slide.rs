@@ -370,7 +370,15 @@ impl Slide {
         let found = self.correct(work, predicted, MAX_ITERATIONS);
         let found = found.map_err(|_| substep.tubes.break_off())?;
         self.certify(work, substep.tubes, &before, &found)?;
-        Ok(found.correction)
+        Ok(Correction {
+            regularity: self.regularity(),
+            ..found.correction
+        })
+    }
+
+    /// The slope of the equation in the angle, as part of what it can be.
+    pub(super) fn regularity(&self) -> f64 {
+        self.slope.abs() / self.scale
     }
 
     /// Newton–Raphson on the angle of a.

@@ -6,6 +6,7 @@ use super::echelon::{Echelon, Reduced, Row};
 use super::{DEPENDENT, Solver};
 use crate::kinematics::system::Target;
 use crate::kinematics::{Element, Error};
+use crate::mechanism::CoordinateKind;
 
 /// How far the mechanism is moved to tell what depends here only, in radians and characteristic
 /// lengths: enough for rank to show, not so far that it is another mechanism.
@@ -39,25 +40,66 @@ impl Solver {
         self.at.copy_pose(&mut home);
         let here = self.ranks();
         let leaves_motion = here.constraints < unknowns;
-        let mut away: Vec<Ranks> = Vec::new();
+        let mut away = Vec::new();
         if leaves_motion {
-            let way = self.way_out();
-            let constraints = self.constraint_rows();
-            let mut closing = Closing::new(&self.system, &constraints);
-            for sense in [AWAY, -AWAY] {
-                if self.move_away(&home, &way, sense, &mut closing) {
-                    away.push(self.ranks());
-                }
+            away = self.ranks_with_drivers_moved(&home);
+            let is_full = |ranks: &Ranks| ranks.echelon.kept().len() == unknowns;
+            if !away.iter().any(is_full) {
+                away.extend(self.ranks_along_constraints(&home));
             }
             self.at.set_pose(self.system.mechanism(), &home);
             if away.is_empty() {
                 return Err(self.singular_position());
             }
         }
-        let rank = |ranks: &Ranks| (ranks.constraints, ranks.echelon.kept().len());
+        let rank = |ranks: &Ranks| (ranks.echelon.kept().len(), ranks.constraints);
         let generic = away.into_iter().max_by_key(rank).unwrap_or(here);
         self.judge(&generic)?;
         Ok(generic.redundant)
+    }
+
+    /// Ranks where the drivers have moved a little, both ways, as far as the mechanism closes
+    /// there. Drivers that are too many hold each other.
+    fn ranks_with_drivers_moved(&mut self, home: &[f64]) -> Vec<Ranks> {
+        let drivers = self.pose.drivers.clone();
+        let all: Vec<_> = (0..self.system.equations().len()).collect();
+        let mut closing = Closing::new(&self.system, &all);
+        let mut found = Vec::new();
+        for sense in [AWAY, -AWAY] {
+            if drivers.is_empty() {
+                break;
+            }
+            self.at.set_pose(self.system.mechanism(), home);
+            let moved = drivers.iter().zip(&self.system.mechanism().drivers);
+            let moved = moved.enumerate().map(|(k, (value, driver))| {
+                let scale = match driver.coordinate.kind {
+                    CoordinateKind::Angle => 1.0,
+                    _ => self.at.size(),
+                };
+                value + sense * scale * mixture(k)
+            });
+            self.pose.drivers = moved.collect();
+            if closing.close(&mut self.work().1).is_none() {
+                found.push(self.ranks());
+            }
+        }
+        self.pose.drivers = drivers;
+        found
+    }
+
+    /// Ranks a little way along what the constraints leave free, both ways.
+    fn ranks_along_constraints(&mut self, home: &[f64]) -> Vec<Ranks> {
+        self.at.set_pose(self.system.mechanism(), home);
+        let way = self.way_out();
+        let constraints = self.constraint_rows();
+        let mut closing = Closing::new(&self.system, &constraints);
+        let mut found = Vec::new();
+        for sense in [AWAY, -AWAY] {
+            if self.move_away(home, &way, sense, &mut closing) {
+                found.push(self.ranks());
+            }
+        }
+        found
     }
 
     /// The verdict on drivers that are too few, too many or on the wrong things.
@@ -126,17 +168,14 @@ impl Solver {
     /// A direction in which the constraints let the mechanism move where it is, scaled; of
     /// several a mixture of all.
     fn way_out(&mut self) -> Vec<f64> {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let rows: Vec<Row> = self.rows_here();
         let mut echelon = Echelon::new(self.system.unknowns(), &rows);
         for row in self.constraint_rows() {
             echelon.offer(row, &rows[row], DEPENDENT);
         }
         let free = echelon.free().into_iter().enumerate();
-        let mixture: Vec<_> = free
-            .map(|(k, column)| (column, 0.5 + (GOLDEN * (k + 1) as f64).fract()))
-            .collect();
-        echelon.null_vector(&mixture)
+        let all: Vec<_> = free.map(|(k, column)| (column, mixture(k))).collect();
+        echelon.null_vector(&all)
     }
 
     /// Moves from `home` along a direction and closes on the constraints. False if that leads
@@ -165,4 +204,11 @@ impl Solver {
         let held = equations.filter(|(_, e)| matches!(e.target, Target::Constant(_)));
         held.map(|(row, _)| row).collect()
     }
+}
+
+/// A factor for the k-th of several motions, so that they do not cancel: from a half to one and a
+/// half, spread evenly by the golden ratio.
+fn mixture(k: usize) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    0.5 + (GOLDEN * (k + 1) as f64).fract()
 }

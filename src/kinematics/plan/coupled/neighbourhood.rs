@@ -97,8 +97,8 @@ impl Coupled {
             + area.rounding;
         // A little more than there has to be, as strictly as it is asked for.
         let radius = 1.001 * open / (1.0 - area.contraction);
-        // Not so for what is not a number.
-        if !(far + radius.max(uncertain) <= 1.0) {
+        let reach = far + radius.max(uncertain);
+        if reach > 1.0 || reach.is_nan() {
             return false;
         }
         let size = work.at.size();

@@ -1,0 +1,376 @@
+//! Dead points are located, change points are crossed on the smooth motion.
+
+mod common;
+
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+use biela::kinematics::{Path, Rates, Reason, SingularKind, Solver};
+use biela::mechanism::{Jet, Mechanism};
+use proptest::prelude::*;
+
+use common::{Errors, Exact, assembled, parse, shipped, straight_to};
+
+/// The parallelogram as shipped, and crossed: B is mirrored in the line from A to O4, so that the
+/// coupler turns by twice the angle of that line.
+const PARALLEL: Exact = Exact {
+    file: "parallelogram",
+    bodies: &[
+        ("crank", ["0", "0", "t"]),
+        (
+            "coupler",
+            ["crank_length*cos(t)", "crank_length*sin(t)", "0"],
+        ),
+        ("follower", ["base", "0", "t"]),
+    ],
+    formulas: &[],
+    range: (0.0, 0.0),
+};
+const CROSSED: Exact = Exact {
+    file: "parallelogram",
+    bodies: &[
+        ("crank", ["0", "0", "t"]),
+        (
+            "coupler",
+            ["crank_length*cos(t)", "crank_length*sin(t)", "{coupler}"],
+        ),
+        ("follower", ["base", "0", "{coupler} - t"]),
+    ],
+    formulas: &[(
+        "coupler",
+        "2*atan2(-crank_length*sin(t), base - crank_length*cos(t))",
+    )],
+    range: (0.0, 0.0),
+};
+
+/// The crossed parallelogram: the same file with other estimates.
+fn crossed() -> Arc<Mechanism> {
+    let text = std::fs::read_to_string("mechanisms/parallelogram.toml")
+        .expect("it is shipped")
+        .replace(
+            "estimate = [0.05, 0.09, 0]",
+            "estimate = [0.05, 0.09, \"-60*deg\"]",
+        )
+        .replace(
+            "estimate = [\"base\", 0, \"60*deg\"]",
+            "estimate = [\"base\", 0, \"-120*deg\"]",
+        );
+    parse(&text)
+}
+
+/// Largest errors of position, velocity and acceleration over a number of turns of `steps` steps,
+/// and the change points passed.
+fn turn(
+    mechanism: &Arc<Mechanism>,
+    exact: &Exact,
+    turns: u32,
+    steps: u32,
+    offset: f64,
+) -> ([f64; 3], u32) {
+    let (mut solver, mut path) = assembled(mechanism);
+    let mut rates = Rates::new(solver.pose().q.len());
+    let start = PI / 3.0;
+    let mut worst = [0.0; 3];
+    let mut crossings = 0;
+    let (u, v) = (1.0, 0.3);
+    for step in 1..=turns * steps {
+        let angle = start + offset + TAU * f64::from(step) / f64::from(steps);
+        straight_to(&solver, &mut path, angle);
+        let progress = solver
+            .follow(&path)
+            .unwrap_or_else(|blocked| panic!("{} at {angle}: {blocked:?}", exact.file));
+        crossings += progress.crossings;
+        let driver = Jet {
+            value: angle,
+            first: u,
+            second: v,
+        };
+        solver
+            .solve_rates(|_| driver, &mut rates)
+            .expect("rates exist on the smooth motion");
+        for (k, truth) in exact.solution(mechanism, driver).iter().enumerate() {
+            let found = [
+                solver.pose().q[k],
+                rates.velocity()[k],
+                rates.acceleration()[k],
+            ];
+            let truth = [truth.value, truth.first, truth.second];
+            for order in 0..3 {
+                worst[order] = f64::max(worst[order], (found[order] - truth[order]).abs());
+            }
+        }
+    }
+    (worst, crossings)
+}
+
+/// Closer than the 1e-9, 1e-7 and 1e-5 that are asked for next to a change point.
+fn assert_right([position, velocity, acceleration]: [f64; 3]) {
+    assert!(
+        position < 1e-11 && velocity < 1e-9 && acceleration < 1e-6,
+        "{position:e} {velocity:e} {acceleration:e}"
+    );
+}
+
+#[test]
+fn a_parallelogram_turns_through_its_change_points() {
+    for (mechanism, exact) in [(shipped("parallelogram"), PARALLEL), (crossed(), CROSSED)] {
+        for (turns, steps) in [(20, 10), (5, 100), (1, 10_000)] {
+            let (worst, crossings) = turn(&mechanism, &exact, turns, steps, 0.0);
+            assert_eq!(crossings, 2 * turns);
+            assert_right(worst);
+        }
+    }
+}
+
+/// Stops at every distance from a change point: position, velocity and acceleration are those of
+/// the smooth motion, and saved poses lead on as before.
+#[test]
+fn outputs_next_to_a_change_point_are_those_of_the_motion() {
+    for (mechanism, exact) in [(shipped("parallelogram"), PARALLEL), (crossed(), CROSSED)] {
+        let (mut solver, mut path) = assembled(&mechanism);
+        let mut rates = Rates::new(solver.pose().q.len());
+        let mut targets = vec![PI, 0.0, PI];
+        for exponent in 1..16 {
+            let off = 10_f64.powi(-exponent);
+            targets.extend([PI - off, PI + off, PI - off, -off, off]);
+        }
+        for target in targets {
+            straight_to(&solver, &mut path, target);
+            solver.follow(&path).expect("the crank turns fully");
+            let driver = Jet {
+                value: target,
+                first: 1.0,
+                second: -0.7,
+            };
+            let pose = solver.pose().clone();
+            for restored in [false, true] {
+                if restored {
+                    solver.restore(&pose);
+                }
+                solver
+                    .solve_rates(|_| driver, &mut rates)
+                    .expect("rates exist on the smooth motion");
+                let mut errors = Errors::default();
+                errors.collect(&solver, &rates, &exact.solution(&mechanism, driver));
+                assert_right(errors.error);
+            }
+            // Honest: the Jacobian is what it is.
+            let distance = (target - (target / PI).round() * PI).abs();
+            let rcond = solver.rcond();
+            assert!(rcond <= 2.0 * distance + 1e-13, "{rcond} {distance}");
+        }
+    }
+}
+
+/// Assembled next to a change point, as its estimates say; at the point itself no estimate tells
+/// which motion is meant.
+#[test]
+fn a_mechanism_starts_next_to_a_change_point_but_not_on_it() {
+    let text = std::fs::read_to_string("mechanisms/parallelogram.toml").expect("it is shipped");
+    let at = |degrees: f64| {
+        let mechanism = parse(&text.replace("60*deg", &format!("{degrees:?}*deg")));
+        let path = Path::new(&mechanism);
+        let mut solver = Solver::new(Arc::clone(&mechanism)).expect("the drivers match");
+        solver.assemble(&path).map(|_| (solver, mechanism))
+    };
+    for off in [1.0, 1e-1, 1e-2] {
+        let (mut solver, mechanism) = at(180.0 - off).expect("it closes");
+        let mut rates = Rates::new(solver.pose().q.len());
+        let driver = Jet {
+            value: solver.pose().drivers[0],
+            first: 1.0,
+            second: -0.7,
+        };
+        solver
+            .solve_rates(|_| driver, &mut rates)
+            .expect("it moves");
+        let mut errors = Errors::default();
+        errors.collect(&solver, &rates, &PARALLEL.solution(&mechanism, driver));
+        assert_right(errors.error);
+    }
+    let error = at(180.0).expect_err("it may go on either way");
+    assert!(
+        matches!(error, biela::kinematics::Error::Singular { .. }),
+        "{error}"
+    );
+    assert!(error.to_string().contains("change point"), "{error}");
+}
+
+#[test]
+fn a_pose_next_to_a_change_point_leads_on_with_the_same_bits() {
+    let mechanism = crossed();
+    let (mut solver, mut path) = assembled(&mechanism);
+    straight_to(&solver, &mut path, PI - 0.001);
+    solver.follow(&path).expect("nothing is in the way");
+    let pose = solver.pose().clone();
+    assert_eq!(pose.crossings.len(), 1);
+    let mut on = |solver: &mut Solver| {
+        let mut seen = Vec::new();
+        for target in [PI, PI + 0.003, PI - 0.002, PI + 0.1, PI + 1.0] {
+            straight_to(solver, &mut path, target);
+            let progress = solver.follow(&path).expect("the crank turns fully");
+            seen.push((solver.pose().clone(), progress));
+        }
+        seen
+    };
+    let first = on(&mut solver);
+    solver.restore(&pose);
+    assert_eq!(on(&mut solver), first);
+    let mut other = Solver::new(mechanism).expect("the drivers match");
+    other.restore(&pose);
+    assert_eq!(on(&mut other), first);
+}
+
+/// A four-bar driven by a link that does not turn fully: lengths of crank, coupler, rocker and
+/// base, and the assembly mode.
+fn four_bar(lengths: [f64; 4], crank: f64, side: f64) -> Option<Arc<Mechanism>> {
+    let [a, b, c, d] = lengths;
+    let (x, y) = (a * crank.cos(), a * crank.sin());
+    let diagonal = (d - x).hypot(y);
+    let cosine = (diagonal * diagonal + b * b - c * c) / (2.0 * diagonal * b);
+    if cosine.abs() > 0.99 {
+        return None;
+    }
+    let coupler = f64::atan2(-y, d - x) + side * cosine.acos();
+    let rocker = (y + b * coupler.sin()).atan2(x + b * coupler.cos() - d);
+    Some(parse(&format!(
+        "format = 1\nname = 'bar'\n[ground.markers]\nO2 = [0, 0]\nO4 = [{d:?}, 0]\n\
+         [bodies.crank]\nmarkers = {{ O = [0, 0], A = [{a:?}, 0] }}\n\
+         estimate = [0, 0, {crank:?}]\n\
+         [bodies.coupler]\nmarkers = {{ A = [0, 0], B = [{b:?}, 0] }}\n\
+         estimate = [{x:?}, {y:?}, {coupler:?}]\n\
+         [bodies.rocker]\nmarkers = {{ O = [0, 0], B = [{c:?}, 0] }}\n\
+         estimate = [{d:?}, 0, {rocker:?}]\n\
+         [joints]\nO2 = {{ type = 'revolute', markers = ['ground.O2', 'crank.O'] }}\n\
+         A = {{ type = 'revolute', markers = ['crank.A', 'coupler.A'] }}\n\
+         B = {{ type = 'revolute', markers = ['coupler.B', 'rocker.B'] }}\n\
+         O4 = {{ type = 'revolute', markers = ['ground.O4', 'rocker.O'] }}\n\
+         [drivers]\nu = {{ coordinate = 'angle', markers = ['ground.O2', 'crank.O'], \
+         start = {crank:?} }}\n"
+    )))
+}
+
+/// The crank angles, from 0 to pi, at which coupler and rocker line up: where the diagonal is
+/// their sum or their difference. By half-angles, which lose nothing near 0 and pi.
+fn limits([a, b, c, d]: [f64; 4]) -> impl Iterator<Item = f64> {
+    [c, -c].into_iter().filter_map(move |c| {
+        let sine = (b + c + (a - d)) * (b + c - (a - d));
+        let cosine = (a + d + (b + c)) * (a + d - (b + c));
+        (sine > 0.0 && cosine > 0.0).then(|| 2.0 * sine.sqrt().atan2(cosine.sqrt()))
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Every crank that is blocked is so where the closed form says, both ways; one that turns
+    /// fully is not blocked.
+    #[test]
+    fn limits_of_four_bars_agree_with_the_closed_form(
+        lengths in [0.1..0.5_f64, 0.1..0.5_f64, 0.1..0.5_f64, 0.1..0.5_f64],
+        crank in -3.1..3.1_f64,
+        side in prop::sample::select(vec![-1.0, 1.0]),
+    ) {
+        let Some(mechanism) = four_bar(lengths, crank, side) else {
+            return Ok(());
+        };
+        let (mut solver, mut path) = assembled(&mechanism);
+        let limits: Vec<f64> = limits(lengths).flat_map(|limit| [limit, -limit]).collect();
+        let start = solver.pose().clone();
+        for way in [TAU, -TAU] {
+            solver.restore(&start);
+            straight_to(&solver, &mut path, crank + way);
+            // The first limit on the way.
+            let expected = limits
+                .iter()
+                .map(|limit| ((limit - crank) * way.signum()).rem_euclid(TAU))
+                .fold(f64::INFINITY, f64::min);
+            match solver.follow(&path) {
+                Ok(_) => prop_assert!(expected.is_infinite(), "{expected}"),
+                Err(blocked) => {
+                    let Reason::Singular(point) = &blocked.reason else {
+                        panic!("{blocked:?}")
+                    };
+                    prop_assert_eq!(point.kind, SingularKind::DeadPoint);
+                    let found = (point.drivers[0] - crank) * way.signum();
+                    prop_assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+                    prop_assert!((point.s * TAU - expected).abs() < 1e-12);
+                    prop_assert_eq!(&point.bodies, &["body `coupler`", "body `rocker`"]);
+                    // Where it stands is near, and the way back is open.
+                    let near = (solver.pose().drivers[0] - crank) * way.signum();
+                    prop_assert!(near <= found && near > found - 1e-9);
+                    straight_to(&solver, &mut path, crank);
+                    let back = solver.follow(&path);
+                    prop_assert!(back.is_ok(), "{blocked:?}\n{back:?}");
+                    let off = (0..9).map(|k| (solver.pose().q[k] - start.q[k]).abs());
+                    prop_assert!(off.fold(0.0, f64::max) < 1e-9);
+                }
+            }
+        }
+    }
+}
+
+/// A parallelogram with one link wrong by a relative 1e-12 to 1e-6 is none: where links come to
+/// lie in line, it turns back at the dead points that the closed form has, or swings over to the
+/// other branch as its exact motion does.
+#[test]
+fn a_slightly_wrong_parallelogram_moves_as_its_exact_lengths_say() {
+    let start = PI / 3.0;
+    for wrong in [1e-12, 1e-9, 1e-6] {
+        for (link, sign, side) in (0..4).flat_map(|link| {
+            [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
+                .map(|(sign, side)| (link, sign, side))
+        }) {
+            let mut lengths = [0.1, 0.2, 0.1, 0.2];
+            lengths[link] *= 1.0 + sign * wrong;
+            let mechanism = four_bar(lengths, start, side).expect("it closes");
+            let (mut solver, mut path) = assembled(&mechanism);
+            let [a, b, c, d] = lengths;
+            let limit = limits(lengths)
+                .flat_map(|limit| [limit, TAU - limit])
+                .filter(|limit| *limit > start)
+                .fold(f64::INFINITY, f64::min);
+            let mut blocked = None;
+            for step in 1..=20 {
+                let target = start + PI * f64::from(step) / 10.0;
+                straight_to(&solver, &mut path, target);
+                if let Err(end) = solver.follow(&path) {
+                    blocked = Some(end.reason);
+                    break;
+                }
+                // On which side of the diagonal the loop lies never changes.
+                let (x, y) = (a * target.cos(), a * target.sin());
+                let diagonal = (d - x).hypot(y);
+                let cosine = (diagonal * diagonal + b * b - c * c) / (2.0 * diagonal * b);
+                let coupler = f64::atan2(-y, d - x) + side * cosine.acos();
+                let off = (solver.pose().q[5] - coupler).rem_euclid(TAU);
+                // The arc cosine's rounding.
+                assert!(off.min(TAU - off) < 1e-12, "{lengths:?} {target}: {off}");
+            }
+            match blocked {
+                None => assert!(limit.is_infinite(), "{lengths:?}"),
+                Some(Reason::Singular(point)) => {
+                    assert_eq!(point.kind, SingularKind::DeadPoint);
+                    // The lengths' own rounding, 5e-17 m in a difference of 1e-13 m.
+                    let off = (point.drivers[0] - limit).abs();
+                    assert!(off < 1e-9, "{lengths:?}: {} {limit}", point.drivers[0]);
+                }
+                Some(reason) => panic!("{lengths:?}: {reason:?}"),
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "takes eight minutes: cargo test --release --test singular -- --ignored"]
+fn a_thousand_turns_through_change_points() {
+    for (mechanism, exact) in [(shipped("parallelogram"), PARALLEL), (crossed(), CROSSED)] {
+        for steps in [10, 100, 10_000] {
+            let (worst, crossings) = turn(&mechanism, &exact, 1000, steps, 0.0);
+            println!("{steps} steps a turn: {worst:?}");
+            assert_eq!(crossings, 2000);
+            // Next to a change point; angles of 6,000 rad lose three digits more.
+            assert!(worst[0] < 1e-9 && worst[1] < 1e-7 && worst[2] < 1e-5);
+        }
+    }
+}
