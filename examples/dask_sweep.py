@@ -26,7 +26,7 @@ SMALL = os.environ.get("BIELA_EXAMPLE") == "small"
 
 CRANK, BASE = 0.10, 0.40
 LENGTHS = np.linspace(0.151, 0.60, 10 if SMALL else 128)
-STEPS = 36 if SMALL else 180
+STEPS = 36 if SMALL else 360
 
 
 # %% One chunk of variants, in one process

@@ -150,4 +150,11 @@ fi
 # Every time, as the compiler may have moved; it touches the file only if its content changes.
 written=$("$VENV_PYTHON" scripts/cargo_config.py) || exit 1
 [ -z "$written" ] || say "$written"
+# The tests of pages are skipped where there is no browser. A machine of CI's own gets one.
+if [ "${CI:-}" = true ] && [ "$(id -u)" = 0 ] && has apt-get && ! has chromium && ! has google-chrome; then
+    say "installing Chromium for the tests of pages"
+    { apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium; } >/dev/null ||
+        say "Chromium could not be installed: the tests of pages are skipped"
+    changed=1
+fi
 [ -n "$changed$written" ] || say "up to date"

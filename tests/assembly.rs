@@ -1,6 +1,9 @@
 //! The first pose, and what is said where there is none.
 
 mod common;
+#[path = "common/generated.rs"]
+#[allow(dead_code, reason = "also used by other tests")]
+mod generated;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
@@ -8,6 +11,7 @@ use std::sync::Arc;
 use biela::kinematics::{Curve, Error, Path, Proof, Solver, Verdict};
 use biela::mechanism::Mechanism;
 use common::{EXACT, assembled, parse, shipped};
+use generated::{BAR, scissor_lift};
 use proptest::prelude::*;
 
 fn four_bar() -> String {
@@ -344,6 +348,27 @@ fn a_chain_of_too_many_modes_is_not_said_to_be_impossible() {
     // The parallel mode leaves √3 − 1.4, the crossed one before it √7 − 1.4.
     assert!(
         (open[0].gap - (3_f64.sqrt() - 1.4)).abs() < 1e-12,
+        "{error}"
+    );
+}
+
+/// A scissor lift of sixty cells is one block of 360 unknowns. It stands at most as high as its
+/// bars are long together; where more is asked for there is neither a closed form nor room for
+/// bounds, but an answer, with the lift stretched to its full height.
+#[test]
+fn a_large_block_that_does_not_close_is_answered() {
+    const CELLS: usize = 60;
+    let text = scissor_lift(CELLS);
+    let (before, _) = text.split_once("start = ").expect("it has a driver");
+    let height = BAR * CELLS as f64;
+    let error = failure(&parse(&format!("{before}start = {} }}\n", 1.5 * height)));
+    let Error::NotAssembled { verdict, open, .. } = &error else {
+        panic!("{error}")
+    };
+    assert!(matches!(verdict, Verdict::NotFound { .. }), "{error}");
+    let gaps: f64 = open.iter().map(|joint| joint.gap).sum();
+    assert!(
+        gaps > 0.0 && error.to_string().contains("no proof"),
         "{error}"
     );
 }

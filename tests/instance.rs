@@ -97,7 +97,7 @@ fn a_discarded_step_leaves_pose_and_rates_of_the_last_communication_point() {
 
 #[test]
 fn a_step_that_would_never_end_is_discarded() {
-    let mut instance = running("pendulum");
+    let mut instance = running("four_bar");
     instance.set_real(&[0], &[1e12]).unwrap();
     let error = instance.do_step(0.0, 0.1).expect_err("that is too far");
     assert!(error.to_string().contains("more sub-steps"), "{error}");

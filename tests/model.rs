@@ -367,7 +367,7 @@ fn it_is_described_and_packed() {
     };
     let mut archive = Cursor::new(Vec::new());
     let resources = [("numbers.txt", &b"1 2 3"[..])];
-    write_archive(&mut archive, &description, &[], &resources, None).unwrap();
+    write_archive(&mut archive, &description, &[], &resources, &[], None).unwrap();
     let mut archive = zip::ZipArchive::new(archive).unwrap();
     let names: Vec<_> = archive
         .file_names()

@@ -98,7 +98,10 @@ fn a_length_that_nothing_blocks_is_followed_far() {
     let End::Blocked { value, reason } = range.lower else {
         panic!("{:?}", range.lower)
     };
-    assert!(matches!(reason, Reason::Value(_)) && (0.0..1e-9).contains(&value));
+    assert!(
+        matches!(reason, Reason::Value(_)) && (0.0..1e-9).contains(&value),
+        "{value} {reason:?}"
+    );
 }
 
 /// The pantograph's tracer runs along y = 0 up to where its bars line up, 240 mm from O, and down

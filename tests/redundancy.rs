@@ -6,7 +6,7 @@ mod common;
 #[allow(dead_code, reason = "also used by `benches/`")]
 mod generated;
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::{Arc, Mutex};
 
 use biela::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
@@ -627,7 +627,7 @@ fn joints_on_lines() -> Vec<(String, Vec<String>)> {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 40,
+        cases: 24,
         failure_persistence: None,
         ..ProptestConfig::default()
     })]
@@ -658,10 +658,22 @@ proptest! {
 /// included, for who may choose among the equations.
 #[test]
 fn three_cranks_turn_through_their_flat_poses() {
+    turn_three_cranks(&[(10, 100), (100, 20), (1000, 2)]);
+}
+
+/// The same for longer.
+#[test]
+#[ignore = "takes a minute without optimisation"]
+fn three_cranks_turn_a_hundred_times() {
+    turn_three_cranks(&[(10, 100), (100, 100), (1000, 100)]);
+}
+
+/// Turns them with so many steps a turn, for so many turns.
+fn turn_three_cranks(runs: &[(u32, u32)]) {
     let mechanism = parse(&parallelogram(&[[0.2, 0.1]], 60.0, true));
     let phi = |name: &str| 3 * mechanism.body_id(name).expect("it has it").index() + 2;
     let phi = ["crank", "rocker", "crank_5", "coupler"].map(phi);
-    for (steps, turns) in [(10, 100), (100, 100), (1000, 10)] {
+    for &(steps, turns) in runs {
         let (mut solver, mut path) = assembled(&mechanism);
         for step in 1..=turns * steps {
             let angle = TAU / 6.0 + TAU * f64::from(step) / f64::from(steps);
@@ -682,6 +694,44 @@ fn three_cranks_turn_through_their_flat_poses() {
             }
             assert!(q[phi[3]].abs() < rounding, "{step} of {steps}");
         }
+    }
+}
+
+/// With their pins in line three cranks laid flat lose rank whatever rows are chosen: refused for
+/// that, and not for a contradiction, though nothing holds to rounding there.
+#[test]
+fn three_cranks_in_line_stop_where_they_are_flat() {
+    let text = parallelogram(&[[0.2, 0.0]], 60.0, true);
+    let (mut solver, mut path) = assembled(&parse(&text));
+    straight_to(&solver, &mut path, 1.2 * PI);
+    let blocked = solver
+        .follow(&path)
+        .expect_err("a change point with redundant rows");
+    assert!(
+        !matches!(blocked.reason, Reason::Contradiction(_)),
+        "{blocked:?}"
+    );
+    // As near as the rows set aside hold to 1e-9: rounding by the square of the distance.
+    assert!((solver.pose().drivers[0] - PI).abs() < 1e-3, "{blocked:?}");
+    assert!(solver.residual() < 1.1e-9);
+}
+
+/// A change point is one for all rows: redundant ones elsewhere do not keep the mechanism from
+/// crossing it.
+#[test]
+fn a_parallelogram_with_a_doubled_pin_crosses_its_change_points() {
+    let text = double(&parallelogram(&[], 60.0, true), "A");
+    let (mut solver, mut path) = assembled(&parse(&text));
+    let rocker = solver.mechanism().body_id("rocker").expect("it has one");
+    for step in 1..=72 {
+        let angle = TAU / 6.0 + TAU / 24.0 * f64::from(step);
+        straight_to(&solver, &mut path, angle);
+        solver
+            .follow(&path)
+            .unwrap_or_else(|blocked| panic!("{step}: {blocked:?}"));
+        // The change points are known to 1e-9, as is what is said next to them.
+        let off = solver.pose().q[3 * rocker.index() + 2] - angle;
+        assert!(off.abs() < 1e-9, "{step}: {off:e}");
     }
 }
 
@@ -727,7 +777,7 @@ fn long_chains(loops: usize) -> [(&'static str, String, String); 3] {
 /// take minutes.
 #[test]
 fn one_joint_too_many_in_a_long_chain_is_found() {
-    for (what, text, name) in long_chains(60) {
+    for (what, text, name) in long_chains(45) {
         let (mut solver, mut path) = assembled(&parse(&text));
         let redundancies = solver.redundancies();
         assert_eq!(redundancies.len(), 1, "{what}");
@@ -742,7 +792,7 @@ fn one_joint_too_many_in_a_long_chain_is_found() {
             let rocker = solver.mechanism().body_id(&format!("rocker_{k}"));
             solver.pose().q[3 * rocker.expect("it has it").index() + 2]
         };
-        for k in 2..=60 {
+        for k in 2..=45 {
             assert!(
                 (phi(k) - phi(1)).abs() < 1e-12,
                 "{what}: {k} {}",

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 use biela::kinematics::{Curve, Path, Reason, Solver};
 use biela::mechanism::Jet;
 use common::{EXACT, assembled, parse, shipped, straight_to};
-use generated::scissor_lift;
+use generated::{Ground, chain, scissor_lift};
 use proptest::prelude::*;
 
 /// q at rounding level: some eps times the condition, 1e-14, in metres and radians below ten.
@@ -469,5 +469,57 @@ fn a_pin_runs_over_the_pivot_of_its_slot() {
             (solver.pose().q[5] - 0.5 * target).abs() < SAME_POSE,
             "{target}"
         );
+    }
+}
+
+/// A hundred steps a turn are one sub-step each, proved, whatever the mechanism is made of; and so
+/// they are in a chain of a thousand loops.
+#[test]
+fn ordinary_steps_are_one_substep() {
+    let cranks = [
+        "four_bar",
+        "slider_crank",
+        "tlv_crank",
+        "slotted_lever",
+        "jansen_leg",
+        "watt_six_bar",
+        "stephenson_six_bar",
+        "whitworth",
+        "scotch_yoke",
+        "v_twin",
+        "drag_link",
+        "elliptic_trammel",
+        "geared_five_bar",
+        "planetary_gear",
+        "cam_knife",
+        "cam_flat",
+        "chebyshev",
+    ];
+    let texts = cranks.map(|name| (name, shipped(name), 100));
+    let long = ("chain", parse(&chain(1000, Ground::Straight)), 5);
+    for (name, mechanism, steps) in texts.into_iter().chain([long]) {
+        let (mut solver, mut path) = assembled(&mechanism);
+        for _ in 0..steps {
+            let target = solver.pose().drivers[0] + TAU / 100.0;
+            straight_to(&solver, &mut path, target);
+            let progress = solver.follow(&path).expect("nothing is in the way");
+            assert_eq!(
+                (progress.substeps, progress.checked),
+                (1, 0),
+                "{name} at {target}"
+            );
+        }
+    }
+}
+
+/// A block of more than 32 torn unknowns has no rigorous bound, and says so.
+#[test]
+fn large_blocks_are_checked_only() {
+    for (cells, proved) in [(12, true), (20, false)] {
+        let (mut solver, mut path) = assembled(&parse(&scissor_lift(cells)));
+        let target = solver.pose().drivers[0] + 0.001;
+        straight_to(&solver, &mut path, target);
+        let progress = solver.follow(&path).expect("nothing is in the way");
+        assert_eq!(progress.checked == 0, proved, "{cells} cells: {progress:?}");
     }
 }

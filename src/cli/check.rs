@@ -1,9 +1,11 @@
 //! `biela check`
 
+mod json;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::error::Error;
 use super::estimates::as_estimates;
@@ -30,6 +32,15 @@ pub(super) struct Check {
     /// as estimates to paste.
     #[arg(long)]
     modes: bool,
+    /// How to tell: in words, or as JSON, with all that is wrong in the file, in SI units.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Text,
+    Json,
 }
 
 /// Below this the assembled pose is called nearly singular.
@@ -37,6 +48,25 @@ const NEARLY_SINGULAR: f64 = 1e-6;
 
 impl Check {
     pub(super) fn run(self) -> Result<(), Error> {
+        match self.format {
+            Format::Text => self.tell(),
+            Format::Json => self.report(),
+        }
+    }
+
+    fn report(self) -> Result<(), Error> {
+        if self.estimates {
+            return Err(Error::Usage(
+                "--estimates is of --format text: the pose is in the JSON".to_owned(),
+            ));
+        }
+        let (report, ok) = json::report(&self.file, self.modes)?;
+        print(&format!("{report:#}\n"))?;
+        // What is wrong has been told.
+        if ok { Ok(()) } else { Err(Error::Diagnosed) }
+    }
+
+    fn tell(self) -> Result<(), Error> {
         let input = Input::read(&self.file)?;
         let mechanism = &input.mechanism;
         print(&describe_equations(mechanism))?;

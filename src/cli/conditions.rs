@@ -6,8 +6,11 @@ use clap::Args;
 
 use super::error::Error;
 use super::input::warn_of_misfits;
+use super::signals::Signals;
 use crate::kinematics::{Curve, Path, Solver, Start};
-use crate::mechanism::{DriverSource, ExpressionError, Mechanism, Motion, ParameterId, Variable};
+use crate::mechanism::{
+    DriverId, DriverSource, ExpressionError, Mechanism, Motion, ParameterId, Variable,
+};
 
 /// Options of all commands that move a mechanism away from its file's values.
 #[derive(Args, Debug)]
@@ -55,7 +58,7 @@ impl Conditions {
     }
 
     /// The mechanism with the motions of --drive prescribed.
-    pub(super) fn driven(&self, mechanism: &Mechanism) -> Result<Arc<Mechanism>, Error> {
+    pub(super) fn driven(&self, mechanism: &Mechanism) -> Result<Mechanism, Error> {
         let mut driven = mechanism.clone();
         for assignment in &self.drive {
             let (name, text) = split(assignment, "--drive", "crank_angle=60*deg + 10*t")?;
@@ -68,17 +71,39 @@ impl Conditions {
                 .map_err(|error| in_argument("--drive", text, &error))?;
             driven.drivers[id.index()].source = DriverSource::Motion(Motion::Expression(motion));
         }
-        Ok(Arc::new(driven))
+        Ok(driven)
+    }
+
+    /// No driver follows both --drive and the signals of --input.
+    pub(super) fn refuse_twice(
+        &self,
+        signals: &Signals,
+        mechanism: &Mechanism,
+    ) -> Result<(), Error> {
+        for assignment in &self.drive {
+            let (name, _) = split(assignment, "--drive", "crank_angle=60*deg + 10*t")?;
+            if mechanism
+                .driver_id(name)
+                .is_some_and(|driver| signals.has(driver))
+            {
+                return Err(Error::Usage(format!(
+                    "both --drive and --input say how `{name}` moves"
+                )));
+            }
+        }
+        Ok(())
     }
 }
 
 /// A solver of the driven mechanism at the start, in the file's assembly mode: moved there from
-/// the file's pose, where `home_solver` stands.
+/// the file's pose, where `home_solver` stands. `given` has the values of drivers that are set
+/// from elsewhere.
 pub(super) fn start(
     mut home_solver: Solver,
     driven: &Arc<Mechanism>,
     parameters: &[f64],
     time: f64,
+    given: impl Fn(DriverId) -> Option<f64>,
 ) -> Result<Solver, crate::kinematics::Error> {
     let home = home_solver.pose().clone();
     let mut path = Path::new(home_solver.mechanism());
@@ -91,8 +116,14 @@ pub(super) fn start(
             (Some(Motion::Table(_)), Some(Motion::Table(_))) | (None, None) => true,
             _ => false,
         };
-        if let (false, Some(Motion::Expression(given))) = (kept, driver.motion()) {
-            let position = given.evaluate(&|p: ParameterId| parameters[p.index()], time);
+        let position = match (given(DriverId(index)), driver.motion()) {
+            (Some(position), _) => Some(position),
+            (None, Some(Motion::Expression(motion))) if !kept => {
+                Some(motion.evaluate(&|p: ParameterId| parameters[p.index()], time))
+            }
+            _ => None,
+        };
+        if let Some(position) = position {
             *curve = Curve::Input {
                 position,
                 velocity: 0.0,
@@ -128,7 +159,8 @@ fn split<'a>(
         })
 }
 
-fn unknown<'a>(what: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Error {
+/// What to say of a name that stands for nothing.
+pub(super) fn unknown<'a>(what: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Error {
     let names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
     let help = match names[..] {
         [] => "the mechanism has none".to_owned(),

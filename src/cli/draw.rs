@@ -1,6 +1,7 @@
 //! `biela draw`
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
@@ -8,8 +9,8 @@ use clap::builder::RangedU64ValueParser;
 use super::conditions::{self, Conditions};
 use super::error::Error;
 use super::input::Input;
-use super::output::write;
-use crate::drawing::{Scene, Sheet, png, svg};
+use super::picture::Format;
+use crate::drawing::{Scene, Sheet};
 
 /// Draw a mechanism as a kinematic diagram, in SVG or PNG.
 ///
@@ -49,53 +50,21 @@ pub(super) struct Draw {
     transparent: bool,
 }
 
-/// What to write.
-#[derive(Clone, Copy)]
-enum Format {
-    Svg,
-    Png,
-}
-
 impl Draw {
     pub(super) fn run(self) -> Result<(), Error> {
-        let format = self.format()?;
+        let format = self.output.as_deref().map_or(Ok(Format::Svg), Format::of)?;
         let input = Input::read(&self.file)?;
         let parameters = self.conditions.parameters(&input.mechanism)?;
-        let driven = self.conditions.driven(&input.mechanism)?;
+        let driven = Arc::new(self.conditions.driven(&input.mechanism)?);
         let home_solver = input.assemble()?;
         let time = input.mechanism.simulation.start;
-        let mut solver = conditions::start(home_solver, &driven, &parameters, time)
+        let mut solver = conditions::start(home_solver, &driven, &parameters, time, |_| None)
             .map_err(|error| input.error(error))?;
         let scene = Scene::new(&mut solver, !self.no_traces);
         let sheet = Sheet::new(&scene, &solver.pose().q);
-        let picture = match format {
-            Format::Svg => svg::write(&sheet, self.width, self.transparent).into_bytes(),
-            Format::Png => png::write(&sheet, self.width, self.transparent)
-                .ok_or_else(|| Error::Usage(format!("no PNG is {} pixels wide", self.width)))?,
-        };
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
-        write(&path, &picture)
-    }
-
-    fn format(&self) -> Result<Format, Error> {
-        let Some(path) = self.output.as_ref().filter(|path| path.as_os_str() != "-") else {
-            return Ok(Format::Svg);
-        };
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_ascii_lowercase());
-        match extension
-            .as_deref()
-            .and_then(|extension| extension.to_str())
-        {
-            Some("svg") => Ok(Format::Svg),
-            Some("png") => Ok(Format::Png),
-            _ => Err(Error::Usage(format!(
-                "`{}` has neither the extension .svg nor .png",
-                path.display()
-            ))),
-        }
+        format.write(&path, &sheet, self.width, self.transparent)
     }
 }

@@ -41,6 +41,9 @@ pub(super) enum Error {
         path: PathBuf,
         source: std::io::Error,
     },
+    /// Nobody can be served.
+    #[error("cannot listen: {0}")]
+    Listen(std::io::Error),
     /// The FMU cannot be put together.
     #[error(transparent)]
     Package(#[from] PackageError),
@@ -62,9 +65,11 @@ impl Error {
             Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => {
                 ExitCode::SUCCESS
             }
-            Self::Usage(_) | Self::Read { .. } | Self::Write { .. } | Self::Package(_) => {
-                ExitCode::from(2)
-            }
+            Self::Usage(_)
+            | Self::Read { .. }
+            | Self::Write { .. }
+            | Self::Listen(_)
+            | Self::Package(_) => ExitCode::from(2),
         }
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::documentation;
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::output::write;
@@ -16,6 +17,9 @@ use crate::fmi::{describe, write_fmu};
 /// The FMU's inputs are the drivers without a prescribed motion, its parameters those of the
 /// file, its outputs position, velocity and acceleration of all bodies. The mechanism is
 /// assembled first; one that does not close is not exported.
+///
+/// With it go its picture (model.png) and its documentation (documentation/index.html): what it
+/// is, how it moves, its variables and parameters, the limits of its drivers.
 ///
 /// The same file gives the same bytes. Only if the environment variable SOURCE_DATE_EPOCH gives
 /// a time (seconds since 1970) does the model description say when it was generated.
@@ -51,6 +55,7 @@ impl Export {
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", mechanism.name)));
+        let documents = documentation::documents(&input, &solver)?;
         let mut archive = Cursor::new(Vec::new());
         write_fmu(
             &mut archive,
@@ -58,6 +63,7 @@ impl Export {
             mechanism,
             solver.structure(),
             &libraries,
+            &documents,
             generated.as_deref(),
         )?;
         write(&path, archive.get_ref())?;

@@ -10,16 +10,28 @@
 )]
 
 mod check;
+mod columns;
+mod completions;
 mod conditions;
+mod documentation;
 mod draw;
 mod error;
 mod estimates;
 mod export;
 mod input;
+mod motion;
+mod new;
 mod output;
+mod picture;
+mod progress;
+mod range;
+mod recording;
 pub mod render;
 mod run;
 mod runtime;
+mod schema;
+mod signals;
+mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -41,10 +53,15 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    New(new::New),
     Check(check::Check),
     Run(run::Run),
+    Range(range::Range),
     Draw(draw::Draw),
+    Watch(watch::Watch),
     Export(export::Export),
+    Schema(schema::Schema),
+    Completions(completions::Completions),
 }
 
 /// Runs the program with these arguments, the first being its own name.
@@ -58,10 +75,15 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let outcome = match arguments.command {
+        Command::New(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Run(command) => command.run(),
+        Command::Range(command) => command.run(),
         Command::Draw(command) => command.run(),
+        Command::Watch(command) => command.run(),
         Command::Export(command) => command.run(),
+        Command::Schema(command) => command.run(),
+        Command::Completions(command) => command.run(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

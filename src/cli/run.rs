@@ -1,27 +1,33 @@
 //! `biela run`
 
-use std::io::{BufWriter, Write};
+use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
 
-use super::conditions::{self, Conditions};
+use super::columns::{Column, Record, Table};
+use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
-use crate::fmi::{Causality, Order, Quantity, variables};
-use crate::kinematics::{Curve, Path, Rates, Reason, Solver};
-use crate::mechanism::{DriverId, Jet, Mechanism};
+use super::motion::Motion;
+use super::output::write;
+use super::picture::{Format, PLOT_WIDTH};
+use super::progress::Progress;
+use super::recording::Recording;
+use super::signals::Signals;
+use crate::drawing::{Sheet, animation};
+use crate::mechanism::Mechanism;
 
-/// Run a mechanism and print its motion as CSV.
+/// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
 /// Each row has the time, then value, velocity and acceleration of every driver, then all
 /// outputs of the FMU under their names there, in SI units. Drivers that are FMI inputs stay at
-/// their start values unless --drive says how they move; velocities and accelerations are exact
-/// derivatives of these motions.
+/// their start values unless --drive or --input says how they move; velocities and accelerations
+/// are exact derivatives of these motions.
 ///
 /// The mechanism starts in the assembly mode of its file. At a dead point the run ends with an
-/// error; the rows up to there are written.
+/// error; what there is up to there is written.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: biela run four_bar.toml --drive 'crank_angle = 60*deg + 2*pi*t' --stop 1"
@@ -31,6 +37,14 @@ pub(super) struct Run {
     file: PathBuf,
     #[command(flatten)]
     conditions: Conditions,
+    /// Move drivers by a CSV file: its first column is time, the others drivers' variables such
+    /// as crank_angle.position.
+    ///
+    /// Between two rows values go straight, before the first and after the last they hold, and
+    /// at a time that stands twice they jump: as FMPy does it. Velocities are those of the
+    /// columns .velocity, or else the slopes; accelerations those of .acceleration, or else zero.
+    #[arg(short, long, value_name = "CSV")]
+    input: Option<PathBuf>,
     /// Start time in seconds [default: the file's].
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     start: Option<f64>,
@@ -40,31 +54,81 @@ pub(super) struct Run {
     /// Time between rows in seconds [default: the file's].
     #[arg(long, value_name = "SECONDS")]
     step: Option<f64>,
-    /// The CSV file to write [default: stdout].
+    /// What to write and plot, separated by commas: variables such as crank.phi, or all of a
+    /// body, marker, driver or measure by its name [default: in the CSV all; plotted drivers and
+    /// measures, or points of interest, or bodies].
+    #[arg(short, long, value_name = "NAMES", value_delimiter = ',')]
+    variables: Vec<String>,
+    /// The CSV file to write, `-` for stdout [default: stdout, if there is neither --plot nor
+    /// --animate].
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
+    /// Plot positions, velocities and accelerations over time; the picture's extension, .svg or
+    /// .png, decides.
+    #[arg(short, long, value_name = "PICTURE")]
+    plot: Option<PathBuf>,
+    /// Write a page, .html, on which the mechanism moves; it needs nothing from elsewhere. Of more
+    /// than 10,000 rows it shows every second, third and so on.
+    #[arg(short, long, value_name = "PAGE")]
+    animate: Option<PathBuf>,
 }
 
 /// More rows than this are a slip in --step.
 const MOST_ROWS: f64 = 1e9;
-
+/// More rows than this are not held for a picture.
+const MOST_PLOTTED: u64 = 1_000_000;
 impl Run {
     pub(super) fn run(self) -> Result<(), Error> {
+        let format = self.plot.as_deref().map(Format::of).transpose()?;
         let input = Input::read(&self.file)?;
         let times = self.times(&input.mechanism)?;
         let parameters = self.conditions.parameters(&input.mechanism)?;
-        let driven = self.conditions.driven(&input.mechanism)?;
-        let home_solver = input.assemble()?;
-        let mut table = Table::new(&driven, self.writer()?, self.output.clone());
-        let mut motion = Motion::start(home_solver, driven, parameters, times.start)
-            .map_err(|error| input.error(error))?;
-        table.write_header()?;
-        table.write_row(&mut motion)?;
-        for row in 1..=times.steps {
-            motion.advance(times.at(row))?;
-            table.write_row(&mut motion)?;
+        let mut driven = self.conditions.driven(&input.mechanism)?;
+        let signals = match &self.input {
+            Some(path) => Signals::read(path, &driven)?,
+            None => Signals::default(),
+        };
+        self.conditions.refuse_twice(&signals, &driven)?;
+        signals.take_over(&mut driven);
+        let pictured = self.plot.is_some() || self.animate.is_some();
+        if pictured && self.input.is_none() && driven.drivers.iter().all(|d| d.motion().is_none()) {
+            eprintln!("note: nothing moves; --drive or --input say how drivers move");
         }
-        table.finish()
+        let driven = Arc::new(driven);
+        let all = Column::all(&driven);
+        let (written, plotted, told) = if self.variables.is_empty() {
+            let plotted = Column::of_interest(&all);
+            let told = Recording::of_interest(&all);
+            (all, plotted, told)
+        } else {
+            let chosen = Column::named(&all, &self.variables)?;
+            (chosen.clone(), chosen.clone(), chosen)
+        };
+        let home_solver = input.assemble()?;
+        let mut results = Results {
+            table: self.table(&written)?,
+            record: format.map(|_| Record::new(plotted)),
+            recording: (self.animate.as_ref()).map(|_| Recording::new(told, times.steps)),
+        };
+        let motion = Motion::start(
+            home_solver,
+            Arc::clone(&driven),
+            signals,
+            parameters.clone(),
+            times.start,
+        )
+        .map_err(|error| input.error(error))?;
+        let outcome = results.follow(motion, &times, self.fills_terminal());
+        if let (Some(path), Some(format), Some(record)) = (&self.plot, format, results.record) {
+            let sheet = Sheet::chart(&record.chart(&driven));
+            format.write(path, &sheet, format.width(PLOT_WIDTH), false)?;
+        }
+        if let (Some(path), Some(recording)) = (&self.animate, results.recording) {
+            let clock = [times.start, times.step];
+            let animation = recording.animation(&driven, &parameters, clock);
+            write(path, animation::page(&animation).as_bytes())?;
+        }
+        outcome
     }
 
     fn times(&self, mechanism: &Mechanism) -> Result<Times, Error> {
@@ -88,26 +152,89 @@ impl Run {
                 "a step of {step} s from {start} s to {stop} s makes {steps:.1e} rows"
             ));
         }
+        let steps = steps as u64;
+        if self.plot.is_some() && steps >= MOST_PLOTTED {
+            return refuse(format!(
+                "--plot: {steps} steps are more than the {MOST_PLOTTED} of which a picture is made"
+            ));
+        }
         Ok(Times {
             start,
             stop,
             step,
-            steps: steps as u64,
+            steps,
         })
     }
 
-    fn writer(&self) -> Result<Box<dyn Write>, Error> {
-        let file = self.output.as_ref().filter(|path| path.as_os_str() != "-");
-        Ok(match file {
-            None => Box::new(std::io::stdout().lock()),
-            Some(path) => {
-                let file = std::fs::File::create(path).map_err(|source| Error::Write {
-                    path: path.clone(),
-                    source,
-                })?;
-                Box::new(file)
+    /// Where the CSV goes, if there is one.
+    fn csv(&self) -> Option<PathBuf> {
+        let output = self.output.clone();
+        let pictured = self.plot.is_some() || self.animate.is_some();
+        output.or_else(|| (!pictured).then(|| PathBuf::from("-")))
+    }
+
+    /// Whether the CSV scrolls over the terminal.
+    fn fills_terminal(&self) -> bool {
+        self.csv().is_some_and(|path| path.as_os_str() == "-") && std::io::stdout().is_terminal()
+    }
+
+    fn table<'a>(&self, columns: &'a [Column]) -> Result<Option<Table<'a>>, Error> {
+        let Some(path) = self.csv() else {
+            return Ok(None);
+        };
+        if path.as_os_str() == "-" {
+            let stdout = Box::new(std::io::stdout().lock());
+            return Ok(Some(Table::new(columns, stdout, PathBuf::from("stdout"))));
+        }
+        match std::fs::File::create(&path) {
+            Ok(file) => Ok(Some(Table::new(columns, Box::new(file), path))),
+            Err(source) => Err(Error::Write { path, source }),
+        }
+    }
+}
+
+/// What becomes of a run.
+struct Results<'a> {
+    table: Option<Table<'a>>,
+    record: Option<Record>,
+    recording: Option<Recording>,
+}
+
+impl Results<'_> {
+    /// Goes along with a motion; what is reached before an error is kept.
+    fn follow(&mut self, mut motion: Motion, times: &Times, quiet: bool) -> Result<(), Error> {
+        let mut progress = Progress::new(times.steps, quiet);
+        if let Some(table) = &mut self.table {
+            table.write_header()?;
+        }
+        self.add(&motion)?;
+        for row in 1..=times.steps {
+            let advanced = motion.advance(times.at(row));
+            for notice in motion.notices.drain(..) {
+                progress.clear();
+                anstream::eprintln!("{notice}");
             }
-        })
+            advanced?;
+            self.add(&motion)?;
+            progress.done(row);
+        }
+        match &mut self.table {
+            Some(table) => table.finish(),
+            None => Ok(()),
+        }
+    }
+
+    fn add(&mut self, motion: &Motion) -> Result<(), Error> {
+        if let Some(record) = &mut self.record {
+            record.add(motion);
+        }
+        if let Some(recording) = &mut self.recording {
+            recording.add(motion);
+        }
+        match &mut self.table {
+            Some(table) => table.write_row(motion),
+            None => Ok(()),
+        }
     }
 }
 
@@ -125,172 +252,6 @@ impl Times {
             self.stop
         } else {
             self.start + row as f64 * self.step
-        }
-    }
-}
-
-/// A mechanism on its way along the motions of its drivers.
-struct Motion {
-    solver: Solver,
-    path: Path,
-    rates: Rates,
-    driver_rates: Vec<Jet>,
-    /// Whether it was warned of the singular position that is near.
-    near_singular: bool,
-}
-
-impl Motion {
-    /// Moves from the file's pose to the values at the start, in the file's assembly mode.
-    fn start(
-        home_solver: Solver,
-        driven: Arc<Mechanism>,
-        parameters: Vec<f64>,
-        time: f64,
-    ) -> Result<Self, crate::kinematics::Error> {
-        let solver = conditions::start(home_solver, &driven, &parameters, time)?;
-        let start = solver.pose();
-        let mut path = Path::new(&driven);
-        path.start = time;
-        path.from.clone_from(&parameters);
-        path.to = parameters;
-        for (curve, value) in path.curves.iter_mut().zip(&start.drivers) {
-            if let Curve::Input { position, .. } = curve {
-                *position = *value;
-            }
-        }
-        let mut motion = Self {
-            rates: Rates::new(start.q.len()),
-            driver_rates: vec![Jet::constant(0.0); driven.drivers.len()],
-            near_singular: false,
-            solver,
-            path,
-        };
-        motion.solve_rates()?;
-        Ok(motion)
-    }
-
-    /// Goes on to `time`.
-    fn advance(&mut self, time: f64) -> Result<(), Error> {
-        self.path.start = self.solver.pose().time;
-        self.path.duration = time - self.path.start;
-        if let Err(blocked) = self.solver.follow(&self.path) {
-            let why = match &blocked.reason {
-                Reason::Value(error) => error.to_string(),
-                Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
-                Reason::TooLong => "the motion is too fast for the steps".to_owned(),
-                Reason::Singular(point) => point.to_string(),
-                _ => "no continuous motion".to_owned(),
-            };
-            let pose = self.solver.pose();
-            let limits = match &blocked.reason {
-                Reason::Singular(point) => &point.drivers,
-                _ => &pose.drivers,
-            };
-            let mechanism = self.solver.mechanism();
-            let drivers: Vec<_> = mechanism
-                .drivers
-                .iter()
-                .zip(limits)
-                .filter(|(driver, _)| driver.motion().is_some())
-                .map(|(driver, value)| format!("`{}` at {value:.9}", driver.name))
-                .collect();
-            return Err(Error::DeadPoint(format!(
-                "{why} at t = {:.9} s: the mechanism cannot go on, with {}",
-                pose.time,
-                drivers.join(", ")
-            )));
-        }
-        if let Some(approach) = self.solver.approach(&mut self.near_singular) {
-            anstream::eprintln!("warning: t = {time} s: {approach}");
-        }
-        for crossing in self.solver.crossed() {
-            let passed = self.solver.describe_crossing(crossing);
-            anstream::eprintln!("note: t = {time} s: {passed}");
-        }
-        self.solve_rates()
-            .map_err(|error| Error::DeadPoint(format!("at t = {time} s: {error}")))
-    }
-
-    fn solve_rates(&mut self) -> Result<(), crate::kinematics::Error> {
-        let time = self.solver.pose().time;
-        let drivers = self.solver.mechanism().drivers.iter().enumerate();
-        for (rates, (index, driver)) in self.driver_rates.iter_mut().zip(drivers) {
-            if driver.motion().is_some() {
-                *rates = self.solver.motion(DriverId(index), time);
-            }
-        }
-        let driver_rates = &self.driver_rates;
-        self.solver
-            .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
-    }
-}
-
-/// The CSV: one column a quantity.
-struct Table {
-    out: BufWriter<Box<dyn Write>>,
-    path: PathBuf,
-    columns: Vec<(String, Quantity)>,
-}
-
-impl Table {
-    fn new(mechanism: &Mechanism, out: Box<dyn Write>, path: Option<PathBuf>) -> Self {
-        let drivers = mechanism
-            .drivers
-            .iter()
-            .enumerate()
-            .flat_map(|(index, driver)| {
-                ["position", "velocity", "acceleration"]
-                    .into_iter()
-                    .zip(Order::ALL)
-                    .map(move |(suffix, order)| {
-                        let name = format!("{}.{suffix}", driver.name);
-                        (name, Quantity::Motion(DriverId(index), order))
-                    })
-            });
-        let variables = variables(mechanism);
-        let outputs = variables
-            .iter()
-            .filter(|variable| {
-                variable.causality == Causality::Output
-                    && !matches!(variable.quantity, Quantity::Motion(..))
-            })
-            .map(|variable| (variable.name.clone(), variable.quantity));
-        Self {
-            out: BufWriter::new(out),
-            path: path.unwrap_or_else(|| PathBuf::from("stdout")),
-            columns: drivers.chain(outputs).collect(),
-        }
-    }
-
-    fn write_header(&mut self) -> Result<(), Error> {
-        let names = self.columns.iter().map(|(name, _)| name.as_str());
-        let line: Vec<_> = std::iter::once("time").chain(names).collect();
-        writeln!(self.out, "{}", line.join(",")).map_err(|source| self.error(source))
-    }
-
-    fn write_row(&mut self, motion: &mut Motion) -> Result<(), Error> {
-        self.try_write_row(motion)
-            .map_err(|source| self.error(source))
-    }
-
-    /// Numbers are written so that reading them gives the same bits.
-    fn try_write_row(&mut self, motion: &Motion) -> std::io::Result<()> {
-        write!(self.out, "{:?}", motion.solver.pose().time)?;
-        for (_, quantity) in &self.columns {
-            let value = quantity.read(&motion.solver, &motion.rates, &motion.driver_rates);
-            write!(self.out, ",{value:?}")?;
-        }
-        writeln!(self.out)
-    }
-
-    fn finish(mut self) -> Result<(), Error> {
-        self.out.flush().map_err(|source| self.error(source))
-    }
-
-    fn error(&self, source: std::io::Error) -> Error {
-        Error::Write {
-            path: self.path.clone(),
-            source,
         }
     }
 }

@@ -3,16 +3,27 @@
 use super::lettering;
 use super::outline::Point;
 use super::palette::Colour;
+use super::rider::Rider;
 use super::sheet::{Bounds, CAPITALS, Layer, Mark, Text};
 
 /// A text that looks for its place.
 pub(super) struct Label {
     pub(super) content: String,
     pub(super) colour: Colour,
+    /// What it stays with when the mechanism moves.
+    pub(super) follows: Rider,
     pub(super) candidates: Vec<Candidate>,
 }
 
+/// A label that has its place.
+pub(super) struct Placed {
+    pub(super) text: Text,
+    pub(super) follows: Rider,
+    pub(super) place: Candidate,
+}
+
 /// A place for a label.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     /// Where it has to be near.
     pub(super) anchor: Point,
@@ -36,13 +47,13 @@ pub(super) const ON_WHEEL: f64 = 3.0;
 const BETTER: f64 = 1e-6;
 
 /// Gives each label in turn the best of its places.
-pub(super) fn place(labels: Vec<Label>, marks: &[Mark]) -> Vec<Text> {
+pub(super) fn place(labels: Vec<Label>, marks: &[Mark]) -> Vec<Placed> {
     let obstacles: Vec<Obstacle> = marks.iter().map(Obstacle::new).collect();
     let mut taken: Vec<Bounds> = Vec::new();
-    let mut texts = Vec::new();
+    let mut placed = Vec::new();
     for label in labels {
         let size = Point::new(lettering::width(&label.content, CAPITALS), CAPITALS);
-        let mut best: Option<(f64, Point)> = None;
+        let mut best: Option<(f64, Candidate)> = None;
         for candidate in &label.candidates {
             let center = candidate.center(size);
             let bounds = around(center, size);
@@ -50,23 +61,29 @@ pub(super) fn place(labels: Vec<Label>, marks: &[Mark]) -> Vec<Text> {
             let on_marks: f64 = obstacles.iter().map(|o| o.cost(&bounds, center)).sum();
             let cost = candidate.cost + ON_LABEL * on_labels + on_marks;
             if best.is_none_or(|(least, _)| cost < least - BETTER) {
-                best = Some((cost, center));
+                best = Some((cost, *candidate));
             }
         }
-        if let Some((_, center)) = best {
+        if let Some((_, place)) = best {
+            let center = place.center(size);
             taken.push(around(center, size));
-            texts.push(Text {
-                content: label.content,
-                start: center + Point::new(-0.5 * size.x, 0.5 * size.y),
-                colour: label.colour,
+            placed.push(Placed {
+                text: Text {
+                    content: label.content,
+                    start: center + Point::new(-0.5 * size.x, 0.5 * size.y),
+                    colour: label.colour,
+                },
+                follows: label.follows,
+                place,
             });
         }
     }
-    texts
+    placed
 }
 
 impl Candidate {
-    fn center(&self, size: Point) -> Point {
+    /// The middle of a label of this size.
+    pub(super) fn center(&self, size: Point) -> Point {
         self.side.map_or(self.anchor, |side| {
             // As far out as the side of the text's box that faces the anchor.
             let reach = 0.5 * (size.x * side.x.abs() + size.y * side.y.abs());
@@ -107,7 +124,7 @@ impl Obstacle {
         let line = match mark.layer {
             Layer::Trace => 0.6,
             Layer::Wheel | Layer::Plate | Layer::Bar | Layer::Slot => 1.5,
-            Layer::Ground | Layer::Driver | Layer::Scale => 2.5,
+            Layer::Ground | Layer::Driver | Layer::Scale | Layer::Grid | Layer::Curve => 2.5,
             Layer::Slider | Layer::Block | Layer::Joint | Layer::Point => 4.0,
         };
         let area = match mark.layer {

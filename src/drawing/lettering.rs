@@ -16,8 +16,8 @@ const GAP: f64 = 2.6;
 /// Width of a blank, in units.
 const BLANK: f64 = 2.4;
 
-/// The strokes of the characters that names and lengths are made of.
-const GLYPHS: [(char, &str); 64] = [
+/// The strokes of the characters that names, numbers and units are made of.
+const GLYPHS: [(char, &str); 70] = [
     ('A', "03 3D 63|16 56"),
     ('B', "03 0D 3D ~5D ~58 38 08|38 ~68 ~63 33 03"),
     ('C', "6B ~6D 3D ~0D 08 ~03 33 ~63 65"),
@@ -82,6 +82,12 @@ const GLYPHS: [(char, &str); 64] = [
     ('9', "13 ~54 5A ~5D ~0D ~07 ~57 5A"),
     ('_', "01 51"),
     ('.', "03 04"),
+    (':', "03 04|08 09"),
+    ('-', "07 47"),
+    ('/', "02 4D"),
+    ('[', "2E 0E 01 21"),
+    (']', "0E 2E 21 01"),
+    ('²', "0C ~0D 1D ~3D 3B ~3A 08 38"),
 ];
 
 /// The width of a text whose capitals are `height` high.
@@ -165,11 +171,11 @@ mod tests {
     #[test]
     fn every_character_of_a_name_has_strokes() {
         let letters = ('A'..='Z').chain('a'..='z').chain('0'..='9');
-        for character in letters.chain(['_', '.']) {
+        for character in letters.chain(['_', '.', ':', '-', '/', '[', ']', '²']) {
             let strokes: Vec<_> = strokes_of(character).collect();
             assert!(!strokes.is_empty(), "{character}");
             for (point, _) in strokes.iter().flat_map(|stroke| points(stroke)) {
-                assert!(point.x <= 8.0 && point.y <= CAPITALS + DESCENDERS);
+                assert!(point.x <= 8.0 && point.y <= CAPITALS + DESCENDERS + 1.0);
             }
         }
     }

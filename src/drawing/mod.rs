@@ -3,7 +3,8 @@
 //! A [`Scene`] says what there is to draw, in the frames of the bodies: links, joints, drivers,
 //! ground. It is the same for every pose. A [`Sheet`] has it on paper at one pose, with lines and
 //! letters as large as the reader needs them whatever the mechanism's size. [`svg`] and [`png`]
-//! write a sheet.
+//! write a sheet. A [`Chart`] is drawn on a sheet as well; an [`animation`] is a page on which the
+//! mechanism moves.
 //!
 //! ```
 //! use biela::drawing::{Scene, Sheet, svg};
@@ -22,6 +23,8 @@
 //! assert!(picture.contains("coupler"));
 //! ```
 
+pub mod animation;
+mod chart;
 mod compose;
 mod labels;
 mod lettering;
@@ -29,11 +32,14 @@ mod motion;
 mod outline;
 mod palette;
 pub mod png;
+mod rider;
 mod scene;
 mod sheet;
 pub mod svg;
 mod symbols;
+mod ticks;
 
+pub use chart::{Axis, Chart, Line, Panel};
 pub use palette::Colour;
 pub use scene::{Anchor, Frame, Held, Scene, Symbol, WaySide};
 pub use sheet::Sheet;

@@ -5,7 +5,7 @@ use nalgebra::{Rotation2, Vector2};
 use super::compose;
 use super::motion;
 use crate::kinematics::{Pose, Solver};
-use crate::mechanism::BodyId;
+use crate::mechanism::{BodyId, Mechanism};
 
 /// A mechanism as symbols that are fixed on its bodies or on ground, or that reach from one to
 /// another. Where the bodies are is for the q it is drawn at to say.
@@ -235,12 +235,24 @@ impl Scene {
     pub fn new(solver: &mut Solver, traces: bool) -> Self {
         let motion = motion::sweep(solver);
         let Pose { q, parameters, .. } = solver.pose();
-        let mechanism = solver.mechanism();
+        Self::along(solver.mechanism(), parameters, q, &motion, traces)
+    }
+
+    /// The scene of a mechanism at the pose q, \[m, m, rad\] for each body, for a motion along
+    /// poses: ways and slots are as long as it needs, points of interest leave their traces.
+    #[must_use]
+    pub fn along(
+        mechanism: &Mechanism,
+        parameters: &[f64],
+        q: &[f64],
+        motion: &[Vec<f64>],
+        traces: bool,
+    ) -> Self {
         Self {
             name: mechanism.name.clone(),
             description: mechanism.description.clone(),
             bodies: mechanism.bodies.iter().map(|b| b.name.clone()).collect(),
-            symbols: compose::symbols(mechanism, parameters, q, &motion, traces),
+            symbols: compose::symbols(mechanism, parameters, q, motion, traces),
         }
     }
 }

@@ -10,9 +10,9 @@ use super::symbols::Pen;
 /// The width of a sheet, in its own units; a line is about one wide.
 pub(super) const WIDTH: f64 = 640.0;
 /// The greatest height.
-const MOST_HEIGHT: f64 = 520.0;
+pub(super) const MOST_HEIGHT: f64 = 520.0;
 /// What stays free around everything.
-const MARGIN: f64 = 14.0;
+pub(super) const MARGIN: f64 = 14.0;
 /// Height of capitals.
 pub(super) const CAPITALS: f64 = 8.6;
 /// Rounds of fitting: symbols and labels do not grow with the scale, so that the first is off.
@@ -51,6 +51,7 @@ pub(super) struct Stroke {
 /// What a mark shows; later ones cover earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Layer {
+    Grid,
     Ground,
     Slider,
     Plate,
@@ -62,11 +63,13 @@ pub(super) enum Layer {
     Joint,
     Driver,
     Point,
+    Curve,
     Scale,
 }
 
 impl Layer {
-    pub(super) const ALL: [Self; 12] = [
+    pub(super) const ALL: [Self; 14] = [
+        Self::Grid,
         Self::Ground,
         Self::Slider,
         Self::Plate,
@@ -78,12 +81,14 @@ impl Layer {
         Self::Joint,
         Self::Driver,
         Self::Point,
+        Self::Curve,
         Self::Scale,
     ];
 
     /// What it shows, in a word.
     pub(super) fn name(self) -> &'static str {
         match self {
+            Self::Grid => "grid",
             Self::Ground => "ground",
             Self::Slider => "sliders",
             Self::Plate => "plates",
@@ -95,6 +100,7 @@ impl Layer {
             Self::Joint => "joints",
             Self::Driver => "drivers",
             Self::Point => "points",
+            Self::Curve => "curves",
             Self::Scale => "scale",
         }
     }
@@ -141,7 +147,7 @@ impl Bounds {
         self.high = self.high.sup(&point);
     }
 
-    fn size(&self) -> Point {
+    pub(super) fn size(&self) -> Point {
         (self.high - self.low).map(|size| size.max(0.0))
     }
 }
@@ -150,7 +156,7 @@ impl Sheet {
     /// Draws a scene with its bodies at q, \[m, m, rad\] for each, as large as the sheet permits.
     #[must_use]
     pub fn new(scene: &Scene, q: &[f64]) -> Self {
-        let extent = extent(scene, q);
+        let extent = extent(scene, std::iter::once(q));
         let room = Point::new(WIDTH, MOST_HEIGHT) - Point::repeat(2.0 * MARGIN);
         let mut scale = fitting(room * 0.8, extent);
         let mut draft = Draft::new(scene, q, scale);
@@ -169,17 +175,19 @@ impl Sheet {
 }
 
 /// The greatest scale at which something fits.
-fn fitting(room: Point, extent: Point) -> f64 {
+pub(super) fn fitting(room: Point, extent: Point) -> f64 {
     let scale = (room.x / extent.x).min(room.y / extent.y);
     if scale.is_finite() { scale } else { 1.0 }
 }
 
-/// The size of everything that has one \[m\].
-fn extent(scene: &Scene, q: &[f64]) -> Point {
+/// The size of everything that has one, over all poses \[m\].
+pub(super) fn extent<'a>(scene: &Scene, poses: impl Iterator<Item = &'a [f64]>) -> Point {
     let mut bounds = Bounds::NONE;
-    for symbol in &scene.symbols {
-        for point in symbol.extremes(q) {
-            bounds.add(point);
+    for q in poses {
+        for symbol in &scene.symbols {
+            for point in symbol.extremes(q) {
+                bounds.add(point);
+            }
         }
     }
     let size = bounds.size();
@@ -202,7 +210,8 @@ impl Draft {
         }
         let (mut marks, labels): (Vec<Mark>, Vec<Label>) = pen.finish();
         marks.sort_by_key(|mark| mark.layer);
-        let texts = labels::place(labels, &marks);
+        let placed = labels::place(labels, &marks);
+        let texts = placed.into_iter().map(|label| label.text).collect();
         let mut draft = Self {
             bounds: Bounds::NONE,
             marks,
@@ -252,7 +261,7 @@ impl Draft {
 }
 
 /// A bar of a round length and its text.
-fn scale_bar(corner: Point, scale: f64) -> (Mark, Text) {
+pub(super) fn scale_bar(corner: Point, scale: f64) -> (Mark, Text) {
     const LONGEST: f64 = 110.0;
     const TICK: f64 = 4.0;
     let (length, name) = round_length(LONGEST / scale);

@@ -10,12 +10,12 @@ use super::outline::{Outline, Point, Segment};
 use super::palette::Colour;
 use super::sheet::{CAPITALS, Layer, Mark, Sheet, Text, WIDTH};
 
-type Xml = Writer<Vec<u8>>;
+pub(super) type Xml = Writer<Vec<u8>>;
 
 /// Fonts that browsers have or replace by one of theirs.
-const FONTS: &str = "Helvetica, Arial, sans-serif";
+pub(super) const FONTS: &str = "Helvetica, Arial, sans-serif";
 /// Size of a font over the height of its capitals.
-const FONT_SIZE: f64 = 1.39;
+pub(super) const FONT_SIZE: f64 = 1.39;
 
 /// The drawing as an SVG document `width` pixels wide, on white or on nothing.
 ///
@@ -84,7 +84,7 @@ fn write_layer(xml: &mut Xml, layer: Layer, marks: &[Mark]) -> io::Result<()> {
     Ok(())
 }
 
-fn write_mark(xml: &mut Xml, mark: &Mark) -> io::Result<()> {
+pub(super) fn write_mark(xml: &mut Xml, mark: &Mark) -> io::Result<()> {
     let mut element = xml
         .create_element("path")
         .with_attribute(("d", path_data(&mark.outline).as_str()));
@@ -159,7 +159,7 @@ fn path_data(outline: &Outline) -> String {
 }
 
 /// A number with at most two decimals, and the same for numbers that rounding tells apart.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     // Half way between two hundredths lies what is meant to be there: rounding to millionths
     // first brings back what computing has moved by less.
     let millionths = (value * 1e6).round() / 1e6;

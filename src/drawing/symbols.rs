@@ -7,6 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use super::labels::{Candidate, Label, ON_WHEEL};
 use super::outline::{Outline, Point, across, convex_hull, direction, unit};
 use super::palette::Colour;
+use super::rider::Rider;
 use super::scene::{Anchor, Frame, Held, Scene, Symbol, WaySide};
 use super::sheet::{Layer, Mark, Stroke};
 use crate::mechanism::BodyId;
@@ -44,9 +45,14 @@ const SMALL_ARC: f64 = 1.6;
 /// A line shorter than this has no room for two arrows.
 const SHORT: f64 = 18.0;
 /// How far a dimension line lies beside what it measures.
-const BESIDE: f64 = 21.0;
+pub(super) const BESIDE: f64 = 21.0;
+/// How far a dimension line between two pins ends before their middle.
+pub(super) const DRIVER_INSET: f64 = PIN + 1.0;
 /// Length and half the width of an arrow.
 const ARROW: [f64; 2] = [8.0, 2.9];
+
+/// The names of more bodies than this would hide them.
+const MOST_NAMES: usize = 60;
 
 const THIN: f64 = 0.9;
 const LINE: f64 = 1.4;
@@ -61,6 +67,8 @@ pub(super) struct Pen<'a> {
     scale: f64,
     /// The middle of all bodies.
     middle: Point,
+    /// Whether the mechanism moves: then drivers are drawn so that they can move with it.
+    moving: bool,
     marks: Vec<Mark>,
     driver_labels: Vec<Label>,
     point_labels: Vec<Label>,
@@ -75,6 +83,7 @@ impl<'a> Pen<'a> {
             q,
             scale,
             middle: Point::zeros(),
+            moving: false,
             marks: Vec::new(),
             driver_labels: Vec::new(),
             point_labels: Vec::new(),
@@ -96,17 +105,36 @@ impl<'a> Pen<'a> {
         pen
     }
 
+    /// A pen for a mechanism that starts to move at q.
+    pub(super) fn moving(scene: &'a Scene, q: &'a [f64], scale: f64) -> Self {
+        Self {
+            moving: true,
+            ..Self::new(scene, q, scale)
+        }
+    }
+
+    /// How many marks there are so far.
+    pub(super) fn drawn(&self) -> usize {
+        self.marks.len()
+    }
+
     /// All marks, and the labels in the order in which they choose their places.
     pub(super) fn finish(self) -> (Vec<Mark>, Vec<Label>) {
         let mut labels = self.driver_labels;
         labels.extend(self.point_labels);
         let bodies = self.scene.bodies.iter().zip(self.body_places).enumerate();
-        labels.extend(bodies.map(|(index, (name, candidates))| Label {
-            content: name.clone(),
-            // Dark enough to be read: half the colour's light.
-            colour: Colour::of_body(index).shade(0.55),
-            candidates,
-        }));
+        let named = self.scene.bodies.len() <= MOST_NAMES;
+        labels.extend(
+            bodies
+                .filter(|_| named)
+                .map(|(index, (name, candidates))| Label {
+                    content: name.clone(),
+                    // Dark enough to be read: half the colour's light.
+                    colour: Colour::of_body(index).shade(0.55),
+                    follows: Rider::Body(BodyId(index)),
+                    candidates,
+                }),
+        );
         (self.marks, labels)
     }
 
@@ -574,7 +602,8 @@ impl<'a> Pen<'a> {
         } = from.placed(self.q);
         let (center, axis) = self.place(to);
         let turn = (to.placed(self.q).angle - reference) % TAU;
-        let seen = (SEEN..=TAU - SEEN).contains(&turn.abs());
+        // The arrow alone can turn with its body.
+        let seen = !self.moving && (SEEN..=TAU - SEEN).contains(&turn.abs());
         let (start, turn) = if seen {
             let foot = on_sheet_direction(reference);
             let line = Outline::line(&[center + PIN * foot, center + (ARC + 8.0) * foot]);
@@ -618,6 +647,7 @@ impl<'a> Pen<'a> {
         self.driver_labels.push(Label {
             content: name.to_owned(),
             colour: Colour::DRIVER.shade(0.8),
+            follows: Rider::Point(to),
             candidates,
         });
     }
@@ -631,11 +661,7 @@ impl<'a> Pen<'a> {
     ) {
         let [from, to] = markers.map(|marker| self.place(marker).0);
         let along = axis.map_or_else(|| unit(to - from), |axis| self.place(axis).1);
-        let mut aside = across(along);
-        // Away from the mechanism.
-        if aside.dot(&(self.middle - 0.5 * (from + to))) > 1e-6 {
-            aside = -aside;
-        }
+        let aside = self.away(across(along), 0.5 * (from + to));
         let offset = if beside {
             BESIDE * aside
         } else {
@@ -649,21 +675,23 @@ impl<'a> Pen<'a> {
         } else {
             [foot, to]
         };
-        let inset = if beside { 0.0 } else { PIN + 1.0 };
+        let inset = if beside { 0.0 } else { DRIVER_INSET };
         let forth = unit(end - start);
         let [start, end] = [start + offset + inset * forth, end + offset - inset * forth];
-        if beside && !short {
+        if beside && !short && !self.moving {
             for (point, line_end) in [(from, start), (to, end)] {
                 let away = unit(line_end - point);
                 let extension = Outline::line(&[point + (PIN + 2.0) * away, line_end + 4.0 * away]);
                 self.line(Layer::Driver, extension, Colour::DRIVER, THIN);
             }
         }
-        let arrow = 0.8 * ARROW[0] * forth;
-        let line = Outline::line(&[start + arrow, end - arrow]);
-        self.line(Layer::Driver, line, Colour::DRIVER, LINE);
-        self.arrow(end, forth);
-        self.arrow(start, -forth);
+        if !self.moving {
+            let arrow = 0.8 * ARROW[0] * forth;
+            let line = Outline::line(&[start + arrow, end - arrow]);
+            self.line(Layer::Driver, line, Colour::DRIVER, LINE);
+            self.arrow(end, forth);
+            self.arrow(start, -forth);
+        }
         let mut candidates = Vec::new();
         for (part, cost) in [(0.5, 0.0), (0.35, 1.0), (0.65, 1.0), (0.2, 3.0), (0.8, 3.0)] {
             for (side, other) in [(aside, 0.0), (-aside, 1.0)] {
@@ -683,8 +711,27 @@ impl<'a> Pen<'a> {
         self.driver_labels.push(Label {
             content: name.to_owned(),
             colour: Colour::DRIVER.shade(0.8),
+            follows: Rider::Point(markers[1]),
             candidates,
         });
+    }
+
+    /// This direction or the opposite one: away from the mechanism.
+    fn away(&self, aside: Point, from: Point) -> Point {
+        if aside.dot(&(self.middle - from)) > 1e-6 {
+            -aside
+        } else {
+            aside
+        }
+    }
+
+    /// On which side of a length driver's line it is drawn: 1 for that of the axis turned by a
+    /// quarter turn on the sheet, -1 for the other.
+    pub(super) fn side_of_length(&self, markers: [Anchor; 2], axis: Option<Anchor>) -> f64 {
+        let [from, to] = markers.map(|marker| self.place(marker).0);
+        let along = axis.map_or_else(|| unit(to - from), |axis| self.place(axis).1);
+        let aside = across(along);
+        aside.dot(&self.away(aside, 0.5 * (from + to)))
     }
 
     // -- points ------------------------------------------------------------------------------
@@ -696,6 +743,7 @@ impl<'a> Pen<'a> {
         self.point_labels.push(Label {
             content: name.to_owned(),
             colour: Colour::INK,
+            follows: Rider::of(at),
             candidates: around(center, PIN).collect(),
         });
     }

@@ -39,7 +39,7 @@ pub use mechanism::{
 };
 pub use model::Model;
 pub use model_description::{Capabilities, Experiment, ModelDescription, Unknown};
-pub use package::{PackageError, Platform, RuntimeLibrary, write as write_archive};
+pub use package::{Document, PackageError, Platform, RuntimeLibrary, write as write_archive};
 pub use state::{Call, Interface, Phase, State};
 pub use uri::{UriError, resource_path};
 pub use variable::{Causality, Enumeration, Kind, Variability, Variable};

@@ -74,8 +74,17 @@ pub enum PackageError {
     Write(#[from] std::io::Error),
 }
 
-/// Writes an FMU: its model description, the runtime libraries and its resources, each with its
-/// name in `resources/`.
+/// A file for people that goes into the archive.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Document {
+    /// Where in the archive: `model.png`, `documentation/index.html`.
+    pub path: String,
+    /// Its content.
+    pub content: Vec<u8>,
+}
+
+/// Writes an FMU: its model description, what documents it, the runtime libraries and its
+/// resources, each with its name in `resources/`.
 ///
 /// The same input gives the same bytes: entries have a fixed order and a fixed time.
 ///
@@ -87,6 +96,7 @@ pub fn write<Q>(
     description: &ModelDescription<'_, Q>,
     libraries: &[RuntimeLibrary],
     resources: &[(&str, &[u8])],
+    documents: &[Document],
     generated: Option<&str>,
 ) -> Result<(), PackageError> {
     let mut zip = ZipWriter::new(out);
@@ -98,6 +108,10 @@ pub fn write<Q>(
 
     zip.start_file("modelDescription.xml", text)?;
     zip.write_all(&description.write(generated))?;
+    for Document { path, content } in documents {
+        zip.start_file(path.as_str(), text)?;
+        zip.write_all(content)?;
+    }
     let mut libraries = libraries.to_vec();
     libraries.sort();
     for RuntimeLibrary { platform, path } in libraries {

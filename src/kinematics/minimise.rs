@@ -29,6 +29,8 @@ const TOUCHING: f64 = 1e-6;
 const SAME: f64 = 1e-6;
 /// A part of more unknowns than this is too large for dense matrices to be the first choice.
 pub(super) const SMALL_PART: usize = 120;
+/// One of more unknowns than this is too large for them altogether.
+pub(super) const LARGEST_PART: usize = 300;
 
 /// Rows of Phi and unknowns, assembled while all others stay where they are. There may be more rows
 /// than unknowns, or fewer.
@@ -157,7 +159,15 @@ impl Part {
             return correct(work, if large { MAX_ITERATIONS } else { 1 });
         };
         self.start(work, estimate, attempt);
-        self.minimise_growing(work);
+        // The larger the part, the fewer minimisations anyone would wait for.
+        let most = if attempt == 0 {
+            LARGEST_PART
+        } else {
+            SMALL_PART
+        };
+        if self.columns.len() <= most {
+            self.minimise_growing(work);
+        }
         correct(work, MAX_ITERATIONS)
     }
 

@@ -17,6 +17,8 @@
 //! code for the dyads of which most mechanisms consist. The work of a step is proportional to the
 //! number of bodies. Position, velocity and acceleration share one factorisation a block.
 //!
+//! Redundant equations are found by rank, set aside and watched: see [`Solver::redundancies`].
+//!
 //! [`System`] has the equations and their rows, [`Solver`] a mechanism at one pose, which it can
 //! [assemble](Solver::assemble), [move along a path](Solver::follow) and give
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.

@@ -215,7 +215,7 @@ impl Solver {
     }
 
     /// Puts the mechanism back to a pose that this solver, or one of the same mechanism, was at.
-    /// Allocates nothing.
+    /// Allocates nothing, unless the choice among redundant rows has to change.
     ///
     /// # Panics
     ///
@@ -229,6 +229,9 @@ impl Solver {
                 .expect("the parameters of a pose were valid when it was solved");
         }
         self.targets.turns.copy_from_slice(&self.pose.turns);
+        if !pose.crossings.is_empty() {
+            self.return_to_first_rows();
+        }
         self.bridge_all(&pose.crossings);
         self.plan.forget_boxes();
         self.stand_at_pose();

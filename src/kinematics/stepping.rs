@@ -65,6 +65,8 @@ const MOST_SUBSTEPS: u32 = 100_000;
 /// Drivers that still move by more than this in such a sub-step \[m or rad\] tell nothing of what
 /// is ahead: the path is too long.
 const TELLS_NOTHING: f64 = 1e-6;
+/// A value that makes no mechanism this near on the path is what it has come to.
+const JUST_AHEAD: f64 = 1e-9;
 /// A sub-step that fails is shortened to no less than this part, one that nothing is known of to
 /// half: what the certificate tells of a much too long one is not to be relied on.
 const SHORTEN: f64 = 0.1;
@@ -94,6 +96,8 @@ impl Solver {
         let mut substep: f64 = 1.0;
         // What a redundant constraint would have been open by, and where.
         let mut opened: Option<(f64, OpenJoint)> = None;
+        // Whether the last sub-step was as small as one may be.
+        let mut crawls = false;
         let blocked = |s, reason, progress| {
             Err(Blocked {
                 s,
@@ -132,10 +136,16 @@ impl Solver {
             if progress.substeps >= MOST_SUBSTEPS {
                 return blocked(s, Reason::TooLong, progress);
             }
-            if substep < smallest {
+            // What is too small to go on with is tried once more, to tell what is in the way.
+            let small = substep < smallest;
+            if small {
                 let reason = self.reason_to_stop(path, s, substep);
-                return blocked(s, reason, progress);
+                if crawls || matches!(reason, Reason::Singular(_)) {
+                    return blocked(s, reason, progress);
+                }
+                substep = smallest;
             }
+            crawls = small;
             // Between its points a motion given by a table tells at its ends where it has been.
             let most = path.next_point(start, &self.motions);
             let mut reaches_point = false;
@@ -178,11 +188,14 @@ impl Solver {
                 };
                 if substep < smallest {
                     let reason = match (reached, opened) {
-                        (Err(Reason::Contradiction(_)), Some((_, joint))) => {
+                        // Next to a singular position nothing holds to rounding.
+                        (Err(Reason::Contradiction(_)), Some((_, joint)))
+                            if !self.is_nearly_singular() =>
+                        {
                             Reason::Contradiction(joint)
                         }
-                        (Err(reason), _) => reason,
-                        (Ok(_), _) => self.reason_to_stop(path, start, substep),
+                        (Err(Reason::Value(error)), _) => Reason::Value(error),
+                        _ => self.reason_to_stop(path, start, substep),
                     };
                     return blocked(start, reason, progress);
                 }
@@ -208,6 +221,12 @@ impl Solver {
     fn reason_to_stop(&mut self, path: &Path, s: f64, h: f64) -> Reason {
         if let Some(end) = self.find_end(path, s) {
             return Reason::Singular(end);
+        }
+        // Steps may become ever shorter in front of a value that makes no mechanism.
+        let ahead = self.set_path(path, (s + JUST_AHEAD).min(1.0));
+        self.stand_at(path, s);
+        if let Err(error) = ahead {
+            return Reason::Value(error);
         }
         // However small a part of the path it is.
         let far = |driver: &Jet| (h * driver.first).abs() > TELLS_NOTHING;

@@ -25,6 +25,9 @@ pub use expression::{
     Dual, Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable,
 };
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
+pub use lower::is_identifier;
+#[cfg(feature = "cli")]
+pub use lower::schema;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 pub use parameter::Parameter;
 pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};

@@ -6,10 +6,11 @@ use std::collections::HashMap;
 use super::expression::{CONSTANTS, function_names};
 
 /// Names that the FMU or the file's language uses itself, besides constants and functions.
-const TAKEN: [&str; 6] = ["ground", "solver", "rates", "extrapolation", "time", "t"];
+pub(super) const TAKEN: [&str; 6] = ["ground", "solver", "rates", "extrapolation", "time", "t"];
 
 /// Names of a body's own quantities, which no marker may bear.
-const BODY_QUANTITIES: [&str; 9] = ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
+pub(super) const BODY_QUANTITIES: [&str; 9] =
+    ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
 
 /// Looked up for a suggestion at most so often per table, so that a file of nothing but wrong
 /// names takes no quadratic time.
@@ -28,6 +29,13 @@ const MAX_QUOTED_LENGTH: usize = 60;
 pub(super) fn is_legal(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+}
+
+/// All names that [`is_taken`] knows.
+#[cfg(feature = "cli")]
+pub(super) fn taken() -> impl Iterator<Item = &'static str> {
+    let constants = CONSTANTS.iter().map(|(constant, _)| *constant);
+    TAKEN.into_iter().chain(constants).chain(function_names())
 }
 
 /// Whether `name` is not free for parameters, bodies, joints and the like.

@@ -23,6 +23,7 @@ NOT_RUN = {
     "make install": "builds for minutes, and writes outside of the checkout",
     "python3 -m venv env": "for packages to be downloaded into",
     "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
+    "biela watch piston.toml": "runs until it is ended; tests/watch.rs has tests of its own",
     "python parameter_sweep.py": "test_examples.py runs it",
     "python dask_sweep.py": "test_examples.py runs it",
     'export PATH="$HOME/.local/bin:$PATH"': "of the user's own shell",

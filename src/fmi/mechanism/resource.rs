@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::describe;
 use crate::fmi::error::Failure;
-use crate::fmi::package::{self, PackageError, RuntimeLibrary};
+use crate::fmi::package::{self, Document, PackageError, RuntimeLibrary};
 use crate::kinematics::Structure;
 use crate::mechanism::{Diagnostic, Mechanism, Severity, Source};
 
@@ -32,7 +32,8 @@ pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
         })
 }
 
-/// Writes the FMU of a mechanism: its file, its model description and the runtime libraries.
+/// Writes the FMU of a mechanism: its file, its model description, the runtime libraries and
+/// what documents it.
 ///
 /// The same input gives the same bytes: entries have a fixed order and a fixed time.
 ///
@@ -45,6 +46,7 @@ pub fn write_fmu(
     mechanism: &Mechanism,
     structure: &Structure,
     libraries: &[RuntimeLibrary],
+    documents: &[Document],
     generated: Option<&str>,
 ) -> Result<(), PackageError> {
     let mut resources = vec![(RESOURCE, source.text().as_bytes())];
@@ -52,5 +54,12 @@ pub fn write_fmu(
         resources.push((file.name.as_str(), file.text.as_bytes()));
     }
     let description = describe(mechanism, structure);
-    package::write(out, &description, libraries, &resources, generated)
+    package::write(
+        out,
+        &description,
+        libraries,
+        &resources,
+        documents,
+        generated,
+    )
 }

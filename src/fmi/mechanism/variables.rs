@@ -83,6 +83,19 @@ impl Quantity {
         }
     }
 
+    /// The quantity that this one is a derivative of, or itself.
+    #[must_use]
+    pub fn position(self) -> Self {
+        match self {
+            Self::Input(driver, _) => Self::Input(driver, Order::Position),
+            Self::Body(body, component, _) => Self::Body(body, component, Order::Position),
+            Self::Marker(marker, component, _) => Self::Marker(marker, component, Order::Position),
+            Self::Measure(measure, _) => Self::Measure(measure, Order::Position),
+            Self::Motion(driver, _) => Self::Motion(driver, Order::Position),
+            _ => self,
+        }
+    }
+
     /// The derivative of an output of this order with respect to time, as far as there is one:
     /// of positions the first and the second, of velocities the first.
     pub(super) fn derivative(self, order: usize) -> Option<Self> {
@@ -121,7 +134,9 @@ impl Order {
         }
     }
 
-    fn suffix(self) -> &'static str {
+    /// The last part of the name of a driver's or measure's variable.
+    #[must_use]
+    pub fn suffix(self) -> &'static str {
         match self {
             Self::Position => "position",
             Self::Velocity => "velocity",

@@ -16,6 +16,8 @@ use crate::kinematics::constraint::{Axis, Projection, Relation};
 use crate::kinematics::plan::Work;
 use crate::mechanism::{Interval, MarkerId, Scalar};
 
+/// A block of more unknowns has too many angles for boxes.
+const MOST_UNKNOWNS: usize = 60;
 /// Into so many boxes angles are divided at the most.
 const MOST_BOXES: usize = 10_000;
 /// A box narrower than this \[rad\] is not divided: there the block nearly closes, or closes in a
@@ -55,7 +57,8 @@ pub(super) fn all_ways(
         boxes: 0,
     };
     let bodies = work.system.mechanism().bodies.len();
-    if columns.iter().any(|&column| column >= 3 * bodies) {
+    let from_joints = columns.iter().any(|&column| column >= 3 * bodies);
+    if from_joints || columns.len() > MOST_UNKNOWNS {
         return unknown;
     }
     let mut builder = Builder {

@@ -4,7 +4,7 @@
 use super::search::{Deadlock, Nearest};
 use super::ways::{Effort, Ways};
 use crate::kinematics::constraint::Dimension;
-use crate::kinematics::minimise::{MAX_ITERATIONS, Part, SMALL_PART, STARTS};
+use crate::kinematics::minimise::{LARGEST_PART, MAX_ITERATIONS, Part, SMALL_PART, STARTS};
 use crate::kinematics::plan::Kernel;
 use crate::kinematics::{Element, Error, OpenJoint, Proof, Solver, Verdict};
 
@@ -13,14 +13,14 @@ const STEPS_TO_NEAREST: usize = 200;
 /// A scaled residual below this is no gap that anyone could measure: the mechanism closes, and
 /// Newton failed because the position is singular.
 const CLOSED: f64 = 1e-7;
+/// What has no value where lengths are too large for their squares to be numbers.
+const AN_EQUATION: &str = "an equation of the mechanism";
 /// How much more than a joint left open all others count when the gap is gathered in it.
 const HOLD_CLOSED: f64 = 1e4;
-/// A part of more unknowns than this is too large for dense matrices: it stays where it is.
-const LARGEST_PART: usize = 300;
 
 impl Solver {
-    /// Assembles a small mechanism as a whole, after a kernel did not close behind the others in
-    /// any way that was found.
+    /// Assembles a mechanism as a whole, after a kernel did not close behind the others in any way
+    /// that was found.
     ///
     /// # Errors
     ///
@@ -30,43 +30,75 @@ impl Solver {
         mut deadlock: Deadlock,
         estimate: &[f64],
     ) -> Result<u32, Error> {
-        let whole = self.system.unknowns() <= SMALL_PART;
-        let part = if whole {
-            let all: Vec<_> = (0..self.system.unknowns()).collect();
-            Part::new(&all, &all)
-        } else {
-            let kernel = &self.plan.kernels[deadlock.kernel];
-            Part::new(kernel.rows(), kernel.columns())
-        };
+        let rows: Vec<_> = (0..self.system.equations().len()).collect();
+        let columns: Vec<_> = (0..self.system.unknowns()).collect();
         let nearest = deadlock.nearest.take();
-        if !(deadlock.proved && nearest.is_some()) {
-            if let Some(iterations) = self.minimise_from_all(&part, whole, estimate) {
+        if columns.len() > SMALL_PART {
+            return match nearest {
+                Some(nearest) => Err(self.explain_miss(&deadlock, &nearest, estimate)),
+                None => self.search_sparsely(deadlock, &rows, estimate),
+            };
+        }
+        let whole = Part::new(&rows, &columns);
+        if !deadlock.proved || nearest.is_none() {
+            if let Some(iterations) = self.minimise_from_all(&whole, deadlock.proved, estimate) {
                 return Ok(iterations);
             }
-            if whole {
-                deadlock.starts += STARTS;
-            }
+            deadlock.starts += STARTS;
         }
         Err(match nearest {
             Some(nearest) => self.explain_miss(&deadlock, &nearest, estimate),
-            None => self.explain_failure(&deadlock, &part),
+            None => self.explain_failure(&deadlock, &whole),
         })
     }
 
-    /// Minimises a part from all starts and goes to the nearest pose, or closes the mechanism
-    /// from one of them, if `whole`. Returns the most corrections that a kernel needed for that.
-    fn minimise_from_all(&mut self, part: &Part, whole: bool, estimate: &[f64]) -> Option<u32> {
+    /// Minimises a mechanism of any size as a whole and closes it from there.
+    ///
+    /// # Errors
+    ///
+    /// The verdict on the nearest pose.
+    fn search_sparsely(
+        &mut self,
+        mut deadlock: Deadlock,
+        rows: &[usize],
+        estimate: &[f64],
+    ) -> Result<u32, Error> {
+        let gap = self.close_on(rows, estimate);
+        deadlock.starts += 1;
+        self.at.copy_pose(&mut self.pose.q);
+        if gap.is_none()
+            && let Some(iterations) = self.close()
+        {
+            return Ok(iterations);
+        }
+        self.stand_at_pose();
+        let largest = self.residual();
+        if !largest.is_finite() {
+            return Err(Error::NotFinite {
+                what: AN_EQUATION.to_owned(),
+            });
+        }
+        if !deadlock.proved && largest <= CLOSED {
+            return Err(Error::Singular {
+                rcond: self.rcond(),
+                bodies: Vec::new(),
+            });
+        }
+        let proof = self.proof(&deadlock, deadlock.kernel);
+        let open = self.open_joints(rows, largest);
+        Err(self.not_assembled(&deadlock, proof, open))
+    }
+
+    /// Minimises the whole from all starts and goes to the nearest pose, or closes the mechanism
+    /// from one of them, unless that is `proved` not to be. Returns the most corrections that a
+    /// kernel needed for that.
+    fn minimise_from_all(&mut self, whole: &Part, proved: bool, estimate: &[f64]) -> Option<u32> {
         let mut nearest: Option<(f64, Vec<f64>)> = None;
-        let starts = if part.unknowns() <= SMALL_PART {
-            STARTS
-        } else {
-            usize::from(part.unknowns() <= LARGEST_PART)
-        };
-        for attempt in 0..starts {
+        for attempt in 0..STARTS {
             let (_, mut work) = self.work();
-            part.start(&mut work, estimate, attempt);
-            part.minimise_growing(&mut work);
-            if whole {
+            whole.start(&mut work, estimate, attempt);
+            whole.minimise_growing(&mut work);
+            if !proved {
                 self.at.copy_pose(&mut self.pose.q);
                 if let Some(iterations) = self.close() {
                     return Some(iterations);
@@ -74,8 +106,8 @@ impl Solver {
                 self.stand_at_pose();
             }
             let (_, mut work) = self.work();
-            part.minimise(&mut work, None, |_| 1.0, STEPS_TO_NEAREST);
-            let gap = part.equations(&work).0.norm();
+            whole.minimise(&mut work, None, |_| 1.0, STEPS_TO_NEAREST);
+            let gap = whole.equations(&work).0.norm();
             if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
                 self.at.copy_pose(&mut self.pose.q);
                 nearest = Some((gap, self.pose.q.clone()));
@@ -106,7 +138,7 @@ impl Solver {
     fn explain_miss(&mut self, deadlock: &Deadlock, nearest: &Nearest, estimate: &[f64]) -> Error {
         self.pose.q.copy_from_slice(&nearest.q);
         self.stand_at_pose();
-        let proof = self.proof(nearest.kernel);
+        let proof = self.proof(deadlock, nearest.kernel);
         let (plan, mut work) = self.work();
         for (index, kernel) in plan.kernels.iter_mut().enumerate().skip(nearest.kernel) {
             let mut ways = Ways::new(kernel, &mut work, estimate, Effort::Near);
@@ -133,7 +165,7 @@ impl Solver {
         let largest = self.residual();
         if !largest.is_finite() {
             return Error::NotFinite {
-                what: "an equation of the mechanism".to_owned(),
+                what: AN_EQUATION.to_owned(),
             };
         }
         if !deadlock.proved && largest <= CLOSED {
@@ -149,7 +181,7 @@ impl Solver {
     }
 
     /// Why a kernel that does not close does not, where those before it are at the pose.
-    fn proof(&mut self, kernel: usize) -> Proof {
+    fn proof(&mut self, deadlock: &Deadlock, kernel: usize) -> Proof {
         let mechanism = std::sync::Arc::clone(self.system.mechanism());
         let name = |body: usize| mechanism.bodies[body].name.clone();
         let (plan, work) = self.work();
@@ -176,7 +208,7 @@ impl Solver {
                 bodies.dedup();
                 Proof::Excluded {
                     bodies: bodies.into_iter().map(name).collect(),
-                    boxes: 0,
+                    boxes: deadlock.boxes,
                 }
             }
         }
@@ -205,26 +237,15 @@ impl Solver {
         }
     }
 
-    /// The verdict on a part whose nearest pose, at which the solver stands, leaves gaps.
-    fn explain_failure(&mut self, deadlock: &Deadlock, part: &Part) -> Error {
+    /// The verdict on a mechanism whose nearest pose, at which the solver stands, leaves gaps.
+    fn explain_failure(&mut self, deadlock: &Deadlock, whole: &Part) -> Error {
+        let (residual, jacobian) = whole.equations(&self.work().1);
         // Lengths whose squares overflow leave nothing to look at.
         let beyond_numbers = || Error::NotFinite {
-            what: "an equation of the mechanism".to_owned(),
+            what: AN_EQUATION.to_owned(),
         };
-        let largest = self.residual();
-        if !largest.is_finite() {
-            return beyond_numbers();
-        }
-        let mut proof = self.proof(deadlock.kernel);
-        if let Proof::Excluded { boxes, .. } = &mut proof {
-            *boxes = deadlock.boxes;
-        }
-        if part.unknowns() > LARGEST_PART {
-            let open = self.open_joints(&part.rows, largest);
-            return self.not_assembled(deadlock, proof, open);
-        }
-        let (residual, jacobian) = part.equations(&self.work().1);
-        if !jacobian.iter().all(|x| x.is_finite()) {
+        let mut numbers = residual.iter().chain(jacobian.iter());
+        if !numbers.all(|x| x.is_finite()) {
             return beyond_numbers();
         }
         if !deadlock.proved && residual.amax() <= CLOSED {
@@ -234,14 +255,12 @@ impl Solver {
                 bodies: Vec::new(),
             };
         }
-        let spread = self.open_joints(&part.rows, residual.amax());
+        let spread = self.open_joints(&whole.rows, residual.amax());
         if spread.is_empty() {
             return beyond_numbers();
         }
-        if part.unknowns() > SMALL_PART {
-            return self.not_assembled(deadlock, proof, spread);
-        }
-        let Some((joint, q)) = self.gather(part, &spread) else {
+        let proof = self.proof(deadlock, deadlock.kernel);
+        let Some((joint, q)) = self.gather(whole, &spread) else {
             return self.not_assembled(deadlock, proof, spread);
         };
         self.pose.q.copy_from_slice(&q);

@@ -96,6 +96,8 @@ impl Solver {
     }
 
     /// How far a prescribed motion leaves the straight line from one end to the other.
+    // Its stack of operands is no part of steps that have none.
+    #[inline(never)]
     fn motion_strays(
         &mut self,
         path: &Path,
@@ -147,6 +149,7 @@ impl Solver {
     }
 
     /// Bounds how far the numbers in the equations may differ from those in force.
+    #[inline(never)]
     fn bound_parameters(&mut self, path: &Path, [start, end]: [f64; 2]) -> bool {
         let mechanism = self.system.mechanism();
         let slips = &mut self.tubes.slips;

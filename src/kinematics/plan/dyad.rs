@@ -190,24 +190,27 @@ impl Dyad {
     ) -> Result<Correction, Rejected> {
         let [a, b] = &self.sides;
         let frames = work.at.frames();
-        let before = [frames[a.place as usize], frames[b.place as usize]];
-        let turns = [a.turn(work, substep.advance), b.turn(work, substep.advance)];
+        let (frame_a, frame_b) = (&frames[a.place as usize], &frames[b.place as usize]);
+        for (side, frame) in [(a, frame_a), (b, frame_b)] {
+            let tube = substep.tubes.body_mut(side.place as usize);
+            (tube.cos, tube.sin) = (frame.cos, frame.sin);
+        }
+        let (turn_a, turn_b) = (a.turn(work, substep.advance), b.turn(work, substep.advance));
         let start = Turned {
-            frames: [0, 1].map(|k| turned_on(&before[k], turns[k], before[k].phi + turns[k])),
+            frames: [
+                turned_on(frame_a, turn_a, frame_a.phi + turn_a),
+                turned_on(frame_b, turn_b, frame_b.phi + turn_b),
+            ],
             exact: false,
         };
-        let links = [a.link, b.link];
+        let before = Before {
+            phi: [frame_a.phi, frame_b.phi],
+            links: [a.link, b.link],
+            determinant: self.determinant,
+        };
         let found = self.correct(work, start, MAX_ITERATIONS);
         let found = found.map_err(|_| substep.tubes.break_off())?;
-        self.certify(
-            work,
-            substep.tubes,
-            &Before {
-                frames: before,
-                links,
-            },
-            &found,
-        )?;
+        self.certify(work, substep.tubes, &before, &found)?;
         Ok(Correction {
             regularity: self.regularity(),
             ..found.correction
@@ -508,8 +511,9 @@ struct Found {
     open: f64,
 }
 
-/// Where a sub-step started.
+/// Where a sub-step started; the tubes have cosines and sines.
 struct Before {
-    frames: [BodyPose; 2],
+    phi: [f64; 2],
     links: [Vector2<f64>; 2],
+    determinant: f64,
 }

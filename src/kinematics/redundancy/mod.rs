@@ -163,9 +163,14 @@ impl Solver {
         if kept < self.system.unknowns() {
             return Err(self.singular_position());
         }
+        let first = match std::mem::take(&mut self.set_aside.first) {
+            // Crossings of change points know of these rows.
+            first if first.len() == choice.set_aside.len() => first,
+            _ => choice.set_aside.clone(),
+        };
         self.set_aside = SetAside {
             redundant,
-            first: choice.set_aside.clone(),
+            first,
             now: choice.set_aside,
         };
         self.compile();
@@ -200,7 +205,7 @@ impl Solver {
     ///
     /// [`Error::Singular`] if the rows all together lose rank here.
     pub(super) fn stand_on_fit_rows(&mut self) -> Result<(), Error> {
-        if self.set_aside.is_empty() {
+        if self.set_aside.is_empty() || !self.pose.crossings.is_empty() {
             return Ok(());
         }
         let first = self.set_aside.first.clone();
@@ -224,21 +229,49 @@ impl Solver {
     /// Takes other rows if those in use are much nearer to dependence here than others would be;
     /// true if so. Allocates, but only where redundant rows leave a choice.
     pub(super) fn change_rows(&mut self) -> bool {
-        if self.set_aside.is_empty() {
-            return false;
-        }
-        let now = self.set_aside.now.clone();
-        let weakest = self.weakest_without(&now);
-        if weakest > FITTER {
-            return false;
-        }
-        let choice = self.choose_here(FITTER);
-        let better = choice.set_aside.len() == now.len() && choice.weakest > WORTH * weakest;
-        if better {
+        let choice = self.fitter_rows();
+        let better = choice.is_some();
+        if let Some(choice) = choice {
             self.set_aside.now = choice.set_aside;
             self.compile();
         }
         better
+    }
+
+    /// Returns to the rows of the first pose, of which crossings of change points are made.
+    /// Allocates where other rows are in use.
+    pub(super) fn return_to_first_rows(&mut self) {
+        if self.set_aside.now != self.set_aside.first {
+            self.set_aside.now.clone_from(&self.set_aside.first);
+            self.compile();
+        }
+    }
+
+    /// Whether a change point of the rows in use is one of the mechanism, as far as rows can tell:
+    /// they are those of the first pose, and others are no better here.
+    pub(super) fn may_cross(&mut self) -> bool {
+        self.set_aside.now == self.set_aside.first && self.fitter_rows().is_none()
+    }
+
+    /// Whether the rows all together are nearly dependent where the mechanism is.
+    pub(super) fn is_nearly_singular(&mut self) -> bool {
+        self.choose_here(FITTER).weakest < FIT
+    }
+
+    /// A choice of rows that are much farther from dependence here than those in use, if these
+    /// are near to it.
+    fn fitter_rows(&mut self) -> Option<Choice> {
+        if self.set_aside.is_empty() || !self.pose.crossings.is_empty() {
+            return None;
+        }
+        let now = self.set_aside.now.clone();
+        let weakest = self.weakest_without(&now);
+        if weakest > FITTER {
+            return None;
+        }
+        let choice = self.choose_here(FITTER);
+        let better = choice.set_aside.len() == now.len() && choice.weakest > WORTH * weakest;
+        better.then_some(choice)
     }
 
     /// The joint or constraint that the rows set aside say is open by more than rounding.
@@ -297,7 +330,7 @@ impl Solver {
     /// Closes the mechanism on these rows from the estimates, or starts near them. `None` if they
     /// are satisfied; else the largest scaled residual of the nearest pose found, where the
     /// mechanism then is.
-    fn close_on(&mut self, rows: &[usize], estimate: &[f64]) -> Option<f64> {
+    pub(super) fn close_on(&mut self, rows: &[usize], estimate: &[f64]) -> Option<f64> {
         let unknowns: Vec<_> = (0..self.system.unknowns()).collect();
         let part = Part::new(rows, &unknowns);
         let small = self.is_small();

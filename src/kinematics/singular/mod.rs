@@ -242,8 +242,7 @@ impl Solver {
         path: &Path,
         s: f64,
     ) -> Result<Option<Careful>, Box<SingularPoint>> {
-        if !self.set_aside.is_empty() {
-            // Other rows may be regular here.
+        if !self.may_cross() {
             return Ok(None);
         }
         let near = self.near_singular();

@@ -8,7 +8,8 @@ use crate::mechanism::{Body, Diagnostic, Expression, Marker, MarkerId};
 use super::context::{Context, Entry, Fields, Quantity};
 use super::names::Sections;
 
-const KEYS: [&str; 6] = [
+/// The keys of a body.
+pub(super) const KEYS: [&str; 6] = [
     "markers",
     "estimate",
     "mass",

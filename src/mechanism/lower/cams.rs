@@ -10,13 +10,13 @@ use super::context::{Context, Fields};
 use super::tables::TABLE_KEYS;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Follower {
+pub(super) enum Follower {
     Knife,
     Roller,
     Flat,
 }
 
-const FOLLOWERS: [(&str, Follower); 3] = [
+pub(super) const FOLLOWERS: [(&str, Follower); 3] = [
     ("knife", Follower::Knife),
     ("roller", Follower::Roller),
     ("flat", Follower::Flat),

@@ -9,12 +9,18 @@ use crate::mechanism::{
 use super::context::{Context, Entry, Fields, Quantity};
 use super::motions::MOTION_FORMS;
 
-const COORDINATES: [(&str, CoordinateKind); 4] = [
+pub(super) const COORDINATES: [(&str, CoordinateKind); 4] = [
     ("angle", CoordinateKind::Angle),
     ("x", CoordinateKind::X),
     ("y", CoordinateKind::Y),
     ("distance", CoordinateKind::Distance),
 ];
+
+/// The keys of a coordinate; and those that constraints, drivers and measures have besides.
+pub(super) const KEYS: [&str; 3] = ["coordinate", "markers", "axes"];
+pub(super) const CONSTRAINT_KEYS: [&str; 2] = ["value", "description"];
+pub(super) const DRIVER_KEYS: [&str; 3] = ["start", "motion", "description"];
+pub(super) const MEASURE_KEYS: [&str; 1] = ["description"];
 
 /// How markers are written, for help where they are missing.
 const MARKERS_FORM: &str = "[\"ground.O\", \"crank.O\"]";
@@ -29,7 +35,7 @@ impl<'a> Context<'a> {
 
     fn lower_constraint(&mut self, entry: Entry<'a>) -> Option<Constraint> {
         let fields = self.entry_fields(entry, "constraint")?;
-        let coordinate = self.coordinate(&fields, &["value", "description"]);
+        let coordinate = self.coordinate(&fields, &CONSTRAINT_KEYS);
         self.description(&fields);
         let value = self.required_quantity(&fields, "value", "0");
         let (coordinate, value) = (coordinate?, value?);
@@ -52,7 +58,7 @@ impl<'a> Context<'a> {
 
     fn lower_driver(&mut self, entry: Entry<'a>, start_time: f64) -> Option<Driver> {
         let fields = self.entry_fields(entry, "driver")?;
-        let coordinate = self.coordinate(&fields, &["start", "motion", "description"]);
+        let coordinate = self.coordinate(&fields, &DRIVER_KEYS);
         let description = self.description(&fields);
         let kind = coordinate.map(|coordinate| coordinate.kind);
         let source = self.driver_source(&fields, kind, start_time);
@@ -114,7 +120,7 @@ impl<'a> Context<'a> {
         measures
             .filter_map(|entry| {
                 let fields = self.entry_fields(*entry, "measure")?;
-                let coordinate = self.coordinate(&fields, &["description"]);
+                let coordinate = self.coordinate(&fields, &MEASURE_KEYS);
                 let description = self.description(&fields);
                 Some(Measure {
                     name: entry.name().to_owned(),
@@ -143,7 +149,7 @@ impl<'a> Context<'a> {
 
     /// The coordinate that a table describes, besides which it may have the keys `further`.
     fn coordinate(&mut self, fields: &Fields<'a>, further: &[&str]) -> Option<Coordinate> {
-        let mut legal = vec!["coordinate", "markers", "axes"];
+        let mut legal = KEYS.to_vec();
         legal.extend(further);
         self.check_keys(fields, &legal);
         let kind = self

@@ -6,7 +6,8 @@ use crate::mechanism::syntax::{self, Table};
 
 use super::context::{Context, Fields};
 
-const KEYS: [&str; 16] = [
+/// The keys of the file itself.
+pub(super) const KEYS: [&str; 16] = [
     "format",
     "name",
     "description",
@@ -26,7 +27,7 @@ const KEYS: [&str; 16] = [
 ];
 
 /// The words of C11 that are no identifiers; `_Bool` and its like cannot be meant by accident.
-const C_KEYWORDS: [&str; 34] = [
+pub(super) const C_KEYWORDS: [&str; 34] = [
     "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
     "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
     "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
@@ -40,6 +41,14 @@ pub(super) struct Header {
     pub(super) version: Option<String>,
     pub(super) license: Option<String>,
     pub(super) copyright: Option<String>,
+}
+
+/// Whether a mechanism may have this name: whether it is a C identifier.
+#[must_use]
+pub fn is_identifier(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        && !C_KEYWORDS.contains(&name)
 }
 
 impl<'a> Context<'a> {
@@ -83,9 +92,7 @@ impl<'a> Context<'a> {
     fn lower_name(&mut self, root: &Fields<'a>) -> Option<String> {
         let value = self.required(root, "name", "\"my_mechanism\"")?;
         let name = self.text(value)?;
-        let is_identifier = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
-            && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-        if !is_identifier || C_KEYWORDS.contains(&name) {
+        if !is_identifier(name) {
             self.error_with_help(
                 code::ILLEGAL_NAME,
                 value.span(),

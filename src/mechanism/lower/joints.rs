@@ -5,12 +5,15 @@ use crate::mechanism::{Joint, JointKind};
 
 use super::context::{Context, Entry, Fields};
 
+/// The keys that every joint may have.
+pub(super) const KEYS: [&str; 3] = ["type", "markers", "description"];
+
 /// A type of joint as the file knows it.
-struct JointType {
+pub(super) struct JointType {
     /// What `type` says.
-    name: &'static str,
-    /// The keys besides `type`, `markers` and `description`.
-    keys: &'static [&'static str],
+    pub(super) name: &'static str,
+    /// The keys besides [`KEYS`].
+    pub(super) keys: &'static [&'static str],
     /// Reads these keys.
     read: Read,
 }
@@ -18,7 +21,7 @@ struct JointType {
 type Read = for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<JointKind>;
 
 /// Every type of joint; a new one is a line here and a variant of [`JointKind`].
-static JOINT_TYPES: [JointType; 10] = [
+pub(super) static JOINT_TYPES: [JointType; 10] = [
     plain("revolute", |_, _| Some(JointKind::Revolute)),
     plain("translational", |_, _| Some(JointKind::Translational)),
     plain("slot", |_, _| Some(JointKind::Slot)),
@@ -87,7 +90,7 @@ impl<'a> Context<'a> {
         let fields = self.entry_fields(entry, "joint")?;
         let joint_type = self.joint_type(&fields);
         let markers = self.marker_pair(&fields);
-        let mut legal = vec!["type", "markers", "description"];
+        let mut legal = KEYS.to_vec();
         match joint_type {
             Some(joint_type) => legal.extend(joint_type.keys),
             // Of a type that is not known the keys are not known either.

@@ -12,6 +12,8 @@ mod joints;
 mod motions;
 mod names;
 mod parameters;
+#[cfg(feature = "cli")]
+mod schema;
 mod settings;
 mod tables;
 mod usage;
@@ -21,6 +23,10 @@ mod wheels;
 mod tests;
 
 use context::Context;
+
+pub use header::is_identifier;
+#[cfg(feature = "cli")]
+pub use schema::schema;
 
 use super::{Diagnostic, Mechanism, Source, syntax};
 

@@ -12,7 +12,10 @@ use crate::mechanism::{
 use super::context::{Context, Fields};
 use super::tables::TABLE_KEYS;
 
-const LAWS: [(&str, Interpolation); 8] = [
+/// The keys of a motion given by a table, besides those of the table.
+pub(super) const KEYS: [&str; 2] = ["law", "ends"];
+
+pub(super) const LAWS: [(&str, Interpolation); 8] = [
     ("spline", Interpolation::Spline),
     ("polynomial_345", Interpolation::Law(Law::Polynomial345)),
     ("polynomial_4567", Interpolation::Law(Law::Polynomial4567)),
@@ -26,7 +29,7 @@ const LAWS: [(&str, Interpolation); 8] = [
     ("trapezoidal", Interpolation::Law(Law::Trapezoidal)),
 ];
 
-const ENDS: [(&str, Ends); 3] = [
+pub(super) const ENDS: [(&str, Ends); 3] = [
     ("clamped", Ends::Clamped),
     ("natural", Ends::Natural),
     ("periodic", Ends::Periodic),
@@ -81,7 +84,7 @@ impl<'a> Context<'a> {
         fields: &Fields<'a>,
         kind: Option<CoordinateKind>,
     ) -> Option<MotionTable> {
-        let mut legal = vec!["law", "ends"];
+        let mut legal = KEYS.to_vec();
         legal.extend(TABLE_KEYS);
         self.check_keys(fields, &legal);
         let interpolation = match fields.get("law") {

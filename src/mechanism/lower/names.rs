@@ -25,6 +25,9 @@ pub(super) struct Sections<'a> {
     pub(super) measures: Vec<Entry<'a>>,
 }
 
+/// The keys of `[ground]`.
+pub(super) const GROUND_KEYS: [&str; 1] = ["markers"];
+
 impl<'a> Context<'a> {
     /// Declares all names; reports illegal, taken and repeated ones.
     pub(super) fn declare(&mut self, root: &Fields<'a>) -> Sections<'a> {
@@ -69,7 +72,7 @@ impl<'a> Context<'a> {
         }
         let ground = self.section(root, "ground");
         if let Some(ground) = &ground {
-            self.check_keys(ground, &["markers"]);
+            self.check_keys(ground, &GROUND_KEYS);
         }
         self.declare_markers(None, ground.as_ref(), sections);
         for (index, body) in sections.bodies.clone().into_iter().enumerate() {

@@ -11,7 +11,8 @@ use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, Parameter
 
 use super::context::{Context, Entry, Fields, Quantity};
 
-const KEYS: [&str; 7] = [
+/// The keys of a parameter's attributes.
+pub(super) const KEYS: [&str; 7] = [
     "value",
     "unit",
     "display",

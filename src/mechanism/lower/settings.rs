@@ -10,6 +10,10 @@ use crate::mechanism::{BodyId, MarkerId, Outputs, Simulation};
 
 use super::context::{Context, Fields, Quantity};
 
+/// The keys of `[outputs]` and of `[simulation]`.
+pub(super) const OUTPUT_KEYS: [&str; 2] = ["bodies", "markers"];
+pub(super) const SIMULATION_KEYS: [&str; 5] = ["start", "stop", "step", "tolerance", "gravity"];
+
 /// Communication steps of a default experiment that does not give its step.
 const DEFAULT_STEPS: f64 = 500.0;
 
@@ -22,7 +26,7 @@ impl<'a> Context<'a> {
         let Some(fields) = self.section(root, "outputs") else {
             return outputs;
         };
-        self.check_keys(&fields, &["bodies", "markers"]);
+        self.check_keys(&fields, &OUTPUT_KEYS);
         if let Some(value) = fields.get("bodies") {
             outputs.bodies = self.list(value, "an array of bodies", Self::moving_body);
             outputs.bodies.sort_unstable();
@@ -68,7 +72,7 @@ impl<'a> Context<'a> {
         let Some(fields) = self.section(root, "simulation") else {
             return simulation;
         };
-        self.check_keys(&fields, &["start", "stop", "step", "tolerance", "gravity"]);
+        self.check_keys(&fields, &SIMULATION_KEYS);
         let mut number = |key: &str| fields.get(key).and_then(|value| self.quantity(value));
         let [start, stop, step, tolerance] =
             ["start", "stop", "step", "tolerance"].map(&mut number);

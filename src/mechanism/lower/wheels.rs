@@ -6,7 +6,8 @@ use crate::mechanism::{BodyId, Expression, JointKind, RackSide, WheelSizes};
 
 use super::context::{Context, Fields};
 
-const SIDES: [(&str, RackSide); 2] = [("above", RackSide::Above), ("below", RackSide::Below)];
+pub(super) const SIDES: [(&str, RackSide); 2] =
+    [("above", RackSide::Above), ("below", RackSide::Below)];
 
 impl<'a> Context<'a> {
     pub(super) fn gear(&mut self, fields: &Fields<'a>) -> Option<JointKind> {

@@ -33,8 +33,9 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
-use super::{Before, Dyad, Found, Work};
-use crate::kinematics::certificate::{Gap, Tube, Tubes, sagitta};
+use super::{Before, Dyad, Found, Work, larger};
+use crate::kinematics::certificate::{Gap, Tubes, sagitta};
+use crate::kinematics::configuration::rotate;
 use crate::kinematics::newton::Rejected;
 
 /// In which direction an uncertain angle opens the loop is not asked where it adds no more than
@@ -75,17 +76,21 @@ impl Dyad {
         let [a, b] = &self.sides;
         let frames = work.at.frames();
         let turns = [
-            frames[a.place as usize].phi - before.frames[0].phi,
-            frames[b.place as usize].phi - before.frames[1].phi,
+            frames[a.place as usize].phi - before.phi[0],
+            frames[b.place as usize].phi - before.phi[1],
         ];
-        let mut before_links = before.links;
+        let (mut before_links, mut before_determinant) = (before.links, before.determinant);
         let mut gap = 2.0 * found.open;
         let mut strays = [0.0; 2];
         // How far the links may differ from those in force.
         let mut slack = [0.0; 2];
         if let Some(slips) = tubes.slips() {
             // The loop at the start with the lengths in force now.
-            before_links = [before.frames[0].rotate(a.l), before.frames[1].rotate(b.l)];
+            before_links = [a, b].map(|side| {
+                let tube = tubes.body(side.place as usize);
+                rotate(tube.cos, tube.sin, side.l)
+            });
+            before_determinant = before_links[0].perp(&before_links[1]);
             for (k, parts) in self.parts.sides.iter().enumerate() {
                 let [outer, inner] = [parts.outer, parts.inner].map(|m| slips.position(m));
                 strays[k] = 2.0 * (outer + slips.position(parts.anchor));
@@ -93,13 +98,12 @@ impl Dyad {
                 gap += strays[k] + 2.0 * inner;
             }
         }
-        let before_determinant = before_links[0].perp(&before_links[1]);
         let spread = turns[1] - turns[0];
         if !(before_determinant * self.determinant > 0.0 && spread.abs() < PI) {
             return Err(tubes.break_off());
         }
         let inverses = [before_determinant, self.determinant].map(|det| 1.0 / det.abs());
-        let inverse = inverses[0].max(inverses[1]);
+        let inverse = larger(inverses[0], inverses[1]);
 
         let links = [before_links, [a.link, b.link]];
         let lengths = [a.length, b.length];
@@ -129,7 +133,7 @@ impl Dyad {
                 let other = 1 - k;
                 let ratios =
                     [0, 1].map(|end| levers[end].perp(&links[end][other]).abs() * inverses[end]);
-                let ratio = ratios[0].max(ratios[1]);
+                let ratio = larger(ratios[0], ratios[1]);
                 let bend = length * lengths[other] * sagitta(turns[other] - tube.turn)
                     + ratio * product * sagitta(spread);
                 *turned += (ratio + bend * inverse) * tube.radius;
@@ -148,15 +152,11 @@ impl Dyad {
         }
         let gap = Gap::new(gap, linear, square);
         tubes.bear(gap.load)?;
-        for k in 0..2 {
-            let side = &self.sides[k];
-            *tubes.body_mut(side.place as usize) = Tube {
-                cos: before.frames[k].cos,
-                sin: before.frames[k].sin,
-                turn: turns[k],
-                radius: turned[k] + reach[k] * gap.value,
-                stray: strays[k],
-            };
+        for (k, side) in self.sides.iter().enumerate() {
+            let tube = tubes.body_mut(side.place as usize);
+            tube.turn = turns[k];
+            tube.radius = turned[k] + reach[k] * gap.value;
+            tube.stray = strays[k];
         }
         Ok(())
     }

@@ -1,0 +1,170 @@
+//! What `biela check` finds, for scripts.
+
+use std::path::Path as FilePath;
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::NEARLY_SINGULAR;
+use crate::cli::error::Error;
+use crate::kinematics::{self, Element, Path, Rates, Solver, System};
+use crate::mechanism::{CoordinateKind, Diagnostic, DriverSource, Mechanism, Source};
+
+/// All that `biela check` finds out about a file, in SI units, and whether the file is right.
+///
+/// Keys that make no sense for what was found are left out: `mechanism` where the file could not
+/// be read, `pose` where it was not assembled, `modes` where they were not asked for.
+pub(super) fn report(file: &FilePath, modes: bool) -> Result<(Value, bool), Error> {
+    let name = file.display().to_string();
+    let source = Source::open(name.as_str(), file).map_err(|source| Error::Read {
+        path: file.to_owned(),
+        source,
+    })?;
+    let mut report = json!({ "file": name, "ok": false });
+    let (mechanism, warnings) = match Mechanism::parse(&source) {
+        Ok((mechanism, warnings)) => (Arc::new(mechanism), warnings),
+        Err(errors) => {
+            report["diagnostics"] = diagnostics(&source, &errors);
+            return Ok((report, false));
+        }
+    };
+    report["diagnostics"] = diagnostics(&source, &warnings);
+    report["mechanism"] = describe(&mechanism);
+    match assembled(&mechanism, modes) {
+        Ok(found) => {
+            report["ok"] = json!(true);
+            report["assembled"] = found;
+            Ok((report, true))
+        }
+        Err(error) => {
+            report["error"] = json!({ "message": error.to_string() });
+            if let kinematics::Error::NotAssembled { open, nearest, .. } = &error {
+                report["error"]["open"] = open
+                    .iter()
+                    .map(|joint| json!({ "element": joint.element, "gap": joint.gap, "angle": joint.angle }))
+                    .collect();
+                report["error"]["nearest"] = poses(&mechanism, nearest);
+            }
+            Ok((report, false))
+        }
+    }
+}
+
+fn diagnostics(source: &Source, diagnostics: &[Diagnostic]) -> Value {
+    let place = |offset: usize| {
+        let position = source.position(offset);
+        json!({ "line": position.line, "column": position.column })
+    };
+    let diagnostics = diagnostics.iter().map(|diagnostic| {
+        let labels = diagnostic.labels.iter().map(|label| {
+            json!({
+                "start": place(label.span.start),
+                "end": place(label.span.end),
+                "text": label.text,
+            })
+        });
+        json!({
+            "severity": diagnostic.severity.as_str(),
+            "code": diagnostic.code,
+            "message": diagnostic.message,
+            "help": diagnostic.help,
+            "labels": labels.collect::<Vec<_>>(),
+        })
+    });
+    diagnostics.collect()
+}
+
+fn describe(mechanism: &Arc<Mechanism>) -> Value {
+    let system = System::new(Arc::clone(mechanism));
+    let equations = |element: Element| {
+        let equations = system.equations().iter();
+        equations
+            .filter(|equation| equation.element == element)
+            .count()
+    };
+    let bodies = mechanism.bodies.iter().map(|body| &body.name);
+    let joints = mechanism.joints.iter().enumerate().map(|(index, joint)| {
+        json!({ "name": joint.name, "equations": equations(Element::Joint(index)) })
+    });
+    let drivers = mechanism.drivers.iter().map(|driver| {
+        json!({
+            "name": driver.name,
+            "input": matches!(driver.source, DriverSource::Input { .. }),
+            "unit": unit(driver.coordinate.kind),
+        })
+    });
+    json!({
+        "name": mechanism.name,
+        "description": mechanism.description,
+        "unknowns": system.unknowns(),
+        "bodies": bodies.collect::<Vec<_>>(),
+        "joints": joints.collect::<Vec<_>>(),
+        "constraints": mechanism.constraints.iter().map(|c| &c.name).collect::<Vec<_>>(),
+        "drivers": drivers.collect::<Vec<_>>(),
+    })
+}
+
+/// The mechanism at its start values.
+fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematics::Error> {
+    let mut solver = Solver::new(Arc::clone(mechanism))?;
+    solver.assemble(&Path::new(mechanism))?;
+    let rcond = solver.rcond();
+    let pose = solver.pose();
+    let still = Rates::new(pose.q.len());
+    let drivers = mechanism.drivers.iter().zip(&pose.drivers);
+    let measures = mechanism
+        .measures
+        .iter()
+        .enumerate()
+        .map(|(index, measure)| {
+            json!({
+                "name": measure.name,
+                "value": solver.measure(index, &still).value,
+                "unit": unit(measure.coordinate.kind),
+            })
+        });
+    let texts = |texts: &mut dyn Iterator<Item = String>| texts.collect::<Vec<_>>();
+    let mut found = json!({
+        "degrees_of_freedom": mechanism.drivers.len(),
+        "drivers": drivers.map(|(driver, value)| json!({
+            "name": driver.name,
+            "value": value,
+            "unit": unit(driver.coordinate.kind),
+        })).collect::<Vec<_>>(),
+        "bodies": poses(mechanism, &pose.q),
+        "measures": measures.collect::<Vec<_>>(),
+        "residual": solver.residual(),
+        "rcond": rcond,
+        "nearly_singular": rcond < NEARLY_SINGULAR,
+        "redundancies": texts(&mut solver.redundancies().iter().map(ToString::to_string)),
+        "misfits": texts(&mut solver.misfits().iter().map(ToString::to_string)),
+    });
+    if modes {
+        let modes = solver.modes()?;
+        let others = modes.others.iter().map(|mode| {
+            json!({
+                "bodies": poses(mechanism, &mode.q),
+                "rcond": mode.rcond,
+            })
+        });
+        found["modes"] = json!({
+            "complete": modes.complete,
+            "others": others.collect::<Vec<_>>(),
+        });
+    }
+    Ok(found)
+}
+
+fn poses(mechanism: &Mechanism, q: &[f64]) -> Value {
+    let bodies = mechanism.bodies.iter().zip(q.chunks_exact(3));
+    bodies
+        .map(|(body, q)| json!({ "name": body.name, "x": q[0], "y": q[1], "phi": q[2] }))
+        .collect()
+}
+
+fn unit(kind: CoordinateKind) -> &'static str {
+    match kind {
+        CoordinateKind::Angle => "rad",
+        _ => "m",
+    }
+}

@@ -1,0 +1,252 @@
+//! The quantities of a run: as columns of a CSV and as lines of a chart.
+
+use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
+
+use super::error::Error;
+use super::motion::Motion;
+use crate::drawing::{Axis, Chart, Line, Panel};
+use crate::fmi::{Kind, Quantity, variables};
+use crate::mechanism::{Mechanism, Unit};
+
+/// One quantity of a run.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    /// As the FMU's variable.
+    pub(super) name: String,
+    pub(super) quantity: Quantity,
+    pub(super) unit: Unit,
+}
+
+impl Column {
+    /// Value, velocity and acceleration of every driver, then all outputs of the FMU.
+    pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
+        let variables = variables(mechanism);
+        let of_kind = |wanted: fn(Quantity) -> Option<Quantity>| {
+            variables.iter().filter_map(move |variable| {
+                let Kind::Real { unit, .. } = variable.kind else {
+                    return None;
+                };
+                Some(Self {
+                    name: variable.name.clone(),
+                    quantity: wanted(variable.quantity)?,
+                    unit: unit.unwrap_or(Unit::ONE),
+                })
+            })
+        };
+        // An input's value counts as that of the motion which it is in a run.
+        let drivers = of_kind(|quantity| match quantity {
+            Quantity::Input(driver, order) | Quantity::Motion(driver, order) => {
+                Some(Quantity::Motion(driver, order))
+            }
+            _ => None,
+        });
+        let mut columns: Vec<Self> = drivers.collect();
+        columns.sort_by_key(|column| match column.quantity {
+            Quantity::Motion(driver, _) => driver.index(),
+            _ => 0,
+        });
+        columns.extend(of_kind(|quantity| match quantity {
+            Quantity::Body(..) | Quantity::Marker(..) | Quantity::Measure(..) => Some(quantity),
+            _ => None,
+        }));
+        columns
+    }
+
+    /// Those that have one of the names, or belong to what has it: `crank` stands for all
+    /// variables of that body, `coupler.P` for those of that marker.
+    pub(super) fn named(columns: &[Self], names: &[String]) -> Result<Vec<Self>, Error> {
+        for name in names {
+            if !columns.iter().any(|column| column.belongs_to(name)) {
+                let nearest = columns
+                    .iter()
+                    .flat_map(|column| {
+                        column
+                            .name
+                            .match_indices('.')
+                            .map(|(at, _)| &column.name[..at])
+                            .chain([column.name.as_str()])
+                    })
+                    .map(|known| (strsim::damerau_levenshtein(known, name), known))
+                    .min_by_key(|(distance, _)| *distance);
+                let help = nearest.map_or_else(String::new, |(_, known)| {
+                    format!("; did you mean `{known}`?")
+                });
+                return Err(Error::Usage(format!(
+                    "--variables: there is no `{name}`{help}"
+                )));
+            }
+        }
+        let chosen = columns
+            .iter()
+            .filter(|column| names.iter().any(|name| column.belongs_to(name)));
+        Ok(chosen.cloned().collect())
+    }
+
+    /// What a chart shows if nothing else is asked for: drivers and measures, or points of
+    /// interest where there is no measure, or bodies where there is neither.
+    pub(super) fn of_interest(columns: &[Self]) -> Vec<Self> {
+        let of = |wanted: fn(&Quantity) -> bool| {
+            let chosen = columns
+                .iter()
+                .filter(move |column| wanted(&column.quantity));
+            chosen.cloned().collect::<Vec<_>>()
+        };
+        let mut chosen = of(|quantity| matches!(quantity, Quantity::Motion(..)));
+        for wanted in [
+            |quantity: &Quantity| matches!(quantity, Quantity::Measure(..)),
+            |quantity: &Quantity| matches!(quantity, Quantity::Marker(..)),
+            |quantity: &Quantity| matches!(quantity, Quantity::Body(..)),
+        ] {
+            let more = of(wanted);
+            if !more.is_empty() {
+                chosen.extend(more);
+                break;
+            }
+        }
+        chosen
+    }
+
+    fn belongs_to(&self, name: &str) -> bool {
+        let rest = self.name.strip_prefix(name);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    }
+
+    pub(super) fn read(&self, motion: &Motion) -> f64 {
+        self.quantity
+            .read(&motion.solver, &motion.rates, &motion.driver_rates)
+    }
+}
+
+/// The CSV: one column a quantity.
+pub(super) struct Table<'a> {
+    out: BufWriter<Box<dyn Write>>,
+    path: PathBuf,
+    columns: &'a [Column],
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn new(columns: &'a [Column], out: Box<dyn Write>, path: PathBuf) -> Self {
+        Self {
+            out: BufWriter::new(out),
+            path,
+            columns,
+        }
+    }
+
+    pub(super) fn write_header(&mut self) -> Result<(), Error> {
+        let names = self.columns.iter().map(|column| column.name.as_str());
+        let line: Vec<_> = std::iter::once("time").chain(names).collect();
+        writeln!(self.out, "{}", line.join(",")).map_err(|source| self.error(source))
+    }
+
+    pub(super) fn write_row(&mut self, motion: &Motion) -> Result<(), Error> {
+        self.try_write_row(motion)
+            .map_err(|source| self.error(source))
+    }
+
+    /// Numbers are written so that reading them gives the same bits.
+    fn try_write_row(&mut self, motion: &Motion) -> io::Result<()> {
+        write!(self.out, "{:?}", motion.solver.pose().time)?;
+        for column in self.columns {
+            write!(self.out, ",{:?}", column.read(motion))?;
+        }
+        writeln!(self.out)
+    }
+
+    pub(super) fn finish(&mut self) -> Result<(), Error> {
+        self.out.flush().map_err(|source| self.error(source))
+    }
+
+    fn error(&self, source: io::Error) -> Error {
+        Error::Write {
+            path: self.path.clone(),
+            source,
+        }
+    }
+}
+
+/// Values of a run for a chart.
+pub(super) struct Record {
+    columns: Vec<Column>,
+    times: Vec<f64>,
+    values: Vec<Vec<f64>>,
+}
+
+impl Record {
+    pub(super) fn new(columns: Vec<Column>) -> Self {
+        Self {
+            times: Vec::new(),
+            values: vec![Vec::new(); columns.len()],
+            columns,
+        }
+    }
+
+    pub(super) fn add(&mut self, motion: &Motion) {
+        self.times.push(motion.solver.pose().time);
+        for (values, column) in self.values.iter_mut().zip(&self.columns) {
+            values.push(column.read(motion));
+        }
+    }
+
+    /// Positions, velocities and accelerations, lengths and angles each in a panel of their own;
+    /// angles in degrees.
+    pub(super) fn chart(self, mechanism: &Mechanism) -> Chart {
+        let mut looks: Vec<String> = Vec::new();
+        let mut panels: Vec<(Unit, Panel)> = Vec::new();
+        for (column, mut values) in self.columns.into_iter().zip(self.values) {
+            let source = format!("{:?}", column.quantity.position());
+            let look = looks.iter().position(|known| *known == source);
+            let look = look.unwrap_or_else(|| {
+                looks.push(source);
+                looks.len() - 1
+            });
+            if let Some(display) = column.unit.display {
+                values.iter_mut().for_each(|value| *value *= display.factor);
+            }
+            let line = Line {
+                name: column.name,
+                look,
+                values,
+            };
+            match panels.iter_mut().find(|(unit, _)| *unit == column.unit) {
+                Some((_, panel)) => panel.lines.push(line),
+                None => panels.push((
+                    column.unit,
+                    Panel {
+                        y: axis(column.unit),
+                        lines: vec![line],
+                    },
+                )),
+            }
+        }
+        panels.sort_by_key(|(unit, _)| (-unit.dimension.s, unit.dimension.rad));
+        Chart {
+            title: mechanism.name.clone(),
+            description: mechanism.description.clone(),
+            x: Axis {
+                label: "time".to_owned(),
+                unit: "s".to_owned(),
+            },
+            at: self.times,
+            panels: panels.into_iter().map(|(_, panel)| panel).collect(),
+        }
+    }
+}
+
+/// What has this unit, and how it is shown.
+pub(super) fn axis(unit: Unit) -> Axis {
+    let what = match (unit.dimension.rad, unit.dimension.s) {
+        (0, 0) => "position",
+        (0, -1) => "velocity",
+        (0, _) => "acceleration",
+        (_, 0) => "angle",
+        (_, -1) => "angular velocity",
+        _ => "angular acceleration",
+    };
+    let shown = unit.display.map_or(unit.name, |display| display.name);
+    Axis {
+        label: what.to_owned(),
+        unit: shown.replace('2', "²"),
+    }
+}

@@ -1,0 +1,363 @@
+//! What documents an FMU from the inside: its picture and its page.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+use super::columns::Column;
+use super::error::Error;
+use super::input::Input;
+use super::motion::Motion;
+use super::range::{end_text, with_unit};
+use super::recording::Recording;
+use super::signals::Signals;
+use crate::drawing::animation::{Animation, escape, fill, player, style_and_script};
+use crate::drawing::{Scene, Sheet, png, svg};
+use crate::fmi::{Causality, Document, Kind, Quantity, Variable, variables};
+use crate::kinematics::{End, Range, RangeSettings, Solver};
+use crate::mechanism::{
+    CoordinateKind, DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of,
+};
+
+const PAGE: &str = include_str!("documentation.html");
+const STYLE: &str = include_str!("documentation.css");
+
+/// Width of the picture, which hosts show as an icon or beside the variables.
+const ICON_WIDTH: u32 = 512;
+/// Width of the drawing on the page.
+const DRAWING_WIDTH: u32 = 640;
+/// Pictures of the motion, and how many bodies there are in all of them at most.
+const MOMENTS: usize = 240;
+const MOST_PLACED: usize = 24_000;
+/// How long a turn of the driver, or its way there and back, is shown \[s\].
+const PERIOD: f64 = 4.0;
+/// Looked at less closely than by `biela range`: a turn in steps of three degrees, a few of
+/// them, and a length up to a few times as far as the mechanism is long.
+const RANGE: RangeSettings = RangeSettings {
+    samples: 120,
+    turns: 8,
+    lengths: 3.0,
+};
+/// What a motion between two limits leaves of its range at both ends: at a dead point itself
+/// there is no velocity.
+const INSIDE: f64 = 0.01;
+/// The part that is shown of a way on which no limit was found.
+const SHOWN: f64 = 1.0 / 3.0;
+
+/// A mechanism as it moves.
+pub(super) struct Shown {
+    pub(super) animation: Animation,
+    /// What moves, in words.
+    pub(super) moving: String,
+    /// For each driver that is an input its range, from where the mechanism stands.
+    ranges: Vec<Option<Range>>,
+}
+
+/// The picture and the page of a mechanism that stands at its own pose.
+pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, Error> {
+    let refuse = |error| input.error(error);
+    let mut solver = Solver::new(Arc::clone(&input.mechanism)).map_err(refuse)?;
+    solver.restore(home.pose());
+    let scene = Scene::new(&mut solver, true);
+    let sheet = Sheet::new(&scene, &solver.pose().q);
+    let picture = png::write(&sheet, ICON_WIDTH, false)
+        .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
+    let shown = show(&mut solver).map_err(refuse)?;
+    Ok(vec![
+        Document {
+            path: "model.png".to_owned(),
+            content: picture,
+        },
+        Document {
+            path: "documentation/index.html".to_owned(),
+            content: page(&input.mechanism, &sheet, &shown).into_bytes(),
+        },
+    ])
+}
+
+/// A mechanism from where it stands: along its prescribed motions, or over the range of its
+/// first driver, best an angle.
+pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Error> {
+    let own = Arc::clone(solver.mechanism());
+    let ranges: Vec<Option<Range>> = (own.drivers.iter().enumerate())
+        .map(|(index, driver)| {
+            let is_input = driver.motion().is_none();
+            is_input.then(|| solver.range(DriverId(index), &RANGE))
+        })
+        .collect();
+    let home = solver.pose().clone();
+    let simulation = &own.simulation;
+    let mut driven = Mechanism::clone(&own);
+    let moves = |motion: &Prescribed| motion.uses_time();
+    let is_moved = own.drivers.iter().any(|d| d.motion().is_some_and(moves));
+    let angle = |driver: &usize| own.drivers[*driver].coordinate.kind == CoordinateKind::Angle;
+    let inputs = || (0..ranges.len()).filter(|driver| ranges[*driver].is_some());
+    let first = inputs().find(angle).or_else(|| inputs().next());
+    let (duration, moving) = match first.and_then(|first| Some((first, ranges[first].as_ref()?))) {
+        _ if is_moved => (
+            simulation.stop - simulation.start,
+            "The prescribed motion, until the stop time.".to_owned(),
+        ),
+        Some((driver, range)) => {
+            let (motion, duration) = way(home.drivers[driver], range, simulation.start);
+            // What the way is made of are finite numbers.
+            if let Ok(motion) = own.parse_expression(&motion, Some(Of::Time)) {
+                let motion = Prescribed::Expression(motion);
+                driven.drivers[driver].source = DriverSource::Motion(motion);
+            }
+            let name = &own.drivers[driver].name;
+            let held = match own.drivers.len() {
+                1 => "",
+                _ => "; the other drivers are held at their start values",
+            };
+            (duration, format!("{name} over its range{held}."))
+        }
+        None => (0.0, "Nothing moves.".to_owned()),
+    };
+    let driven = Arc::new(driven);
+    let mut solver = Solver::new(Arc::clone(&driven))?;
+    solver.restore(&home);
+    let start = simulation.start;
+    let parameters = home.parameters;
+    let mut motion = Motion::from(solver, Signals::default(), parameters.clone(), start)?;
+    let told = Recording::of_interest(&Column::all(&driven));
+    let moments = (MOST_PLACED / own.bodies.len().max(1)).clamp(MOMENTS / 10, MOMENTS);
+    let mut recording = Recording::new(told, moments as u64);
+    recording.add(&motion);
+    let step = duration / moments as f64;
+    if duration > 0.0 {
+        for moment in 1..=moments {
+            // What is in the way ends the film there.
+            if motion.advance(start + moment as f64 * step).is_err() {
+                break;
+            }
+            recording.add(&motion);
+        }
+    }
+    Ok(Shown {
+        animation: recording.animation(&driven, &parameters, [start, step]),
+        moving,
+        ranges,
+    })
+}
+
+/// An expression in time that leads over a range from where the driver is, and how long it
+/// takes: round and round, or there and back.
+fn way(from: f64, range: &Range, start: f64) -> (String, f64) {
+    if let End::Turns(turns) = range.upper {
+        let rate = TAU / PERIOD;
+        let turns = f64::from(turns.max(1));
+        return (
+            format!("{from:?} + {rate:?}*(t - ({start:?}))"),
+            turns * PERIOD,
+        );
+    }
+    let ends = [
+        (range.samples.first(), &range.lower),
+        (range.samples.last(), &range.upper),
+    ];
+    let [low, high] = ends.map(|(sample, end)| {
+        let limit = sample.map_or(from, |sample| sample.driver);
+        match end {
+            End::NotFound { .. } => from + SHOWN * (limit - from),
+            _ => limit,
+        }
+    });
+    let inside = INSIDE * (high - low);
+    // A driver may start near a limit.
+    let [low, high] = [(low + inside).min(from), (high - inside).max(from)];
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let phase = if half > 0.0 {
+        ((middle - from) / half).clamp(-1.0, 1.0).acos()
+    } else {
+        0.5 * PI
+    };
+    let rate = TAU / PERIOD;
+    let motion = format!("{middle:?} - {half:?}*cos({rate:?}*(t - ({start:?})) + {phase:?})");
+    (motion, PERIOD)
+}
+
+fn page(mechanism: &Mechanism, sheet: &Sheet, shown: &Shown) -> String {
+    let variables = variables(mechanism);
+    let [player_style, script] = style_and_script();
+    let drawing = svg::write(sheet, DRAWING_WIDTH, false);
+    let drawing = drawing
+        .split_once("?>")
+        .map_or(drawing.as_str(), |(_, svg)| svg);
+    fill(
+        PAGE,
+        &[
+            ("name", &escape(&mechanism.name)),
+            ("description", &escape(&mechanism.description)),
+            ("about", &about(mechanism)),
+            ("drawing", drawing),
+            ("moving", &escape(&shown.moving)),
+            ("player", &player(&shown.animation)),
+            ("drivers", &drivers(mechanism, &shown.ranges)),
+            ("parameters", &parameters(&variables)),
+            ("outputs", &outputs(&variables)),
+            ("version", env!("CARGO_PKG_VERSION")),
+            ("style", &format!("{player_style}{STYLE}")),
+            ("script", script),
+        ],
+    )
+}
+
+/// Who made it and what may be done with it, as far as the file says.
+fn about(mechanism: &Mechanism) -> String {
+    let rows = [
+        ("Author", &mechanism.author),
+        ("Version", &mechanism.version),
+        ("Licence", &mechanism.license),
+        ("Copyright", &mechanism.copyright),
+    ];
+    let given = rows
+        .into_iter()
+        .filter_map(|(what, text)| Some((what, text.as_deref()?)));
+    let mut html = String::new();
+    for (what, text) in given {
+        let _ = write!(html, "<dt>{what}</dt><dd>{}</dd>", escape(text));
+    }
+    if html.is_empty() {
+        return html;
+    }
+    format!("<dl class=\"about\">{html}</dl>")
+}
+
+fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
+    let rows = mechanism.drivers.iter().zip(ranges).enumerate();
+    let rows = rows.map(|(index, (driver, range))| {
+        let kind = driver.coordinate.kind;
+        let value = |value: f64| with_unit(kind, value);
+        let start = match driver.source {
+            DriverSource::Input { start } => value(start),
+            DriverSource::Motion(_) => String::new(),
+        };
+        let limits = match range {
+            None => "prescribed by the file: no input".to_owned(),
+            Some(Range {
+                upper: End::Turns(1),
+                ..
+            }) => "turns fully".to_owned(),
+            Some(Range {
+                upper: End::Turns(turns),
+                ..
+            }) => {
+                format!("turns fully; the mechanism is back after {turns} turns")
+            }
+            Some(range) => {
+                let end = |end| end_text(end, DriverId(index), &value);
+                format!("down to {}; up to {}", end(&range.lower), end(&range.upper))
+            }
+        };
+        [driver.name.clone(), start, limits.replace('`', "")]
+    });
+    table(&["Driver", "Start", "Range, other drivers held"], rows)
+}
+
+fn parameters(variables: &[Variable<Quantity>]) -> String {
+    let rows = variables.iter().filter_map(|variable| {
+        let Kind::Real {
+            unit,
+            start,
+            min,
+            max,
+        } = variable.kind
+        else {
+            let Kind::Enumeration(choices) = &variable.kind else {
+                return None;
+            };
+            let items: Vec<String> = (1..)
+                .zip(choices.items)
+                .map(|(number, (name, what))| format!("{number} {name}: {what}"))
+                .collect();
+            let what = format!("{}: {}", variable.description, items.join("; "));
+            return Some([
+                variable.name.clone(),
+                "1".to_owned(),
+                String::new(),
+                String::new(),
+                what,
+            ]);
+        };
+        let Quantity::Parameter(_) = variable.quantity else {
+            return None;
+        };
+        let shown = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v}"));
+        let limits = match (min, max) {
+            (None, None) => String::new(),
+            (min, None) => format!("≥ {}", shown(min)),
+            (None, max) => format!("≤ {}", shown(max)),
+            (min, max) => format!("{} to {}", shown(min), shown(max)),
+        };
+        let mut what = variable.description.clone();
+        if variable.causality == Causality::CalculatedParameter {
+            what.push_str(" (derived from others)");
+        } else if variable.variability == crate::fmi::Variability::Tunable {
+            what.push_str(" (may change between steps)");
+        }
+        Some([
+            variable.name.clone(),
+            shown(start),
+            name_of(unit),
+            limits,
+            what,
+        ])
+    });
+    table(&["Parameter", "Value", "Unit", "Limits", "Meaning"], rows)
+}
+
+fn outputs(variables: &[Variable<Quantity>]) -> String {
+    let told = variables.iter().filter(|variable| {
+        matches!(
+            variable.causality,
+            Causality::Input | Causality::Output | Causality::Local
+        )
+    });
+    let rows = told.map(|variable: &Variable<Quantity>| {
+        let unit = match variable.kind {
+            Kind::Real { unit, .. } => name_of(unit),
+            _ => String::new(),
+        };
+        let causality = match variable.causality {
+            Causality::Input => "input",
+            Causality::Output => "output",
+            _ => "local",
+        };
+        let description = variable.description.replace('`', "");
+        [
+            variable.name.clone(),
+            causality.to_owned(),
+            unit,
+            description,
+        ]
+    });
+    table(&["Variable", "Causality", "Unit", "Meaning"], rows)
+}
+
+fn name_of(unit: Option<Unit>) -> String {
+    unit.map_or_else(String::new, |unit| unit.name.to_owned())
+}
+
+/// A table, or a word where it would be empty.
+fn table<const N: usize>(header: &[&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let mut html = String::from("<div class=\"table\"><table>\n<thead><tr>");
+    for cell in header {
+        let _ = write!(html, "<th>{cell}</th>");
+    }
+    html.push_str("</tr></thead>\n<tbody>\n");
+    let mut empty = true;
+    for row in rows {
+        empty = false;
+        html.push_str("<tr>");
+        for cell in row {
+            let _ = write!(html, "<td>{}</td>", escape(&cell));
+        }
+        html.push_str("</tr>\n");
+    }
+    if empty {
+        return "<p>None.</p>".to_owned();
+    }
+    html.push_str("</tbody>\n</table></div>");
+    html
+}

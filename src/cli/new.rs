@@ -1,0 +1,182 @@
+//! `biela new`
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
+use super::error::Error;
+use crate::mechanism::is_identifier;
+
+/// Write a commented mechanism to start from.
+///
+/// It is one of the mechanisms that come with biela, under another name.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: biela new my_linkage --from four_bar")]
+pub(super) struct New {
+    /// The mechanism's name: letters, digits and `_`. Its file is NAME.toml.
+    name: String,
+    /// The mechanism to start from.
+    #[arg(long, value_name = "MECHANISM", default_value = "four_bar",
+        value_parser = PossibleValuesParser::new(TEMPLATES.iter().map(|template| template.name)))]
+    from: String,
+    /// The folder to write to [default: the current one].
+    #[arg(short, long, value_name = "FOLDER")]
+    folder: Option<PathBuf>,
+}
+
+/// A mechanism to start from.
+struct Template {
+    name: &'static str,
+    text: &'static str,
+    /// The tables that it names, with the names of their files.
+    tables: &'static [(&'static str, &'static str)],
+}
+
+macro_rules! template {
+    ($name:literal $(, $table:literal)*) => {
+        Template {
+            name: $name,
+            text: include_str!(concat!("../../mechanisms/", $name, ".toml")),
+            tables: &[$(($table, include_str!(concat!("../../mechanisms/", $table)))),*],
+        }
+    };
+}
+
+/// The mechanisms that come with biela.
+static TEMPLATES: [Template; 35] = [
+    template!("andrews"),
+    template!("cam_flat"),
+    template!("cam_flat_arm"),
+    template!("cam_knife"),
+    template!("cam_points", "cam_points.csv"),
+    template!("cam_roller"),
+    template!("cam_roller_arm"),
+    template!("chebyshev"),
+    template!("double_rocker"),
+    template!("drag_link"),
+    template!("elliptic_trammel"),
+    template!("excavator_arm"),
+    template!("five_bar_robot"),
+    template!("four_bar"),
+    template!("geared_five_bar"),
+    template!("hart_inversor"),
+    template!("jansen_leg"),
+    template!("pantograph"),
+    template!("parallelogram"),
+    template!("peaucellier"),
+    template!("pendulum"),
+    template!("pick_and_place"),
+    template!("planetary_gear"),
+    template!("platform_3rpr"),
+    template!("rack_drive"),
+    template!("scotch_yoke"),
+    template!("slider_crank"),
+    template!("slotted_lever"),
+    template!("stephenson_six_bar"),
+    template!("tlv"),
+    template!("tlv_crank"),
+    template!("toggle_press"),
+    template!("v_twin"),
+    template!("watt_six_bar"),
+    template!("whitworth"),
+];
+
+impl New {
+    pub(super) fn run(self) -> Result<(), Error> {
+        if !is_identifier(&self.name) {
+            return Err(Error::Usage(format!(
+                "`{}` is no name of a mechanism: letters, digits and `_`, not starting with a \
+                 digit, and no word of the C language",
+                self.name
+            )));
+        }
+        let template = TEMPLATES.iter().find(|template| template.name == self.from);
+        let template = template.expect("the parser of arguments knows the same names");
+        let folder = self.folder.unwrap_or_default();
+        let text = renamed(template, &self.name);
+        let mut files = vec![(format!("{}.toml", self.name), text.as_str())];
+        files.extend(
+            template
+                .tables
+                .iter()
+                .map(|(name, text)| ((*name).to_owned(), *text)),
+        );
+        for (name, _) in &files {
+            let path = folder.join(name);
+            if path.exists() {
+                return Err(exists(&path));
+            }
+        }
+        for (name, text) in &files {
+            create(&folder.join(name), text)?;
+        }
+        let path = folder.join(&files[0].0);
+        let shown = path.display();
+        eprintln!("wrote {shown}; now: biela check {shown}");
+        Ok(())
+    }
+}
+
+/// The template's text under another name.
+fn renamed(template: &Template, name: &str) -> String {
+    let line = |name: &str| format!("\nname = \"{name}\"\n");
+    template.text.replacen(&line(template.name), &line(name), 1)
+}
+
+/// Writes a file that is not there yet.
+fn create(path: &Path, text: &str) -> Result<(), Error> {
+    let created = std::fs::File::create_new(path);
+    let written = created.and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(|source| match source.kind() {
+        std::io::ErrorKind::AlreadyExists => exists(path),
+        _ => Error::Write {
+            path: path.to_owned(),
+            source,
+        },
+    })
+}
+
+fn exists(path: &Path) -> Error {
+    Error::Usage(format!("`{}` is there already", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::{Mechanism, Source};
+
+    #[test]
+    fn every_shipped_mechanism_is_a_template() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("mechanisms");
+        let mut shipped: Vec<String> = std::fs::read_dir(&folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| {
+                path.extension()
+                    .is_some_and(|extension| extension == "toml")
+            })
+            .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
+            .collect();
+        shipped.sort();
+        assert!(TEMPLATES.iter().map(|template| template.name).eq(shipped));
+    }
+
+    #[test]
+    fn templates_are_mechanisms_of_the_new_name() {
+        for template in &TEMPLATES {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("new.toml");
+            std::fs::write(&path, renamed(template, "new_one")).unwrap();
+            for (name, text) in template.tables {
+                std::fs::write(folder.path().join(name), text).unwrap();
+            }
+            let source = Source::open("new.toml", &path).unwrap();
+            let (mechanism, warnings) = Mechanism::parse(&source).unwrap();
+            assert_eq!(mechanism.name, "new_one");
+            assert!(warnings.is_empty(), "{}", template.name);
+            assert_eq!(mechanism.table_files.len(), template.tables.len());
+        }
+    }
+}

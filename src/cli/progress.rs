@@ -1,0 +1,85 @@
+//! How far a long run is, on a terminal.
+
+use std::io::{IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+/// A line on stderr that tells how far a run is; nothing where stderr is no terminal, and
+/// nothing before it has lasted a while.
+pub(super) struct Progress {
+    /// `None` where nobody sees it.
+    since: Option<Instant>,
+    shown: Option<Instant>,
+    total: u64,
+}
+
+/// A run that is shorter needs no line.
+const PATIENCE: Duration = Duration::from_millis(700);
+const REFRESH: Duration = Duration::from_millis(100);
+const WIDTH: usize = 30;
+
+impl Progress {
+    /// Of a run of so many rows; `hidden` where the terminal shows something else.
+    pub(super) fn new(total: u64, hidden: bool) -> Self {
+        let seen = !hidden && std::io::stderr().is_terminal();
+        Self {
+            since: seen.then(Instant::now),
+            shown: None,
+            total,
+        }
+    }
+
+    /// So many rows are done.
+    pub(super) fn done(&mut self, rows: u64) {
+        let Some(since) = self.since else { return };
+        let elapsed = since.elapsed();
+        let fresh = self.shown.is_some_and(|shown| shown.elapsed() < REFRESH);
+        if elapsed < PATIENCE || fresh {
+            return;
+        }
+        eprint!("\r{}", line(rows, self.total, elapsed));
+        // A terminal that is gone is no reason to stop.
+        let _ = std::io::stderr().flush();
+        self.shown = Some(Instant::now());
+    }
+
+    /// Clears the line, for others to write.
+    pub(super) fn clear(&mut self) {
+        if self.shown.take().is_some() {
+            eprint!("\r\x1b[K");
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.clear();
+    }
+}
+
+fn line(rows: u64, total: u64, elapsed: Duration) -> String {
+    let part = rows as f64 / total.max(1) as f64;
+    let filled = (part * WIDTH as f64) as usize;
+    let left = elapsed.as_secs_f64() * (1.0 / part.max(1e-9) - 1.0);
+    format!(
+        "[{:<WIDTH$}] {:3.0} %, {left:.0} s left ",
+        "#".repeat(filled.min(WIDTH)),
+        100.0 * part
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_tells_part_and_time() {
+        assert_eq!(
+            line(250, 1000, Duration::from_secs(2)),
+            "[#######                       ]  25 %, 6 s left "
+        );
+        assert_eq!(
+            line(1000, 1000, Duration::from_secs(2)),
+            "[##############################] 100 %, 0 s left "
+        );
+    }
+}

@@ -1,0 +1,268 @@
+//! `biela range`
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Args;
+
+use super::columns::axis;
+use super::conditions::{self, Conditions};
+use super::error::Error;
+use super::input::Input;
+use super::output::write;
+use super::picture::{Format, PLOT_WIDTH};
+use super::run::print;
+use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
+use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample};
+use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit};
+
+/// Find how far a driver can go.
+///
+/// The driver is followed both ways from the start, the others being held, until the mechanism is
+/// back where it was or something is in the way. At a limit the dead point is located to
+/// rounding, and the bodies that line up there are named. On the way the transmission angle,
+/// from 0 deg at a dead point to 90 deg at best, is that of the worst pair of links, and the
+/// reciprocal condition that of `check`.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: biela range tlv.toml --driver side_length --plot range.svg")]
+pub(super) struct Range {
+    /// The mechanism file.
+    file: PathBuf,
+    /// The driver to follow [default: each in turn].
+    #[arg(long, value_name = "DRIVER")]
+    driver: Option<String>,
+    #[command(flatten)]
+    conditions: Conditions,
+    /// Write the poses on the way: the driver's value, transmission angle, reciprocal condition,
+    /// and the position of every body, in SI units; `-` for stdout.
+    #[arg(long, value_name = "CSV")]
+    csv: Option<PathBuf>,
+    /// Plot angles of bodies, transmission angle and reciprocal condition over the driver's value;
+    /// the picture's extension, .svg or .png, decides.
+    #[arg(short, long, value_name = "PICTURE")]
+    plot: Option<PathBuf>,
+}
+
+impl Range {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let format = self.plot.as_deref().map(Format::of).transpose()?;
+        let input = Input::read(&self.file)?;
+        let drivers = self.drivers(&input.mechanism)?;
+        let parameters = self.conditions.parameters(&input.mechanism)?;
+        let driven = Arc::new(self.conditions.driven(&input.mechanism)?);
+        let home_solver = input.assemble()?;
+        let time = input.mechanism.simulation.start;
+        let mut solver = conditions::start(home_solver, &driven, &parameters, time, |_| None)
+            .map_err(|error| input.error(error))?;
+        let mut text = String::new();
+        for &driver in &drivers {
+            let start = solver.pose().drivers[driver.index()];
+            let range = solver.range(driver, &RangeSettings::default());
+            describe(&mut text, &driven, driver, start, &range);
+            if let Some(path) = &self.csv {
+                write(path, table(&driven, driver, &range).as_bytes())?;
+            }
+            if let (Some(path), Some(format)) = (&self.plot, format) {
+                let sheet = Sheet::chart(&chart(&driven, driver, &range));
+                format.write(path, &sheet, format.width(PLOT_WIDTH), false)?;
+            }
+        }
+        // A table on stdout is not mixed with words.
+        if self.csv.is_none_or(|path| path.as_os_str() != "-") {
+            print(&text)?;
+        }
+        Ok(())
+    }
+
+    fn drivers(&self, mechanism: &Mechanism) -> Result<Vec<DriverId>, Error> {
+        if let Some(name) = &self.driver {
+            let driver = mechanism.driver_id(name).ok_or_else(|| {
+                let names = mechanism.drivers.iter().map(|d| d.name.as_str());
+                conditions::unknown("driver", name, names)
+            })?;
+            return Ok(vec![driver]);
+        }
+        let count = mechanism.drivers.len();
+        if count > 1 && (self.csv.is_some() || self.plot.is_some()) {
+            return Err(Error::Usage(
+                "there are several drivers: --csv and --plot need one, named by --driver"
+                    .to_owned(),
+            ));
+        }
+        Ok((0..count).map(DriverId).collect())
+    }
+}
+
+fn describe(
+    text: &mut String,
+    mechanism: &Mechanism,
+    driver: DriverId,
+    start: f64,
+    range: &Motion,
+) {
+    let kind = mechanism.drivers[driver.index()].coordinate.kind;
+    let value = |value: f64| with_unit(kind, value);
+    let name = &mechanism.drivers[driver.index()].name;
+    let gap = if text.is_empty() { "" } else { "\n" };
+    let _ = writeln!(text, "{gap}{name}, from {}", value(start));
+    if let End::Turns(turns) = range.upper {
+        let turns = match turns {
+            1 => "a turn".to_owned(),
+            turns => format!("{turns} turns"),
+        };
+        let _ = writeln!(
+            text,
+            "  turns fully: after {turns} the mechanism is where it was"
+        );
+    } else {
+        for (way, end) in [("down to", &range.lower), ("up to", &range.upper)] {
+            let _ = writeln!(text, "  {way:<8}{}", end_text(end, driver, &value));
+        }
+    }
+    for point in &range.crossings {
+        let _ = writeln!(
+            text,
+            "  passes a change point at {} where {} line up",
+            value(point.value),
+            point.bodies.join(", ")
+        );
+    }
+    let extreme = |of: fn(&Sample) -> Option<f64>| {
+        let known = range
+            .samples
+            .iter()
+            .filter_map(|s| Some((of(s)?, s.driver)));
+        let worst = known.clone().min_by(|a, b| a.0.total_cmp(&b.0));
+        worst.zip(known.max_by(|a, b| a.0.total_cmp(&b.0)))
+    };
+    if let Some(((worst, at), (best, best_at))) = extreme(|sample| sample.transmission) {
+        let _ = writeln!(
+            text,
+            "  transmission angle from {:.2} deg, at {}, to {:.2} deg, at {}",
+            worst.to_degrees(),
+            value(at),
+            best.to_degrees(),
+            value(best_at)
+        );
+    }
+    if let Some(((worst, at), _)) = extreme(|sample| Some(sample.rcond)) {
+        let _ = writeln!(
+            text,
+            "  reciprocal condition {worst:.2e} at worst, at {}",
+            value(at)
+        );
+    }
+}
+
+pub(super) fn end_text(end: &End, driver: DriverId, value: &impl Fn(f64) -> String) -> String {
+    match end {
+        End::Turns(_) => "no limit".to_owned(),
+        End::Singular(point) => format!("{}: {point}", value(point.drivers[driver.index()])),
+        End::Blocked { value: at, reason } => {
+            let reason = match reason {
+                Reason::Value(error) => error.to_string(),
+                Reason::TooLong => "it takes too many sub-steps".to_owned(),
+                _ => "no continuous motion leads on".to_owned(),
+            };
+            format!("{}: {reason}", value(*at))
+        }
+        End::NotFound { value: at } => format!("{} and farther: no limit was found", value(*at)),
+    }
+}
+
+/// Ten decimals: limits are located to rounding.
+pub(super) fn with_unit(kind: CoordinateKind, value: f64) -> String {
+    let (value, unit) = match kind {
+        CoordinateKind::Angle => (value.to_degrees(), "deg"),
+        _ => (value, "m"),
+    };
+    // What is smaller is rounding.
+    let value = if value.abs() < 5e-11 { 0.0 } else { value };
+    let text = format!("{value:.10}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    format!("{text} {unit}")
+}
+
+fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
+    let has_transmission = range.samples.iter().all(|s| s.transmission.is_some());
+    let mut text = format!("{}.position", mechanism.drivers[driver.index()].name);
+    if has_transmission {
+        text.push_str(",transmission_angle");
+    }
+    text.push_str(",rcond");
+    for body in &mechanism.bodies {
+        let name = &body.name;
+        let _ = write!(text, ",{name}.x,{name}.y,{name}.phi");
+    }
+    for sample in &range.samples {
+        let _ = write!(text, "\n{:?}", sample.driver);
+        if let Some(transmission) = sample.transmission.filter(|_| has_transmission) {
+            let _ = write!(text, ",{transmission:?}");
+        }
+        let _ = write!(text, ",{:?}", sample.rcond);
+        for value in &sample.q[..3 * mechanism.bodies.len()] {
+            let _ = write!(text, ",{value:?}");
+        }
+    }
+    text.push('\n');
+    text
+}
+
+fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
+    let kind = mechanism.drivers[driver.index()].coordinate.kind;
+    let unit = match kind {
+        CoordinateKind::Angle => Unit::RADIAN,
+        _ => Unit::METRE,
+    };
+    let shown = |unit: Unit| unit.display.map_or(1.0, |display| display.factor);
+    let line = |name: &str, look: usize, of: &dyn Fn(&Sample) -> f64| Line {
+        name: name.to_owned(),
+        look,
+        values: range.samples.iter().map(of).collect(),
+    };
+    let bodies = mechanism.bodies.iter().enumerate();
+    let mut panels = vec![Panel {
+        y: axis(Unit::RADIAN),
+        lines: bodies
+            .map(|(body, named)| {
+                let name = format!("{}.phi", named.name);
+                line(&name, body, &|s| s.q[3 * body + 2].to_degrees())
+            })
+            .collect(),
+    }];
+    if range.samples.iter().any(|s| s.transmission.is_some()) {
+        panels.push(Panel {
+            y: Axis {
+                label: "transmission angle".to_owned(),
+                unit: "deg".to_owned(),
+            },
+            lines: vec![line("worst pair of links", 0, &|s| {
+                s.transmission.map_or(f64::NAN, f64::to_degrees)
+            })],
+        });
+    }
+    panels.push(Panel {
+        y: Axis {
+            label: "reciprocal condition".to_owned(),
+            unit: "1".to_owned(),
+        },
+        lines: vec![line("rcond", 0, &|s| s.rcond)],
+    });
+    Chart {
+        title: format!(
+            "{}: range of {}",
+            mechanism.name,
+            mechanism.drivers[driver.index()].name
+        ),
+        description: mechanism.description.clone(),
+        x: Axis {
+            label: mechanism.drivers[driver.index()].name.clone(),
+            unit: axis(unit).unit,
+        },
+        at: (range.samples.iter())
+            .map(|sample| sample.driver * shown(unit))
+            .collect(),
+        panels,
+    }
+}

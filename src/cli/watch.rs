@@ -1,0 +1,186 @@
+//! `biela watch`
+
+mod server;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use clap::Args;
+
+use super::conditions::{self, Conditions};
+use super::documentation::show;
+use super::error::Error;
+use super::input::Input;
+use super::render::render;
+use crate::drawing::animation::{escape, fill, player, style_and_script};
+use crate::mechanism::{Mechanism, Source};
+use server::{Answer, Server};
+
+const PAGE: &str = include_str!("watch/page.html");
+
+/// Show a mechanism moving in a browser, anew each time its file is saved.
+///
+/// The page is served to this machine alone. It shows the prescribed motions or, if none moves,
+/// the range of the first driver. While the file has an error, the page says which, with the
+/// last good picture. Ctrl-C ends it.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: biela watch four_bar.toml")]
+pub(super) struct Watch {
+    /// The mechanism file.
+    file: PathBuf,
+    #[command(flatten)]
+    conditions: Conditions,
+    /// The port to listen on [default: a free one].
+    #[arg(
+        long,
+        value_name = "PORT",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    port: u16,
+}
+
+impl Watch {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let server = Server::new(self.port).map_err(Error::Listen)?;
+        println!("{}", server.address());
+        // Whoever started it may wait for the address; a closed pipe is no reason to stop.
+        let _ = std::io::stdout().flush();
+        let mut view = View::new(self);
+        view.look();
+        server.serve(|path| match path {
+            "/" => {
+                view.look();
+                Answer::page(view.page())
+            }
+            "/version" => {
+                view.look();
+                Answer::text(view.version.to_string())
+            }
+            _ => Answer::missing(),
+        })
+    }
+}
+
+/// What there is to see of a file.
+struct View {
+    watch: Watch,
+    /// Counts what was seen.
+    version: u64,
+    /// Of the file and the tables that it names.
+    seen: Vec<Option<(SystemTime, u64)>>,
+    tables: Vec<PathBuf>,
+    name: String,
+    description: String,
+    /// The last good picture.
+    player: String,
+    error: Option<String>,
+}
+
+impl View {
+    fn new(watch: Watch) -> Self {
+        Self {
+            watch,
+            version: 0,
+            seen: Vec::new(),
+            tables: Vec::new(),
+            name: String::new(),
+            description: String::new(),
+            player: String::new(),
+            error: None,
+        }
+    }
+
+    /// Looks at the files again if they have changed.
+    fn look(&mut self) {
+        let seen = self.stamps();
+        if seen == self.seen {
+            return;
+        }
+        self.version += 1;
+        self.error = self.try_look().err();
+        // The file may name other tables now.
+        self.seen = self.stamps();
+    }
+
+    fn stamps(&self) -> Vec<Option<(SystemTime, u64)>> {
+        let stamp = |path: &PathBuf| {
+            let data = path.metadata().ok()?;
+            Some((data.modified().ok()?, data.len()))
+        };
+        std::iter::once(&self.watch.file)
+            .chain(&self.tables)
+            .map(stamp)
+            .collect()
+    }
+
+    /// # Errors
+    ///
+    /// What is wrong, for people.
+    fn try_look(&mut self) -> Result<(), String> {
+        let input = read(&self.watch.file)?;
+        let folder = self.watch.file.parent().unwrap_or(Path::new(""));
+        let tables = input.mechanism.table_files.iter();
+        self.tables = tables.map(|table| folder.join(&table.name)).collect();
+        let text = |error: Error| error.to_string();
+        let conditions = &self.watch.conditions;
+        let parameters = conditions.parameters(&input.mechanism).map_err(text)?;
+        let driven = Arc::new(conditions.driven(&input.mechanism).map_err(text)?);
+        let home = input.assemble().map_err(text)?;
+        let time = input.mechanism.simulation.start;
+        let mut solver = conditions::start(home, &driven, &parameters, time, |_| None)
+            .map_err(|error| error.to_string())?;
+        let shown = show(&mut solver).map_err(|error| error.to_string())?;
+        self.name.clone_from(&input.mechanism.name);
+        self.description.clone_from(&input.mechanism.description);
+        self.player = format!(
+            "<p>{}</p>\n{}",
+            escape(&shown.moving),
+            player(&shown.animation)
+        );
+        Ok(())
+    }
+
+    fn page(&self) -> String {
+        let error = self.error.as_ref().map_or_else(String::new, |error| {
+            format!(
+                "<pre class=\"error\" role=\"alert\">{}</pre>",
+                escape(error)
+            )
+        });
+        let [style, script] = style_and_script();
+        let file = self.watch.file.display().to_string();
+        let name = if self.name.is_empty() {
+            &file
+        } else {
+            &self.name
+        };
+        fill(
+            PAGE,
+            &[
+                ("name", &escape(name)),
+                ("description", &escape(&self.description)),
+                ("error", &error),
+                ("player", &self.player),
+                ("version", &self.version.to_string()),
+                ("style", style),
+                ("script", script),
+            ],
+        )
+    }
+}
+
+/// Reads a file without telling the terminal.
+fn read(path: &Path) -> Result<Input, String> {
+    let source = Source::open(path.display().to_string(), path)
+        .map_err(|error| format!("cannot read `{}`: {error}", path.display()))?;
+    match Mechanism::parse(&source) {
+        Ok((mechanism, _)) => Ok(Input {
+            source,
+            mechanism: Arc::new(mechanism),
+        }),
+        Err(diagnostics) => Err(render(&source, &diagnostics, false)),
+    }
+}

@@ -1,0 +1,258 @@
+"use strict";
+// Plays the film that each element of class `player` has with it.
+(() => {
+  const SVG = "http://www.w3.org/2000/svg";
+  // Length of the longest arrow, and of its tip, in units of the picture.
+  const LONGEST = 90;
+  const TIP = 7;
+  // A driven length shorter than this is drawn this long, to both sides.
+  const SHORT = 18;
+  const INSET = 5.2;
+  const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+  // How long a film lasts at the speeds that are offered, and at the first one, in seconds.
+  const LASTS = [0.5, 120];
+  const LASTS_BEST = 4;
+
+  function play(player) {
+    const find = (selector) => player.querySelector(selector);
+    const film = JSON.parse(find(".film").textContent);
+    const levels = decode(film.data);
+    const last = film.moments - 1;
+    const duration = film.stop - film.start;
+    const scrub = find(".time");
+    const clock = find(".clock");
+    const speed = find(".speed");
+    let playing = false;
+    let moment = 0;
+    let elapsed = 0;
+    let before = null;
+
+    const value = (channel) => {
+      const [low, high] = film.scales[channel];
+      return low + (high - low) * (levels[channel * film.moments + moment] / 65535);
+    };
+    const time = () => (moment === last ? film.stop : film.start + moment * film.step);
+
+    // The channels: riders, lengths, points, readings.
+    const lengthsAt = 3 * film.riders;
+    const pointsAt = lengthsAt + 2 * film.lengths.length;
+    const readingsAt = pointsAt + 4 * film.points.length;
+
+    const riding = [...player.querySelectorAll("[data-rider]")];
+    const names = [...player.querySelectorAll(".names text")];
+    const lengths = [...player.querySelectorAll(".length")].map((group) => [
+      add(group, "path"),
+      add(group, "path", "tips"),
+    ]);
+    const arrows = ["velocity", "acceleration"].map((kind) =>
+      film.points.map(() => add(find(`.arrows.${kind}`), "path")),
+    );
+    const readings = film.readings.map((reading, index) => {
+      const [low, high] = film.scales[readingsAt + index];
+      const most = Math.max(Math.abs(low), Math.abs(high));
+      // What is smaller than this is rounding.
+      const size = most < 1e-9 ? 1 : most;
+      const decimals = Math.min(9, Math.max(0, 3 - Math.floor(Math.log10(size))));
+      const row = document.createElement("div");
+      const name = row.appendChild(document.createElement("dt"));
+      const number = row.appendChild(document.createElement("dd"));
+      name.textContent = reading.name;
+      find(".readings").append(row);
+      return (now) => {
+        // No negative zero.
+        const text = now.toFixed(decimals).replace(/^-(0\.?0*)$/, "$1");
+        number.textContent = `${text} ${reading.unit}`;
+      };
+    });
+    const digits = Math.max(0, Math.min(6, Math.ceil(-Math.log10(film.step || 1)) + 1));
+
+    function place(rider) {
+      const [x, y, degrees] = [0, 1, 2].map((part) => value(3 * rider + part));
+      const angle = (degrees * Math.PI) / 180;
+      return { x, y, degrees, cos: Math.cos(angle), sin: Math.sin(angle) };
+    }
+
+    function draw() {
+      const places = Array.from({ length: film.riders }, (_, rider) => place(rider));
+      const outside = (rider, [x, y]) => {
+        const { x: left, y: top, cos, sin } = places[rider];
+        return [left + cos * x - sin * y, top + sin * x + cos * y];
+      };
+      for (const element of riding) {
+        const { x, y, degrees } = places[element.dataset.rider];
+        element.setAttribute("transform", `translate(${fix(x)} ${fix(y)}) rotate(${fix(degrees)})`);
+      }
+      film.lengths.forEach(({ offset }, index) => {
+        const [line, tips] = lengthPaths(value(lengthsAt + 2 * index), value(lengthsAt + 2 * index + 1), offset);
+        lengths[index][0].setAttribute("d", line);
+        lengths[index][1].setAttribute("d", tips);
+      });
+      film.labels.forEach((label, index) => {
+        let [x, y] = outside(label.rider, label.at);
+        if (label.side) {
+          const { cos, sin } = places[label.rider];
+          const [u, v] = label.side.map((part) => part / 100);
+          const side = [cos * u - sin * v, sin * u + cos * v];
+          // As far out as the side of the name's box that faces its place.
+          const reach = 0.5 * (label.size[0] * Math.abs(side[0]) + label.size[1] * Math.abs(side[1]));
+          x += (label.gap + reach) * side[0];
+          y += (label.gap + reach) * side[1];
+        }
+        names[index].setAttribute("x", fix(x));
+        names[index].setAttribute("y", fix(y + 0.5 * label.size[1]));
+      });
+      film.points.forEach((point, index) => {
+        const from = outside(point.rider, point.at);
+        arrows.forEach((paths, kind) => {
+          const channel = pointsAt + 4 * index + 2 * kind;
+          paths[index].setAttribute("d", arrow(from, value(channel), value(channel + 1)));
+        });
+      });
+      readings.forEach((show, index) => show(value(readingsAt + index)));
+      const now = `${time().toFixed(digits)} s`;
+      clock.textContent = now;
+      scrub.value = moment;
+      scrub.setAttribute("aria-valuetext", now);
+    }
+
+    function go(to) {
+      moment = Math.min(last, Math.max(0, to));
+      elapsed = time() - film.start;
+      draw();
+    }
+
+    function set(now) {
+      playing = now && last > 0;
+      before = null;
+      player.classList.toggle("playing", playing);
+      find(".play").setAttribute("aria-label", playing ? "Pause" : "Play");
+      if (playing) {
+        requestAnimationFrame(tick);
+      }
+    }
+
+    function tick(now) {
+      if (!playing) {
+        return;
+      }
+      if (before !== null) {
+        elapsed = (elapsed + Number(speed.value) * ((now - before) / 1000)) % duration;
+        const next = Math.min(last, Math.floor(elapsed / film.step + 1e-6));
+        if (next !== moment) {
+          moment = next;
+          draw();
+        }
+      }
+      before = now;
+      requestAnimationFrame(tick);
+    }
+
+    function show(box) {
+      player.classList.toggle(`show-${box.value}`, box.checked);
+    }
+
+    const offered = SPEEDS.filter((s) => s === 1 || (duration / s >= LASTS[0] && duration / s <= LASTS[1]));
+    const off = (s) => Math.abs(Math.log(duration / s / LASTS_BEST));
+    const best = offered.reduce((a, b) => (off(b) < off(a) ? b : a));
+    for (const s of offered) {
+      speed.add(new Option(s === 1 ? "real time" : s < 1 ? `1/${Math.round(1 / s)}` : `×${s}`, s, s === best, s === best));
+    }
+    const boxes = [...player.querySelectorAll(".show")];
+    for (const box of boxes) {
+      if (box.value !== "names" && film.points.length === 0) {
+        box.parentElement.remove();
+        continue;
+      }
+      box.addEventListener("change", () => show(box));
+      show(box);
+    }
+    find(".play").addEventListener("click", () => set(!playing));
+    scrub.addEventListener("input", () => {
+      set(false);
+      go(Number(scrub.value));
+    });
+    const step = (by) => () => {
+      set(false);
+      go(moment + by);
+    };
+    const toggle = (name) => () => boxes.find((box) => box.value === name && box.isConnected)?.click();
+    const keys = {
+      " ": () => set(!playing),
+      ArrowLeft: step(-1),
+      ArrowRight: step(1),
+      Home: step(-Infinity),
+      End: step(Infinity),
+      v: toggle("velocity"),
+      a: toggle("acceleration"),
+      n: toggle("names"),
+    };
+    player.classList.toggle("still", last < 1);
+    draw();
+    return { start: () => set(true), key: (key) => keys[key] };
+  }
+
+  // Base64 of numbers of two bytes each, the low one first.
+  function decode(data) {
+    const text = atob(data);
+    const levels = new Uint16Array(text.length / 2);
+    for (let index = 0; index < levels.length; index += 1) {
+      levels[index] = text.charCodeAt(2 * index) + 256 * text.charCodeAt(2 * index + 1);
+    }
+    return levels;
+  }
+
+  function add(parent, name, className = "") {
+    const element = parent.appendChild(document.createElementNS(SVG, name));
+    if (className) {
+      element.setAttribute("class", className);
+    }
+    return element;
+  }
+
+  function fix(number) {
+    return Math.round(number * 100) / 100;
+  }
+
+  // An arrow whose length is a part of the longest.
+  function arrow([x, y], partX, partY) {
+    const [u, v] = [LONGEST * partX, LONGEST * partY];
+    const length = Math.hypot(u, v);
+    if (length < 1) {
+      return "";
+    }
+    const tip = Math.min(TIP, length) / length;
+    const [along, aside] = [1 - tip, 0.45 * tip];
+    const to = (a, b) => `${fix(x + a * u - b * v)} ${fix(y + a * v + b * u)}`;
+    return `M${to(0, 0)}L${to(1, 0)}M${to(along, aside)}L${to(1, 0)}L${to(along, -aside)}`;
+  }
+
+  // A dimension line along x from 0 to a length, beside what it measures, and its two tips.
+  function lengthPaths(length, first, offset) {
+    const forth = length < 0 ? -1 : 1;
+    const short = Math.abs(length) < SHORT;
+    const inset = offset === 0 ? INSET : 0;
+    const start = (short ? length - forth * SHORT : 0) + forth * inset;
+    const end = length + forth * ((short ? SHORT : 0) - inset);
+    let line = `M${fix(start + 6 * forth)} ${offset}L${fix(end - 6 * forth)} ${offset}`;
+    if (offset !== 0 && !short) {
+      const out = offset + 4 * Math.sign(offset);
+      line += `M0 ${fix(first)}L0 ${out}M${fix(length)} 0L${fix(length)} ${out}`;
+    }
+    const tip = (at, sign) => `M${fix(at)} ${offset}l${-8 * sign} 2.9v-5.8z`;
+    return [line, tip(end, forth) + tip(start, -forth)];
+  }
+
+  const players = [...document.querySelectorAll(".player")].map(play);
+  document.addEventListener("keydown", (event) => {
+    const { target, key } = event;
+    const own = target.matches("select") || (target.matches("button, input[type=checkbox]") && key === " ");
+    const act = players[0]?.key(key);
+    if (act && !own && !event.ctrlKey && !event.metaKey && !event.altKey) {
+      event.preventDefault();
+      act();
+    }
+  });
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    players.forEach((player) => player.start());
+  }
+})();

@@ -1,0 +1,367 @@
+//! Line charts over a common x-axis: one panel for each kind of quantity, one above the other.
+
+use super::lettering;
+use super::outline::{Outline, Point};
+use super::palette::Colour;
+use super::sheet::{CAPITALS, Layer, Mark, Sheet, Stroke, Text, WIDTH};
+use super::ticks::Ticks;
+
+/// What there is to plot.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// What the chart is about, in a word.
+    pub title: String,
+    /// What it shows, in one line; may be empty.
+    pub description: String,
+    /// What the x-axis has.
+    pub x: Axis,
+    /// Where along the x-axis the points of all lines are.
+    pub at: Vec<f64>,
+    /// The panels from top to bottom.
+    pub panels: Vec<Panel>,
+}
+
+/// What is measured along an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The quantity, in a word or two.
+    pub label: String,
+    /// The unit of the values.
+    pub unit: String,
+}
+
+/// The lines that have a y-axis in common.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// What the y-axis has.
+    pub y: Axis,
+    /// The lines.
+    pub lines: Vec<Line>,
+}
+
+/// A line of a panel.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Its name in the legend.
+    pub name: String,
+    /// Lines of the same number look alike in all panels.
+    pub look: usize,
+    /// One value for each point of the x-axis; where one is not finite the line has a gap.
+    pub values: Vec<f64>,
+}
+
+/// What stays free at the edges.
+const MARGIN: f64 = 14.0;
+/// From one line of text to the next.
+const LINE_HEIGHT: f64 = 17.0;
+/// Height of a panel, if it is the only one, if there are two, if there are more.
+const HEIGHTS: [f64; 3] = [260.0, 180.0, 128.0];
+/// Length of the piece of line beside a name in the legend.
+const SAMPLE: f64 = 20.0;
+/// From one name in the legend to the next.
+const APART: f64 = 16.0;
+/// A line of more points than this is thinned to what can be seen.
+const THINNED: usize = 2000;
+/// Steps of the sheet's unit within which lines are thinned.
+const STEPS: f64 = 2.0;
+
+const CURVE: f64 = 1.5;
+const FRAME: f64 = 0.9;
+const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[2.0, 2.5], &[8.0, 2.5, 2.0, 2.5]];
+/// Colours that tell lines apart; then lines are dashed.
+const COLOURS: usize = 7;
+
+impl Sheet {
+    /// Draws a chart.
+    #[must_use]
+    pub fn chart(chart: &Chart) -> Self {
+        let scales: Vec<Scale> = chart.panels.iter().map(Scale::new).collect();
+        let widest = scales.iter().map(Scale::width).fold(0.0, f64::max);
+        let mut plot = Plot {
+            chart,
+            left: MARGIN + widest + 6.0,
+            x: x_range(&chart.at),
+            marks: Vec::new(),
+            texts: Vec::new(),
+        };
+        plot.text(
+            &chart.title,
+            Point::new(MARGIN, MARGIN + CAPITALS),
+            Align::Start,
+        );
+        let height = HEIGHTS[chart.panels.len().clamp(1, HEIGHTS.len()) - 1];
+        let mut y = MARGIN + CAPITALS;
+        for (panel, scale) in chart.panels.iter().zip(&scales) {
+            y = plot.legend(panel, scale, y + 15.0);
+            plot.panel(panel, scale, [y, y + height]);
+            y += height;
+        }
+        plot.x_axis(y);
+        Sheet {
+            title: chart.title.clone(),
+            description: chart.description.clone(),
+            height: (y + 2.2 * LINE_HEIGHT + MARGIN).ceil(),
+            marks: plot.marks,
+            texts: plot.texts,
+        }
+    }
+}
+
+/// The range of what is plotted.
+fn x_range(at: &[f64]) -> [f64; 2] {
+    let [low, high] = extremes(at.iter());
+    if high > low {
+        [low, high]
+    } else {
+        [low - 0.5, low + 0.5]
+    }
+}
+
+fn extremes<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
+    let finite = values.filter(|value| value.is_finite());
+    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+        [low.min(value), high.max(value)]
+    });
+    if low <= high { [low, high] } else { [0.0; 2] }
+}
+
+/// The y-axis of a panel: its ticks are values over a power of ten that belongs to the unit.
+struct Scale {
+    ticks: Ticks,
+    power: i32,
+    header: String,
+}
+
+impl Scale {
+    fn new(panel: &Panel) -> Self {
+        let values = panel.lines.iter().flat_map(|line| &line.values);
+        let range = extremes(values);
+        let size = range[0].abs().max(range[1].abs());
+        // Numbers of one to four digits before the point, or a few after it.
+        let power = if size >= 1e4 || (1e-9..1e-1).contains(&size) {
+            3 * ((size.log10() + 1e-9) / 3.0).floor() as i32
+        } else {
+            0
+        };
+        let Axis { label, unit } = &panel.y;
+        let unit = match power {
+            0 => unit.clone(),
+            -3 if unit.starts_with('m') => format!("m{unit}"),
+            3 => format!("1000 {unit}"),
+            _ => format!("1e{power} {unit}"),
+        };
+        Self {
+            ticks: Ticks::around(
+                range.map(|value| value * 10_f64.powi(-power)),
+                4.0,
+                power == 0 && unit.starts_with("deg"),
+            ),
+            power,
+            header: format!("{label} [{unit}]"),
+        }
+    }
+
+    /// The width of its widest number.
+    fn width(&self) -> f64 {
+        let texts = self
+            .ticks
+            .values
+            .iter()
+            .map(|value| self.ticks.text(*value));
+        texts.map(|text| width(&text)).fold(0.0, f64::max)
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Align {
+    Start,
+    Middle,
+    End,
+}
+
+/// A chart while it is drawn.
+struct Plot<'a> {
+    chart: &'a Chart,
+    /// Where the panels begin.
+    left: f64,
+    x: [f64; 2],
+    marks: Vec<Mark>,
+    texts: Vec<Text>,
+}
+
+impl Plot<'_> {
+    fn right(&self) -> f64 {
+        WIDTH - MARGIN
+    }
+
+    fn on_x(&self, value: f64) -> f64 {
+        let [low, high] = self.x;
+        self.left + (value - low) / (high - low) * (self.right() - self.left)
+    }
+
+    fn text(&mut self, content: &str, at: Point, align: Align) {
+        let part = match align {
+            Align::Start => 0.0,
+            Align::Middle => 0.5,
+            Align::End => 1.0,
+        };
+        self.texts.push(Text {
+            content: content.to_owned(),
+            start: at - Point::new(part * width(content), 0.0),
+            colour: Colour::INK,
+        });
+    }
+
+    fn line(&mut self, layer: Layer, outline: Outline, stroke: Stroke) {
+        self.marks.push(Mark {
+            layer,
+            outline,
+            fill: None,
+            stroke: Some(stroke),
+        });
+    }
+
+    /// What the panel has and its lines' names, wrapped; returns where the panel begins.
+    fn legend(&mut self, panel: &Panel, scale: &Scale, top: f64) -> f64 {
+        let mut at = Point::new(MARGIN, top + CAPITALS);
+        self.text(&scale.header, at, Align::Start);
+        at.x += width(&scale.header) + APART;
+        for line in &panel.lines {
+            let needed = SAMPLE + 5.0 + width(&line.name);
+            if at.x + needed > self.right() {
+                at = Point::new(self.left, at.y + LINE_HEIGHT);
+            }
+            let middle = at - Point::new(0.0, 0.5 * CAPITALS);
+            let sample = Outline::line(&[middle, middle + Point::new(SAMPLE, 0.0)]);
+            self.line(Layer::Scale, sample, look(line.look));
+            self.text(&line.name, at + Point::new(SAMPLE + 5.0, 0.0), Align::Start);
+            at.x += needed + APART;
+        }
+        at.y + 12.0
+    }
+
+    fn panel(&mut self, panel: &Panel, scale: &Scale, [top, bottom]: [f64; 2]) {
+        let [low, high] = scale.ticks.range();
+        let on_y = |value: f64| bottom - (value - low) / (high - low) * (bottom - top);
+        let (left, right) = (self.left, self.right());
+        let mut grid = Outline::default();
+        for &value in &scale.ticks.values {
+            let y = on_y(value);
+            grid.add_line(&[Point::new(left, y), Point::new(right, y)]);
+            let at = Point::new(left - 6.0, y + 0.5 * CAPITALS);
+            self.text(&scale.ticks.text(value), at, Align::End);
+        }
+        for value in self.x_ticks().values {
+            let x = self.on_x(value);
+            grid.add_line(&[Point::new(x, top), Point::new(x, bottom)]);
+        }
+        self.line(Layer::Grid, grid, solid(Colour::GROUND.tint(0.25), FRAME));
+        if low < 0.0 && high > 0.0 {
+            let zero = [Point::new(left, on_y(0.0)), Point::new(right, on_y(0.0))];
+            let stroke = solid(Colour::GROUND.tint(0.7), FRAME);
+            self.line(Layer::Grid, Outline::line(&zero), stroke);
+        }
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+        let frame = Outline::polygon(&corners.map(|(x, y)| Point::new(x, y)));
+        let factor = 10_f64.powi(-scale.power);
+        for line in &panel.lines {
+            let points = self.chart.at.iter().zip(&line.values);
+            let points: Vec<Point> = points
+                .map(|(x, y)| Point::new(self.on_x(*x), on_y(y * factor)))
+                .collect();
+            let mut outline = Outline::default();
+            for piece in points.split(|p| !(p.x.is_finite() && p.y.is_finite())) {
+                outline.add_line(&thinned(piece));
+            }
+            self.line(Layer::Curve, outline, look(line.look));
+        }
+        self.line(Layer::Scale, frame, solid(Colour::GROUND, FRAME));
+    }
+
+    fn x_ticks(&self) -> Ticks {
+        Ticks::within(self.x, 10.0, self.chart.x.unit.starts_with("deg"))
+    }
+
+    fn x_axis(&mut self, y: f64) {
+        let ticks = self.x_ticks();
+        for &value in &ticks.values {
+            let text = ticks.text(value);
+            // The outermost numbers stay on the sheet.
+            let half = 0.5 * width(&text);
+            let x = self.on_x(value).min(WIDTH - 2.0 - half);
+            self.text(&text, Point::new(x, y + LINE_HEIGHT), Align::Middle);
+        }
+        let Axis { label, unit } = &self.chart.x;
+        let middle = 0.5 * (self.left + self.right());
+        let at = Point::new(middle, y + 2.2 * LINE_HEIGHT);
+        self.text(&format!("{label} [{unit}]"), at, Align::Middle);
+    }
+}
+
+fn width(text: &str) -> f64 {
+    lettering::width(text, CAPITALS)
+}
+
+fn solid(colour: Colour, width: f64) -> Stroke {
+    Stroke {
+        colour,
+        width,
+        dashes: &[],
+    }
+}
+
+fn look(number: usize) -> Stroke {
+    Stroke {
+        colour: Colour::of_body(number).shade(0.9),
+        width: CURVE,
+        dashes: DASHES[number / COLOURS % DASHES.len()],
+    }
+}
+
+/// Of many points the first, lowest, highest and last within each small step of x: the picture
+/// stays the same.
+fn thinned(points: &[Point]) -> Vec<Point> {
+    if points.len() <= THINNED {
+        return points.to_vec();
+    }
+    let step = |p: &Point| (p.x * STEPS).floor();
+    let mut kept = Vec::new();
+    for bucket in points.chunk_by(|a, b| step(a) >= step(b)) {
+        let by_y = |a: &&Point, b: &&Point| a.y.total_cmp(&b.y);
+        let mut of_bucket: Vec<&Point> = [
+            bucket.first(),
+            bucket.iter().min_by(by_y),
+            bucket.iter().max_by(by_y),
+            bucket.last(),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        of_bucket.sort_by(|a, b| a.x.total_cmp(&b.x));
+        of_bucket.dedup();
+        kept.extend(of_bucket);
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_what_can_be_seen() {
+        let wave = |k: usize| {
+            let x = k as f64 / 100.0;
+            Point::new(x, 50.0 + 40.0 * (x / 3.0).sin())
+        };
+        let mut points: Vec<Point> = (0..60_000).map(wave).collect();
+        points[31_234].y = 95.0;
+        let kept = thinned(&points);
+        // At most four points for each half unit of 600.
+        assert!(kept.len() <= 4 * 1200, "{}", kept.len());
+        assert!(kept.contains(&points[31_234]));
+        assert!(kept.is_sorted_by(|a, b| a.x <= b.x));
+        assert_eq!([kept.first(), kept.last()], [points.first(), points.last()]);
+        assert_eq!(thinned(&points[..THINNED]), points[..THINNED]);
+    }
+}

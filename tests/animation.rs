@@ -1,0 +1,271 @@
+//! Pages on which mechanisms move: what they hold is where the mechanism is.
+
+mod common;
+
+use std::sync::Arc;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use biela::drawing::Scene;
+use biela::drawing::animation::{Animation, Clock, Moment, Reading, page};
+use biela::kinematics::{Curve, Rates};
+use biela::mechanism::{Jet, Mechanism};
+use common::{assembled, parse, shipped, stems, straight_to};
+use serde_json::Value;
+
+/// A page's film: the numbers behind its picture.
+struct Film {
+    json: Value,
+    levels: Vec<u16>,
+}
+
+impl Film {
+    fn of(page: &str) -> Self {
+        let start = page.find("class=\"film\">").expect("there is a film") + 13;
+        let text = &page[start..];
+        let text = &text[..text.find("</script>").expect("it ends")];
+        let json: Value = serde_json::from_str(text).expect("it is JSON");
+        let data = json["data"].as_str().expect("it has data");
+        let bytes = STANDARD.decode(data).expect("it is base64");
+        let words = bytes.chunks_exact(2);
+        Self {
+            levels: words.map(|w| u16::from_le_bytes([w[0], w[1]])).collect(),
+            json,
+        }
+    }
+
+    fn count(&self, key: &str) -> usize {
+        self.json[key].as_array().map_or_else(
+            || usize::try_from(self.json[key].as_u64().expect("a number")).expect("it is small"),
+            Vec::len,
+        )
+    }
+
+    /// A value with half the distance of two that are told apart.
+    fn value(&self, channel: usize, moment: usize) -> (f64, f64) {
+        let end = |k: usize| self.json["scales"][channel][k].as_f64().expect("a number");
+        let level = self.levels[channel * self.count("moments") + moment];
+        let step = (end(1) - end(0)) / 65535.0;
+        // The ends have seven digits.
+        let rounding = 1e-6 * end(0).abs().max(end(1).abs());
+        (end(0) + step * f64::from(level), 0.5 * step + rounding)
+    }
+}
+
+/// Poses with their rates, while the first driver swings about its start value if it is an input.
+fn swing(mechanism: &Arc<Mechanism>, count: usize) -> Vec<(Vec<f64>, [Vec<f64>; 2])> {
+    let (mut solver, mut path) = assembled(mechanism);
+    let home = solver.pose().drivers.clone();
+    let mut rates = Rates::new(solver.pose().q.len());
+    let size = 0.05 * home[0].abs().max(0.2);
+    let swing = |k: usize| {
+        let t = 0.1 * k as f64;
+        Jet {
+            value: home[0] + size * t.sin(),
+            first: size * t.cos(),
+            second: -size * t.sin(),
+        }
+    };
+    let moved = matches!(path.curves[0], Curve::Input { .. });
+    let step = |k| {
+        if moved {
+            straight_to(&solver, &mut path, swing(k).value);
+            solver.follow(&path).expect("nothing is in the way");
+        }
+        let driver = if moved { swing(k) } else { Jet::constant(0.0) };
+        let of = |id: biela::mechanism::DriverId| {
+            let still = Jet::constant(home[id.index()]);
+            if id.index() == 0 { driver } else { still }
+        };
+        solver.solve_rates(of, &mut rates).expect("it is regular");
+        let rates = [rates.velocity().to_vec(), rates.acceleration().to_vec()];
+        (solver.pose().q.clone(), rates)
+    };
+    (0..count).map(step).collect()
+}
+
+/// An animation of a mechanism that swings.
+fn animation(mechanism: &Arc<Mechanism>, moments: usize) -> Animation {
+    let motion = swing(mechanism, moments);
+    let poses: Vec<Vec<f64>> = motion.iter().map(|(q, _)| q.clone()).collect();
+    let parameters = mechanism.default_parameters();
+    Animation {
+        scene: Scene::along(mechanism, &parameters, &poses[0], &poses, true),
+        clock: Clock {
+            start: 0.0,
+            step: 0.01,
+            stop: 0.01 * (moments - 1) as f64,
+        },
+        readings: vec![Reading {
+            name: "moment".to_owned(),
+            unit: "1".to_owned(),
+        }],
+        moments: motion
+            .into_iter()
+            .enumerate()
+            .map(|(k, (q, rates))| Moment {
+                q,
+                rates,
+                readings: vec![k as f64],
+            })
+            .collect(),
+    }
+}
+
+#[test]
+fn what_moves_is_where_the_mechanism_is() {
+    for name in [
+        "four_bar",
+        "slider_crank",
+        "platform_3rpr",
+        "planetary_gear",
+        "cam_roller",
+    ] {
+        let mechanism = shipped(name);
+        let animation = animation(&mechanism, 40);
+        let page = page(&animation);
+        let film = Film::of(&page);
+        let home = &animation.moments[0].q;
+        // Each body has a frame among the riders that goes along with it: its place is the
+        // body's origin in one scale, its angle the body's.
+        let riders = film.count("riders");
+        let mut found = 0;
+        for body in 0..mechanism.bodies.len() {
+            let follows = |rider: usize, scale: f64| {
+                animation.moments.iter().enumerate().all(|(k, moment)| {
+                    let near = |part: usize, expected: f64| {
+                        let (value, tolerance) = film.value(3 * rider + part, k);
+                        // The bar, 44 to 110 units long, is drawn to hundredths.
+                        (value - expected).abs() <= tolerance + 0.01 / 44.0 * value.abs()
+                    };
+                    let [x, y, phi] = [0, 1, 2].map(|c| moment.q[3 * body + c]);
+                    let degrees = (180.0 - phi.to_degrees()).rem_euclid(360.0) - 180.0;
+                    let (angle, tolerance) = film.value(3 * rider + 2, k);
+                    let off = (angle - degrees + 180.0).rem_euclid(360.0) - 180.0;
+                    near(0, scale * x) && near(1, -scale * y) && off.abs() <= tolerance + 1e-9
+                })
+            };
+            let scale = scale_of(&page);
+            let rider = (0..riders).find(|rider| follows(*rider, scale));
+            assert!(
+                rider.is_some(),
+                "{name}: {} (scale {scale}, {home:?})",
+                mechanism.bodies[body].name
+            );
+            found += 1;
+        }
+        assert_eq!(found, mechanism.bodies.len());
+        let last = animation.moments.len() - 1;
+        let reading = film.levels.len() / film.count("moments") - 1;
+        let (value, tolerance) = film.value(reading, last);
+        assert!((value - last as f64).abs() <= tolerance);
+    }
+}
+
+/// Units of the sheet for a metre, from the bar that shows the scale.
+fn scale_of(page: &str) -> f64 {
+    let text = page
+        .split("class=\"scale-text\"")
+        .nth(1)
+        .expect("there is a scale");
+    let text = text.split('>').nth(2).expect("it has a text");
+    let text = &text[..text.find('<').expect("it ends")];
+    let (number, unit) = text.split_once(' ').expect("number and unit");
+    let length: f64 = number.parse().expect("a number");
+    let length = if unit == "mm" {
+        length / 1000.0
+    } else {
+        length
+    };
+    let bar = page
+        .split("<g class=\"scale\"")
+        .nth(1)
+        .expect("there is a bar");
+    let data = bar.split("d=\"").nth(1).expect("it is a path");
+    let numbers: Vec<f64> = data[..data.find('"').expect("it ends")]
+        .split(|c: char| c.is_ascii_alphabetic() || c == ' ')
+        .filter_map(|number| number.parse().ok())
+        .collect();
+    let x = || numbers.iter().step_by(2).copied();
+    (x().fold(f64::MIN, f64::max) - x().fold(f64::MAX, f64::min)) / length
+}
+
+#[test]
+fn arrows_are_velocities_and_accelerations() {
+    // The rod's tip P at distance 0.5 m: v = 0.5 u̇ across the rod, and the accelerations.
+    let mechanism = shipped("pendulum");
+    let animation = animation(&mechanism, 40);
+    let film = Film::of(&page(&animation));
+    let points = film.json["points"].as_array().expect("there are points");
+    let at = 3 * film.count("riders") + 2 * film.count("lengths");
+    assert!(!points.is_empty());
+    let ratio = |point: usize, moment: usize| {
+        let arrow = |kind: usize| {
+            let [x, y] = [0, 1].map(|c| film.value(at + 4 * point + 2 * kind + c, moment).0);
+            (x, -y)
+        };
+        (arrow(0), arrow(1))
+    };
+    // The greatest is one, the others are in proportion.
+    let speed = |moment: &Moment| moment.rates[0][2].abs();
+    let acceleration = |moment: &Moment| {
+        let (omega, alpha) = (moment.rates[0][2], moment.rates[1][2]);
+        (alpha * alpha + omega.powi(4)).sqrt()
+    };
+    let most = |of: &dyn Fn(&Moment) -> f64| animation.moments.iter().map(of).fold(0.0, f64::max);
+    let (fastest, strongest) = (most(&speed), most(&acceleration));
+    for (k, moment) in animation.moments.iter().enumerate() {
+        let ((vx, vy), (ax, ay)) = ratio(0, k);
+        // Two components, each to within a 65,535th of the range.
+        assert!((vx.hypot(vy) - speed(moment) / fastest).abs() < 1e-4);
+        assert!((ax.hypot(ay) - acceleration(moment) / strongest).abs() < 1e-4);
+        // Across the rod, which points along phi.
+        let phi = moment.q[2];
+        assert!((vx * phi.cos() + vy * phi.sin()).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn pages_hold_together_whatever_the_names_are() {
+    let text = std::fs::read_to_string(common::folder("mechanisms/pendulum.toml")).unwrap();
+    let description = text
+        .lines()
+        .find(|line| line.starts_with("description"))
+        .unwrap();
+    let hostile = "description = \"</script><b>&amp; {{film}} \\\" '\"";
+    let mechanism = parse(&text.replace(description, hostile));
+    let mut animation = animation(&mechanism, 3);
+    animation.readings[0].name = "</script><script>alert(1)".to_owned();
+    let page = page(&animation);
+    assert!(page.contains("&lt;/script&gt;&lt;b&gt;&amp;amp; {{film}}"));
+    // The film and the player, nothing else.
+    assert_eq!(page.matches("</script>").count(), 2);
+    assert_eq!(
+        Film::of(&page).json["readings"][0]["name"],
+        "</script><script>alert(1)"
+    );
+    // Nothing comes from elsewhere: the only address is the name of SVG.
+    let addresses: Vec<&str> = page.split("http").skip(1).collect();
+    assert_eq!(addresses.len(), 1);
+    assert!(addresses[0].starts_with("://www.w3.org/2000/svg\""));
+}
+
+#[test]
+fn long_films_stay_small_and_every_mechanism_has_one() {
+    let mechanism = shipped("four_bar");
+    let long = page(&animation(&mechanism, 10_000));
+    assert!(long.len() < 1_000_000, "{}", long.len());
+    for name in stems("mechanisms", "toml") {
+        let mechanism = shipped(&name);
+        let animation = animation(&mechanism, 3);
+        let page = page(&animation);
+        for body in &mechanism.bodies {
+            assert!(
+                page.contains(&format!(">{}</text>", body.name)),
+                "{name}: {}",
+                body.name
+            );
+        }
+        assert_eq!(page, biela::drawing::animation::page(&animation));
+    }
+}

@@ -1,0 +1,111 @@
+"""The JSON Schema that `biela schema` prints, as an independent validator understands it."""
+
+import json
+import subprocess
+
+import pytest
+from harness import ROOT, program
+from jsonschema import Draft202012Validator
+
+tomllib = pytest.importorskip("tomllib", reason="Python 3.10 has no TOML reader")
+
+# The files of tests/diagnostics that are wrong in one place, or in a choice, a type or a key.
+# What is wrong in the others only the reader knows: names that stand for nothing, values.
+WRONG = {
+    "bad-profile",
+    "bad-table",
+    "driver-source",
+    "duplicate-output",
+    "illegal-name",
+    "illegal-name_keyword",
+    "missing-key",
+    "no-bodies",
+    "reserved-name",
+    "too-many-problems",
+    "unknown-coordinate",
+    "unknown-format",
+    "unknown-joint-type",
+    "unknown-key",
+    "unknown-marker",
+    "unknown-unit",
+    "wheel-sizes",
+    "wrong-type",
+}
+
+
+@pytest.fixture(scope="module")
+def validator():
+    printed = subprocess.run([program(), "schema"], check=True, capture_output=True, text=True)
+    schema = json.loads(printed.stdout)
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+def load(path):
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def test_shipped_mechanisms_are_right(validator):
+    paths = sorted((ROOT / "mechanisms").glob("*.toml"))
+    assert len(paths) >= 30
+    for path in paths:
+        assert [error.message for error in validator.iter_errors(load(path))] == [], path
+
+
+def test_broken_mechanisms_are_wrong(validator):
+    refused = set()
+    for path in sorted((ROOT / "tests" / "diagnostics").glob("*.toml")):
+        try:
+            document = load(path)
+        except tomllib.TOMLDecodeError:
+            continue
+        if not validator.is_valid(document):
+            refused.add(path.stem)
+    assert refused == WRONG
+
+
+def four_bar():
+    return load(ROOT / "mechanisms" / "four_bar.toml")
+
+
+@pytest.mark.parametrize(
+    ("where", "value", "message"),
+    [
+        (["joints", "A", "type"], "revolut", "'revolut' is not one of"),
+        (["joints", "A", "length"], 0.1, "'length' was unexpected"),
+        (["joints", "A", "markers"], ["crank.A"], "is too short"),
+        (["joints", "A", "markers"], ["crank", "coupler.A"], "does not match"),
+        (["drivers", "crank_angle", "motion"], "t", "is valid under each of"),
+        (["drivers", "crank_angle", "coordinate"], "phi", "is not one of"),
+        (["bodies", "crank", "estimate"], [0, 0], "is too short"),
+        (["bodies", "deg"], {}, "should not be valid under"),
+        (["bodies", "crank", "markers", "omega"], [0, 0], "should not be valid under"),
+        (["parameters", "base"], True, "is not valid under any"),
+        (["outputs", "markers"], "coupler.P", "is not of type 'array'"),
+        (["colour"], "red", "'colour' was unexpected"),
+    ],
+)
+def test_each_fault_is_named(validator, where, value, message):
+    document = four_bar()
+    *way, last = where
+    place = document
+    for key in way:
+        place = place[key]
+    place[last] = value
+    messages = [error.message for error in validator.iter_errors(document)]
+    assert any(message in found for found in messages), messages
+
+
+def test_a_link_needs_its_length_and_gears_one_kind_of_size(validator):
+    for joint, right in [
+        ({"type": "link", "length": "2*base"}, True),
+        ({"type": "link"}, False),
+        ({"type": "gear", "teeth": [20, 40]}, True),
+        ({"type": "gear", "teeth": [20, 40], "radii": [1, 2]}, False),
+        ({"type": "gear"}, False),
+        ({"type": "cam", "follower": "flat", "profile": "0.04"}, True),
+        ({"type": "cam", "follower": "round", "profile": "0.04"}, False),
+    ]:
+        document = four_bar()
+        document["joints"]["more"] = {"markers": ["crank.A", "coupler.A"], **joint}
+        assert validator.is_valid(document) == right, joint

@@ -1,0 +1,126 @@
+//! `biela watch`: a page that follows its file.
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+
+/// A running command, which ends with the test.
+struct Watched {
+    child: Child,
+    /// `127.0.0.1:port`.
+    address: String,
+    folder: tempfile::TempDir,
+}
+
+impl Drop for Watched {
+    fn drop(&mut self) {
+        // It may have ended by itself, which the test has told.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Watched {
+    fn start(text: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("watched.toml");
+        std::fs::write(&file, text).unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_biela"))
+            .arg("watch")
+            .arg(file)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        let mut output = BufReader::new(child.stdout.take().unwrap());
+        output.read_line(&mut line).unwrap();
+        let address = line.trim().strip_prefix("http://").unwrap();
+        Self {
+            child,
+            address: address.trim_end_matches('/').to_owned(),
+            folder,
+        }
+    }
+
+    fn file(&self) -> PathBuf {
+        self.folder.path().join("watched.toml")
+    }
+
+    /// Status and body that answer a request.
+    fn ask(&self, request: &str) -> (String, String) {
+        let mut stream = TcpStream::connect(&self.address).unwrap();
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        let (head, body) = answer.split_once("\r\n\r\n").unwrap();
+        let status = head.lines().next().unwrap();
+        (status.to_owned(), body.to_owned())
+    }
+
+    fn get(&self, path: &str) -> String {
+        let host = &self.address;
+        let (status, body) = self.ask(&format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n"));
+        assert_eq!(status, "HTTP/1.1 200 OK");
+        body
+    }
+}
+
+#[test]
+fn the_page_follows_the_file() {
+    let text = std::fs::read_to_string("mechanisms/pendulum.toml").unwrap();
+    let watched = Watched::start(&text);
+    assert!(watched.address.starts_with("127.0.0.1:"));
+    let page = watched.get("/");
+    assert!(page.contains("<h1>pendulum</h1>") && page.contains("class=\"film\""));
+    assert!(!page.contains("class=\"error\""));
+    let version = watched.get("/version");
+    assert_eq!(watched.get("/version"), version);
+    assert!(page.contains(&format!("!== \"{version}\"")));
+
+    // A broken file shows its error with the last good picture.
+    std::fs::write(watched.file(), text.replace("ground.O\"", "ground.Oo\"")).unwrap();
+    assert_ne!(watched.get("/version"), version);
+    let broken = watched.get("/");
+    assert!(broken.contains("no marker `Oo` on `ground`"), "{broken}");
+    assert!(broken.contains("class=\"film\"") && broken.contains("<h1>pendulum</h1>"));
+    std::fs::remove_file(watched.file()).unwrap();
+    assert!(watched.get("/").contains("cannot read"));
+
+    let renamed = text.replace("name = \"pendulum\"", "name = \"another\"");
+    std::fs::write(watched.file(), renamed).unwrap();
+    let mended = watched.get("/");
+    assert!(mended.contains("<h1>another</h1>") && !mended.contains("class=\"error\""));
+}
+
+#[test]
+fn only_this_machine_is_answered_and_only_what_there_is() {
+    // A file that is broken from the start has no picture.
+    let watched = Watched::start("format = 1");
+    let page = watched.get("/");
+    assert!(page.contains("class=\"error\"") && !page.contains("class=\"film\""));
+    let host = watched.address.clone();
+    for (request, expected) in [
+        (
+            format!("GET /../Cargo.toml HTTP/1.1\r\nHost: {host}\r\n\r\n"),
+            "404",
+        ),
+        (format!("POST / HTTP/1.1\r\nHost: {host}\r\n\r\n"), "405"),
+        (
+            "GET / HTTP/1.1\r\nHost: elsewhere.example\r\n\r\n".to_owned(),
+            "403",
+        ),
+        ("GET / HTTP/1.1\r\n\r\n".to_owned(), "403"),
+        ("\r\n\r\n".to_owned(), "403"),
+    ] {
+        let (status, _) = watched.ask(&request);
+        assert!(
+            status.starts_with(&format!("HTTP/1.1 {expected} ")),
+            "{request}: {status}"
+        );
+    }
+    // It goes on after that.
+    assert!(watched.get("/version").parse::<u64>().is_ok());
+}
