@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmuloader.fmi2 import Fmi2Slave, Fmi2Type
 from harness import SHIPPED
 
 STEP = 0.01
@@ -28,7 +27,11 @@ def expected(slave):
 
 
 # ---------------------------------------------------------------------------------------------
-# fmuloader: a thin layer of ctypes, which binds every function of the standard
+# fmuloader: a thin layer of ctypes, which binds every function of the standard; needs Python 3.11
+
+
+def fmuloader():
+    return pytest.importorskip("fmuloader.fmi2")
 
 
 @pytest.fixture
@@ -38,12 +41,12 @@ def loaded(fmu):
 
     def get(name, kind):
         description = fmu(name).description
-        instance = Fmi2Slave(fmu(name).path, model_identifier=description.modelIdentifier)
+        instance = fmuloader().Fmi2Slave(fmu(name).path, model_identifier=description.modelIdentifier)
         open_ones.append(instance)
         # The FMU declares that it does without the host's memory functions.
         instance.instantiate(
             "loaded",
-            kind,
+            fmuloader().Fmi2Type[kind],
             guid=description.guid,
             cannot_use_memory_management_functions=True,
         )
@@ -66,7 +69,7 @@ def outputs(fmu, instance) -> dict[str, float]:
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_fmuloader_steps_to_the_same_bits(fmu, loaded, expected, name):
-    instance = loaded(name, Fmi2Type.CO_SIMULATION)
+    instance = loaded(name, "CO_SIMULATION")
     time = 0.0
     for _ in range(STEPS):
         instance.do_step(time, STEP)
@@ -84,7 +87,7 @@ def test_fmuloader_steps_to_the_same_bits(fmu, loaded, expected, name):
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_fmuloader_exchanges_the_model(fmu, loaded, expected, name):
-    instance = loaded(name, Fmi2Type.MODEL_EXCHANGE)
+    instance = loaded(name, "MODEL_EXCHANGE")
     assert not instance.new_discrete_states().newDiscreteStatesNeeded
     instance.enter_continuous_time_mode()
     assert instance.get_continuous_states(0) == instance.get_derivatives(0) == []
