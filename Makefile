@@ -33,7 +33,7 @@ endef
 # The shipped mechanisms with the tables that they name.
 MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 
-.PHONY: help demo test bench lint build setup install uninstall refresh lock clean
+.PHONY: help demo test bench fuzz lint build setup install uninstall refresh lock clean
 .NOTPARALLEL:
 
 help: ## show this list
@@ -61,6 +61,20 @@ test: setup ## run all tests: Rust, documentation, FMPy
 bench: build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
 	$(CARGO) bench --package yardstick --locked
 	target/release/ratios $(if $(RENEW),benches/README.md)
+
+FUZZ_TARGET ?= call_sequence
+FUZZ_SECONDS ?= 600
+# What a compiler pass has to note for libFuzzer; the stable toolchain has it.
+FUZZ_FLAGS := -Cpasses=sancov-module -Ccodegen-units=1 -Cdebug-assertions \
+    $(addprefix -Cllvm-args=-sanitizer-coverage-,level=4 inline-8bit-counters pc-table trace-compares)
+
+fuzz: setup ## try what may come from outside (FUZZ_TARGET, FUZZ_SECONDS; see fuzz/src)
+	@mkdir -p target/fuzz/$(FUZZ_TARGET)
+	set -e; host=$$(rustc -vV | sed -n 's/^host: //p'); \
+	CARGO_PROFILE_RELEASE_LTO=false RUSTFLAGS='$(FUZZ_FLAGS)' $(CARGO) build --release --locked \
+	    --package fuzz --features engine --bin $(FUZZ_TARGET) --target $$host --target-dir target/fuzz; \
+	target/fuzz/$$host/release/$(FUZZ_TARGET) target/fuzz/$(FUZZ_TARGET) fuzz/corpus/$(FUZZ_TARGET) \
+	    -max_total_time=$(FUZZ_SECONDS) -timeout=20 -rss_limit_mb=2048 -artifact_prefix=target/fuzz/
 
 lint: setup ## check formatting, lints and documentation
 	$(CARGO) fmt --all --check

@@ -1,4 +1,4 @@
-//! Planar mechanisms as text files, solved exactly and exported as FMI 2.0 co-simulation FMUs.
+//! Planar mechanisms as text files, solved exactly and exported as FMI 2.0 FMUs.
 //!
 //! A mechanism is a set of rigid bodies, each with generalized coordinates q = \[x, y, phi\],
 //! held together by joints and moved by drivers. Both are equations in q: with the kinematic
@@ -14,7 +14,7 @@
 //! | [`mechanism`] | the file: bodies, markers, joints, drivers, expressions, and what is wrong with them |
 //! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
 //! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
-//! | [`fmi`] | the FMU: variables, co-simulation instance, C interface, model description, archive |
+//! | [`fmi`] | FMI 2.0 for any model, and mechanisms as one: instance, C interface, model description, archive |
 //! | `cli` | the commands of the program `biela` |
 //!
 //! Each knows those above it and none below.
@@ -60,3 +60,4 @@ pub mod drawing;
 pub mod fmi;
 pub mod kinematics;
 pub mod mechanism;
+pub mod unit;

@@ -4,22 +4,13 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use biela::fmi::{
-    Category, Causality, Error, FmuState, Instance, Kind, Order, Quantity, Sink, State, StateError,
-    Status,
-};
-use common::{shipped, stems};
+use biela::fmi::{Causality, Error, Failure, Interface, Kind, Order, Quantity, State, StateError};
+use common::{FmuState, Instance, instance_of, shipped, stems};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-struct Silent;
-
-impl Sink for Silent {
-    fn write(&self, _: Status, _: Category, _: &str) {}
-}
-
 fn instance(name: &str) -> Instance {
-    Instance::new(shipped(name), Box::new(Silent), true).expect("the mechanism assembles")
+    instance_of(shipped(name), Interface::CoSimulation)
 }
 
 fn initialized(name: &str, settings: [i32; 2]) -> Instance {
@@ -38,7 +29,7 @@ fn initialized(name: &str, settings: [i32; 2]) -> Instance {
 
 fn references(instance: &Instance, which: impl Fn(Quantity) -> bool) -> Vec<u32> {
     (0..)
-        .zip(instance.variables().list())
+        .zip(instance.variables())
         .filter(|(_, variable)| which(variable.quantity))
         .map(|(reference, _)| reference)
         .collect()
@@ -55,9 +46,9 @@ struct Look {
 }
 
 fn look(instance: &mut Instance) -> Look {
-    let (reals, integers): (Vec<u32>, Vec<u32>) = (0..instance.variables().list().len() as u32)
-        .partition(|&reference| {
-            let variable = &instance.variables().list()[reference as usize];
+    let (reals, integers): (Vec<u32>, Vec<u32>) =
+        (0..instance.variables().len() as u32).partition(|&reference| {
+            let variable = &instance.variables()[reference as usize];
             matches!(variable.kind, Kind::Real { .. })
         });
     let values = instance.reals(&reals);
@@ -86,7 +77,7 @@ fn act(instance: &mut Instance, step: u32) -> Act {
     for position in references(instance, |quantity| {
         matches!(quantity, Quantity::Input(_, Order::Position))
     }) {
-        let start = match instance.variables().list()[position as usize].kind {
+        let start = match instance.variables()[position as usize].kind {
             Kind::Real { start, .. } => start.expect("inputs have start values"),
             _ => unreachable!("inputs are Reals"),
         };
@@ -183,7 +174,7 @@ fn what_was_set_since_the_last_step_is_part_of_the_state() {
 fn tunable_parameters_are_part_of_the_state() {
     let mut instance = initialized("four_bar", [1, 1]);
     let tunable = (0..)
-        .zip(instance.variables().list())
+        .zip(instance.variables())
         .find(|(_, variable)| variable.name == "rocker_length")
         .map(|(reference, _)| reference)
         .expect("the four-bar has a rocker");
@@ -195,7 +186,7 @@ fn tunable_parameters_are_part_of_the_state() {
 
 fn fixed_parameter(instance: &Instance) -> u32 {
     (0..)
-        .zip(instance.variables().list())
+        .zip(instance.variables())
         .find(|(_, variable)| variable.causality == Causality::Parameter)
         .map(|(reference, _)| reference)
         .expect("it has a parameter")
@@ -259,7 +250,7 @@ fn a_host_goes_on_from_before_a_step_that_failed() {
     let before = detour.fmu_state().unwrap();
     detour.set_real(&[0], &[TOO_LONG]).unwrap();
     let error = detour.do_step(0.2, 0.1).unwrap_err();
-    assert!(matches!(error, Error::DeadPoint { .. }));
+    assert!(matches!(error, Error::Model(Failure::Discarded(_))));
     assert_eq!(detour.state(), State::StepFailed);
     let failed = detour.fmu_state().unwrap();
     let at_failure = look(&mut detour);
@@ -290,7 +281,7 @@ fn a_host_goes_on_after_termination_and_a_failed_initialization() {
         matches!(quantity, Quantity::Parameter(_))
     })
     .into_iter()
-    .find(|&reference| broken.variables().list()[reference as usize].name == "arm_length")
+    .find(|&reference| broken.variables()[reference as usize].name == "arm_length")
     .unwrap();
     broken.set_real(&[parameter], &[10.0]).unwrap();
     broken.enter_initialization_mode().unwrap();
@@ -330,7 +321,7 @@ fn a_state_of_another_mechanism_is_refused() {
     let before = instance.fmu_state();
     let refused = |outcome: Result<(), Error>| {
         let error = outcome.expect_err("it is of another mechanism");
-        let StateError::Mechanism { given, expected } = (match &error {
+        let StateError::Guid { given, expected } = (match &error {
             Error::FmuState(error) => error.clone(),
             _ => panic!("{error}"),
         }) else {

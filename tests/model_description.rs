@@ -2,7 +2,7 @@
 
 mod common;
 
-use biela::fmi::model_description;
+use biela::fmi::describe;
 use common::{assembled, folder, shipped, stems};
 
 /// The generation tool's version changes with every release and is no part of the contract.
@@ -31,7 +31,7 @@ fn every_shipped_mechanism_has_its_contract() {
 fn interfaces_do_not_drift() {
     for name in stems("mechanisms", "toml") {
         let (solver, _) = assembled(&shipped(&name));
-        let xml = model_description::write(solver.mechanism(), solver.structure(), None);
+        let xml = describe(solver.mechanism(), solver.structure()).write(None);
         let xml = String::from_utf8(xml).expect("XML is text");
         let path = folder("modelDescription").join(format!("{name}.xml"));
         let contract = std::fs::read_to_string(&path).unwrap_or_default();
@@ -46,8 +46,7 @@ fn interfaces_do_not_drift() {
 #[test]
 fn the_same_mechanism_gives_the_same_bytes() {
     let (solver, _) = assembled(&shipped("four_bar"));
-    let write =
-        |generated| model_description::write(solver.mechanism(), solver.structure(), generated);
+    let write = |generated| describe(solver.mechanism(), solver.structure()).write(generated);
     assert_eq!(write(None), write(None));
     let dated = String::from_utf8(write(Some("2026-11-21T00:00:00Z"))).expect("XML is text");
     assert!(dated.contains("generationDateAndTime=\"2026-11-21T00:00:00Z\""));

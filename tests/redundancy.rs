@@ -9,7 +9,7 @@ mod generated;
 use std::f64::consts::{PI, TAU};
 use std::sync::{Arc, Mutex};
 
-use biela::fmi::{Category, Instance, Sink, Status};
+use biela::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
 use biela::kinematics::{Error, Path, Rates, Reason, Solver};
 use biela::mechanism::{Jet, Mechanism};
 use common::{assembled, parse, shipped, stems, straight_to};
@@ -895,7 +895,8 @@ fn the_host_is_warned_once() {
     let warnings = Arc::new(Mutex::new(Vec::new()));
     let sink = Box::new(Warnings(Arc::clone(&warnings)));
     let mechanism = parse(&parallelogram(&[[0.2, 0.1]], 60.0, true));
-    let mut instance = Instance::new(mechanism, sink, false).expect("it closes");
+    let model = MechanismModel::new(mechanism, Interface::CoSimulation).expect("it closes");
+    let mut instance = Instance::new(model, sink, false);
     instance.setup_experiment(0.0, None).expect("legal");
     instance.enter_initialization_mode().expect("legal");
     instance.exit_initialization_mode().expect("it starts");

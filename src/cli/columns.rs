@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::error::Error;
 use super::motion::Motion;
 use crate::drawing::{Axis, Chart, Line, Panel};
-use crate::fmi::{Kind, Quantity, Variables};
+use crate::fmi::{Kind, Quantity, variables};
 use crate::mechanism::{Mechanism, Unit};
 
 /// One quantity of a run.
@@ -21,9 +21,9 @@ pub(super) struct Column {
 impl Column {
     /// Value, velocity and acceleration of every driver, then all outputs of the FMU.
     pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
-        let variables = Variables::new(mechanism);
+        let variables = variables(mechanism);
         let of_kind = |wanted: fn(Quantity) -> Option<Quantity>| {
-            variables.list().iter().filter_map(move |variable| {
+            variables.iter().filter_map(move |variable| {
                 let Kind::Real { unit, .. } = variable.kind else {
                     return None;
                 };

@@ -13,7 +13,7 @@ use super::recording::Recording;
 use super::signals::Signals;
 use crate::drawing::animation::{Animation, escape, fill, player, style_and_script};
 use crate::drawing::{Scene, Sheet, png, svg};
-use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Variables};
+use crate::fmi::{Causality, Document, Kind, Quantity, Variable, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
     CoordinateKind, DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of,
@@ -178,7 +178,7 @@ fn way(from: f64, range: &Range, start: f64) -> (String, f64) {
 }
 
 fn page(mechanism: &Mechanism, sheet: &Sheet, shown: &Shown) -> String {
-    let variables = Variables::new(mechanism);
+    let variables = variables(mechanism);
     let [player_style, script] = style_and_script();
     let drawing = svg::write(sheet, DRAWING_WIDTH, false);
     let drawing = drawing
@@ -255,8 +255,8 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
     table(&["Driver", "Start", "Range, other drivers held"], rows)
 }
 
-fn parameters(variables: &Variables) -> String {
-    let rows = variables.list().iter().filter_map(|variable| {
+fn parameters(variables: &[Variable<Quantity>]) -> String {
+    let rows = variables.iter().filter_map(|variable| {
         let Kind::Real {
             unit,
             start,
@@ -307,14 +307,14 @@ fn parameters(variables: &Variables) -> String {
     table(&["Parameter", "Value", "Unit", "Limits", "Meaning"], rows)
 }
 
-fn outputs(variables: &Variables) -> String {
-    let told = variables.list().iter().filter(|variable| {
+fn outputs(variables: &[Variable<Quantity>]) -> String {
+    let told = variables.iter().filter(|variable| {
         matches!(
             variable.causality,
             Causality::Input | Causality::Output | Causality::Local
         )
     });
-    let rows = told.map(|variable: &Variable| {
+    let rows = told.map(|variable: &Variable<Quantity>| {
         let unit = match variable.kind {
             Kind::Real { unit, .. } => name_of(unit),
             _ => String::new(),

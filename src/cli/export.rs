@@ -10,9 +10,9 @@ use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::output::write;
 use super::runtime;
-use crate::fmi::{model_description, write_fmu};
+use crate::fmi::{describe, write_fmu};
 
-/// Export a mechanism as an FMI 2.0 co-simulation FMU.
+/// Export a mechanism as an FMI 2.0 FMU, for co-simulation and for model exchange.
 ///
 /// The FMU's inputs are the drivers without a prescribed motion, its parameters those of the
 /// file, its outputs position, velocity and acceleration of all bodies. The mechanism is
@@ -48,7 +48,7 @@ impl Export {
         warn_of_misfits(&solver);
         let mechanism = &input.mechanism;
         if let Some(path) = self.model_description {
-            let xml = model_description::write(mechanism, solver.structure(), generated.as_deref());
+            let xml = describe(mechanism, solver.structure()).write(generated.as_deref());
             return write(&path, &xml);
         }
         let libraries = runtime::find(self.runtime.as_deref())?;

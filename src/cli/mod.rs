@@ -42,8 +42,8 @@ use clap::{Parser, Subcommand};
 ///
 /// A mechanism file says which bodies there are, which joints hold them together and which
 /// drivers move them. biela computes position, velocity and acceleration of every body, exact to
-/// rounding, and exports the mechanism as an FMI 2.0 co-simulation FMU whose inputs are the
-/// drivers and whose outputs are the motion of all bodies.
+/// rounding, and exports the mechanism as an FMI 2.0 FMU whose inputs are the drivers and whose
+/// outputs are the motion of all bodies.
 #[derive(Debug, Parser)]
 #[command(name = "biela", version, max_term_width = 100)]
 struct Arguments {

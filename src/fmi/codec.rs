@@ -6,11 +6,15 @@
 
 /// What a walk fails with where a field cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Unreadable;
+pub struct Unreadable;
 
 /// Takes bytes away or brings them.
-pub(super) trait Codec {
+pub trait Codec {
     /// Writes `bytes`, or ignores them and reads as many.
+    ///
+    /// # Errors
+    ///
+    /// As all that follow: there is nothing to read, or nothing that could be such a value.
     fn bytes<const N: usize>(&mut self, bytes: [u8; N]) -> Result<[u8; N], Unreadable>;
 
     /// A number that has to be finite.
@@ -29,11 +33,13 @@ pub(super) trait Codec {
         Ok(())
     }
 
+    /// A whole number.
     fn signed(&mut self, value: &mut i32) -> Result<(), Unreadable> {
         *value = i32::from_le_bytes(self.bytes(value.to_le_bytes())?);
         Ok(())
     }
 
+    /// A number of things.
     fn count(&mut self, value: &mut u32) -> Result<(), Unreadable> {
         *value = u32::from_le_bytes(self.bytes(value.to_le_bytes())?);
         Ok(())
@@ -63,6 +69,7 @@ pub(super) trait Codec {
         Ok(())
     }
 
+    /// Yes or no.
     fn flag(&mut self, value: &mut bool) -> Result<(), Unreadable> {
         self.one_of(value, &[false, true])
     }

@@ -79,7 +79,7 @@ pub trait Sink {
 }
 
 /// Decides which messages reach the host.
-pub(super) struct Logger {
+pub struct Logger {
     sink: Box<dyn Sink + Send>,
     enabled: u8,
 }
@@ -99,11 +99,13 @@ impl Logger {
     }
 
     /// Whether a message of this category would go out: lets callers skip making one.
-    pub(super) fn wants(&self, category: Category) -> bool {
+    #[must_use]
+    pub fn wants(&self, category: Category) -> bool {
         category.always() || self.enabled & category.bits() != 0
     }
 
-    pub(super) fn write(&self, status: Status, category: Category, message: &str) {
+    /// Gives a message to the host, if it wants it.
+    pub fn write(&self, status: Status, category: Category, message: &str) {
         if self.wants(category) {
             self.sink.write(status, category, message);
         }

@@ -1,29 +1,45 @@
-//! The FMU: variables, co-simulation instance, C interface, model description and packaging.
+//! FMI 2.0: models as FMUs, for co-simulation and for model exchange.
 //!
-//! The same library serves every mechanism. Exporting writes the mechanism's file and the
-//! [model description](model_description) made from its [table of variables](Variables) into an
-//! archive beside this library; instantiating reads the mechanism back. An [`Instance`] is safe
-//! Rust and knows nothing of C; `abi` wraps it. An [`FmuState`] is what it can be set back to.
+//! | part | knows | |
+//! |---|---|---|
+//! | `abi` | C | the functions of `fmi2Functions.h`; pointers in, status out |
+//! | [`Instance`] | the standard | the state machine, what may be set when, log, FMU states |
+//! | [`Model`] | | what an instance asks of a model |
+//! | [`MechanismModel`] | mechanisms | a mechanism and its solver as a model |
+//! | [`ModelDescription`], [`write_fmu`] | the archive | XML and packaging |
+//!
+//! All but [`MechanismModel`] and what belongs to it know nothing of mechanisms. An [`Instance`]
+//! is safe Rust; every call of the C interface has its twin there.
+//!
+//! The same library serves every mechanism. Exporting writes the mechanism's file and the model
+//! description made from its [table of variables](variables()) into an archive beside this
+//! library; instantiating reads the mechanism back.
 
 mod abi;
 mod codec;
-mod guid;
-mod inputs;
+mod error;
 mod instance;
 mod log;
-pub mod model_description;
+mod mechanism;
+mod model;
+mod model_description;
 mod package;
 mod serialized;
 mod state;
 mod uri;
-mod variables;
+mod variable;
 
-pub use guid::guid;
-pub use instance::{Error, FmuState, Instance, StateError, Status};
-pub use log::{Category, Sink};
-pub use package::{Document, PackageError, Platform, RESOURCE, RuntimeLibrary, write_fmu};
-pub use state::{Call, State};
-pub use uri::{UriError, resource_path};
-pub use variables::{
-    Causality, Enumeration, Kind, Order, Quantity, TABLE_VERSION, Variability, Variable, Variables,
+pub use codec::{Codec, Unreadable};
+pub use error::{Error, Failure, StateError, Status};
+pub use instance::{FmuState, Instance};
+pub use log::{Category, Logger, Sink};
+pub use mechanism::{
+    MechanismModel, MechanismState, Order, Quantity, RESOURCE, TABLE_VERSION, describe, guid,
+    variables, write_fmu,
 };
+pub use model::Model;
+pub use model_description::{Capabilities, Experiment, ModelDescription, Unknown};
+pub use package::{Document, PackageError, Platform, RuntimeLibrary, write as write_archive};
+pub use state::{Call, Interface, Phase, State};
+pub use uri::{UriError, resource_path};
+pub use variable::{Causality, Enumeration, Kind, Variability, Variable};

@@ -1,4 +1,4 @@
-//! `modelDescription.xml`, written from the table of variables (FMI 2.0, 2.2 and 4.3.1).
+//! `modelDescription.xml` (FMI 2.0, 2.2, 3.3.1 and 4.3.1).
 
 use std::collections::BTreeSet;
 use std::io;
@@ -6,72 +6,131 @@ use std::io;
 use quick_xml::events::{BytesDecl, Event};
 use quick_xml::writer::{ElementWriter, Writer};
 
-use super::guid;
 use super::log::Category;
-use super::variables::{
-    Causality, Enumeration, Kind, Order, Quantity, Variability, Variable, Variables, dependencies,
-};
-use crate::kinematics::{Dependencies, Structure};
-use crate::mechanism::{Mechanism, ParameterId, Unit};
+use super::variable::{Causality, Enumeration, Kind, Variability, Variable};
+use crate::unit::Unit;
 
 type Xml = Writer<Vec<u8>>;
 
-/// The model description of a mechanism's FMU.
-///
-/// `generated` is the attribute `generationDateAndTime`, left out for `None`: the same mechanism
-/// then gives the same bytes.
-#[must_use]
-pub fn write(mechanism: &Mechanism, structure: &Structure, generated: Option<&str>) -> Vec<u8> {
-    let variables = Variables::new(mechanism);
-    let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
-    let written = write_document(&mut xml, mechanism, structure, &variables, generated);
-    written.expect("writing to memory does not fail");
-    let mut bytes = xml.into_inner();
-    bytes.push(b'\n');
-    bytes
+/// What `modelDescription.xml` says.
+#[derive(Clone, Debug)]
+pub struct ModelDescription<'a, Q> {
+    /// FMI modelName and modelIdentifier: a C identifier.
+    pub name: &'a str,
+    /// One line for people, empty if there is none.
+    pub description: &'a str,
+    /// Who wrote the model.
+    pub author: Option<&'a str>,
+    /// The model's version.
+    pub version: Option<&'a str>,
+    /// Whose the model is.
+    pub copyright: Option<&'a str>,
+    /// On which terms it may be used.
+    pub license: Option<&'a str>,
+    /// What ties it to the resources.
+    pub guid: String,
+    /// The default experiment.
+    pub experiment: Experiment,
+    /// What the model can do.
+    pub capabilities: Capabilities,
+    /// In the order of their value references.
+    pub variables: Vec<Variable<Q>>,
+    /// Every output.
+    pub outputs: Vec<Unknown>,
+    /// What is computed in initialization: every output and calculated parameter.
+    pub initial_unknowns: Vec<Unknown>,
 }
 
-fn write_document(
+/// The default experiment \[s, s, s, 1\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Experiment {
+    /// Where it starts.
+    pub start: f64,
+    /// Where it ends.
+    pub stop: f64,
+    /// Communication step size.
+    pub step: f64,
+    /// Relative tolerance of the host's solver.
+    pub tolerance: f64,
+}
+
+/// What a model can do beyond what every [`Model`](super::Model) does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capabilities {
+    /// Whether it makes use of input derivatives.
+    pub interpolates_inputs: bool,
+    /// The highest order of output derivatives.
+    pub output_derivatives: u32,
+    /// Whether it has directional derivatives.
+    pub directional_derivatives: bool,
+}
+
+/// A variable that is computed, and what it depends on; places are counted from 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unknown {
+    /// Its place among the variables.
+    pub index: usize,
+    /// The places of those that it depends on.
+    pub dependencies: BTreeSet<usize>,
+}
+
+impl<Q> ModelDescription<'_, Q> {
+    /// The file.
+    ///
+    /// `generated` is the attribute `generationDateAndTime`, left out for `None`: the same model
+    /// then gives the same bytes.
+    #[must_use]
+    pub fn write(&self, generated: Option<&str>) -> Vec<u8> {
+        let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
+        let written = write_document(&mut xml, self, generated);
+        written.expect("writing to memory does not fail");
+        let mut bytes = xml.into_inner();
+        bytes.push(b'\n');
+        bytes
+    }
+}
+
+fn write_document<Q>(
     xml: &mut Xml,
-    mechanism: &Mechanism,
-    structure: &Structure,
-    variables: &Variables,
+    description: &ModelDescription<'_, Q>,
     generated: Option<&str>,
 ) -> io::Result<()> {
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let guid = guid(mechanism);
     let optional = [
-        ("description", non_empty(&mechanism.description)),
-        ("author", mechanism.author.as_deref()),
-        ("version", mechanism.version.as_deref()),
-        ("copyright", mechanism.copyright.as_deref()),
-        ("license", mechanism.license.as_deref()),
+        ("description", non_empty(description.description)),
+        ("author", description.author),
+        ("version", description.version),
+        ("copyright", description.copyright),
+        ("license", description.license),
         ("generationDateAndTime", generated),
     ];
     xml.create_element("fmiModelDescription")
         .with_attributes([
             ("fmiVersion", "2.0"),
-            ("modelName", &mechanism.name),
-            ("guid", &guid),
+            ("modelName", description.name),
+            ("guid", &description.guid),
             (
                 "generationTool",
                 concat!("biela ", env!("CARGO_PKG_VERSION")),
             ),
             ("variableNamingConvention", "structured"),
+            ("numberOfEventIndicators", "0"),
         ])
         .with_optional(&optional)
         .write_inner_content(|xml| {
-            write_co_simulation(xml, mechanism)?;
+            let variables = &description.variables;
+            write_model_exchange(xml, description)?;
+            write_co_simulation(xml, description)?;
             write_units(xml, variables)?;
             write_types(xml, variables)?;
             write_log_categories(xml)?;
-            write_experiment(xml, mechanism)?;
+            write_experiment(xml, description.experiment)?;
             xml.create_element("ModelVariables")
                 .write_inner_content(|xml| {
-                    (variables.list().iter().enumerate())
+                    (variables.iter().enumerate())
                         .try_for_each(|(index, variable)| write_variable(xml, index, variable))
                 })?;
-            write_structure(xml, mechanism, structure, variables)
+            write_structure(xml, description)
         })?;
     Ok(())
 }
@@ -101,23 +160,52 @@ fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-fn write_co_simulation(xml: &mut Xml, mechanism: &Mechanism) -> io::Result<()> {
-    xml.create_element("CoSimulation")
+fn write_model_exchange<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
+    let directional = description.capabilities.directional_derivatives;
+    xml.create_element("ModelExchange")
         .with_attributes([
-            ("modelIdentifier", mechanism.name.as_str()),
-            ("canHandleVariableCommunicationStepSize", "true"),
-            ("canInterpolateInputs", "true"),
+            ("modelIdentifier", description.name),
+            ("completedIntegratorStepNotNeeded", "false"),
             ("canBeInstantiatedOnlyOncePerProcess", "false"),
             ("canNotUseMemoryManagementFunctions", "true"),
-            ("maxOutputDerivativeOrder", "2"),
             ("canGetAndSetFMUstate", "true"),
             ("canSerializeFMUstate", "true"),
+            ("providesDirectionalDerivative", boolean(directional)),
         ])
         .write_empty()?;
     Ok(())
 }
 
-fn real_unit(variable: &Variable) -> Option<Unit> {
+fn write_co_simulation<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
+    let Capabilities {
+        interpolates_inputs,
+        output_derivatives,
+        directional_derivatives,
+    } = description.capabilities;
+    xml.create_element("CoSimulation")
+        .with_attributes([
+            ("modelIdentifier", description.name),
+            ("canHandleVariableCommunicationStepSize", "true"),
+            ("canInterpolateInputs", boolean(interpolates_inputs)),
+            ("canBeInstantiatedOnlyOncePerProcess", "false"),
+            ("canNotUseMemoryManagementFunctions", "true"),
+            ("maxOutputDerivativeOrder", &output_derivatives.to_string()),
+            ("canGetAndSetFMUstate", "true"),
+            ("canSerializeFMUstate", "true"),
+            (
+                "providesDirectionalDerivative",
+                boolean(directional_derivatives),
+            ),
+        ])
+        .write_empty()?;
+    Ok(())
+}
+
+fn boolean(value: bool) -> &'static str {
+    if value { "true" } else { "false" }
+}
+
+fn real_unit<Q>(variable: &Variable<Q>) -> Option<Unit> {
     match variable.kind {
         Kind::Real { unit, .. } => unit,
         _ => None,
@@ -126,9 +214,9 @@ fn real_unit(variable: &Variable) -> Option<Unit> {
 
 /// The units that variables use, in the order of their first use, each with the display units
 /// that variables use.
-fn write_units(xml: &mut Xml, variables: &Variables) -> io::Result<()> {
+fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
     let mut units: Vec<(Unit, Vec<_>)> = Vec::new();
-    for unit in variables.list().iter().filter_map(real_unit) {
+    for unit in variables.iter().filter_map(real_unit) {
         let index = units
             .iter()
             .position(|(known, _)| known.name == unit.name)
@@ -192,11 +280,11 @@ fn type_of(unit: Unit) -> Option<&'static str> {
         .map(|(_, name)| name)
 }
 
-fn write_types(xml: &mut Xml, variables: &Variables) -> io::Result<()> {
+fn write_types<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
     let mut written = BTreeSet::new();
     xml.create_element("TypeDefinitions")
         .write_inner_content(|xml| {
-            for variable in variables.list() {
+            for variable in variables {
                 match &variable.kind {
                     Kind::Real {
                         unit: Some(unit), ..
@@ -266,20 +354,19 @@ fn write_log_categories(xml: &mut Xml) -> io::Result<()> {
     Ok(())
 }
 
-fn write_experiment(xml: &mut Xml, mechanism: &Mechanism) -> io::Result<()> {
-    let simulation = &mechanism.simulation;
+fn write_experiment(xml: &mut Xml, experiment: Experiment) -> io::Result<()> {
     xml.create_element("DefaultExperiment")
         .with_attributes([
-            ("startTime", number(simulation.start).as_str()),
-            ("stopTime", &number(simulation.stop)),
-            ("tolerance", &number(simulation.tolerance)),
-            ("stepSize", &number(simulation.step)),
+            ("startTime", number(experiment.start).as_str()),
+            ("stopTime", &number(experiment.stop)),
+            ("tolerance", &number(experiment.tolerance)),
+            ("stepSize", &number(experiment.step)),
         ])
         .write_empty()?;
     Ok(())
 }
 
-fn write_variable(xml: &mut Xml, index: usize, variable: &Variable) -> io::Result<()> {
+fn write_variable<Q>(xml: &mut Xml, index: usize, variable: &Variable<Q>) -> io::Result<()> {
     let causality = match variable.causality {
         Causality::Parameter => "parameter",
         Causality::CalculatedParameter => "calculatedParameter",
@@ -311,7 +398,7 @@ fn write_variable(xml: &mut Xml, index: usize, variable: &Variable) -> io::Resul
     Ok(())
 }
 
-fn write_variable_type(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
+fn write_variable_type<Q>(xml: &mut Xml, variable: &Variable<Q>) -> io::Result<()> {
     match variable.kind {
         Kind::Real {
             unit,
@@ -344,136 +431,27 @@ fn write_variable_type(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
     Ok(())
 }
 
-/// Finds the places of variables in the model description, counted from 1.
-struct Indices<'a> {
-    mechanism: &'a Mechanism,
-    /// Place of the first of the three inputs of each driver that is an input.
-    inputs: Vec<Option<usize>>,
-    /// Place of each parameter.
-    parameters: Vec<usize>,
-    rate_source: Option<usize>,
-    time: usize,
-}
-
-impl<'a> Indices<'a> {
-    fn new(mechanism: &'a Mechanism, variables: &Variables) -> Self {
-        let mut indices = Self {
-            mechanism,
-            inputs: vec![None; mechanism.drivers.len()],
-            parameters: vec![0; mechanism.parameters.len()],
-            rate_source: None,
-            time: 0,
-        };
-        for (place, variable) in (1..).zip(variables.list()) {
-            match variable.quantity {
-                Quantity::Input(driver, Order::Position) => {
-                    indices.inputs[driver.index()] = Some(place);
-                }
-                Quantity::Parameter(parameter) => indices.parameters[parameter.index()] = place,
-                Quantity::RateSource => indices.rate_source = Some(place),
-                Quantity::Time => indices.time = place,
-                _ => {}
-            }
-        }
-        indices
-    }
-
-    fn parameter(&self, parameter: ParameterId) -> usize {
-        self.parameters[parameter.index()]
-    }
-
-    /// Inputs and time that a quantity of this order depends on, over all settings of `rates`:
-    /// estimated rates come from positions.
-    fn inputs(&self, dependencies: &Dependencies, order: Order) -> BTreeSet<usize> {
-        let mut places = BTreeSet::new();
-        for driver in &dependencies.drivers {
-            match self.inputs[driver.index()] {
-                Some(first) => places.extend(first..=first + order as usize),
-                None => {
-                    places.insert(self.time);
-                }
-            }
-        }
-        places
-    }
-
-    /// What a quantity of this order depends on at the start: parameters as well.
-    fn initial(&self, dependencies: &Dependencies, order: Order) -> BTreeSet<usize> {
-        let mut places = self.inputs(dependencies, order);
-        // What no driver moves has rates of zero, whatever the parameters.
-        if order == Order::Position || !dependencies.drivers.is_empty() {
-            places.extend(dependencies.parameters.iter().map(|&p| self.parameter(p)));
-        }
-        let has_input = |driver: &crate::mechanism::DriverId| {
-            self.mechanism.drivers[driver.index()].motion().is_none()
-        };
-        if order > Order::Position && dependencies.drivers.iter().any(has_input) {
-            places.extend(self.rate_source);
-        }
-        places
-    }
-}
-
-fn write_structure(
-    xml: &mut Xml,
-    mechanism: &Mechanism,
-    structure: &Structure,
-    variables: &Variables,
-) -> io::Result<()> {
-    let indices = Indices::new(mechanism, variables);
-    let unknowns: Vec<_> = (1..)
-        .zip(variables.list())
-        .filter_map(|(place, variable)| {
-            let order = match variable.quantity {
-                Quantity::Body(_, _, order)
-                | Quantity::Marker(_, _, order)
-                | Quantity::Measure(_, order)
-                | Quantity::Motion(_, order) => order,
-                Quantity::Parameter(_) if variable.causality != Causality::Parameter => {
-                    Order::Position
-                }
-                _ => return None,
-            };
-            let dependencies = dependencies(mechanism, structure, variable.quantity);
-            Some((place, variable.causality, dependencies, order))
-        })
-        .collect();
+fn write_structure<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
     xml.create_element("ModelStructure")
         .write_inner_content(|xml| {
-            let outputs: Vec<_> = unknowns
-                .iter()
-                .filter(|(_, causality, ..)| *causality == Causality::Output)
-                .map(|(place, _, dependencies, order)| {
-                    (*place, indices.inputs(dependencies, *order))
-                })
-                .collect();
-            write_unknowns(xml, "Outputs", &outputs)?;
-            let initial: Vec<_> = unknowns
-                .iter()
-                .map(|(place, _, dependencies, order)| {
-                    (*place, indices.initial(dependencies, *order))
-                })
-                .collect();
-            write_unknowns(xml, "InitialUnknowns", &initial)
+            write_unknowns(xml, "Outputs", &description.outputs)?;
+            write_unknowns(xml, "InitialUnknowns", &description.initial_unknowns)
         })?;
     Ok(())
 }
 
-fn write_unknowns(
-    xml: &mut Xml,
-    name: &str,
-    unknowns: &[(usize, BTreeSet<usize>)],
-) -> io::Result<()> {
+fn write_unknowns(xml: &mut Xml, name: &str, unknowns: &[Unknown]) -> io::Result<()> {
     // The schema has no empty lists.
     if unknowns.is_empty() {
         return Ok(());
     }
     xml.create_element(name).write_inner_content(|xml| {
-        for (place, dependencies) in unknowns {
-            let dependencies: Vec<_> = dependencies.iter().map(usize::to_string).collect();
+        for unknown in unknowns {
+            let dependencies = unknown.dependencies.iter();
+            let dependencies: Vec<_> = dependencies.map(usize::to_string).collect();
             xml.create_element("Unknown")
                 .with_attributes([
-                    ("index", place.to_string().as_str()),
+                    ("index", unknown.index.to_string().as_str()),
                     ("dependencies", &dependencies.join(" ")),
                 ])
                 .write_empty()?;

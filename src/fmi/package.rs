@@ -6,12 +6,7 @@ use std::path::PathBuf;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::model_description;
-use crate::kinematics::Structure;
-use crate::mechanism::{Mechanism, Source};
-
-/// The mechanism's file inside `resources/`.
-pub const RESOURCE: &str = "mechanism.toml";
+use super::model_description::ModelDescription;
 
 /// A platform by the standard's name of its folder in `binaries/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -88,20 +83,19 @@ pub struct Document {
     pub content: Vec<u8>,
 }
 
-/// Writes the FMU of a mechanism: its file, its model description, the runtime libraries and
-/// what documents it.
+/// Writes an FMU: its model description, what documents it, the runtime libraries and its
+/// resources, each with its name in `resources/`.
 ///
 /// The same input gives the same bytes: entries have a fixed order and a fixed time.
 ///
 /// # Errors
 ///
 /// A library cannot be read, or `out` cannot be written.
-pub fn write_fmu(
+pub fn write<Q>(
     out: impl Write + Seek,
-    source: &Source,
-    mechanism: &Mechanism,
-    structure: &Structure,
+    description: &ModelDescription<'_, Q>,
     libraries: &[RuntimeLibrary],
+    resources: &[(&str, &[u8])],
     documents: &[Document],
     generated: Option<&str>,
 ) -> Result<(), PackageError> {
@@ -113,7 +107,7 @@ pub fn write_fmu(
     let binary = text.unix_permissions(0o755);
 
     zip.start_file("modelDescription.xml", text)?;
-    zip.write_all(&model_description::write(mechanism, structure, generated))?;
+    zip.write_all(&description.write(generated))?;
     for Document { path, content } in documents {
         zip.start_file(path.as_str(), text)?;
         zip.write_all(content)?;
@@ -127,16 +121,14 @@ pub fn write_fmu(
         })?;
         let name = format!(
             "binaries/{}/{}.{}",
-            platform.name, mechanism.name, platform.extension
+            platform.name, description.name, platform.extension
         );
         zip.start_file(name, binary)?;
         zip.write_all(&content)?;
     }
-    zip.start_file(format!("resources/{RESOURCE}"), text)?;
-    zip.write_all(source.text().as_bytes())?;
-    for file in &mechanism.table_files {
-        zip.start_file(format!("resources/{}", file.name), text)?;
-        zip.write_all(file.text.as_bytes())?;
+    for (name, content) in resources {
+        zip.start_file(format!("resources/{name}"), text)?;
+        zip.write_all(content)?;
     }
     zip.finish()?;
     Ok(())

@@ -6,12 +6,13 @@
 //! | 8 | what all begin with |
 //! | 4 | version of all that follows |
 //! | 8 | length of the whole |
-//! | 38 | GUID of the FMU |
+//! | 4 | length of the FMU's GUID |
+//! | … | that GUID |
 //! | … | the state |
 //! | 4 | CRC-32 of all before |
 
 use super::codec::{Reader, Unreadable, Writer};
-use super::instance::StateError;
+use super::error::StateError;
 
 /// Not text, so that a file of them is not taken for any.
 const BEGINNING: [u8; 8] = *b"\x8bbiela\x1a\n";
@@ -19,9 +20,8 @@ const BEGINNING: [u8; 8] = *b"\x8bbiela\x1a\n";
 /// Raised whenever states are written in another way.
 const VERSION: u32 = 2;
 
-const GUID: usize = 38;
 const CHECKSUM: usize = 4;
-const SHORTEST: usize = BEGINNING.len() + 4 + 8 + GUID + CHECKSUM;
+const SHORTEST: usize = BEGINNING.len() + 4 + 8 + 4 + CHECKSUM;
 
 /// Puts the envelope round what `walk` writes.
 pub(super) fn write(
@@ -32,6 +32,7 @@ pub(super) fn write(
     bytes.extend(VERSION.to_le_bytes());
     let length = bytes.len()..bytes.len() + 8;
     bytes.extend(0_u64.to_le_bytes());
+    bytes.extend((guid.len() as u32).to_le_bytes());
     bytes.extend(guid.as_bytes());
     walk(&mut Writer(&mut bytes)).expect("writing to memory does not fail");
     let whole = (bytes.len() + CHECKSUM) as u64;
@@ -85,9 +86,16 @@ pub(super) fn read(
     if crc32fast::hash(content).to_le_bytes() != checksum {
         return Err(StateError::Checksum);
     }
-    let (given, state) = content[SHORTEST - CHECKSUM - GUID..].split_at(GUID);
+    let guid_length = number(4).and_then(|length| usize::try_from(length).ok());
+    let content = &content[SHORTEST - CHECKSUM..];
+    let parts = guid_length.and_then(|length| content.split_at_checked(length));
+    let Some((given, state)) = parts else {
+        return Err(StateError::Impossible {
+            what: "its GUID is longer than itself".to_owned(),
+        });
+    };
     if given != guid.as_bytes() {
-        return Err(StateError::Mechanism {
+        return Err(StateError::Guid {
             given: String::from_utf8_lossy(given).into_owned(),
             expected: guid.to_owned(),
         });

@@ -1,19 +1,46 @@
-//! The states of an instance and the calls that each allows (FMI 2.0, 4.2.4).
+//! The states of an instance and the calls that each allows (FMI 2.0, 3.2.3 and 4.2.4).
 
 use std::fmt;
 
-/// A state of a co-simulation slave.
+/// Which of the two interfaces of an FMU an instance was made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Interface {
+    /// The host asks for equations at any time; the model takes no steps of its own.
+    ModelExchange,
+    /// The model goes from one communication point to the next.
+    CoSimulation,
+}
+
+impl Interface {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::ModelExchange, Self::CoSimulation];
+}
+
+impl fmt::Display for Interface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::ModelExchange => "model exchange",
+            Self::CoSimulation => "co-simulation",
+        })
+    }
+}
+
+/// A state of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
     /// After instantiation or reset.
     Instantiated,
     /// Between entering and exiting initialization mode.
     InitializationMode,
-    /// Ready for the next step.
+    /// Model exchange: discrete values may change, time stands still.
+    EventMode,
+    /// Model exchange: the host integrates.
+    ContinuousTimeMode,
+    /// Co-simulation: ready for the next step.
     StepComplete,
     /// A step is being taken. Never entered: steps have ended when `fmi2DoStep` returns.
     StepInProgress,
-    /// The last step was discarded.
+    /// Co-simulation: the last step was discarded.
     StepFailed,
     /// A step was cancelled. Never entered, as there is none to be cancelled.
     StepCanceled,
@@ -21,15 +48,17 @@ pub enum State {
     Terminated,
     /// Initialization failed; only reading, going back and freeing are left.
     Error,
-    /// A defect of biela was caught; nothing but freeing is left.
+    /// A defect was caught; nothing but freeing is left.
     Fatal,
 }
 
 impl State {
     /// All states.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Instantiated,
         Self::InitializationMode,
+        Self::EventMode,
+        Self::ContinuousTimeMode,
         Self::StepComplete,
         Self::StepInProgress,
         Self::StepFailed,
@@ -39,15 +68,25 @@ impl State {
         Self::Fatal,
     ];
 
-    /// Those in which an FMU state can be got.
-    pub(super) const SAVED: [Self; 6] = [
-        Self::Instantiated,
-        Self::InitializationMode,
-        Self::StepComplete,
-        Self::StepFailed,
-        Self::Terminated,
-        Self::Error,
-    ];
+    /// What the state means to a model.
+    pub(super) fn phase(self) -> Phase {
+        match self {
+            Self::Instantiated | Self::InitializationMode => Phase::Initialization,
+            Self::EventMode | Self::ContinuousTimeMode | Self::StepComplete => Phase::Running,
+            _ => Phase::Halted,
+        }
+    }
+}
+
+/// What an instance's state means to its model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Values are being set with which it will start.
+    Initialization,
+    /// It goes on from what was last committed.
+    Running,
+    /// Nothing can be set any more: values are those last committed.
+    Halted,
 }
 
 impl fmt::Display for State {
@@ -55,6 +94,8 @@ impl fmt::Display for State {
         f.write_str(match self {
             Self::Instantiated => "instantiated",
             Self::InitializationMode => "initializationMode",
+            Self::EventMode => "eventMode",
+            Self::ContinuousTimeMode => "continuousTimeMode",
             Self::StepComplete => "stepComplete",
             Self::StepInProgress => "stepInProgress",
             Self::StepFailed => "stepFailed",
@@ -67,11 +108,16 @@ impl fmt::Display for State {
 }
 
 macro_rules! calls {
-    ($($(#[$doc:meta])* $name:ident: [$($state:ident)*];)*) => {
+    ($(
+        $name:ident: [$($me:ident)*] [$($cs:ident)*];
+    )*) => {
         /// A call of the C interface that the state decides about.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Call {
-            $($(#[$doc])* $name,)*
+            $(
+                #[doc = concat!("`fmi2", stringify!($name), "`")]
+                $name,
+            )*
         }
 
         impl Call {
@@ -86,89 +132,164 @@ macro_rules! calls {
                 }
             }
 
-            /// The states in which the call is allowed.
+            /// The states in which the call is allowed; none if it belongs to the other interface.
             #[must_use]
-            pub fn allowed_in(self) -> &'static [State] {
-                match self {
-                    $(Self::$name => &[$(State::$state),*],)*
+            pub fn allowed_in(self, interface: Interface) -> &'static [State] {
+                match (self, interface) {
+                    $(
+                        (Self::$name, Interface::ModelExchange) => &[$(State::$me),*],
+                        (Self::$name, Interface::CoSimulation) => &[$(State::$cs),*],
+                    )*
                 }
             }
         }
     };
 }
 
+// Where each call is allowed for model exchange, then for co-simulation.
 calls! {
-    /// `fmi2SetDebugLogging`
-    SetDebugLogging: [
-        Instantiated InitializationMode StepComplete StepInProgress StepFailed StepCanceled
-        Terminated Error
-    ];
-    /// `fmi2SetupExperiment`
-    SetupExperiment: [Instantiated];
-    /// `fmi2EnterInitializationMode`
-    EnterInitializationMode: [Instantiated];
-    /// `fmi2ExitInitializationMode`
-    ExitInitializationMode: [InitializationMode];
-    /// `fmi2Terminate`
-    Terminate: [StepComplete StepFailed];
-    /// `fmi2Reset`
-    Reset: [Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    /// `fmi2GetReal`
-    GetReal: [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    /// `fmi2GetInteger`
-    GetInteger: [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    /// `fmi2GetBoolean`
-    GetBoolean: [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    /// `fmi2GetString`
-    GetString: [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    /// `fmi2SetReal`
-    SetReal: [Instantiated InitializationMode StepComplete];
-    /// `fmi2SetInteger`
-    SetInteger: [Instantiated InitializationMode StepComplete];
-    /// `fmi2SetBoolean`
-    SetBoolean: [Instantiated InitializationMode StepComplete];
-    /// `fmi2SetString`
-    SetString: [Instantiated InitializationMode StepComplete];
-    /// `fmi2GetFMUstate`
-    GetFMUstate: [
-        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
-    ];
-    /// `fmi2SetFMUstate`
-    SetFMUstate: [
-        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
-    ];
-    /// `fmi2FreeFMUstate`
-    FreeFMUstate: [
-        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
-    ];
-    /// `fmi2SerializedFMUstateSize`
-    SerializedFMUstateSize: [
-        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
-    ];
-    /// `fmi2SerializeFMUstate`
-    SerializeFMUstate: [
-        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
-    ];
-    /// `fmi2DeSerializeFMUstate`
-    DeSerializeFMUstate: [
-        Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error
-    ];
-    /// `fmi2SetRealInputDerivatives`
-    SetRealInputDerivatives: [Instantiated InitializationMode StepComplete];
-    /// `fmi2GetRealOutputDerivatives`
-    GetRealOutputDerivatives: [StepComplete StepFailed StepCanceled Terminated Error];
-    /// `fmi2DoStep`
-    DoStep: [StepComplete];
-    /// `fmi2CancelStep`
-    CancelStep: [StepInProgress];
-    /// `fmi2GetStatus`
-    GetStatus: [StepComplete StepInProgress StepFailed Terminated];
-    /// `fmi2GetRealStatus`
-    GetRealStatus: [StepComplete StepInProgress StepFailed Terminated];
-    /// `fmi2GetIntegerStatus`
-    GetIntegerStatus: [StepComplete StepInProgress StepFailed Terminated];
-    /// `fmi2GetBooleanStatus`
-    GetBooleanStatus: [StepComplete StepInProgress StepFailed Terminated];
-    /// `fmi2GetStringStatus`
-    GetStringStatus: [StepComplete StepInProgress StepFailed Terminated];
+    SetDebugLogging:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [
+            Instantiated InitializationMode StepComplete StepInProgress StepFailed
+            StepCanceled Terminated Error
+        ];
+    SetupExperiment:
+        [Instantiated]
+        [Instantiated];
+    EnterInitializationMode:
+        [Instantiated]
+        [Instantiated];
+    ExitInitializationMode:
+        [InitializationMode]
+        [InitializationMode];
+    Terminate:
+        [EventMode ContinuousTimeMode]
+        [StepComplete StepFailed];
+    Reset:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [
+            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
+            Error
+        ];
+    GetReal:
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
+    GetInteger:
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
+    GetBoolean:
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
+    GetString:
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
+    SetReal:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode]
+        [Instantiated InitializationMode StepComplete];
+    SetInteger:
+        [Instantiated InitializationMode EventMode]
+        [Instantiated InitializationMode StepComplete];
+    SetBoolean:
+        [Instantiated InitializationMode EventMode]
+        [Instantiated InitializationMode StepComplete];
+    SetString:
+        [Instantiated InitializationMode EventMode]
+        [Instantiated InitializationMode StepComplete];
+    GetFMUstate:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [
+            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
+            Error
+        ];
+    SetFMUstate:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [
+            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
+            Error
+        ];
+    FreeFMUstate:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [
+            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
+            Error
+        ];
+    SerializedFMUstateSize:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [
+            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
+            Error
+        ];
+    SerializeFMUstate:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [
+            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
+            Error
+        ];
+    DeSerializeFMUstate:
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [
+            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
+            Error
+        ];
+    GetDirectionalDerivative:
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
+    EnterEventMode:
+        [EventMode ContinuousTimeMode]
+        [];
+    NewDiscreteStates:
+        [EventMode]
+        [];
+    EnterContinuousTimeMode:
+        [EventMode]
+        [];
+    CompletedIntegratorStep:
+        [ContinuousTimeMode]
+        [];
+    SetTime:
+        [EventMode ContinuousTimeMode]
+        [];
+    SetContinuousStates:
+        [ContinuousTimeMode]
+        [];
+    GetDerivatives:
+        [EventMode ContinuousTimeMode Terminated Error]
+        [];
+    GetEventIndicators:
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [];
+    GetContinuousStates:
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
+        [];
+    GetNominalsOfContinuousStates:
+        [Instantiated EventMode ContinuousTimeMode Terminated Error]
+        [];
+    SetRealInputDerivatives:
+        []
+        [Instantiated InitializationMode StepComplete];
+    GetRealOutputDerivatives:
+        []
+        [StepComplete StepFailed StepCanceled Terminated Error];
+    DoStep:
+        []
+        [StepComplete];
+    CancelStep:
+        []
+        [StepInProgress];
+    GetStatus:
+        []
+        [StepComplete StepInProgress StepFailed Terminated];
+    GetRealStatus:
+        []
+        [StepComplete StepInProgress StepFailed Terminated];
+    GetIntegerStatus:
+        []
+        [StepComplete StepInProgress StepFailed Terminated];
+    GetBooleanStatus:
+        []
+        [StepComplete StepInProgress StepFailed Terminated];
+    GetStringStatus:
+        []
+        [StepComplete StepInProgress StepFailed Terminated];
 }

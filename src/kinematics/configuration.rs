@@ -343,6 +343,11 @@ impl Configuration {
         &self.profiles[id.0].in_force
     }
 
+    /// All profiles.
+    pub(super) fn profiles(&self) -> &[CamProfile] {
+        &self.profiles
+    }
+
     /// The mechanism's characteristic length \[m\]: makes metres and radians comparable.
     ///
     /// It is the extent of the largest body or the largest length that a joint holds, not the

@@ -9,6 +9,7 @@
 //! | position | Phi_q Δq = −Phi | Newton–Raphson, Ec. 3.6.7 and 3.6.8 |
 //! | velocity | Phi_q q̇ = −Phi_t = ν | Ec. 3.6.10 |
 //! | acceleration | Phi_q q̈ = −(Phi_q q̇)_q q̇ − 2 Phi_qt q̇ − Phi_tt = γ | Ec. 3.6.11 |
+//! | sensitivity | Phi_q δq = δu − Phi_p δp | and the derivatives of Ec. 3.6.10 and 3.6.11 |
 //! | assembly | min (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi, r growing | Ec. 3.6.9 |
 //!
 //! The system is solved block by block: [`Structure`] finds which equations determine which
@@ -42,11 +43,13 @@ mod rates;
 mod redundancy;
 #[cfg(test)]
 mod reference;
+mod sensitivity;
 mod singular;
 mod solver;
 mod stepping;
 mod structure;
 mod system;
+pub mod variation;
 
 pub use assembly::{Assembly, Move, Start};
 pub use configuration::{
@@ -60,6 +63,7 @@ pub use path::{Curve, Path};
 pub use range::{ChangePoint, End, Range, RangeSettings, Sample};
 pub use rates::Rates;
 pub use redundancy::Redundancy;
+pub use sensitivity::{Direction, Sensitivity};
 pub use singular::{Approach, Crossing, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::{Pose, Solver};
 pub use stepping::{Blocked, Progress, Reason};

@@ -75,7 +75,7 @@ pub struct Solver {
     pub(super) structure: Structure,
     /// Redundant rows.
     pub(super) set_aside: SetAside,
-    measures: Vec<Box<dyn Constraint>>,
+    pub(super) measures: Vec<Box<dyn Constraint>>,
     pub(super) plan: Plan,
     pub(super) pose: Pose,
     /// The bodies at the pose, outside of the calls that look for another one.
@@ -117,7 +117,7 @@ pub struct Solver {
 }
 
 /// Rates were asked for where there are none.
-const SINGULAR_HERE: Error = Error::Singular {
+pub(super) const SINGULAR_HERE: Error = Error::Singular {
     rcond: 0.0,
     bodies: Vec::new(),
 };

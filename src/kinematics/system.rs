@@ -12,6 +12,7 @@ use super::configuration::{
 use super::constraint::{
     self, Constraint, Dimension, Gradient, Incidence, JointUnknown, TurnEffect,
 };
+use super::variation::{Varied, VariedConfiguration};
 use super::{Element, Error, joint};
 use crate::mechanism::{DriverId, Expression, Mechanism, ParameterId, Profile, ProfileInForce};
 
@@ -223,6 +224,17 @@ impl System {
             self.joint_parts.profiles.clone(),
             self.joint_parts.unknowns.len(),
         )
+    }
+
+    /// The mechanism in motion, for [`Sensitivity`](super::Sensitivity).
+    pub(super) fn varied(
+        &self,
+        parameter: impl Fn(ParameterId) -> Varied,
+        motion: impl Iterator<Item = [f64; 3]>,
+        profiles: &[CamProfile],
+    ) -> VariedConfiguration {
+        let coefficients = &self.joint_parts.coefficients;
+        VariedConfiguration::new(&self.mechanism, coefficients, profiles, parameter, motion)
     }
 
     /// Targets of which [`set_parameters`](Self::set_parameters) has still to give the values.

@@ -18,21 +18,22 @@ mod source;
 mod spline;
 mod syntax;
 mod table;
-mod unit;
 
+pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use expression::{Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable};
+pub use expression::{
+    Dual, Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable,
+};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use lower::is_identifier;
 #[cfg(feature = "cli")]
 pub use lower::schema;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 pub use parameter::Parameter;
-pub use profile::{Profile, ProfileError, ProfileInForce};
+pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 pub use table::{Table, TableFile};
-pub use unit::{Dimension, DisplayUnit, Unit};
 
 /// A planar mechanism as its file describes it, checked for names, types and units, not yet for
 /// assembly.

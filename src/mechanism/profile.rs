@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Ends, Expression, Interval, Jet3, Number, ParameterId, Spline, Table};
+use super::{Dual, Ends, Expression, Interval, Jet3, Number, ParameterId, Spline, Table};
 
 /// A closed contour R(θ), θ counter-clockwise from the cam marker's x-axis \[rad, m\].
 #[derive(Clone, Debug)]
@@ -287,6 +287,76 @@ impl ProfileInForce {
         costs
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
             .map_or(0.0, |(theta, _)| theta)
+    }
+}
+
+/// A profile whose parameters change along a direction.
+#[derive(Clone, Debug)]
+pub struct ProfileAlong(CurveAlong);
+
+#[derive(Clone, Debug)]
+enum CurveAlong {
+    Expression {
+        expression: Expression,
+        /// All of them.
+        parameters: Vec<Jet3<Dual>>,
+    },
+    Spline(Spline<Jet3<Dual>>),
+}
+
+impl ProfileInForce {
+    /// The profile with the parameters in force, for these changes of theirs.
+    #[must_use]
+    pub fn along(&self, change: impl Fn(ParameterId) -> f64) -> ProfileAlong {
+        let parameter = |p: ParameterId| {
+            Jet3::fixed(Dual {
+                value: self.parameters[p.index()],
+                along: change(p),
+            })
+        };
+        ProfileAlong(match &self.curve {
+            Curve::Expression(expression) => CurveAlong::Expression {
+                expression: expression.clone(),
+                parameters: (0..self.parameters.len())
+                    .map(|p| parameter(ParameterId(p)))
+                    .collect(),
+            },
+            Curve::Spline { table, spline } => {
+                let mut along = Spline::new(spline.knots().len(), Ends::Periodic);
+                let (angles, radii) = along.points_mut();
+                table.write(&parameter, angles, radii);
+                let last = angles.len() - 1;
+                angles[last] = angles[0] + Jet3::constant(TAU);
+                radii[last] = radii[0];
+                along.fit();
+                CurveAlong::Spline(along)
+            }
+        })
+    }
+}
+
+impl ProfileAlong {
+    /// R and its first three derivatives at a polar angle, of any number of turns, each with its
+    /// change along the direction.
+    #[must_use]
+    pub fn radius(&self, theta: Dual) -> Jet3<Dual> {
+        let from = |start: f64| Dual {
+            value: start + (theta.value - start).rem_euclid(TAU),
+            along: theta.along,
+        };
+        match &self.0 {
+            CurveAlong::Expression {
+                expression,
+                parameters,
+            } => {
+                let theta = Jet3::variable(from(0.0));
+                expression.evaluate(&|p| parameters[p.index()], theta)
+            }
+            CurveAlong::Spline(spline) => {
+                let theta = from(spline.knots()[0].value.value);
+                spline.on_segment(spline.segment(theta.value), Jet3::variable(theta))
+            }
+        }
     }
 }
 

@@ -17,8 +17,11 @@ pub struct Position {
     pub column: usize,
 }
 
-/// Files larger than this are not read \[bytes\]: no mechanism or table comes near it.
-const LARGEST_FILE: u64 = 64 << 20;
+/// Mechanism files larger than this are not read \[bytes\]. It is room for fifty thousand bodies
+/// with their joints, which take some seconds and some hundred megabytes.
+const LARGEST_MECHANISM: u64 = 16 << 20;
+/// Tables larger than this are not read \[bytes\]: none comes near it.
+const LARGEST_TABLE: u64 = 64 << 20;
 
 /// The text of a mechanism file and the name under which people know it.
 #[derive(Clone, Debug)]
@@ -54,7 +57,7 @@ impl Source {
     ///
     /// The file cannot be read, is not UTF-8, or is larger than any mechanism.
     pub fn open(name: impl Into<String>, path: &Path) -> io::Result<Self> {
-        let text = read_bounded(path)?;
+        let text = read_bounded(path, LARGEST_MECHANISM)?;
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
         Ok(Self {
             folder: Some(folder),
@@ -78,7 +81,7 @@ impl Source {
         let path = folder.join(name);
         // Opening a pipe would wait for whoever writes to it.
         if std::fs::metadata(&path)?.is_file() {
-            read_bounded(&path)
+            read_bounded(&path, LARGEST_TABLE)
         } else {
             refuse("it is not a file")
         }
@@ -152,13 +155,13 @@ fn is_portable(name: &str) -> bool {
         && !name.starts_with(' ')
 }
 
-fn read_bounded(path: &Path) -> io::Result<String> {
+fn read_bounded(path: &Path, largest: u64) -> io::Result<String> {
     let mut text = String::new();
     let read = File::open(path)?
-        .take(LARGEST_FILE + 1)
+        .take(largest + 1)
         .read_to_string(&mut text)?;
-    if read as u64 > LARGEST_FILE {
-        let why = format!("it has more than {LARGEST_FILE} bytes");
+    if read as u64 > largest {
+        let why = format!("it has more than {largest} bytes");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
     }
     Ok(text)

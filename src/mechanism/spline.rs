@@ -1,6 +1,6 @@
 //! Cubic splines through given points: twice continuously differentiable.
 
-use super::Number;
+use super::{Number, Scalar};
 
 /// What a spline, and the motion that it stands for, does at its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub struct Spline<N> {
     ends: Ends,
 }
 
-impl<N: Number<Scalar = f64>> Spline<N> {
+impl<N: Number> Spline<N> {
     /// A spline through `count` points, at least two, which are still to be given.
     #[must_use]
     pub fn new(count: usize, ends: Ends) -> Self {
@@ -66,9 +66,10 @@ impl<N: Number<Scalar = f64>> Spline<N> {
     /// Whether each abscissa is larger than the one before, and every number finite.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        let rises = |pair: &[N]| pair[0].value() < pair[1].value();
+        let rises = |pair: &[N]| pair[0].value().number() < pair[1].value().number();
         self.knots.windows(2).all(rises)
-            && (self.knots.iter().chain(&self.values)).all(|number| number.value().is_finite())
+            && (self.knots.iter().chain(&self.values))
+                .all(|number| number.value().number().is_finite())
     }
 
     /// Finds the second derivatives for which the first is continuous.
@@ -180,7 +181,7 @@ impl<N: Number<Scalar = f64>> Spline<N> {
     #[must_use]
     pub fn segment(&self, x: f64) -> usize {
         let inner = &self.knots[1..self.knots.len() - 1];
-        inner.partition_point(|knot| knot.value() <= x)
+        inner.partition_point(|knot| knot.value().number() <= x)
     }
 
     /// The value at `x`, by the cubic of a segment.

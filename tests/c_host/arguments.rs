@@ -1,6 +1,6 @@
 //! Arguments that are refused, and those that only look wrong.
 
-use crate::driver::{A, Fmu, Host, NULL};
+use crate::driver::{A, Fmu, Host, Instantiate, NULL};
 
 /// Calls in state `stepComplete` of the four-bar, at 0 s of 1 s, with the reason to refuse each;
 /// `@` precedes a variable that stands for its value reference.
@@ -43,7 +43,7 @@ SetRealInputDerivatives A 1 @crank_angle.position 1 nan -> not a finite number
 GetRealOutputDerivatives A 1 9999 1 room -> no variable with value reference 9999
 GetRealOutputDerivatives A 1 @crank_angle.position 1 room -> `crank_angle.position` is no output
 GetRealOutputDerivatives A 1 @solver.residual 1 room -> only outputs have output derivatives
-GetRealOutputDerivatives A 1 @crank.phi 0 room -> cannot be of order 0; expected 1 or 2
+GetRealOutputDerivatives A 1 @crank.phi 0 room -> cannot be of order 0; expected 1 or more
 GetRealOutputDerivatives A 2 @crank.phi,@crank.phi 1,-2147483648 room -> cannot be of order -2147483648
 # Steps.
 DoStep A 0.5 0.1 1 -> is not where the last step ended, 0 s
@@ -75,6 +75,21 @@ GetReal A 18446744073709551615 @crank.phi room -> `vr` has an impossible length
 GetStatus A 0 NULL -> `value` is a null pointer
 GetRealStatus A 2 NULL -> `value` is a null pointer
 GetBooleanStatus A 3 NULL -> `value` is a null pointer
+GetDirectionalDerivative A 1 NULL 1 @crank_angle.position 1 room -> `vUnknown_ref` is a null pointer
+GetDirectionalDerivative A 1 @crank.phi 1 NULL 1 room -> `vKnown_ref` is a null pointer
+GetDirectionalDerivative A 1 @crank.phi 1 @crank_angle.position NULL room -> `dvKnown` is a null pointer
+GetDirectionalDerivative A 1 @crank.phi 1 @crank_angle.position 1 NULL -> `dvUnknown` is a null pointer
+GetDirectionalDerivative A 1 @crank.phi 1 @crank_angle.position nan room -> not a finite number
+GetDirectionalDerivative A 1 @crank.phi 1 9999 1 room -> no variable with value reference 9999
+GetDirectionalDerivative A 1 9999 1 @crank_angle.position 1 room -> no variable with value reference 9999
+GetDirectionalDerivative A 1 @crank.phi 1 @crank_length 1 room -> `crank_length`: derivatives are taken by inputs
+GetDirectionalDerivative A 1 @crank.phi 1 @crank.phi 1 room -> `crank.phi`: derivatives are taken by inputs
+GetDirectionalDerivative A 1 @solver.rcond 1 @crank_angle.position 1 room -> `solver.rcond`: derivatives are taken of outputs
+GetDirectionalDerivative A 1 @rates 1 @crank_angle.position 1 room -> `rates`: derivatives are taken of outputs
+# Model exchange is another interface.
+SetTime A 1 -> is not for co-simulation
+GetDerivatives A 0 -> is not for co-simulation
+CompletedIntegratorStep A room room -> is not for co-simulation
 # FMU states; there is none in slot 0.
 GetFMUstate A NULL -> `FMUstate` is a null pointer
 SetFMUstate A NULL -> `FMUstate` is a null pointer
@@ -102,6 +117,27 @@ SetInteger A 2 @rates,@extrapolation 2,3 -> expected 1 to 2
 SetInteger A 1 @rates -2147483648 -> expected 1 to 3
 SetReal A 1 @crank_length -1 -> expected at least 0.001
 SetReal A 1 @crank_length nan -> not a finite number
+";
+
+/// The same in continuous-time mode of model exchange.
+const REFUSED_IN_EXCHANGE: &str = "
+SetTime A nan -> `time` cannot be set to NaN
+SetTime A inf -> `time` cannot be set to inf
+CompletedIntegratorStep A NULL room -> `enterEventMode` is a null pointer
+CompletedIntegratorStep A room NULL -> `terminateSimulation` is a null pointer
+SetContinuousStates A 1 -> there are none
+GetDerivatives A 1 -> there are none
+GetEventIndicators A 1 -> there are none
+GetContinuousStates A 1 -> there are none
+GetNominalsOfContinuousStates A 1 -> there are none
+SetReal A 1 @rocker_length 0.31 -> `rocker_length` cannot be set: it is a tunable parameter, which changes in event mode
+SetReal A 1 @crank_length 0.11 -> `crank_length` cannot be set: it is a fixed parameter
+SetReal A 1 @crank.phi 1 -> `crank.phi` cannot be set: it is an output
+SetReal A 1 @crank_angle.position nan -> not a finite number
+DoStep A 0 0.1 1 -> is not for model exchange
+SetRealInputDerivatives A 1 @crank_angle.position 1 1 -> is not for model exchange
+GetStatus A 0 room -> is not for model exchange
+NewDiscreteStates A room -> not allowed in state continuousTimeMode
 ";
 
 /// Each request of a list as the host takes it, and the reason to refuse it.
@@ -148,6 +184,27 @@ fn wrong_arguments_are_refused_and_change_nothing() {
         start.to_bits()
     );
     host.ok(&["Reset", A]);
+}
+
+#[test]
+fn wrong_arguments_in_model_exchange_change_nothing() {
+    let fmu = Fmu::of("four_bar");
+    let mut host = Host::start();
+    let exchange = Instantiate {
+        model_exchange: true,
+        ..Instantiate::right(&fmu)
+    };
+    assert!(host.instantiate(A, &exchange).0);
+    host.initialize(A);
+    host.refused(&["NewDiscreteStates", A, NULL]);
+    host.ok(&["EnterContinuousTimeMode", A]);
+    let everything = fmu.reals();
+    let before = host.get_reals(A, &everything);
+    for (request, why) in refusals(REFUSED_IN_EXCHANGE, &fmu) {
+        let reason = host.refused(&request);
+        assert!(reason.contains(why), "{request:?}: {reason}");
+        assert_eq!(host.get_reals(A, &everything), before, "{request:?}");
+    }
 }
 
 #[test]

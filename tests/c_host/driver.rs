@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 
-use biela::fmi::{Causality, Kind, RESOURCE, Status, Variable, Variables};
+use biela::fmi::{Causality, Kind, Quantity, RESOURCE, Status};
 use biela::mechanism::{Mechanism, Source};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use tempfile::TempDir;
+
+type Variable = biela::fmi::Variable<Quantity>;
 
 /// A place for an instance in the host.
 pub(crate) const A: &str = "0";
@@ -34,7 +36,7 @@ pub(crate) struct Fmu {
     pub(crate) mechanism: Arc<Mechanism>,
     pub(crate) guid: String,
     pub(crate) resources: PathBuf,
-    variables: Variables,
+    variables: Vec<Variable>,
     _folder: TempDir,
 }
 
@@ -55,7 +57,7 @@ impl Fmu {
             .expect("the folder is ours");
         Self {
             guid: biela::fmi::guid(&mechanism),
-            variables: Variables::new(&mechanism),
+            variables: biela::fmi::variables(&mechanism),
             mechanism: Arc::new(mechanism),
             resources,
             _folder: unpacked,
@@ -74,7 +76,7 @@ impl Fmu {
 
     /// The value reference of a variable, as text.
     pub(crate) fn vr(&self, name: &str) -> String {
-        let mut all = self.variables.list().iter();
+        let mut all = self.variables.iter();
         let found = all.position(|variable| variable.name == name);
         found.unwrap_or_else(|| panic!("no `{name}`")).to_string()
     }
@@ -91,7 +93,7 @@ impl Fmu {
 
     fn all(&self, which: impl Fn(&Variable) -> bool) -> Vec<u32> {
         (0..)
-            .zip(self.variables.list())
+            .zip(&self.variables)
             .filter(|(_, variable)| which(variable))
             .map(|(value_reference, _)| value_reference)
             .collect()

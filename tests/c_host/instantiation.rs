@@ -73,13 +73,6 @@ fn what_cannot_be_instantiated_is_null_and_tells_the_logger() {
             },
             "`instanceName` is empty",
         ),
-        (
-            Instantiate {
-                model_exchange: true,
-                ..right.clone()
-            },
-            "for co-simulation only",
-        ),
         (with_uri(""), "the resource location is empty"),
         (
             with_uri("https://example.org/resources"),

@@ -44,6 +44,27 @@ fn memory_is_used_as_it_should() {
     for (request, _) in refusals(REFUSED, &fmu) {
         host.call(&request);
     }
+    // Model exchange, with derivatives along a direction.
+    host.ok(&["FreeInstance", A]);
+    let exchange = Instantiate {
+        model_exchange: true,
+        ..Instantiate::right(&fmu)
+    };
+    assert!(host.instantiate(A, &exchange).0);
+    host.initialize(A);
+    host.ok(&["NewDiscreteStates", A, "room"]);
+    host.ok(&["EnterContinuousTimeMode", A]);
+    let outputs: Vec<_> = fmu.outputs().iter().map(u32::to_string).collect();
+    let (n, outputs) = (outputs.len().to_string(), outputs.join(","));
+    for t in ["0.1", "0.2"] {
+        host.ok(&["SetTime", A, t]);
+        host.set_real(A, "0", 1.5);
+        host.ok(&["GetReal", A, &n, &outputs, "room"]);
+        let request = ["GetDirectionalDerivative", A, &n, &outputs];
+        host.ok(&[&request[..], &["2", "0,1", "1,0.5", "room"]].concat());
+        host.ok(&["CompletedIntegratorStep", A, "room", "room"]);
+    }
+    host.ok(&["EnterEventMode", A]);
     host.ok(&["Lives", "2", &fmu.guid, &fmu.uri()]);
     // What valgrind finds it tells on stderr, which has to be empty in the end.
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use biela::fmi::{Category, Instance, Sink, Status};
+use biela::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
 
 use crate::driver::{A, B, Fmu, Host};
 
@@ -41,8 +41,9 @@ fn run_in_rust(fmu: &Fmu) -> Vec<Vec<f64>> {
             panic!("{status:?}: {message}");
         }
     }
-    let mut instance =
-        Instance::new(Arc::clone(&fmu.mechanism), Box::new(Silent), false).expect("it assembles");
+    let mechanism = Arc::clone(&fmu.mechanism);
+    let model = MechanismModel::new(mechanism, Interface::CoSimulation).expect("it assembles");
+    let mut instance = Instance::new(model, Box::new(Silent), false);
     let ready = instance
         .setup_experiment(0.0, None)
         .and_then(|()| instance.enter_initialization_mode())
@@ -122,7 +123,7 @@ fn instances_do_not_know_of_each_other() {
     }
     // Each has its own environment.
     for slot in [A, B] {
-        let answer = host.call(&["SetTime", slot]);
+        let answer = host.call(&["SetTime", slot, "1"]);
         assert_eq!(answer.log[0].slot, slot);
     }
 }

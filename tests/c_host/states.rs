@@ -1,84 +1,82 @@
 //! Which state allows which call.
 
-use biela::fmi::{State, Status};
+use biela::fmi::{Interface, State, Status};
 
-use crate::driver::{A, Answer, B, Fmu, Host, NULL};
+use crate::driver::{A, Answer, B, Fmu, Host, Instantiate, NULL};
 
-/// The functions of the standard that go to an instance, and whether each is allowed (`x`) in
-/// the states `instantiated`, `initializationMode`, `stepComplete`, `stepFailed`, `terminated`
-/// and `error`. After the standard's table for co-simulation (FMI 2.0, 4.2.4), without what is
-/// not declared: asynchronous steps, directional derivatives, model exchange.
-pub(crate) const TABLE: &str = "
-SetDebugLogging                 x x x x x x
-SetupExperiment                 x - - - - -
-EnterInitializationMode         x - - - - -
-ExitInitializationMode          - x - - - -
-Terminate                       - - x x - -
-Reset                           x x x x x x
-GetReal                         - x x x x x
-GetInteger                      - x x x x x
-GetBoolean                      - x x x x x
-GetString                       - x x x x x
-SetReal                         x x x - - -
-SetInteger                      x x x - - -
-SetBoolean                      x x x - - -
-SetString                       x x x - - -
-GetFMUstate                     x x x x x x
-SetFMUstate                     x x x x x x
-FreeFMUstate                    x x x x x x
-SerializedFMUstateSize          x x x x x x
-SerializeFMUstate               x x x x x x
-DeSerializeFMUstate             x x x x x x
-GetDirectionalDerivative        - - - - - -
-SetRealInputDerivatives         x x x - - -
-GetRealOutputDerivatives        - - x x x x
-DoStep                          - - x - - -
-CancelStep                      - - - - - -
-GetStatus                       - - x x x -
-GetRealStatus                   - - x x x -
-GetIntegerStatus                - - x x x -
-GetBooleanStatus                - - x x x -
-GetStringStatus                 - - x x x -
-EnterEventMode                  - - - - - -
-NewDiscreteStates               - - - - - -
-EnterContinuousTimeMode         - - - - - -
-CompletedIntegratorStep         - - - - - -
-SetTime                         - - - - - -
-SetContinuousStates             - - - - - -
-GetDerivatives                  - - - - - -
-GetEventIndicators              - - - - - -
-GetContinuousStates             - - - - - -
-GetNominalsOfContinuousStates   - - - - - -
+/// The functions of the standard that go to an instance, and whether each is allowed (`x`): for
+/// model exchange in the states `instantiated`, `initializationMode`, `eventMode`,
+/// `continuousTimeMode`, `terminated` and `error` (FMI 2.0, 3.2.3), for co-simulation in
+/// `instantiated`, `initializationMode`, `stepComplete`, `stepFailed`, `terminated` and `error`
+/// (4.2.4), without asynchronous steps, which are not declared.
+const TABLE: &str = "
+SetDebugLogging                 x x x x x x   x x x x x x
+SetupExperiment                 x - - - - -   x - - - - -
+EnterInitializationMode         x - - - - -   x - - - - -
+ExitInitializationMode          - x - - - -   - x - - - -
+Terminate                       - - x x - -   - - x x - -
+Reset                           x x x x x x   x x x x x x
+GetReal                         - x x x x x   - x x x x x
+GetInteger                      - x x x x x   - x x x x x
+GetBoolean                      - x x x x x   - x x x x x
+GetString                       - x x x x x   - x x x x x
+SetReal                         x x x x - -   x x x - - -
+SetInteger                      x x x - - -   x x x - - -
+SetBoolean                      x x x - - -   x x x - - -
+SetString                       x x x - - -   x x x - - -
+GetFMUstate                     x x x x x x   x x x x x x
+SetFMUstate                     x x x x x x   x x x x x x
+FreeFMUstate                    x x x x x x   x x x x x x
+SerializedFMUstateSize          x x x x x x   x x x x x x
+SerializeFMUstate               x x x x x x   x x x x x x
+DeSerializeFMUstate             x x x x x x   x x x x x x
+GetDirectionalDerivative        - x x x x x   - x x x x x
+SetRealInputDerivatives         - - - - - -   x x x - - -
+GetRealOutputDerivatives        - - - - - -   - - x x x x
+DoStep                          - - - - - -   - - x - - -
+CancelStep                      - - - - - -   - - - - - -
+GetStatus                       - - - - - -   - - x x x -
+GetRealStatus                   - - - - - -   - - x x x -
+GetIntegerStatus                - - - - - -   - - x x x -
+GetBooleanStatus                - - - - - -   - - x x x -
+GetStringStatus                 - - - - - -   - - x x x -
+EnterEventMode                  - - x x - -   - - - - - -
+NewDiscreteStates               - - x - - -   - - - - - -
+EnterContinuousTimeMode         - - x - - -   - - - - - -
+CompletedIntegratorStep         - - - x - -   - - - - - -
+SetTime                         - - x x - -   - - - - - -
+SetContinuousStates             - - - x - -   - - - - - -
+GetDerivatives                  - - x x x x   - - - - - -
+GetEventIndicators              - x x x x x   - - - - - -
+GetContinuousStates             - x x x x x   - - - - - -
+GetNominalsOfContinuousStates   x - x x x x   - - - - - -
 ";
 
-/// The table's columns. A synchronous slave is never in another one; a caught defect leads to
+/// The table's columns. A synchronous slave is never in another state; a caught defect leads to
 /// `fatal`, and no call is known to lead to a defect.
-const STATES: [State; 6] = [
-    State::Instantiated,
-    State::InitializationMode,
-    State::StepComplete,
-    State::StepFailed,
-    State::Terminated,
-    State::Error,
+const COLUMNS: [(Interface, State); 12] = [
+    (Interface::ModelExchange, State::Instantiated),
+    (Interface::ModelExchange, State::InitializationMode),
+    (Interface::ModelExchange, State::EventMode),
+    (Interface::ModelExchange, State::ContinuousTimeMode),
+    (Interface::ModelExchange, State::Terminated),
+    (Interface::ModelExchange, State::Error),
+    (Interface::CoSimulation, State::Instantiated),
+    (Interface::CoSimulation, State::InitializationMode),
+    (Interface::CoSimulation, State::StepComplete),
+    (Interface::CoSimulation, State::StepFailed),
+    (Interface::CoSimulation, State::Terminated),
+    (Interface::CoSimulation, State::Error),
 ];
 
 /// The table's rows.
-pub(crate) fn functions() -> impl Iterator<Item = (&'static str, [bool; 6])> {
+pub(crate) fn functions() -> impl Iterator<Item = (&'static str, [bool; 12])> {
     TABLE.lines().filter(|line| !line.is_empty()).map(|line| {
         let mut fields = line.split_whitespace();
         let name = fields.next().expect("a name");
         let allowed: Vec<_> = fields.map(|field| field == "x").collect();
-        (name, allowed.try_into().expect("six states"))
+        (name, allowed.try_into().expect("twelve columns"))
     })
-}
-
-/// Why a function is refused in every state.
-fn never(function: &str) -> &'static str {
-    match function {
-        "CancelStep" => "allowed in stepInProgress",
-        "GetDirectionalDerivative" => "no directional derivatives",
-        _ => "for co-simulation only",
-    }
 }
 
 /// An FMU state of the triangle in the host, and as bytes.
@@ -90,8 +88,8 @@ struct Saved {
 
 impl Saved {
     /// Saves the state of a new instance in slot B.
-    fn new(host: &mut Host, fmu: &Fmu) -> Self {
-        host.instantiated(B, fmu);
+    fn new(host: &mut Host, fmu: &Fmu, interface: Interface) -> Self {
+        assert!(host.instantiate(B, &for_interface(fmu, interface)).0);
         host.ok(&["GetFMUstate", B, "0"]);
         let size = host
             .ok(&["SerializedFMUstateSize", B, "0", "room"])
@@ -107,6 +105,14 @@ impl Saved {
     }
 }
 
+/// What a host passes to get an instance for an interface.
+fn for_interface(fmu: &Fmu, interface: Interface) -> Instantiate {
+    Instantiate {
+        model_exchange: interface == Interface::ModelExchange,
+        ..Instantiate::right(fmu)
+    }
+}
+
 /// The call with right arguments for the triangle driven by its length, at 0.1 s.
 fn request(function: &str, slot: &str, state: State, saved: &Saved) -> Vec<String> {
     // Position input, fixed parameter `rates`, and `arm.x`.
@@ -118,7 +124,9 @@ fn request(function: &str, slot: &str, state: State, saved: &Saved) -> Vec<Strin
         "GetInteger" => &["1", rates, "room"],
         "SetReal" => &["1", input, "0.41"],
         // After initialization there is nothing left to be set.
-        "SetInteger" if state == State::StepComplete => &["0", NULL, NULL],
+        "SetInteger" if state == State::StepComplete || state == State::EventMode => {
+            &["0", NULL, NULL]
+        }
         "SetInteger" => &["1", rates, "2"],
         // There are no such variables.
         "GetBoolean" | "GetString" => &["0", "", "room"],
@@ -133,6 +141,15 @@ fn request(function: &str, slot: &str, state: State, saved: &Saved) -> Vec<Strin
         "DeSerializeFMUstate" => &[&saved.bytes, &saved.size, "3"],
         "SetRealInputDerivatives" => &["1", input, "1", "0.1"],
         "GetRealOutputDerivatives" => &["1", output, "1", "room"],
+        "GetDirectionalDerivative" => &["1", output, "1", input, "1", "room"],
+        "SetTime" => &["0.2"],
+        "NewDiscreteStates" => &["room"],
+        "CompletedIntegratorStep" => &["room", "room"],
+        "SetContinuousStates"
+        | "GetDerivatives"
+        | "GetEventIndicators"
+        | "GetContinuousStates"
+        | "GetNominalsOfContinuousStates" => &["0"],
         "DoStep" => &["0.1", "0.1", "1"],
         "GetStatus" => &["0", "room"],
         "GetIntegerStatus" | "GetStringStatus" => &["1", "room"],
@@ -150,7 +167,7 @@ fn request(function: &str, slot: &str, state: State, saved: &Saved) -> Vec<Strin
 fn the_null_instance_is_refused_by_every_function() {
     let fmu = Fmu::of("tlv");
     let mut host = Host::start();
-    let saved = Saved::new(&mut host, &fmu);
+    let saved = Saved::new(&mut host, &fmu, Interface::CoSimulation);
     for (function, _) in functions() {
         let answer = host.call(&request(function, NULL, State::Instantiated, &saved));
         assert_eq!(
@@ -163,24 +180,13 @@ fn the_null_instance_is_refused_by_every_function() {
 }
 
 /// Brings a new instance of the triangle into a state.
-fn bring_to(host: &mut Host, state: State, fmu: &Fmu) {
-    host.instantiated(A, fmu);
+fn bring_to(host: &mut Host, (interface, state): (Interface, State), fmu: &Fmu) {
+    assert!(host.instantiate(A, &for_interface(fmu, interface)).0);
     match state {
         State::Instantiated => {}
         State::InitializationMode => {
             host.ok(&["SetupExperiment", A, "0", NULL]);
             host.ok(&["EnterInitializationMode", A]);
-        }
-        State::StepComplete | State::StepFailed | State::Terminated => {
-            host.initialize(A);
-            host.set_real(A, "0", 0.4);
-            assert_eq!(host.do_step(A, 0.0, 0.1).status, Status::Ok);
-            if state == State::StepFailed {
-                host.set_real(A, "0", 0.9);
-                assert_eq!(host.do_step(A, 0.1, 0.1).status, Status::Discard);
-            } else if state == State::Terminated {
-                host.ok(&["Terminate", A]);
-            }
         }
         State::Error => {
             host.ok(&["SetupExperiment", A, "0", NULL]);
@@ -189,6 +195,42 @@ fn bring_to(host: &mut Host, state: State, fmu: &Fmu) {
             host.set_real(A, &fmu.vr("arm_length"), 10.0);
             host.refused(&["ExitInitializationMode", A]);
         }
+        _ => {
+            host.initialize(A);
+            match interface {
+                Interface::ModelExchange => integrate_to(host, state),
+                Interface::CoSimulation => step_to(host, state),
+            }
+        }
+    }
+}
+
+/// From the start of model exchange on, to 0.1 s.
+fn integrate_to(host: &mut Host, state: State) {
+    host.ok(&["EnterContinuousTimeMode", A]);
+    host.ok(&["SetTime", A, "0.1"]);
+    host.set_real(A, "0", 0.4);
+    let answer = host.ok(&["CompletedIntegratorStep", A, "room", "room"]);
+    assert_eq!(answer, ["0", "0"]);
+    match state {
+        State::ContinuousTimeMode => {}
+        State::EventMode => drop(host.ok(&["EnterEventMode", A])),
+        State::Terminated => drop(host.ok(&["Terminate", A])),
+        _ => unreachable!("the table has no such column"),
+    }
+}
+
+/// From the start of co-simulation on, to 0.1 s.
+fn step_to(host: &mut Host, state: State) {
+    host.set_real(A, "0", 0.4);
+    assert_eq!(host.do_step(A, 0.0, 0.1).status, Status::Ok);
+    match state {
+        State::StepComplete => {}
+        State::StepFailed => {
+            host.set_real(A, "0", 0.9);
+            assert_eq!(host.do_step(A, 0.1, 0.1).status, Status::Discard);
+        }
+        State::Terminated => drop(host.ok(&["Terminate", A])),
         _ => unreachable!("the table has no such column"),
     }
 }
@@ -197,19 +239,34 @@ fn bring_to(host: &mut Host, state: State, fmu: &Fmu) {
 fn examine(host: &mut Host, fmu: &Fmu) -> Vec<Answer> {
     let reals: Vec<_> = fmu.reals().iter().map(u32::to_string).collect();
     let (n, reals) = (reals.len().to_string(), reals.join(","));
-    let look: [&[&str]; 6] = [
+    let look: [&[&str]; 7] = [
         &["GetReal", A, &n, &reals, "room"],
         &["GetInteger", A, "2", "5,6", "room"],
         &["GetRealOutputDerivatives", A, "2", "7,10", "2,1", "room"],
+        &[
+            "GetDirectionalDerivative",
+            A,
+            "2",
+            "7,10",
+            "2",
+            "0,1",
+            "1,2",
+            "room",
+        ],
         &["GetStatus", A, "0", "room"],
         &["GetRealStatus", A, "2", "room"],
         &["GetBooleanStatus", A, "3", "room"],
     ];
-    let go_on: [&[&str]; 9] = [
+    let go_on: [&[&str]; 14] = [
         &["DoStep", A, "0.1", "0.1", "1"],
+        &["CompletedIntegratorStep", A, "room", "room"],
+        &["EnterEventMode", A],
+        &["EnterContinuousTimeMode", A],
         &["EnterInitializationMode", A],
         &["ExitInitializationMode", A],
         &["DoStep", A, "0", "0.1", "1"],
+        &["EnterContinuousTimeMode", A],
+        &["SetTime", A, "0.3"],
         &["Terminate", A],
         &["Reset", A],
         &["EnterInitializationMode", A],
@@ -220,42 +277,64 @@ fn examine(host: &mut Host, fmu: &Fmu) -> Vec<Answer> {
     for request in go_on {
         answers.push(host.call(request));
         if request[0] != "FreeInstance" {
-            answers.extend(look.iter().map(|request| host.call(request)));
+            answers.push(host.call(look[0]));
         }
     }
     answers
 }
 
 #[test]
-fn each_state_allows_its_calls_and_refuses_the_others_without_a_trace() {
+fn states_of_model_exchange_allow_their_calls_and_refuse_the_others_without_a_trace() {
+    check_states_of(Interface::ModelExchange);
+}
+
+#[test]
+fn states_of_co_simulation_allow_their_calls_and_refuse_the_others_without_a_trace() {
+    check_states_of(Interface::CoSimulation);
+}
+
+fn check_states_of(interface: Interface) {
     let fmu = Fmu::of("tlv");
-    let mut host = Host::start();
-    let saved = Saved::new(&mut host, &fmu);
-    for (column, state) in STATES.into_iter().enumerate() {
-        bring_to(&mut host, state, &fmu);
+    let columns = COLUMNS.into_iter().enumerate();
+    for (column, (_, state)) in columns.filter(|(_, (of, _))| *of == interface) {
+        let mut host = Host::start();
+        let saved = Saved::new(&mut host, &fmu, interface);
+        bring_to(&mut host, (interface, state), &fmu);
         let undisturbed = examine(&mut host, &fmu);
         for (function, allowed) in functions() {
-            bring_to(&mut host, state, &fmu);
+            bring_to(&mut host, (interface, state), &fmu);
             let request = request(function, A, state, &saved);
             if allowed[column] {
                 let answer = host.call(&request);
                 // For the standard defines no status that these two could give.
                 let none = ["GetIntegerStatus", "GetStringStatus"].contains(&function);
                 let expected = if none { Status::Discard } else { Status::Ok };
-                assert_eq!(answer.status, expected, "{function} in {state}: {answer:?}");
+                assert_eq!(
+                    answer.status, expected,
+                    "{function} in {state}, {interface}: {answer:?}"
+                );
                 host.ok(&["FreeFMUstate", A, "3"]);
                 host.ok(&["FreeInstance", A]);
             } else {
                 let reason = host.refused(&request);
-                let expected = if allowed.contains(&true) {
+                let (first, last) = allowed.split_at(6);
+                let own = match interface {
+                    Interface::ModelExchange => first,
+                    Interface::CoSimulation => last,
+                };
+                let expected = if own.contains(&true) || function == "CancelStep" {
                     format!("not allowed in state {state}")
                 } else {
-                    never(function).to_owned()
+                    format!("is not for {interface}")
                 };
-                assert!(reason.contains(&expected), "{reason}");
+                let expected = match (function, interface) {
+                    ("CancelStep", Interface::ModelExchange) => "is not for model exchange",
+                    _ => &expected,
+                };
+                assert!(reason.contains(expected), "{reason}");
                 assert!(
                     examine(&mut host, &fmu) == undisturbed,
-                    "{function} left a trace in {state}"
+                    "{function} left a trace in {state}, {interface}"
                 );
             }
         }

@@ -5,8 +5,25 @@
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
+use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Sink, Status};
 use biela::kinematics::{Curve, Path, Rates, Solver};
 use biela::mechanism::{Jet, Mechanism, Source, Variable};
+
+pub(crate) type Instance = biela::fmi::Instance<MechanismModel>;
+pub(crate) type FmuState = biela::fmi::FmuState<MechanismState>;
+
+/// A log that nobody reads.
+struct Silent;
+
+impl Sink for Silent {
+    fn write(&self, _: Status, _: Category, _: &str) {}
+}
+
+/// A new instance of a mechanism that assembles.
+pub(crate) fn instance_of(mechanism: Arc<Mechanism>, interface: Interface) -> Instance {
+    let model = MechanismModel::new(mechanism, interface).expect("the mechanism assembles");
+    Instance::new(model, Box::new(Silent), true)
+}
 
 /// A shipped mechanism with one driver, and each of its generalized coordinates as a formula in
 /// the driver's value `t`.

@@ -124,16 +124,11 @@ def test_outputs_cannot_be_set(slave):
     assert any("rocker.phi" in text for text in instance.messages.texts(ERROR))
 
 
-def test_functions_not_served_yet_say_so(slave):
-    """Their capability flags are off; called all the same they answer with an error."""
+def test_there_is_no_step_to_be_cancelled(slave):
     instance = slave("four_bar").start()
-    for call in (
-        lambda: instance.fmi.getDirectionalDerivative([0], [1], [1.0]),
-        instance.fmi.cancelStep,
-    ):
-        with pytest.raises(FMICallException) as refused:
-            call()
-        assert refused.value.status == ERROR
+    with pytest.raises(FMICallException) as refused:
+        instance.fmi.cancelStep()
+    assert refused.value.status == ERROR
     instance.step(0.1)
 
 

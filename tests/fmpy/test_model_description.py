@@ -337,7 +337,17 @@ def test_capabilities(fmu, name):
     assert root.get("fmiVersion") == "2.0"
     assert root.get("variableNamingConvention") == "structured"
     assert root.get("numberOfEventIndicators") in (None, "0")
-    assert root.find("ModelExchange") is None
+
+    served = dict(root.find("ModelExchange").attrib)
+    assert served.pop("modelIdentifier") == root.get("modelName") == name
+    assert {flag for flag, value in served.items() if value != "false"} == {
+        "canNotUseMemoryManagementFunctions",
+        "canGetAndSetFMUstate",
+        "canSerializeFMUstate",
+        "providesDirectionalDerivative",
+    }
+    assert served["completedIntegratorStepNotNeeded"] == "false"
+    assert not list(root.find("ModelStructure").iterfind("Derivatives")), "no continuous states"
 
     served = dict(root.find("CoSimulation").attrib)
     assert served.pop("modelIdentifier") == root.get("modelName") == name
@@ -348,6 +358,7 @@ def test_capabilities(fmu, name):
         "canNotUseMemoryManagementFunctions",
         "canGetAndSetFMUstate",
         "canSerializeFMUstate",
+        "providesDirectionalDerivative",
     }
 
 

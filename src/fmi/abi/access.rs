@@ -108,3 +108,31 @@ without_variables! {
     /// `fmi2SetString`: there are no String variables.
     fmi2SetString(SetString, *const fmi2String, "String");
 }
+
+/// `fmi2GetDirectionalDerivative`.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
+    c: fmi2Component,
+    vr_unknown: *const fmi2ValueReference,
+    n_unknown: usize,
+    vr_known: *const fmi2ValueReference,
+    n_known: usize,
+    dv_known: *const fmi2Real,
+    dv_unknown: *mut fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2GetDirectionalDerivative", |instance| {
+            let unknowns = slice("vUnknown_ref", vr_unknown, n_unknown)?;
+            let knowns = slice("vKnown_ref", vr_known, n_known)?;
+            let changes = slice("dvKnown", dv_known, n_known)?;
+            let room = Room::new("dvUnknown", dv_unknown, n_unknown)?;
+            room.fill(instance.directional_derivative(unknowns, knowns, changes)?);
+            Ok(())
+        })
+    }
+}

@@ -8,8 +8,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use fmi_sys::fmi2::{fmi2Component, fmi2Status, fmi2Status_fmi2Error};
 
+use super::Exported;
 use super::host::status_code;
-use crate::fmi::{Error, Instance, Status};
+use crate::fmi::{Error, Status};
+
+type Instance = crate::fmi::Instance<Exported>;
 
 /// What stands behind an `fmi2Component`.
 pub(super) struct Component {

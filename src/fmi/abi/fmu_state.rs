@@ -7,9 +7,12 @@ use std::ptr::null_mut;
 
 use fmi_sys::fmi2::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Status};
 
+use super::Exported;
 use super::arguments::{Room, slice, write};
 use super::component::{CallError, with_instance};
-use crate::fmi::{Call, Error, FmuState, StateError};
+use crate::fmi::{Call, Error, Model, StateError};
+
+type FmuState = crate::fmi::FmuState<<Exported as Model>::State>;
 
 /// The state behind a handle of the host.
 ///

@@ -35,6 +35,7 @@ impl Sink for HostLogger {
         let Some(callback) = self.callback else {
             return;
         };
+        let message = shortened(message);
         // The standard reads `#r12#` in a message as a reference to a variable.
         let message = message.replace('#', "##");
         let (category, message) = (c_string(category.name()), c_string(&message));
@@ -53,6 +54,19 @@ impl Sink for HostLogger {
     }
 }
 
+/// What hosts have room for: a mechanism of thousands of bodies may have as much to say.
+const LONGEST_MESSAGE: usize = 8000;
+
+/// The beginning of a message that is too long.
+fn shortened(message: &str) -> std::borrow::Cow<'_, str> {
+    if message.len() <= LONGEST_MESSAGE {
+        return message.into();
+    }
+    let end = message.floor_char_boundary(LONGEST_MESSAGE);
+    let left = message.len() - end;
+    format!("{}… ({left} bytes more)", &message[..end]).into()
+}
+
 /// The standard's number of a status.
 pub(super) fn status_code(status: Status) -> fmi2Status {
     match status {
@@ -67,4 +81,18 @@ pub(super) fn status_code(status: Status) -> fmi2Status {
 /// A C string; NUL characters inside, which it could not carry, are left out.
 fn c_string(text: &str) -> CString {
     CString::new(text.replace('\0', "")).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LONGEST_MESSAGE, shortened};
+
+    #[test]
+    fn long_messages_are_cut_between_characters() {
+        assert_eq!(shortened("manivela"), "manivela");
+        let long = "á".repeat(LONGEST_MESSAGE);
+        let cut = shortened(&long);
+        assert!(cut.len() < LONGEST_MESSAGE + 30);
+        assert!(cut.ends_with("á… (8000 bytes more)"), "{cut}");
+    }
 }

@@ -5,13 +5,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use fmi_sys::fmi2::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2Component, fmi2Real, fmi2Status, fmi2String, fmi2Type,
-    fmi2Type_fmi2CoSimulation,
+    fmi2Type_fmi2CoSimulation, fmi2Type_fmi2ModelExchange,
 };
 
+use super::Exported;
 use super::arguments::{slice, text};
 use super::component::{CallError, Component, panic_message, silence_panics, with_instance};
 use super::host::HostLogger;
-use crate::fmi::{Call, Category, Instance, Sink, Status};
+use crate::fmi::{Call, Category, Instance, Interface, Sink, Status};
 
 /// `fmi2GetTypesPlatform`: always `"default"`.
 #[unsafe(no_mangle)]
@@ -25,7 +26,7 @@ pub extern "C" fn fmi2GetVersion() -> *const c_char {
     c"2.0".as_ptr()
 }
 
-/// `fmi2Instantiate`: reads the mechanism in the resources and assembles it.
+/// `fmi2Instantiate`: reads the model in the resources.
 ///
 /// Null if that fails; the reason has gone to the logger.
 ///
@@ -70,15 +71,19 @@ pub unsafe extern "C" fn fmi2Instantiate(
         if name.is_empty() {
             return Err(CallError::Argument("`instanceName` is empty".to_owned()));
         }
-        if fmu_type != fmi2Type_fmi2CoSimulation {
-            return Err(CallError::Argument(
-                "this FMU is for co-simulation only, not for model exchange".to_owned(),
-            ));
-        }
+        let interface = match fmu_type {
+            fmi2Type_fmi2ModelExchange => Interface::ModelExchange,
+            fmi2Type_fmi2CoSimulation => Interface::CoSimulation,
+            other => {
+                let message = format!("`fmuType` {other} is neither of the two interfaces");
+                return Err(CallError::Argument(message));
+            }
+        };
         let sink = Box::new(HostLogger::new(callbacks, name));
-        Ok(Instance::instantiate(
+        Ok(Instance::<Exported>::instantiate(
             guid,
             resources,
+            interface,
             sink,
             logging_on != 0,
         )?)

@@ -30,19 +30,22 @@
 mod access;
 mod arguments;
 mod component;
+mod exchange;
 mod fmu_state;
 mod host;
 mod lifecycle;
-mod not_served;
 mod stepping;
 #[cfg(test)]
 mod tests;
 
 use access::*;
+use exchange::*;
 use fmu_state::*;
 use lifecycle::*;
-use not_served::*;
 use stepping::*;
+
+/// The model whose C interface this is.
+type Exported = super::MechanismModel;
 
 // `fmi-sys` defines and exports a logger for importing hosts. Hidden, it stays inside.
 #[cfg(target_os = "linux")]

@@ -11,7 +11,7 @@ use fmi_sys::fmi2::{
 
 use super::component::Component;
 use super::*;
-use crate::fmi::{Category, Instance, Sink, Status};
+use crate::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
 use crate::mechanism::{Mechanism, Source};
 
 /// A sink that panics at its first message and counts the fatal ones after it.
@@ -33,8 +33,8 @@ impl Sink for Breaking {
 fn component(sink: impl Sink + Send + 'static) -> fmi2Component {
     let text = include_str!("../../../mechanisms/pendulum.toml");
     let (mechanism, _) = Mechanism::parse(&Source::new("pendulum.toml", text)).unwrap();
-    let instance = Instance::new(mechanism.into(), Box::new(sink), false).unwrap();
-    Component::hand_over(instance)
+    let model = MechanismModel::new(mechanism.into(), Interface::CoSimulation).unwrap();
+    Component::hand_over(Instance::new(model, Box::new(sink), false))
 }
 
 /// What each function that goes to an instance answers, given nothing.

@@ -1,13 +1,13 @@
-//! Setting and getting variables.
+//! Setting and getting variables, and their derivatives.
 
 use std::slice::Iter;
 
-use super::{Error, Freshness, Instance, check_finite};
-use crate::fmi::inputs::{Extrapolation, RateSource};
+use super::{ELSEWHERE, Error, Instance, check_finite};
+use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
-use crate::fmi::variables::{Causality, Kind, Order, Quantity, Variability, Variable, Variables};
+use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 
-impl Instance {
+impl<M: Model> Instance<M> {
     /// `fmi2SetReal`. Either all values are taken or none.
     ///
     /// # Errors
@@ -17,38 +17,20 @@ impl Instance {
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
         for (&value_reference, &value) in value_references.iter().zip(values) {
-            // Inputs have no limits.
-            let is_input = self.variables.input(value_reference).is_some();
-            if !(is_input && value.is_finite()) {
+            let free = self.free_inputs.get(value_reference as usize);
+            if !(free == Some(&true) && value.is_finite()) {
                 let variable = self.settable(value_reference, "Real")?;
                 check_value(variable, value)?;
             }
         }
-        let mut parameters_changed = false;
-        for (&value_reference, &value) in value_references.iter().zip(values) {
-            if let Some((driver, order)) = self.variables.input(value_reference) {
-                self.inputs[driver.index()].set(order, value);
-                continue;
-            }
-            match self.variables.list()[value_reference as usize].quantity {
-                Quantity::Parameter(parameter) => {
-                    self.settings.parameters[parameter.index()] = value;
-                    parameters_changed = true;
-                }
-                _ => unreachable!("`settable` passes inputs and parameters only"),
-            }
-        }
-        if parameters_changed {
-            self.mechanism
-                .derive_parameters(&mut self.settings.parameters);
-        }
-        if !value_references.is_empty() {
-            self.freshness = Freshness::Stale;
-        }
+        let quantities = &self.quantities;
+        let values = value_references.iter().zip(values);
+        self.model
+            .set_reals(values.map(|(&vr, &value)| (quantities[vr as usize], value)));
         Ok(())
     }
 
-    /// `fmi2SetInteger`: the choices `rates` and `extrapolation`.
+    /// `fmi2SetInteger`, for enumerations as well. Either all values are taken or none.
     ///
     /// # Errors
     ///
@@ -68,15 +50,10 @@ impl Instance {
                 });
             }
         }
-        for (&value_reference, &value) in value_references.iter().zip(values) {
-            let item = value as usize - 1;
-            match self.variables.list()[value_reference as usize].quantity {
-                Quantity::RateSource => self.settings.rates = RateSource::ALL[item],
-                Quantity::Extrapolation => self.settings.extrapolation = Extrapolation::ALL[item],
-                _ => unreachable!("`settable` passes the two choices only"),
-            }
-            self.freshness = Freshness::Stale;
-        }
+        let quantities = &self.quantities;
+        let values = value_references.iter().zip(values);
+        self.model
+            .set_integers(values.map(|(&vr, &value)| (quantities[vr as usize], value)));
         Ok(())
     }
 
@@ -95,14 +72,7 @@ impl Instance {
         self.allow(call)?;
         match value_references {
             [] => Ok(()),
-            [first, ..] => {
-                let variable = self.variable(*first)?;
-                Err(Error::Type {
-                    name: variable.name.clone(),
-                    actual: type_name(variable),
-                    expected,
-                })
-            }
+            [first, ..] => Err(wrong_type(self.variable(*first)?, expected)),
         }
     }
 
@@ -119,8 +89,8 @@ impl Instance {
         values: &[f64],
     ) -> Result<(), Error> {
         self.allow(Call::SetRealInputDerivatives)?;
-        let entries = || value_references.iter().zip(orders).zip(values);
-        for ((&value_reference, &order), &value) in entries() {
+        let entries = value_references.iter().zip(orders).zip(values);
+        for ((&value_reference, &order), &value) in entries.clone() {
             let variable = self.variable(value_reference)?;
             if variable.causality != Causality::Input {
                 return Err(Error::NotSettable {
@@ -136,15 +106,10 @@ impl Instance {
             }
             check_finite(&variable.name, value)?;
         }
-        for ((&value_reference, &order), &value) in entries() {
-            let quantity = self.variables.list()[value_reference as usize].quantity;
-            if let Quantity::Input(driver, input) = quantity {
-                self.inputs[driver.index()].set_derivative(input, order as usize, value);
-            }
-        }
-        if !value_references.is_empty() {
-            self.freshness = Freshness::Stale;
-        }
+        let quantities = &self.quantities;
+        self.model.set_input_derivatives(
+            entries.map(|((&vr, &order), &value)| (quantities[vr as usize], order as usize, value)),
+        );
         Ok(())
     }
 
@@ -164,53 +129,44 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// A variable is unknown or no Real; or there is no pose, or no rates, for the values set.
+    /// A variable is unknown or no Real; or it has no value for the values set.
     pub fn reals<'a>(
         &'a mut self,
         value_references: &'a [u32],
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
-        // Coordinates of bodies and their rates are what most hosts ask for, and nothing else.
-        let places = self.variables.places();
+        let Self { places, .. } = self;
+        // What most hosts ask for stands side by side.
         let last = value_references.iter().map(|&value_reference| {
             let place = places.get(value_reference as usize);
-            place.copied().unwrap_or(Variables::ELSEWHERE)
+            place.copied().unwrap_or(ELSEWHERE)
         });
-        let last = last.fold(0, u32::max) as usize;
-        let value_references_left = value_references.iter();
-        if last < self.coordinates.len() && !value_references.is_empty() {
-            let coordinates = 3 * self.mechanism.bodies.len();
-            let values = if last < coordinates {
-                self.refresh_pose()?;
-                &self.solver.pose().q[..coordinates]
-            } else {
-                self.refresh_rates()?;
-                &self.coordinates
-            };
-            return Ok(Reals::Coordinates {
-                places: self.variables.places(),
+        let last = last.fold(0, u32::max);
+        let left = value_references.iter();
+        if last != ELSEWHERE && !value_references.is_empty() {
+            let values = self.model.table(last, self.state.phase(), &self.logger)?;
+            let places = &self.places;
+            return Ok(Reals::InTable {
+                places,
                 values,
-                value_references: value_references_left,
+                left,
             });
         }
         for &value_reference in value_references {
             let variable = self.variable(value_reference)?;
-            if !matches!(variable.kind, Kind::Real { .. }) {
-                return Err(Error::Type {
-                    name: variable.name.clone(),
-                    actual: type_name(variable),
-                    expected: "Real",
-                });
+            if !variable.kind.is_real() {
+                return Err(wrong_type(variable, "Real"));
             }
             self.make_ready(variable.quantity)?;
         }
-        Ok(Reals::Any {
-            instance: self,
-            value_references: value_references_left,
+        Ok(Reals::OneByOne {
+            model: &mut self.model,
+            quantities: &self.quantities,
+            left,
         })
     }
 
-    /// `fmi2GetInteger`: counts of the last step, and the choices.
+    /// `fmi2GetInteger`, for enumerations as well.
     ///
     /// # Errors
     ///
@@ -230,7 +186,8 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// A variable is unknown or neither Integer nor Enumeration; or there is no pose.
+    /// A variable is unknown or neither Integer nor Enumeration; or it has no value for the
+    /// values set.
     pub fn integers<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -238,27 +195,23 @@ impl Instance {
         self.allow(Call::GetInteger)?;
         for &value_reference in value_references {
             let variable = self.variable(value_reference)?;
-            if matches!(variable.kind, Kind::Real { .. }) {
-                return Err(Error::Type {
-                    name: variable.name.clone(),
-                    actual: type_name(variable),
-                    expected: "Integer or Enumeration",
-                });
+            if variable.kind.is_real() {
+                return Err(wrong_type(variable, "Integer or Enumeration"));
             }
             self.make_ready(variable.quantity)?;
         }
-        Ok(value_references.iter().map(|&value_reference| {
-            self.integer(self.variables.list()[value_reference as usize].quantity)
-        }))
+        let (model, quantities) = (&mut self.model, &self.quantities);
+        let values = value_references.iter();
+        Ok(values.map(|&vr| model.integer(quantities[vr as usize])))
     }
 
-    /// `fmi2GetRealOutputDerivatives`: exact derivatives of outputs with respect to time, in the
-    /// order of their references.
+    /// `fmi2GetRealOutputDerivatives`: derivatives of outputs with respect to time, in the order
+    /// of their references.
     ///
     /// # Errors
     ///
     /// [`Error::NoOutputDerivative`] for one that does not exist; a variable is no output, an
-    /// order is below 1; or there is no pose, or no rates, for the values set.
+    /// order is below 1; or it has no value for the values set.
     pub fn output_derivatives<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -276,48 +229,120 @@ impl Instance {
                 let name = name();
                 return Err(Error::OutputDerivativeOrder { name, order });
             }
-            let Some(derivative) = variable.quantity.derivative(order as usize) else {
+            let derivative = self.model.time_derivative(variable.quantity, order as u32);
+            let Some(derivative) = derivative else {
                 let name = name();
                 return Err(Error::NoOutputDerivative { name, order });
             };
             self.make_ready(derivative)?;
         }
-        Ok(entries.map(|(&value_reference, &order)| {
-            let output = self.variables.list()[value_reference as usize].quantity;
-            let derivative = output.derivative(order as usize);
-            self.real(derivative.expect("checked above"))
+        let (model, quantities) = (&mut self.model, &self.quantities);
+        Ok(entries.map(|(&vr, &order)| {
+            let derivative = model.time_derivative(quantities[vr as usize], order as u32);
+            model.real(derivative.expect("checked above"))
         }))
     }
 
-    fn variable(&self, value_reference: u32) -> Result<&Variable, Error> {
-        self.variables
-            .get(value_reference)
+    /// `fmi2GetDirectionalDerivative`: how outputs change along a direction in the space of
+    /// inputs; in initialization mode also calculated parameters, and along parameters.
+    ///
+    /// # Errors
+    ///
+    /// A variable is not one of these, or given twice; a change is not finite; or there is no
+    /// derivative for the values set.
+    pub fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        changes: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        self.allow(Call::GetDirectionalDerivative)?;
+        let initializing = self.state == State::InitializationMode;
+        let refuse = |variable: &Variable<_>, role| {
+            Err(Error::NoDerivative {
+                name: variable.name.clone(),
+                role,
+            })
+        };
+        let mut directions = Vec::with_capacity(knowns.len());
+        for (&value_reference, &change) in knowns.iter().zip(changes) {
+            let variable = self.variable(value_reference)?;
+            let known = match variable.causality {
+                Causality::Input => true,
+                Causality::Parameter => initializing && variable.kind.is_real(),
+                _ => false,
+            };
+            if !known {
+                return refuse(variable, "derivatives are taken by inputs");
+            }
+            check_finite(&variable.name, change)?;
+            directions.push((variable.quantity, change));
+        }
+        let mut wanted = Vec::with_capacity(unknowns.len());
+        for &value_reference in unknowns {
+            let variable = self.variable(value_reference)?;
+            let unknown = match variable.causality {
+                Causality::Output => true,
+                Causality::CalculatedParameter => initializing,
+                _ => false,
+            };
+            if !unknown {
+                return refuse(variable, "derivatives are taken of outputs");
+            }
+            wanted.push(variable.quantity);
+        }
+        for &quantity in &wanted {
+            self.make_ready(quantity)?;
+        }
+        let phase = self.state.phase();
+        let logger = &self.logger;
+        Ok(self
+            .model
+            .directional_derivatives(&wanted, &directions, phase, logger)?)
+    }
+
+    fn make_ready(&mut self, quantity: M::Quantity) -> Result<(), Error> {
+        let phase = self.state.phase();
+        Ok(self.model.make_ready(quantity, phase, &self.logger)?)
+    }
+
+    fn variable(&self, value_reference: u32) -> Result<&Variable<M::Quantity>, Error> {
+        let variables = self.variables();
+        variables
+            .get(value_reference as usize)
             .ok_or_else(|| Error::ValueReference {
                 value_reference,
-                last: self.variables.list().len() - 1,
+                last: variables.len().saturating_sub(1),
             })
     }
 
     /// The variable, if it has this type and can be set in the present state.
-    fn settable(&self, value_reference: u32, expected: &'static str) -> Result<&Variable, Error> {
+    fn settable(
+        &self,
+        value_reference: u32,
+        expected: &'static str,
+    ) -> Result<&Variable<M::Quantity>, Error> {
         let variable = self.variable(value_reference)?;
-        let is_real = matches!(variable.kind, Kind::Real { .. });
-        if is_real != (expected == "Real") {
-            return Err(Error::Type {
-                name: variable.name.clone(),
-                actual: type_name(variable),
-                expected,
-            });
+        if variable.kind.is_real() != (expected == "Real") {
+            return Err(wrong_type(variable, expected));
         }
+        let initializing = matches!(self.state, State::Instantiated | State::InitializationMode);
         let why = match variable.causality {
-            Causality::Input => return Ok(variable),
-            Causality::Parameter
-                if variable.variability == Variability::Tunable
-                    || self.state != State::StepComplete =>
+            Causality::Input
+                if variable.variability == Variability::Continuous
+                    || self.state != State::ContinuousTimeMode =>
             {
                 return Ok(variable);
             }
-            Causality::Parameter => "a fixed parameter, and initialization has ended",
+            Causality::Input => "a discrete input, which changes in event mode",
+            Causality::Parameter if initializing => return Ok(variable),
+            Causality::Parameter if variable.variability == Variability::Fixed => {
+                "a fixed parameter, and initialization has ended"
+            }
+            Causality::Parameter if self.state == State::ContinuousTimeMode => {
+                "a tunable parameter, which changes in event mode"
+            }
+            Causality::Parameter => return Ok(variable),
             Causality::CalculatedParameter => "a parameter derived from others",
             Causality::Output => "an output",
             Causality::Local => "about the solver",
@@ -328,91 +353,47 @@ impl Instance {
             why,
         })
     }
-
-    /// Computes what the value of a variable is read from.
-    fn make_ready(&mut self, quantity: Quantity) -> Result<(), Error> {
-        match quantity {
-            Quantity::Input(..)
-            | Quantity::Parameter(_)
-            | Quantity::RateSource
-            | Quantity::Extrapolation
-            | Quantity::Time => Ok(()),
-            Quantity::Body(_, _, order)
-            | Quantity::Marker(_, _, order)
-            | Quantity::Measure(_, order)
-            | Quantity::Motion(_, order)
-                if order > Order::Position =>
-            {
-                self.refresh_rates()
-            }
-            _ => self.refresh_pose(),
-        }
-    }
-
-    /// The value of a Real variable that is [ready](Self::make_ready).
-    fn real(&mut self, quantity: Quantity) -> f64 {
-        match quantity {
-            Quantity::Input(driver, order) => self.inputs[driver.index()].get(order),
-            Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
-            Quantity::Time => self.time,
-            Quantity::Residual => self.solver.residual(),
-            Quantity::Rcond => self.solver.rcond(),
-            output => output.read(&self.solver, &self.rates, &self.driver_rates),
-        }
-    }
-
-    /// The value of an Integer or Enumeration variable that is [ready](Self::make_ready).
-    fn integer(&self, quantity: Quantity) -> i32 {
-        let count = match quantity {
-            Quantity::RateSource => return self.settings.rates as i32,
-            Quantity::Extrapolation => return self.settings.extrapolation as i32,
-            Quantity::Iterations => self.progress.iterations,
-            Quantity::Substeps => self.progress.substeps,
-            _ => unreachable!("all other variables are Reals"),
-        };
-        i32::try_from(count).unwrap_or(i32::MAX)
-    }
 }
 
 /// The values of Real variables that are ready, in the order of their references.
-enum Reals<'a> {
-    Coordinates {
+enum Reals<'a, M: Model> {
+    InTable {
         places: &'a [u32],
         values: &'a [f64],
-        value_references: Iter<'a, u32>,
+        left: Iter<'a, u32>,
     },
-    Any {
-        instance: &'a mut Instance,
-        value_references: Iter<'a, u32>,
+    OneByOne {
+        model: &'a mut M,
+        quantities: &'a [M::Quantity],
+        left: Iter<'a, u32>,
     },
 }
 
-impl Iterator for Reals<'_> {
+impl<M: Model> Iterator for Reals<'_, M> {
     type Item = f64;
 
     #[inline]
     fn next(&mut self) -> Option<f64> {
         match self {
-            Self::Coordinates {
+            Self::InTable {
                 places,
                 values,
-                value_references,
+                left,
             } => {
-                let place = places[*value_references.next()? as usize];
+                let place = places[*left.next()? as usize];
                 Some(values[place as usize])
             }
-            Self::Any {
-                instance,
-                value_references,
-            } => {
-                let index = *value_references.next()? as usize;
-                Some(instance.real(instance.variables.list()[index].quantity))
-            }
+            Self::OneByOne {
+                model,
+                quantities,
+                left,
+            } => Some(model.real(quantities[*left.next()? as usize])),
         }
     }
 }
 
-pub(super) fn check_value(variable: &Variable, value: f64) -> Result<(), Error> {
+/// Whether a Real variable can have a value.
+pub(in crate::fmi) fn check_value<Q>(variable: &Variable<Q>, value: f64) -> Result<(), Error> {
     check_finite(&variable.name, value)?;
     if let Kind::Real { min, max, .. } = variable.kind
         && (min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max))
@@ -427,10 +408,10 @@ pub(super) fn check_value(variable: &Variable, value: f64) -> Result<(), Error> 
     Ok(())
 }
 
-fn type_name(variable: &Variable) -> &'static str {
-    match variable.kind {
-        Kind::Real { .. } => "a Real",
-        Kind::Integer => "an Integer",
-        Kind::Enumeration(_) => "an Enumeration",
+fn wrong_type<Q>(variable: &Variable<Q>, expected: &'static str) -> Error {
+    Error::Type {
+        name: variable.name.clone(),
+        actual: variable.kind.name(),
+        expected,
     }
 }

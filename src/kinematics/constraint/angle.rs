@@ -2,6 +2,7 @@
 
 use super::{
     Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, TurnEffect,
+    Varied, VariedConfiguration,
 };
 use crate::mechanism::{MarkerId, Mechanism};
 
@@ -35,6 +36,10 @@ impl Constraint for Angle {
     /// Zero: the angle is linear in q.
     fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
         0.0
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        at.marker(self.to).theta - at.marker(self.from).theta
     }
 
     fn turn_effect(&self) -> TurnEffect {

@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, centripetal,
-    centripetal_bound,
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, Varied,
+    VariedConfiguration, centripetal, centripetal_bound,
 };
 use crate::mechanism::{MarkerId, Mechanism};
 
@@ -54,6 +54,11 @@ impl Constraint for Coincidence {
         let (i, j) = (at.marker(self.from), at.marker(self.to));
         self.direction()
             .dot(&(centripetal(j, q_dot) - centripetal(i, q_dot)))
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let component = self.axis as usize;
+        at.marker(self.to).point[component] - at.marker(self.from).point[component]
     }
 
     /// Only the arms turn: e · perp(A s) changes by the chord of the turn times the arm.

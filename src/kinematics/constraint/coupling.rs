@@ -1,6 +1,9 @@
 //! Two wheels that turn in a fixed ratio: gears, and wheels on a belt.
 
-use super::{Configuration, Constraint, Dimension, Gradient, Incidence, Region, TurnEffect};
+use super::{
+    Configuration, Constraint, Dimension, Gradient, Incidence, Region, TurnEffect, Varied,
+    VariedConfiguration,
+};
 use crate::kinematics::configuration::CoefficientId;
 use crate::mechanism::{BodyId, MarkerId, Mechanism};
 
@@ -50,6 +53,18 @@ impl Constraint for Coupling {
     /// Zero: the ratio is linear in q.
     fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
         0.0
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let phi = at.phi(self.carrier);
+        let [first, second] = [self.from, self.to].map(|marker| at.marker(marker).theta - phi);
+        let [i, j] = self.sizes.map(|size| at.coefficient(size));
+        let turned = i / j * first;
+        if self.opposite {
+            second + turned
+        } else {
+            second - turned
+        }
     }
 
     fn turn_effect(&self) -> TurnEffect {

@@ -3,10 +3,11 @@
 use nalgebra::Vector2;
 
 use super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, centripetal,
-    centripetal_bound, chord, point_velocity, speed_bound,
+    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, Varied,
+    VariedConfiguration, centripetal, centripetal_bound, chord, point_velocity, speed_bound,
 };
-use crate::mechanism::{MarkerId, Mechanism};
+use crate::kinematics::variation::subtract;
+use crate::mechanism::{MarkerId, Mechanism, Number};
 
 /// c = ‖P_j − P_i‖.
 ///
@@ -61,6 +62,11 @@ impl Constraint for Distance {
         // The part of ḋ across e, squared without cancellation.
         let across = e.perp(&d_dot);
         across * across / length + e.dot(&d_ddot)
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let [x, y] = subtract(at.marker(self.to).point, at.marker(self.from).point);
+        x.hypot(y)
     }
 
     fn admits(&self, value: f64) -> bool {

@@ -27,6 +27,7 @@ pub use projection::Projection;
 pub use rack_and_pinion::RackAndPinion;
 
 use super::configuration::{self, Configuration, JointUnknownId, MarkerPose, perp};
+use super::variation::{self, Varied, VariedConfiguration, VariedVector};
 use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, Expression, MarkerId, Mechanism, ParameterId,
 };
@@ -57,6 +58,14 @@ impl Axis {
             Self::Y => perp(u),
         }
     }
+
+    /// The same of a frame that moves.
+    fn of_varied(self, u: VariedVector) -> VariedVector {
+        match self {
+            Self::X => u,
+            Self::Y => variation::quarter_turn(u),
+        }
+    }
 }
 
 /// What a whole turn of a body does to a relation.
@@ -84,6 +93,10 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     /// q̇ᵀ (∂²c/∂q²) q̇: what remains of c̈ where q̈ = 0 (Ec. 3.6.11 has it with the opposite
     /// sign). `q_dot` is as long as q.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
+
+    /// c along a motion, with its changes along a direction. In value and derivatives it agrees
+    /// with all of the above.
+    fn along(&self, at: &VariedConfiguration) -> Varied;
 
     /// Whether this is one of the relations that special kernels know.
     fn relation(&self) -> Relation {

@@ -3,10 +3,11 @@
 use nalgebra::Vector2;
 
 use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation,
-    angular_velocity, axis_components, centripetal, centripetal_bound, perp, point_velocity,
-    speed_bound,
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, Varied,
+    VariedConfiguration, angular_velocity, axis_components, centripetal, centripetal_bound, perp,
+    point_velocity, speed_bound,
 };
+use crate::kinematics::variation::{dot, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · (P_j − P_i), e being the x- or y-axis of marker k.
@@ -67,6 +68,11 @@ impl Constraint for Projection {
         let d_dot = point_velocity(j, q_dot) - point_velocity(i, q_dot);
         let d_ddot = centripetal(j, q_dot) - centripetal(i, q_dot);
         -omega * omega * e.dot(&d) + 2.0 * omega * perp(e).dot(&d_dot) + e.dot(&d_ddot)
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let d = subtract(at.marker(self.to).point, at.marker(self.from).point);
+        dot(self.axis.of_varied(at.marker(self.axes).axis), d)
     }
 
     /// The axis turns with marker k, the arms with their bodies, and d grows by the reach of

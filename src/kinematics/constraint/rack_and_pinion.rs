@@ -1,7 +1,8 @@
 //! A pinion that rolls on a rack.
 
 use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Projection, Region, TurnEffect,
+    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Projection, Region,
+    TurnEffect, Varied, VariedConfiguration,
 };
 use crate::kinematics::configuration::CoefficientId;
 use crate::mechanism::{MarkerId, Mechanism, RackSide};
@@ -59,6 +60,15 @@ impl Constraint for RackAndPinion {
 
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
         self.travel().quadratic(at, q_dot)
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let turn = at.marker(self.pinion).theta - at.marker(self.rack).theta;
+        let arc = at.coefficient(self.radius) * turn;
+        match self.side {
+            RackSide::Above => self.travel().along(at) + arc,
+            RackSide::Below => self.travel().along(at) - arc,
+        }
     }
 
     fn turn_effect(&self) -> TurnEffect {

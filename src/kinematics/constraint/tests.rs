@@ -198,6 +198,52 @@ proptest! {
         }
     }
 
+    /// Along a motion, value, rate and acceleration are what value, gradient and quadratic term
+    /// make of it, and their changes along a direction are differences of these.
+    #[test]
+    fn changes_along_a_direction_agree_with_differences(
+        (q, q_dot) in pose_and_velocity(),
+        q_ddot in prop::collection::vec(-1.0..1.0_f64, UNKNOWNS),
+        changes in prop::array::uniform3(prop::collection::vec(-1.0..1.0_f64, UNKNOWNS)),
+    ) {
+        let mechanism = mechanism();
+        let mut at = configuration(&mechanism);
+        let motion = (0..UNKNOWNS).map(|k| [q[k], q_dot[k], q_ddot[k]]);
+        let none = |_| unreachable!("the sample has no parameters");
+        let mut varied =
+            VariedConfiguration::new(&mechanism, &coefficients(), at.profiles(), none, motion);
+        for (order, changes) in changes.iter().enumerate() {
+            varied.change(order, changes);
+        }
+        for constraint in samples(&mechanism) {
+            let mut motion = |s: f64| {
+                let q = moved(&q, &changes[0], s);
+                let q_dot = moved(&q_dot, &changes[1], s);
+                let q_ddot = moved(&q_ddot, &changes[2], s);
+                at.set_pose(&mechanism, &q);
+                let mut row = Gradient::new();
+                constraint.gradient(&at, &mut row);
+                let acceleration = row.dot(&q_ddot) + constraint.quadratic(&at, &q_dot);
+                [constraint.value(&at), row.dot(&q_dot), acceleration]
+            };
+            let along = constraint.along(&varied);
+            let here = motion(0.0);
+            let motion = std::cell::RefCell::new(motion);
+            for (order, along) in [along.value, along.first, along.second].iter().enumerate() {
+                // Sums of some products of lengths up to 7 m, angles and rates up to 1.
+                prop_assert!(
+                    (along.value - here[order]).abs() < 1e-12,
+                    "{constraint:?} {order}: {} {}", along.value, here[order]
+                );
+                let difference = derivative(|s| motion.borrow_mut()(s)[order]);
+                prop_assert!(
+                    (along.along - difference).abs() < 1e3 * DIFFERENCE,
+                    "{constraint:?} {order}: {} {difference}", along.along
+                );
+            }
+        }
+    }
+
     /// At points of the region the gradient has changed by no more than its bound, and the
     /// quadratic term is no larger than its own.
     #[test]

@@ -10,6 +10,7 @@ use neighbourhood::Neighbourhood;
 
 use super::elimination::Order;
 use super::{Substep, Work};
+use crate::kinematics::configuration::Configuration;
 use crate::kinematics::factor::{Condition, Factors, Lu};
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::kinematics::system::{System, Target, nan_or_larger};
@@ -240,6 +241,21 @@ impl Coupled {
         }
         let (_, acceleration) = work.flow.both_mut();
         self.solve(work.system, work.at.size(), acceleration);
+    }
+
+    /// Solves Phi_q x = `side`, one entry a row of the system, for the block's entries of x,
+    /// those before it being known.
+    pub(super) fn solve_for(
+        &mut self,
+        system: &crate::kinematics::System,
+        at: &Configuration,
+        side: &[f64],
+        x: &mut [f64],
+    ) {
+        for (entry, &row) in self.correction.iter_mut().zip(&self.rows) {
+            *entry = side[row] * system.equations()[row].row_scale(at);
+        }
+        self.solve(system, at.size(), x);
     }
 
     /// Solves for the block's entries of `rates`, whose entries upstream are known, with the

@@ -7,6 +7,7 @@
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod display;
+mod dual;
 mod function;
 mod interval;
 mod jet3;
@@ -22,6 +23,7 @@ use std::f64::consts::PI;
 
 use function::{Binary, Unary};
 
+pub use dual::Dual;
 pub use interval::Interval;
 pub use jet3::Jet3;
 pub use number::{Jet, Number};

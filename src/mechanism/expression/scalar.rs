@@ -3,7 +3,8 @@
 use std::f64::consts::LN_10;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The type of a value and of each of its derivatives: `f64`, or [`Interval`](super::Interval).
+/// The type of a value and of each of its derivatives: `f64`, [`Interval`](super::Interval), or
+/// [`Dual`](super::Dual).
 ///
 /// Has the arithmetic and the functions from which every function of the language and its
 /// derivatives are built. Outside its domain a function is not finite.
@@ -27,6 +28,10 @@ pub trait Scalar:
 
     /// Whether it stands for one number: always so for a number.
     fn is_single(self) -> bool;
+
+    /// The number itself, or one near the middle of an interval: decides which of several pieces
+    /// of a function is in force.
+    fn number(self) -> f64;
 
     /// Whether no statement is made about it. Never so for a number, which tells that itself by
     /// being NaN or infinite.
@@ -145,6 +150,10 @@ impl Scalar for f64 {
 
     fn is_single(self) -> bool {
         true
+    }
+
+    fn number(self) -> f64 {
+        self
     }
 
     fn is_undefined(self) -> bool {

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::mechanism::Number;
 use crate::mechanism::expression::{cos, sin};
+use crate::mechanism::{Number, Scalar};
 
 /// A motion law: how a driver goes from one value of its table to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,9 +29,9 @@ impl Law {
     /// The part of the stroke done after the part `tau` of its time, both from 0 to 1.
     ///
     /// Each law is symmetric: s(τ) + s(1 − τ) = 1.
-    pub fn stroke<N: Number<Scalar = f64>>(self, tau: N) -> N {
+    pub fn stroke<N: Number>(self, tau: N) -> N {
         let c = N::constant;
-        if tau.value() > 0.5 {
+        if tau.value().number() > 0.5 {
             return c(1.0) - self.first_half(c(1.0) - tau);
         }
         self.first_half(tau)
@@ -52,9 +52,9 @@ impl Law {
         }
     }
 
-    fn first_half<N: Number<Scalar = f64>>(self, tau: N) -> N {
+    fn first_half<N: Number>(self, tau: N) -> N {
         let c = N::constant;
-        let t = tau.value();
+        let t = tau.value().number();
         let cube = tau * tau * tau;
         match self {
             Self::Polynomial345 => cube * (c(10.0) + tau * (c(6.0) * tau - c(15.0))),

@@ -4,7 +4,7 @@ mod law;
 
 pub use law::Law;
 
-use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, Table};
+use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Scalar, Spline, Table};
 
 /// A prescribed motion u(t, parameters) \[m or rad\].
 #[derive(Clone, Debug)]
@@ -13,6 +13,11 @@ pub enum Motion {
     Expression(Expression),
     /// Points of the motion, and how it runs through them.
     Table(MotionTable),
+}
+
+/// The number on which it depends which piece of a motion is in force.
+fn number<N: Number>(x: N) -> f64 {
+    x.value().number()
 }
 
 /// A motion through given points.
@@ -57,12 +62,13 @@ impl Motion {
 /// A prescribed motion with parameter values in force: ready to be evaluated at any time.
 ///
 /// Made once; [`set_parameters`](Self::set_parameters) then changes it without allocating.
+/// On [`Jet`]s it gives value, velocity and acceleration.
 #[derive(Clone, Debug)]
-pub struct MotionInForce {
+pub struct MotionInForce<N = Jet> {
     motion: Motion,
-    parameters: Vec<Jet>,
-    /// Through the table's points, on [`Jet`]s for parameters that move.
-    spline: Option<Spline<Jet>>,
+    parameters: Vec<N>,
+    /// Through the table's points, for parameters that may move.
+    spline: Option<Spline<N>>,
     /// Whether the table's times rise.
     valid: bool,
 }
@@ -71,7 +77,7 @@ pub struct MotionInForce {
 /// rad\].
 const ROUGH: f64 = 1e-5;
 
-impl MotionInForce {
+impl<N: Number> MotionInForce<N> {
     /// The motion for parameters still to be given, `parameters` of them.
     #[must_use]
     pub fn new(motion: &Motion, parameters: usize) -> Self {
@@ -81,7 +87,7 @@ impl MotionInForce {
         };
         Self {
             motion: motion.clone(),
-            parameters: vec![Jet::default(); parameters],
+            parameters: vec![N::constant(0.0); parameters],
             spline,
             valid: false,
         }
@@ -89,7 +95,7 @@ impl MotionInForce {
 
     /// Takes over parameter values, with their derivatives with respect to the variable along
     /// which the motion is to be evaluated.
-    pub fn set_parameters(&mut self, parameter: impl Fn(ParameterId) -> Jet) {
+    pub fn set_parameters(&mut self, parameter: impl Fn(ParameterId) -> N) {
         for (index, value) in self.parameters.iter_mut().enumerate() {
             *value = parameter(ParameterId(index));
         }
@@ -109,13 +115,13 @@ impl MotionInForce {
     /// At a point of a table the rates are those of what follows. Not finite where an expression
     /// leaves its domain or the times of a table do not rise.
     #[must_use]
-    pub fn evaluate(&self, t: Jet) -> Jet {
+    pub fn evaluate(&self, t: N) -> N {
         match (&self.motion, &self.spline) {
             (Motion::Expression(expression), _) => {
                 expression.evaluate(&|p| self.parameters[p.index()], t)
             }
             (Motion::Table(motion), Some(spline)) if self.valid => motion.evaluate(spline, t),
-            (Motion::Table(_), _) => Jet::constant(f64::NAN),
+            (Motion::Table(_), _) => N::constant(f64::NAN),
         }
     }
 }
@@ -158,7 +164,9 @@ impl MotionInForce {
             Motion::Table(_) => None,
         }
     }
+}
 
+impl<N: Number> MotionInForce<N> {
     /// The time of the next point of a table after `t`, where another piece of the motion
     /// begins. Infinite if there is none.
     #[must_use]
@@ -168,39 +176,39 @@ impl MotionInForce {
             return f64::INFINITY;
         };
         let times = spline.knots();
-        let (start, end) = (times[0].value, times[times.len() - 1].value);
+        let (start, end) = (number(times[0]), number(times[times.len() - 1]));
         let laps = match motion.ends {
             Ends::Periodic => ((t - start) / (end - start)).floor() * (end - start),
             _ => 0.0,
         };
-        let next = times.partition_point(|time| time.value + laps <= t);
+        let next = times.partition_point(|&time| number(time) + laps <= t);
         times
             .get(next)
-            .map_or(f64::INFINITY, |time| time.value + laps)
+            .map_or(f64::INFINITY, |&time| number(time) + laps)
     }
 }
 
 impl MotionTable {
-    fn evaluate(&self, spline: &Spline<Jet>, t: Jet) -> Jet {
+    fn evaluate<N: Number>(&self, spline: &Spline<N>, t: N) -> N {
         let (times, values) = (spline.knots(), spline.values());
         let last = times.len() - 1;
         let (start, end) = (times[0], times[last]);
         match self.ends {
             Ends::Periodic => {
                 let period = end - start;
-                let laps = ((t.value - start.value) / period.value).floor();
-                let laps = Jet::constant(laps);
+                let laps = ((number(t) - number(start)) / number(period)).floor();
+                let laps = N::constant(laps);
                 let gained = laps * (values[last] - values[0]);
                 gained + self.between(spline, t - laps * period)
             }
-            _ if t.value < start.value => self.beyond(spline, 0, t),
-            _ if t.value >= end.value => self.beyond(spline, last, t),
+            _ if number(t) < number(start) => self.beyond(spline, 0, t),
+            _ if number(t) >= number(end) => self.beyond(spline, last, t),
             _ => self.between(spline, t),
         }
     }
 
     /// Before the first or after the last point.
-    fn beyond(&self, spline: &Spline<Jet>, point: usize, t: Jet) -> Jet {
+    fn beyond<N: Number>(&self, spline: &Spline<N>, point: usize, t: N) -> N {
         let (from, value) = (spline.knots()[point], spline.values()[point]);
         if self.ends == Ends::Natural {
             let segment = point.saturating_sub(1);
@@ -232,8 +240,8 @@ impl MotionTable {
         law.peak_acceleration() * stroke.abs() / (time * time)
     }
 
-    fn between(&self, spline: &Spline<Jet>, t: Jet) -> Jet {
-        let segment = spline.segment(t.value);
+    fn between<N: Number>(&self, spline: &Spline<N>, t: N) -> N {
+        let segment = spline.segment(number(t));
         let Interpolation::Law(law) = self.interpolation else {
             return spline.on_segment(segment, t);
         };

@@ -4,7 +4,10 @@ use nalgebra::{Rotation2, Vector2};
 
 use super::super::{Configuration, Incidence, MarkerPose, Region};
 use crate::kinematics::configuration::{JointUnknownId, ProfileId, perp};
-use crate::mechanism::{Jet3, MarkerId, Mechanism, ProfileInForce};
+use crate::kinematics::variation::{
+    VariedConfiguration, VariedMarker, VariedVector, quarter_turn, rotate,
+};
+use crate::mechanism::{Jet3, MarkerId, Mechanism, Number, ProfileInForce};
 
 /// A cam's contour with a point of contact on it.
 #[derive(Clone, Copy, Debug)]
@@ -98,6 +101,23 @@ impl Contour {
         let cam = at.marker(self.cam);
         let theta = at.joint_unknown(self.contact);
         (cam, Self::shape(at.profile(self.profile), theta, cam.axis))
+    }
+
+    /// The same of a cam that moves: its marker, the arm from there to the contact, and the
+    /// tangent.
+    pub(super) fn along(
+        &self,
+        at: &VariedConfiguration,
+    ) -> (VariedMarker, VariedVector, VariedVector) {
+        let cam = at.marker(self.cam);
+        let theta = at.joint_unknown(self.contact);
+        let [radius, slope] = at.radius(self.profile, theta);
+        let radial = rotate(theta, cam.axis);
+        let across = quarter_turn(radial);
+        let speed = radius.hypot(slope);
+        let arm = radial.map(|component| radius * component);
+        let tangent = [0, 1].map(|k| (slope * radial[k] + radius * across[k]) / speed);
+        (cam, arm, tangent)
     }
 
     /// Place of the contact's angle in q.

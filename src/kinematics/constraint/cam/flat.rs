@@ -4,10 +4,11 @@ use nalgebra::Vector2;
 
 use super::super::{
     Axis, Configuration, Constraint, Dimension, Gradient, Incidence, JointUnknown, MarkerPose,
-    Region, angular_velocity, axis_components, centripetal, centripetal_bound, perp,
-    point_velocity, speed_bound,
+    Region, Varied, VariedConfiguration, angular_velocity, axis_components, centripetal,
+    centripetal_bound, perp, point_velocity, speed_bound,
 };
 use super::contour::{Contour, Shape};
+use crate::kinematics::variation::{add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// The contour's tangent runs along the face: c = sin δ, δ being the angle from the face, the
@@ -66,6 +67,12 @@ impl Constraint for FlatContact {
         let motion = contact.motion(angular_velocity(cam, q_dot), q_dot[self.contour.column(at)]);
         let rate = motion.tangent[0] - angular_velocity(follower, q_dot);
         cosine * motion.tangent[1] - sine * rate * rate
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let (_, _, [x, y]) = self.contour.along(at);
+        let face = at.marker(self.follower).axis;
+        face[0] * y - face[1] * x
     }
 
     fn bend(
@@ -166,6 +173,13 @@ impl Constraint for FlatFace {
         g_ddot.dot(&normal)
             - 2.0 * omega * g_dot.dot(&follower.axis)
             - omega * omega * g.dot(&normal)
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let (cam, arm, _) = self.contour.along(at);
+        let follower = at.marker(self.follower);
+        let g = subtract(add(cam.point, arm), follower.point);
+        dot(g, quarter_turn(follower.axis))
     }
 
     /// The same terms with each factor at its bound.

@@ -3,11 +3,12 @@
 use nalgebra::Vector2;
 
 use super::super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, Region, angular_velocity,
-    centripetal, centripetal_bound, chord, perp, point_velocity, speed_bound,
+    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Varied, VariedConfiguration,
+    angular_velocity, centripetal, centripetal_bound, chord, perp, point_velocity, speed_bound,
 };
 use crate::kinematics::configuration::ProfileId;
-use crate::mechanism::{Jet3, MarkerId, Mechanism};
+use crate::kinematics::variation::subtract;
+use crate::mechanism::{Jet3, MarkerId, Mechanism, Number};
 
 /// c = ρ − R(θ), ρ and θ being the polar coordinates of the edge in the cam marker's frame.
 ///
@@ -101,6 +102,14 @@ impl Constraint for KnifeEdge {
         let angular =
             (across.dot(&d_ddot) - 2.0 * polar.radial.dot(&d_dot) * swing) / polar.distance;
         radial - r2 * rate * rate - r1 * angular
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let cam = at.marker(self.cam);
+        let [x, y] = subtract(at.marker(self.follower).point, cam.point);
+        let theta = y.atan2(x) - cam.theta;
+        let [radius, _] = at.radius(self.profile, theta);
+        x.hypot(y) - radius
     }
 
     /// The same terms with each factor at its bound; ρ shrinks by the reach of both points, and

@@ -4,10 +4,11 @@ use nalgebra::Vector2;
 
 use super::super::{
     Axis, Configuration, Constraint, Dimension, Gradient, Incidence, JointUnknown, MarkerPose,
-    Region, angular_velocity, centripetal, centripetal_bound, chord, perp, point_velocity,
-    speed_bound,
+    Region, Varied, VariedConfiguration, angular_velocity, centripetal, centripetal_bound, chord,
+    perp, point_velocity, speed_bound,
 };
 use super::contour::{Contour, Shape};
+use crate::kinematics::variation::{add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · w, e being the vector from the contact to the roller's centre, w the contour's
@@ -105,6 +106,17 @@ impl Constraint for Roller {
         let [turn, turn_rate] = motion.tangent;
         e_ddot.dot(&w) + 2.0 * turn * e_dot.dot(&across) + turn_rate * e.dot(&across)
             - turn * turn * e.dot(&w)
+    }
+
+    fn along(&self, at: &VariedConfiguration) -> Varied {
+        let (cam, arm, tangent) = self.contour.along(at);
+        let centre = at.marker(self.follower).point;
+        let e = subtract(centre, add(cam.point, arm));
+        match self.axis {
+            Axis::X => dot(e, tangent),
+            // The outward normal is a quarter turn back.
+            Axis::Y => -dot(e, quarter_turn(tangent)),
+        }
     }
 
     /// The roller's radius is positive.

@@ -107,6 +107,10 @@ impl Scalar for Interval {
         self.low >= self.high
     }
 
+    fn number(self) -> f64 {
+        self.midpoint()
+    }
+
     fn is_undefined(self) -> bool {
         self.low.is_nan() || self.high.is_nan()
     }

@@ -1,0 +1,68 @@
+//! Each target on its corpus, and on mutations of it for a bounded time.
+
+use std::io::Write;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use fuzz::mutation::{Chance, mutate};
+
+/// A test stops here even on a machine that is busy with other things.
+const TIME: Duration = Duration::from_secs(5);
+
+/// All files of a folder, in order.
+fn files(folder: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries = std::fs::read_dir(folder).expect("it is part of the project");
+    let mut paths: Vec<_> = entries
+        .map(|entry| entry.expect("it can be read").path())
+        .filter(|path| path.extension().is_none_or(|extension| extension != "csv"))
+        .filter(|path| path.is_file())
+        .collect();
+    paths.sort();
+    let read = |path| std::fs::read(path).expect("it can be read");
+    paths.into_iter().map(read).collect()
+}
+
+fn run(target: fn(&[u8]), corpus: &[Vec<u8>], mutations: u64) {
+    for input in corpus {
+        target(input);
+    }
+    let start = Instant::now();
+    for seed in 0..mutations {
+        if start.elapsed() > TIME {
+            break;
+        }
+        let mut chance = Chance::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut input = corpus[chance.below(corpus.len())].clone();
+        mutate(&mut input, corpus, &mut chance);
+        // What fails can be taken up again as a file of the corpus.
+        let result = std::panic::catch_unwind(|| target(&input));
+        if let Err(panic) = result {
+            let text = String::from_utf8_lossy(&input);
+            let _ = writeln!(std::io::stderr(), "seed {seed}, input {text:?}");
+            std::panic::resume_unwind(panic);
+        }
+    }
+}
+
+#[test]
+fn mechanism_files() {
+    let mut corpus = files("corpus/mechanism_file");
+    corpus.extend(files("../mechanisms"));
+    corpus.extend(files("../tests/diagnostics"));
+    run(fuzz::mechanism_file::run, &corpus, 3000);
+}
+
+#[test]
+fn fmu_states() {
+    run(fuzz::fmu_state::run, &files("corpus/fmu_state"), 3000);
+}
+
+#[test]
+fn call_sequences() {
+    run(
+        fuzz::call_sequence::run,
+        &files("corpus/call_sequence"),
+        1500,
+    );
+}

@@ -1,0 +1,141 @@
+//! Model exchange. There are no continuous states and no event indicators.
+
+use fmi_sys::fmi2::{fmi2Boolean, fmi2Component, fmi2EventInfo, fmi2False, fmi2Real, fmi2Status};
+
+use super::arguments::write;
+use super::component::with_instance;
+use crate::fmi::Call;
+
+/// `fmi2EnterEventMode`.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2EnterEventMode(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2EnterEventMode", |instance| {
+            Ok(instance.enter_event_mode()?)
+        })
+    }
+}
+
+/// `fmi2NewDiscreteStates`: nothing ever follows from one.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2NewDiscreteStates(
+    c: fmi2Component,
+    event_info: *mut fmi2EventInfo,
+) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2NewDiscreteStates", |instance| {
+            instance.new_discrete_states()?;
+            let nothing = fmi2EventInfo {
+                newDiscreteStatesNeeded: FALSE,
+                terminateSimulation: FALSE,
+                nominalsOfContinuousStatesChanged: FALSE,
+                valuesOfContinuousStatesChanged: FALSE,
+                nextEventTimeDefined: FALSE,
+                nextEventTime: 0.0,
+            };
+            write("fmi2eventInfo", event_info, nothing)
+        })
+    }
+}
+
+/// `fmi2EnterContinuousTimeMode`.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2EnterContinuousTimeMode(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2EnterContinuousTimeMode", |instance| {
+            Ok(instance.enter_continuous_time_mode()?)
+        })
+    }
+}
+
+/// `fmi2CompletedIntegratorStep`. Nothing is kept for going back, so that
+/// `no_set_fmu_state_prior_to_current_point` makes no difference.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
+    c: fmi2Component,
+    _no_set_fmu_state_prior_to_current_point: fmi2Boolean,
+    enter_event_mode: *mut fmi2Boolean,
+    terminate_simulation: *mut fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe {
+        with_instance(c, "fmi2CompletedIntegratorStep", |instance| {
+            instance.allow(Call::CompletedIntegratorStep)?;
+            write("enterEventMode", enter_event_mode, FALSE)?;
+            write("terminateSimulation", terminate_simulation, FALSE)?;
+            Ok(instance.completed_integrator_step()?)
+        })
+    }
+}
+
+/// `fmi2SetTime`.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetTime(c: fmi2Component, time: fmi2Real) -> fmi2Status {
+    // SAFETY: the host's promise.
+    unsafe { with_instance(c, "fmi2SetTime", |instance| Ok(instance.set_time(time)?)) }
+}
+
+/// The functions whose arrays are as long as there are continuous states or event indicators:
+/// right for a length of zero only.
+macro_rules! of_none {
+    ($($(#[$doc:meta])* $function:ident($call:ident, $array:ty);)*) => {
+        $(
+            $(#[$doc])*
+            ///
+            /// # Safety
+            ///
+            /// The [host's promise](super#safety). The array is not touched.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn $function(
+                c: fmi2Component,
+                _array: $array,
+                count: usize,
+            ) -> fmi2Status {
+                // SAFETY: the host's promise.
+                unsafe {
+                    with_instance(c, stringify!($function), |instance| {
+                        Ok(instance.continuous(Call::$call, count)?)
+                    })
+                }
+            }
+        )*
+    };
+}
+
+of_none! {
+    /// `fmi2SetContinuousStates`: there are none.
+    fmi2SetContinuousStates(SetContinuousStates, *const fmi2Real);
+    /// `fmi2GetDerivatives`: there are no continuous states.
+    fmi2GetDerivatives(GetDerivatives, *mut fmi2Real);
+    /// `fmi2GetEventIndicators`: there are none.
+    fmi2GetEventIndicators(GetEventIndicators, *mut fmi2Real);
+    /// `fmi2GetContinuousStates`: there are none.
+    fmi2GetContinuousStates(GetContinuousStates, *mut fmi2Real);
+    /// `fmi2GetNominalsOfContinuousStates`: there are no continuous states.
+    fmi2GetNominalsOfContinuousStates(GetNominalsOfContinuousStates, *mut fmi2Real);
+}
+
+const FALSE: fmi2Boolean = fmi2False as fmi2Boolean;

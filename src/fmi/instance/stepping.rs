@@ -1,0 +1,75 @@
+//! Co-simulation: steps, and how they ended.
+
+use super::{Error, Failure, Instance, check_finite};
+use crate::fmi::error::Status;
+use crate::fmi::model::Model;
+use crate::fmi::state::{Call, State};
+
+/// Hosts add up step sizes: communication points may be off by this much, relative to the
+/// larger of time and step.
+const TIME_ROUNDING: f64 = 1e-9;
+
+impl<M: Model> Instance<M> {
+    /// `fmi2DoStep`: goes from the last communication point over `h` seconds.
+    ///
+    /// # Errors
+    ///
+    /// A step that the model discards: the instance is then in state `stepFailed`, at the last
+    /// time that was reached. Anything else leaves it as it was.
+    pub fn do_step(&mut self, communication_point: f64, h: f64) -> Result<(), Error> {
+        self.allow(Call::DoStep)?;
+        self.check_step(communication_point, h)?;
+        let stepped = self.model.step(h, communication_point + h, &self.logger);
+        self.last_successful_time = self.model.time();
+        if let Err(Failure::Discarded(_)) = stepped {
+            self.state = State::StepFailed;
+            self.terminated = true;
+        }
+        Ok(stepped?)
+    }
+
+    fn check_step(&self, communication_point: f64, h: f64) -> Result<(), Error> {
+        check_finite("currentCommunicationPoint", communication_point)?;
+        check_finite("communicationStepSize", h)?;
+        let refuse = |message: String| Err(Error::Time { message });
+        if h <= 0.0 {
+            return refuse(format!("the step size {h} s is not positive"));
+        }
+        let time = self.model.time();
+        let rounding = TIME_ROUNDING * time.abs().max(h);
+        if (communication_point - time).abs() > rounding {
+            return refuse(format!(
+                "the communication point {communication_point} s is not where the last step \
+                 ended, {time} s"
+            ));
+        }
+        match self.stop_time {
+            Some(stop) if communication_point + h > stop + rounding => refuse(format!(
+                "the step from {communication_point} s over {h} s passes the stop time {stop} s"
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// `fmi2GetStatus` of `fmi2DoStepStatus`: how the last step ended.
+    #[must_use]
+    pub fn step_status(&self) -> Status {
+        if self.terminated {
+            Status::Discard
+        } else {
+            Status::Ok
+        }
+    }
+
+    /// `fmi2GetRealStatus` of `fmi2LastSuccessfulTime` \[s\].
+    #[must_use]
+    pub fn last_successful_time(&self) -> f64 {
+        self.last_successful_time
+    }
+
+    /// `fmi2GetBooleanStatus` of `fmi2Terminated`: whether a step was discarded for good.
+    #[must_use]
+    pub fn is_terminated(&self) -> bool {
+        self.terminated
+    }
+}

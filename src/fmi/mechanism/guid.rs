@@ -1,0 +1,40 @@
+//! The GUID that ties a model description to its mechanism.
+
+use uuid::Uuid;
+
+use super::variables::TABLE_VERSION;
+use crate::mechanism::Mechanism;
+
+/// The name space of biela's GUIDs; an arbitrary constant.
+const NAMESPACE: Uuid = Uuid::from_u128(0x8d0c_61f7_2f0e_4b36_9a53_b1e1_a0f0_0d1e);
+
+/// The GUID of a mechanism's FMU: a hash of all its values and tables and of the version of the
+/// table of variables. Comments and layout of the file do not matter.
+#[must_use]
+pub fn guid(mechanism: &Mechanism) -> String {
+    let content = format!("biela {TABLE_VERSION}\n{}", mechanism.canonical);
+    format!("{{{}}}", Uuid::new_v5(&NAMESPACE, content.as_bytes()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::Source;
+
+    fn guid_of(text: &str) -> String {
+        guid(&Mechanism::parse(&Source::new("test.toml", text)).unwrap().0)
+    }
+
+    #[test]
+    fn comments_and_layout_do_not_matter_and_values_do() {
+        let text = include_str!("../../../mechanisms/pendulum.toml");
+        let original = guid_of(text);
+        let reworded = text
+            .replace("# Simple", "# A simple")
+            .replace("0.5,", "0.50 ,");
+        assert_ne!(reworded, text);
+        assert_eq!(guid_of(&reworded), original);
+        assert_ne!(guid_of(&text.replace("0.5,", "0.51,")), original);
+        assert_ne!(guid_of(&text.replace("swing_angle", "swing")), original);
+    }
+}

@@ -1,0 +1,65 @@
+//! The mechanism inside an FMU.
+
+use std::io::{Seek, Write};
+use std::path::Path;
+
+use super::describe;
+use crate::fmi::error::Failure;
+use crate::fmi::package::{self, Document, PackageError, RuntimeLibrary};
+use crate::kinematics::Structure;
+use crate::mechanism::{Diagnostic, Mechanism, Severity, Source};
+
+/// The mechanism's file inside `resources/`.
+pub const RESOURCE: &str = "mechanism.toml";
+
+/// Reads the mechanism in the folder of resources.
+pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
+    let path = resources.join(RESOURCE);
+    let source = Source::open(RESOURCE, &path).map_err(|error| {
+        let path = path.display();
+        Failure::Failed(format!("cannot read the mechanism `{path}`: {error}"))
+    })?;
+    let parsed = Mechanism::parse(&source);
+    parsed
+        .map(|(mechanism, _)| mechanism)
+        .map_err(|diagnostics| {
+            let errors: Vec<_> = diagnostics
+                .iter()
+                .filter(|diagnostic| diagnostic.severity == Severity::Error)
+                .map(|diagnostic: &Diagnostic| diagnostic.one_line(&source))
+                .collect();
+            Failure::Failed(errors.join("; "))
+        })
+}
+
+/// Writes the FMU of a mechanism: its file, its model description, the runtime libraries and
+/// what documents it.
+///
+/// The same input gives the same bytes: entries have a fixed order and a fixed time.
+///
+/// # Errors
+///
+/// A library cannot be read, or `out` cannot be written.
+pub fn write_fmu(
+    out: impl Write + Seek,
+    source: &Source,
+    mechanism: &Mechanism,
+    structure: &Structure,
+    libraries: &[RuntimeLibrary],
+    documents: &[Document],
+    generated: Option<&str>,
+) -> Result<(), PackageError> {
+    let mut resources = vec![(RESOURCE, source.text().as_bytes())];
+    for file in &mechanism.table_files {
+        resources.push((file.name.as_str(), file.text.as_bytes()));
+    }
+    let description = describe(mechanism, structure);
+    package::write(
+        out,
+        &description,
+        libraries,
+        &resources,
+        documents,
+        generated,
+    )
+}

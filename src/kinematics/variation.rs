@@ -1,0 +1,210 @@
+//! A moving mechanism and how its motion changes along a direction.
+//!
+//! The direction is one in the space of the drivers' values, velocities and accelerations, and of
+//! the parameters. Each quantity is a [`Varied`] number, on which the relations are written down
+//! once more: arithmetic does the differentiating, so that nothing is approximated.
+
+use super::configuration::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
+use crate::mechanism::{
+    BodyId, Dual, Expression, Jet3, MarkerId, Mechanism, Number, ParameterId, ProfileAlong, Scalar,
+};
+
+/// A quantity with its first two derivatives in time, each with its change along the direction.
+/// The third derivative is of no account.
+pub type Varied = Jet3<Dual>;
+
+/// A vector in the plane.
+pub type VariedVector = [Varied; 2];
+
+/// A marker in a moving mechanism.
+#[derive(Clone, Copy, Debug)]
+pub struct VariedMarker {
+    /// P \[m\].
+    pub point: VariedVector,
+    /// u, the marker's x-axis.
+    pub axis: VariedVector,
+    /// theta, its direction \[rad\].
+    pub theta: Varied,
+}
+
+/// A marker in its body's frame.
+#[derive(Clone, Copy, Debug)]
+struct VariedFrame {
+    body: Option<BodyId>,
+    position: VariedVector,
+    angle: Varied,
+}
+
+/// The bodies of a moving mechanism, as a [`Configuration`](super::Configuration) has them at
+/// rest.
+#[derive(Clone, Debug)]
+pub struct VariedConfiguration {
+    frames: Vec<VariedFrame>,
+    coefficients: Vec<Varied>,
+    profiles: Vec<ProfileAlong>,
+    bodies: usize,
+    /// The generalized coordinates, the joints' own unknowns included.
+    q: Vec<Varied>,
+}
+
+impl VariedConfiguration {
+    /// A mechanism that moves with q, q̇ and q̈, for changes of its parameters; q has still to be
+    /// given its changes.
+    pub(super) fn new(
+        mechanism: &Mechanism,
+        coefficients: &[Coefficient],
+        profiles: &[CamProfile],
+        parameter: impl Fn(ParameterId) -> Varied,
+        motion: impl Iterator<Item = [f64; 3]>,
+    ) -> Self {
+        let value = |expression: &Expression| evaluate(expression, &parameter);
+        let frames = mechanism.markers.iter().map(|marker| VariedFrame {
+            body: marker.body,
+            position: marker.position.each_ref().map(value),
+            angle: value(&marker.angle),
+        });
+        let q = motion.map(|motion| {
+            let [value, first, second] = motion.map(Dual::constant);
+            Varied {
+                value,
+                first,
+                second,
+                third: Dual::default(),
+            }
+        });
+        let change = |p| parameter(p).value.along;
+        Self {
+            frames: frames.collect(),
+            coefficients: coefficients.iter().map(|c| value(&c.expression)).collect(),
+            profiles: profiles.iter().map(|p| p.in_force.along(change)).collect(),
+            bodies: mechanism.bodies.len(),
+            q: q.collect(),
+        }
+    }
+
+    /// q\[column\].
+    #[must_use]
+    pub fn coordinate(&self, column: usize) -> Varied {
+        self.q[column]
+    }
+
+    /// Gives the changes of q, q̇ (order 1) or q̈ (order 2).
+    pub(super) fn change(&mut self, order: usize, changes: &[f64]) {
+        for (q, change) in self.q.iter_mut().zip(changes) {
+            let derivative = match order {
+                0 => &mut q.value,
+                1 => &mut q.first,
+                _ => &mut q.second,
+            };
+            derivative.along = *change;
+        }
+    }
+
+    /// A marker's motion.
+    #[must_use]
+    pub fn marker(&self, marker: MarkerId) -> VariedMarker {
+        let VariedFrame {
+            body,
+            position,
+            angle,
+        } = self.frames[marker.index()];
+        let phi = self.phi(body);
+        let arm = rotate(phi, position);
+        let point = match body {
+            Some(body) => {
+                let k = 3 * body.index();
+                add([self.q[k], self.q[k + 1]], arm)
+            }
+            None => arm,
+        };
+        let theta = phi + angle;
+        VariedMarker {
+            point,
+            axis: direction(theta),
+            theta,
+        }
+    }
+
+    /// A body's angle \[rad\], zero for ground.
+    #[must_use]
+    pub fn phi(&self, body: Option<BodyId>) -> Varied {
+        body.map_or(Varied::constant(0.0), |body| self.q[3 * body.index() + 2])
+    }
+
+    /// A coefficient.
+    #[must_use]
+    pub fn coefficient(&self, id: CoefficientId) -> Varied {
+        self.coefficients[id.0]
+    }
+
+    /// A joint's own unknown.
+    #[must_use]
+    pub fn joint_unknown(&self, id: JointUnknownId) -> Varied {
+        self.q[3 * self.bodies + id.0]
+    }
+
+    /// The radius R of a cam at a moving polar angle θ, and R′(θ).
+    #[must_use]
+    pub fn radius(&self, profile: ProfileId, theta: Varied) -> [Varied; 2] {
+        let radius = self.profiles[profile.0].radius(theta.value);
+        let (omega, alpha) = (theta.first, theta.second);
+        let run = |value, first: Dual, second: Dual| Varied {
+            value,
+            first: first * omega,
+            second: second * omega * omega + first * alpha,
+            third: Dual::default(),
+        };
+        [
+            run(radius.value, radius.first, radius.second),
+            run(radius.first, radius.second, radius.third),
+        ]
+    }
+}
+
+/// An expression of parameters alone.
+pub(super) fn evaluate(
+    expression: &Expression,
+    parameter: &impl Fn(ParameterId) -> Varied,
+) -> Varied {
+    expression.evaluate(parameter, Varied::constant(0.0))
+}
+
+/// The unit vector in a direction \[rad\].
+#[must_use]
+pub fn direction(theta: Varied) -> VariedVector {
+    [
+        theta.chain(Scalar::cos, |x| [-x.sin(), -x.cos(), x.sin()]),
+        theta.chain(Scalar::sin, |x| [x.cos(), -x.sin(), -x.cos()]),
+    ]
+}
+
+/// A vector turned by an angle.
+#[must_use]
+pub fn rotate(angle: Varied, [x, y]: VariedVector) -> VariedVector {
+    let [cos, sin] = direction(angle);
+    [cos * x - sin * y, sin * x + cos * y]
+}
+
+/// A vector turned by a quarter turn.
+#[must_use]
+pub fn quarter_turn([x, y]: VariedVector) -> VariedVector {
+    [-y, x]
+}
+
+/// a + b.
+#[must_use]
+pub fn add(a: VariedVector, b: VariedVector) -> VariedVector {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+/// a − b.
+#[must_use]
+pub fn subtract(a: VariedVector, b: VariedVector) -> VariedVector {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// a · b.
+#[must_use]
+pub fn dot(a: VariedVector, b: VariedVector) -> Varied {
+    a[0] * b[0] + a[1] * b[1]
+}

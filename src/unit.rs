@@ -1,0 +1,208 @@
+//! Units of quantities. All inside is SI; a unit serves the FMU's description and labels.
+
+/// A unit of the International System with its exponents of the base units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// Its symbol, as in `unit = "rad/s"`.
+    pub name: &'static str,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// The unit in which a host should show the values, if not this one.
+    pub display: Option<DisplayUnit>,
+}
+
+/// Exponents of the base units, as FMI's `BaseUnit` has them: the angle counts as one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Dimension {
+    /// Exponent of the kilogram.
+    pub kg: i8,
+    /// Exponent of the metre.
+    pub m: i8,
+    /// Exponent of the second.
+    pub s: i8,
+    /// Exponent of the radian.
+    pub rad: i8,
+}
+
+/// A unit for showing values to people: shown = factor × SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DisplayUnit {
+    /// Its symbol, as in `display = "mm"`.
+    pub name: &'static str,
+    /// What an SI value is multiplied by to be shown.
+    pub factor: f64,
+    /// Its dimension.
+    pub dimension: Dimension,
+}
+
+const fn dimension(kg: i8, m: i8, s: i8, rad: i8) -> Dimension {
+    Dimension { kg, m, s, rad }
+}
+
+const LENGTH: Dimension = dimension(0, 1, 0, 0);
+const ANGLE: Dimension = dimension(0, 0, 0, 1);
+const ANGULAR_VELOCITY: Dimension = dimension(0, 0, -1, 1);
+const ANGULAR_ACCELERATION: Dimension = dimension(0, 0, -2, 1);
+const MASS: Dimension = dimension(1, 0, 0, 0);
+
+impl Unit {
+    /// `1`: a plain number.
+    pub const ONE: Self = Self::new("1", dimension(0, 0, 0, 0));
+    /// `m`.
+    pub const METRE: Self = Self::new("m", LENGTH);
+    /// `rad`, shown in degrees unless the file says otherwise.
+    pub const RADIAN: Self = Self::new("rad", ANGLE).shown_in(DisplayUnit::DEGREE);
+    /// `s`.
+    pub const SECOND: Self = Self::new("s", dimension(0, 0, 1, 0));
+    /// `kg`.
+    pub const KILOGRAM: Self = Self::new("kg", MASS);
+    /// `N`.
+    pub const NEWTON: Self = Self::new("N", dimension(1, 1, -2, 0));
+    /// `N.m`.
+    pub const NEWTON_METRE: Self = Self::new("N.m", dimension(1, 2, -2, 0));
+    /// `m/s`.
+    pub const METRE_PER_SECOND: Self = Self::new("m/s", dimension(0, 1, -1, 0));
+    /// `m/s2`.
+    pub const METRE_PER_SECOND_SQUARED: Self = Self::new("m/s2", dimension(0, 1, -2, 0));
+    /// `rad/s`, shown in degrees per second unless the file says otherwise.
+    pub const RADIAN_PER_SECOND: Self =
+        Self::new("rad/s", ANGULAR_VELOCITY).shown_in(DisplayUnit::DEGREE_PER_SECOND);
+    /// `rad/s2`, shown in degrees per second squared unless the file says otherwise.
+    pub const RADIAN_PER_SECOND_SQUARED: Self =
+        Self::new("rad/s2", ANGULAR_ACCELERATION).shown_in(DisplayUnit::DEGREE_PER_SECOND_SQUARED);
+    /// `kg.m2`.
+    pub const KILOGRAM_METRE_SQUARED: Self = Self::new("kg.m2", dimension(1, 2, 0, 0));
+    /// `1/s`.
+    pub const PER_SECOND: Self = Self::new("1/s", dimension(0, 0, -1, 0));
+
+    /// Every unit that a file may name, in the order of the format's documentation.
+    pub const ALL: [Self; 13] = [
+        Self::ONE,
+        Self::METRE,
+        Self::RADIAN,
+        Self::SECOND,
+        Self::KILOGRAM,
+        Self::NEWTON,
+        Self::NEWTON_METRE,
+        Self::METRE_PER_SECOND,
+        Self::METRE_PER_SECOND_SQUARED,
+        Self::RADIAN_PER_SECOND,
+        Self::RADIAN_PER_SECOND_SQUARED,
+        Self::KILOGRAM_METRE_SQUARED,
+        Self::PER_SECOND,
+    ];
+
+    const fn new(name: &'static str, dimension: Dimension) -> Self {
+        Self {
+            name,
+            dimension,
+            display: None,
+        }
+    }
+
+    /// The same unit, its values shown in `display`, which must be of the same dimension.
+    #[must_use]
+    pub const fn shown_in(self, display: DisplayUnit) -> Self {
+        Self {
+            display: Some(display),
+            ..self
+        }
+    }
+
+    /// The unit with this symbol.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.name == name)
+    }
+
+    /// The display units of the same dimension.
+    pub fn display_units(self) -> impl Iterator<Item = DisplayUnit> {
+        DisplayUnit::ALL
+            .into_iter()
+            .filter(move |display| display.dimension == self.dimension)
+    }
+}
+
+impl DisplayUnit {
+    /// `mm`.
+    pub const MILLIMETRE: Self = Self::new("mm", 1e3, LENGTH);
+    /// `cm`.
+    pub const CENTIMETRE: Self = Self::new("cm", 1e2, LENGTH);
+    /// `deg`.
+    pub const DEGREE: Self = Self::new("deg", DEGREES_PER_RADIAN, ANGLE);
+    /// `deg/s`.
+    pub const DEGREE_PER_SECOND: Self = Self::new("deg/s", DEGREES_PER_RADIAN, ANGULAR_VELOCITY);
+    /// `deg/s2`.
+    pub const DEGREE_PER_SECOND_SQUARED: Self =
+        Self::new("deg/s2", DEGREES_PER_RADIAN, ANGULAR_ACCELERATION);
+    /// `rpm`: turns per minute.
+    pub const TURN_PER_MINUTE: Self =
+        Self::new("rpm", 30.0 / std::f64::consts::PI, ANGULAR_VELOCITY);
+    /// `g`.
+    pub const GRAM: Self = Self::new("g", 1e3, MASS);
+
+    /// Every display unit that a file may name, in the order of the format's documentation.
+    pub const ALL: [Self; 7] = [
+        Self::MILLIMETRE,
+        Self::CENTIMETRE,
+        Self::DEGREE,
+        Self::DEGREE_PER_SECOND,
+        Self::DEGREE_PER_SECOND_SQUARED,
+        Self::TURN_PER_MINUTE,
+        Self::GRAM,
+    ];
+
+    const fn new(name: &'static str, factor: f64, dimension: Dimension) -> Self {
+        Self {
+            name,
+            factor,
+            dimension,
+        }
+    }
+
+    /// The display unit with this symbol.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.name == name)
+    }
+}
+
+const DEGREES_PER_RADIAN: f64 = 180.0 / std::f64::consts::PI;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unit_is_found_by_its_name() {
+        for unit in Unit::ALL {
+            assert_eq!(Unit::by_name(unit.name), Some(unit));
+        }
+        for unit in DisplayUnit::ALL {
+            assert_eq!(DisplayUnit::by_name(unit.name), Some(unit));
+        }
+        assert_eq!(Unit::by_name("mm"), None);
+    }
+
+    #[test]
+    fn display_units_have_the_dimension_of_their_unit() {
+        for unit in Unit::ALL {
+            if let Some(display) = unit.display {
+                assert_eq!(display.dimension, unit.dimension, "{}", unit.name);
+            }
+        }
+        let names: Vec<&str> = Unit::RADIAN_PER_SECOND
+            .display_units()
+            .map(|unit| unit.name)
+            .collect();
+        assert_eq!(names, ["deg/s", "rpm"]);
+        assert_eq!(Unit::PER_SECOND.display_units().count(), 0);
+    }
+
+    #[test]
+    fn factors_bring_si_to_the_display_unit() {
+        let turn_per_second = std::f64::consts::TAU;
+        assert!((DisplayUnit::TURN_PER_MINUTE.factor * turn_per_second - 60.0).abs() < 1e-13);
+        assert!((DisplayUnit::DEGREE.factor * std::f64::consts::PI - 180.0).abs() < 1e-13);
+    }
+}

@@ -1,0 +1,135 @@
+"""Hosts besides FMPy: every shipped FMU in each of them, against what FMPy gets."""
+
+import ctypes
+import platform
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from harness import SHIPPED
+
+STEP = 0.01
+STEPS = 10
+
+
+@pytest.fixture
+def expected(slave):
+    """`expected(name)`: the outputs that FMPy gets after some steps."""
+
+    def run(name):
+        instance = slave(name).start()
+        for _ in range(STEPS):
+            instance.step(STEP)
+        return instance.outputs()
+
+    return run
+
+
+# ---------------------------------------------------------------------------------------------
+# fmuloader: a thin layer of ctypes, which binds every function of the standard; needs Python 3.11
+
+
+def fmuloader():
+    return pytest.importorskip("fmuloader.fmi2")
+
+
+@pytest.fixture
+def loaded(fmu):
+    """`loaded(name, kind)`: an initialized instance in fmuloader."""
+    open_ones = []
+
+    def get(name, kind):
+        description = fmu(name).description
+        instance = fmuloader().Fmi2Slave(fmu(name).path, model_identifier=description.modelIdentifier)
+        open_ones.append(instance)
+        # The FMU declares that it does without the host's memory functions.
+        instance.instantiate(
+            "loaded",
+            fmuloader().Fmi2Type[kind],
+            guid=description.guid,
+            cannot_use_memory_management_functions=True,
+        )
+        instance.setup_experiment(start_time=0.0)
+        instance.enter_initialization_mode()
+        instance.exit_initialization_mode()
+        return instance
+
+    yield get
+    for instance in open_ones:
+        instance.terminate()
+        instance.free_instance()
+
+
+def outputs(fmu, instance) -> dict[str, float]:
+    names = fmu.names("output")
+    references = [fmu.variables[name].valueReference for name in names]
+    return dict(zip(names, instance.get_real(references), strict=True))
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_fmuloader_steps_to_the_same_bits(fmu, loaded, expected, name):
+    instance = loaded(name, "CO_SIMULATION")
+    time = 0.0
+    for _ in range(STEPS):
+        instance.do_step(time, STEP)
+        time += STEP
+    assert outputs(fmu(name), instance) == expected(name)
+    state = instance.get_fmu_state()
+    written = instance.serialize_fmu_state(state)
+    instance.free_fmu_state(state)
+    instance.do_step(time, STEP)
+    state = instance.deserialize_fmu_state(written)
+    instance.set_fmu_state(state)
+    instance.free_fmu_state(state)
+    assert outputs(fmu(name), instance) == expected(name)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_fmuloader_exchanges_the_model(fmu, loaded, expected, name):
+    instance = loaded(name, "MODEL_EXCHANGE")
+    assert not instance.new_discrete_states().newDiscreteStatesNeeded
+    instance.enter_continuous_time_mode()
+    assert instance.get_continuous_states(0) == instance.get_derivatives(0) == []
+    instance.set_time(STEP * STEPS)
+    found = outputs(fmu(name), instance)
+    instance.completed_integrator_step()
+    for output, value in expected(name).items():
+        # One way instead of ten steps: to some ulp, carried along by rates of up to some hundred.
+        assert found[output] == pytest.approx(value, rel=1e-9, abs=1e-9), output
+
+
+# ---------------------------------------------------------------------------------------------
+# Ecos: an engine in C++
+
+
+def ecos():
+    """Ecos, where it runs; its wheel brings programs for Windows and Linux on x86-64."""
+    if platform.machine().lower() not in ("x86_64", "amd64") or sys.platform == "darwin":
+        pytest.skip("there is no Ecos for this platform")
+    if sys.platform == "linux":
+        # It links to a library of another wheel, which it does not look for.
+        library = Path(sys.prefix) / "lib" / "libtbb.so.12"
+        ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+    import ecospy
+
+    return ecospy
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_ecos_steps_to_the_same_bits(fmu, expected, name):
+    ecos()
+    from ecospy.EcosSimulation import EcosSimulation
+    from ecospy.EcosSimulationStructure import EcosSimulationStructure
+
+    with EcosSimulationStructure() as structure:
+        structure.add_model("it", str(fmu(name).path))
+        with EcosSimulation(STEP, structure=structure) as simulation:
+            assert simulation.init()
+            simulation.step(STEPS)
+            found = {v: simulation.get_real(f"it::{v}") for v in fmu(name).names("output")}
+            simulation.terminate()
+    for output, value in expected(name).items():
+        # It keeps its own time, which may be off by an ulp.
+        assert found[output] == pytest.approx(value, rel=1e-12, abs=1e-12), output
+    assert np.all(np.isfinite(list(found.values())))

@@ -1,0 +1,177 @@
+"""Model exchange: the same FMU for hosts that integrate, without a communication step."""
+
+import fmpy
+import numpy as np
+import pytest
+from closed_form import CLOSED_FORMS
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Model
+from harness import (
+    DISCARD,
+    ERROR,
+    SHIPPED,
+    WARNING,
+    Fmu,
+    Messages,
+    Slave,
+    assert_accurate,
+    signals,
+    simulate,
+)
+from motions import full_motion
+
+
+class Exchanged(Slave):
+    """One instance for model exchange, in continuous-time mode after `start`."""
+
+    def __init__(self, fmu: Fmu):
+        self.variables = fmu.variables
+        self.messages = Messages()
+        self.fmi = FMU2Model(
+            guid=fmu.description.guid,
+            modelIdentifier=fmu.description.modelIdentifier,
+            unzipDirectory=str(fmu.folder),
+            instanceName=f"{fmu.name} under test",
+        )
+        self.fmi.instantiate(callbacks=self.messages.callbacks)
+
+    def start(self, values=None, **experiment):
+        super().start(values, **experiment)
+        self.fmi.newDiscreteStates()
+        self.fmi.enterContinuousTimeMode()
+        return self
+
+    def at(self, time: float, values: dict[str, float]) -> dict[str, float]:
+        """All outputs at a time with these inputs."""
+        self.fmi.setTime(time)
+        self.set(values)
+        return self.outputs()
+
+    def accept(self) -> None:
+        """The host's step ends here."""
+        assert self.fmi.completedIntegratorStep() == (0, 0)
+
+
+@pytest.fixture
+def exchanged(fmu):
+    instances = []
+
+    def get(name):
+        instances.append(Exchanged(fmu(name)))
+        return instances[-1]
+
+    yield get
+    for instance in instances:
+        instance.fmi.freeInstance()
+
+
+@pytest.mark.parametrize("solver", ["Euler", "CVode"])
+@pytest.mark.parametrize("name", sorted(CLOSED_FORMS))
+def test_outputs_belong_to_the_time_of_their_inputs(fmu, name, solver):
+    """Without the lag of a communication step, for FMPy's solvers of either kind."""
+    mechanism = CLOSED_FORMS[name]()
+    time = np.linspace(0, 1, 61)
+    motion = full_motion(name, time)
+    result = simulate(
+        fmu(name),
+        fmi_type="ModelExchange",
+        solver=solver,
+        input=signals(mechanism.driver, time, *motion),
+        start_values={f"{mechanism.driver}.position": motion[0][0]},
+        stop_time=1.0,
+        step_size=1 / 60,
+        output_interval=1 / 60,
+    )
+    assert len(result) == 61
+    rows = slice(1, None)
+    assert_accurate(
+        {column: result[column][rows] for column in result.dtype.names},
+        {k: v[rows] for k, v in mechanism.motion(*motion).items() if k in result.dtype.names},
+    )
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_shipped_mechanism_runs_as_either(fmu, name):
+    """Prescribed motions and inputs at their starts: both interfaces give the same."""
+    options = {"stop_time": 0.2, "output_interval": 0.02, "step_size": 0.02}
+    both = [
+        simulate(fmu(name), fmi_type=kind, **options) for kind in ("ModelExchange", "CoSimulation")
+    ]
+    assert len(both[0]) == len(both[1]) == 11
+    for column in both[0].dtype.names:
+        # Two ways to the same pose, each to some ulp of the largest coordinate, which rates of
+        # up to some hundred carry along.
+        np.testing.assert_allclose(both[0][column], both[1][column], rtol=1e-9, atol=1e-9)
+
+
+def test_evaluation_order_does_not_matter(exchanged):
+    """Everything is evaluated from what was accepted last, to the last bit."""
+    points = {t: {"crank_angle.position": 1.0 + 6 * t} for t in (0.1, 0.5, 0.25, 0.1, 0.4)}
+    forth, back = exchanged("four_bar").start(), exchanged("four_bar").start()
+    ways = [
+        {t: instance.at(t, points[t]) for t in order}
+        for instance, order in [(forth, sorted(points)), (back, sorted(points, reverse=True))]
+    ]
+    assert ways[0] == ways[1]
+
+
+def test_turns_are_counted_from_what_was_accepted(exchanged):
+    """A jump is followed from the accepted pose; a trial that is not accepted leaves nothing."""
+    instance = exchanged("four_bar").start()
+    tried = instance.at(0.1, {"crank_angle.position": 30.0})
+    assert tried["crank.phi"] == pytest.approx(30.0)
+    again = instance.at(0.1, {"crank_angle.position": 1.5})
+    fresh = exchanged("four_bar").start().at(0.1, {"crank_angle.position": 1.5})
+    assert again == fresh
+    instance.accept()
+    instance.fmi.enterEventMode()
+    instance.fmi.newDiscreteStates()
+    instance.set({"rocker_length": 0.31})
+    longer = instance.outputs()
+    assert longer["rocker.phi"] != again["rocker.phi"]
+    assert longer["rocker.omega"] == 0.0, "parameters contribute nothing to velocities"
+
+
+def test_a_dead_point_in_a_getter_is_discarded(exchanged):
+    """The triangle of sides 0.4 and 0.25 m closes up to a side of 0.65 m."""
+    instance = exchanged("tlv").start()
+    before = instance.at(0.1, {"side_length.position": 0.6})
+    instance.fmi.setTime(0.2)
+    instance.set({"side_length.position": 0.7})
+    with pytest.raises(FMICallException) as discarded:
+        instance.outputs()
+    assert discarded.value.status == DISCARD
+    assert "cannot go beyond 0.65" in instance.messages.texts(WARNING)[-1]
+    assert instance.at(0.1, {"side_length.position": 0.6}) == before
+
+
+def test_rates_are_the_inputs_and_are_not_estimated(exchanged):
+    instance = exchanged("pendulum").start()
+    moving = {"swing_angle.position": 0.5, "swing_angle.velocity": 2.0}
+    assert instance.at(0.1, moving)["rod.omega"] == 2.0
+    refused = exchanged("pendulum")
+    refused.setup()
+    refused.set({"rates": 3})
+    refused.fmi.enterInitializationMode()
+    with pytest.raises(FMICallException) as error:
+        refused.fmi.exitInitializationMode()
+    assert error.value.status == ERROR
+    assert "`rates` is `estimated`" in refused.messages.texts(ERROR)[-1]
+
+
+def test_a_state_is_got_and_set(exchanged):
+    instance = exchanged("four_bar").start()
+    instance.at(0.1, {"crank_angle.position": 1.4, "crank_angle.velocity": 1.0})
+    instance.accept()
+    state = instance.fmi.getFMUstate()
+    there = instance.outputs()
+    instance.at(0.7, {"crank_angle.position": 5.0})
+    instance.accept()
+    instance.fmi.setFMUstate(state)
+    assert instance.outputs() == there
+    instance.fmi.freeFMUstate(state)
+
+
+def test_validation_finds_nothing(fmu):
+    for name in SHIPPED:
+        assert fmpy.validation.validate_fmu(str(fmu(name).path)) == [], name

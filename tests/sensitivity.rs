@@ -1,0 +1,167 @@
+//! Directional derivatives of every shipped mechanism against differences.
+
+mod common;
+
+use biela::fmi::{Causality, Interface, Kind, Order, Quantity, Variable};
+use common::{Instance, instance_of, shipped, stems};
+
+/// A quarter of the way over which differences of fourth order are taken, in units of the known.
+/// Of lengths of a centimetre it is a thousandth; the fourth power of that is their truncation,
+/// and they carry rounding of 1e-16 / 1e-5 times the condition.
+const STEP: f64 = 1e-5;
+/// What that leaves of a derivative, relative to the largest of the same order of time that any
+/// output has; accelerations near singular positions have the largest third derivatives.
+const DIFFERENCE: f64 = 1e-6;
+
+fn references(instance: &Instance, which: impl Fn(&Variable<Quantity>) -> bool) -> Vec<u32> {
+    (0..)
+        .zip(instance.variables())
+        .filter(|(_, variable)| which(variable))
+        .map(|(reference, _)| reference)
+        .collect()
+}
+
+fn is_parameter(variable: &Variable<Quantity>) -> bool {
+    variable.causality == Causality::Parameter && variable.kind.is_real()
+}
+
+/// In initialization mode, inputs moved on and all rates there.
+fn moving(name: &str) -> Instance {
+    let mut instance = instance_of(shipped(name), Interface::CoSimulation);
+    // Between the points of every table.
+    instance.setup_experiment(0.317, None).expect("legal");
+    for (reference, variable) in (0..).zip(instance.variables().to_vec()) {
+        match (variable.quantity, variable.kind) {
+            (Quantity::Input(_, order), Kind::Real { start, .. }) => {
+                let start = start.expect("inputs have one");
+                let value = match order {
+                    // Some lengths do not go further than a few centimetres.
+                    Order::Position => start + 0.003,
+                    Order::Velocity => 0.7 + 0.1 * f64::from(reference),
+                    Order::Acceleration => -0.4 + 0.1 * f64::from(reference),
+                };
+                instance.set_real(&[reference], &[value]).expect("legal");
+            }
+            // As the inputs say.
+            (Quantity::RateSource, _) => instance.set_integer(&[reference], &[2]).expect("legal"),
+            _ => {}
+        }
+    }
+    instance.enter_initialization_mode().expect("legal");
+    instance
+}
+
+#[test]
+fn every_derivative_agrees_with_differences() {
+    for name in stems("mechanisms", "toml") {
+        let mut instance = moving(&name);
+        let knowns = references(&instance, |variable| {
+            variable.causality == Causality::Input || is_parameter(variable)
+        });
+        let unknowns = references(&instance, |variable| {
+            matches!(
+                variable.causality,
+                Causality::Output | Causality::CalculatedParameter
+            )
+        });
+        for known in knowns {
+            let exact = instance
+                .directional_derivative(&unknowns, &[known], &[1.0])
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+            let mut value = [0.0];
+            instance.get_real(&[known], &mut value).expect("it is set");
+            let mut moved = |by: f64| -> Vec<f64> {
+                instance
+                    .set_real(&[known], &[value[0] + by])
+                    .expect("legal");
+                instance.reals(&unknowns).expect("it closes").collect()
+            };
+            let [far_before, before, after, far_after] =
+                [-2.0, -1.0, 1.0, 2.0].map(|k| moved(k * STEP));
+            moved(0.0);
+            let way = (value[0] + STEP) - (value[0] - STEP);
+            let mut largest = [1.0_f64; 3];
+            let order = |place: usize| {
+                let variable = &instance.variables()[unknowns[place] as usize];
+                variable.quantity.order().map_or(0, |order| order as usize)
+            };
+            for (place, exact) in exact.iter().enumerate() {
+                largest[order(place)] = largest[order(place)].max(exact.abs());
+            }
+            for (place, exact) in exact.iter().enumerate() {
+                let (near, far) = (
+                    after[place] - before[place],
+                    far_after[place] - far_before[place],
+                );
+                let difference = (8.0 * near - far) / (6.0 * way);
+                assert!(
+                    (exact - difference).abs() <= DIFFERENCE * largest[order(place)],
+                    "{name}: `{}` by `{}`: {exact} and {difference}",
+                    instance.variables()[unknowns[place] as usize].name,
+                    instance.variables()[known as usize].name,
+                );
+            }
+        }
+    }
+}
+
+/// A direction in all knowns at once is the sum of its parts, each known as often as it is named.
+#[test]
+fn derivatives_are_linear_in_the_direction() {
+    let mut instance = moving("four_bar");
+    let unknowns = references(&instance, |v| v.causality == Causality::Output);
+    let knowns = [0, 1, 2, 3, 0];
+    let changes = [0.3, -1.0, 2.0, 0.01, 0.4];
+    let mut sum = vec![0.0; unknowns.len()];
+    for (known, change) in knowns.iter().zip(changes) {
+        let part = instance
+            .directional_derivative(&unknowns, &[*known], &[change])
+            .unwrap();
+        sum.iter_mut()
+            .zip(part)
+            .for_each(|(sum, part)| *sum += part);
+    }
+    let together = instance
+        .directional_derivative(&unknowns, &knowns, &changes)
+        .unwrap();
+    for (sum, together) in sum.iter().zip(together) {
+        // Some ten roundings of terms of the order of one.
+        assert!((sum - together).abs() < 1e-13, "{sum} {together}");
+    }
+}
+
+/// The rates that a host sees estimated count as given: only geometry changes with a position.
+#[test]
+fn an_estimate_is_not_differentiated() {
+    let mut instance = instance_of(shipped("pendulum"), Interface::CoSimulation);
+    instance.setup_experiment(0.0, None).unwrap();
+    instance.enter_initialization_mode().unwrap();
+    instance.exit_initialization_mode().unwrap();
+    for step in 0..3 {
+        let t = 0.1 * f64::from(step);
+        instance.set_real(&[0], &[0.5 + t]).unwrap();
+        instance.do_step(t, 0.1).unwrap();
+    }
+    let reference = |name: &str| {
+        let mut variables = instance.variables().iter();
+        variables
+            .position(|variable| variable.name == name)
+            .unwrap() as u32
+    };
+    let unknowns = [reference("rod.vx"), reference("rod.omega")];
+    let length = reference("length");
+    let mut by = |known| {
+        let values = instance.directional_derivative(&unknowns, &[known], &[1.0])?;
+        Ok::<[f64; 2], biela::fmi::Error>([values[0], values[1]])
+    };
+    // x = sin(u)/4 at u = 0.7 where u̇ = 1, so that ∂vx/∂u = -sin(u) u̇/4 and ∂vx/∂u̇ = cos(u)/4.
+    let [vx, omega] = by(0).unwrap();
+    assert!((vx + 0.25 * 0.7_f64.sin()).abs() < 1e-14, "{vx}");
+    assert!(omega.abs() < 1e-15, "{omega}");
+    let [vx, omega] = by(1).unwrap();
+    assert!((vx - 0.25 * 0.7_f64.cos()).abs() < 1e-14, "{vx}");
+    assert!((omega - 1.0).abs() < 1e-15, "{omega}");
+    // After initialization parameters are no knowns any more.
+    let refused = by(length).unwrap_err().to_string();
+    assert!(refused.contains("by inputs"), "{refused}");
+}
