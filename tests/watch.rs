@@ -23,9 +23,9 @@ impl Drop for Watched {
 
 impl Watched {
     fn start(text: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("watched.toml");
-        std::fs::write(&file, text).unwrap();
+        std::fs::write(&file, text).expect("it can be written");
         let mut child = Command::new(env!("CARGO_BIN_EXE_biela"))
             .arg("watch")
             .arg(file)
@@ -33,11 +33,11 @@ impl Watched {
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
-            .unwrap();
+            .expect("the program runs");
         let mut line = String::new();
-        let mut output = BufReader::new(child.stdout.take().unwrap());
-        output.read_line(&mut line).unwrap();
-        let address = line.trim().strip_prefix("http://").unwrap();
+        let mut output = BufReader::new(child.stdout.take().expect("it is piped"));
+        output.read_line(&mut line).expect("it says where it is");
+        let address = line.trim().strip_prefix("http://").expect("an address");
         Self {
             child,
             address: address.trim_end_matches('/').to_owned(),
@@ -51,12 +51,12 @@ impl Watched {
 
     /// Status and body that answer a request.
     fn ask(&self, request: &str) -> (String, String) {
-        let mut stream = TcpStream::connect(&self.address).unwrap();
-        stream.write_all(request.as_bytes()).unwrap();
+        let mut stream = TcpStream::connect(&self.address).expect("it listens");
+        stream.write_all(request.as_bytes()).expect("it listens");
         let mut answer = String::new();
-        stream.read_to_string(&mut answer).unwrap();
-        let (head, body) = answer.split_once("\r\n\r\n").unwrap();
-        let status = head.lines().next().unwrap();
+        stream.read_to_string(&mut answer).expect("it answers");
+        let (head, body) = answer.split_once("\r\n\r\n").expect("a head and a body");
+        let status = head.lines().next().expect("a status");
         (status.to_owned(), body.to_owned())
     }
 
