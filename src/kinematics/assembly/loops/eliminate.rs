@@ -1,413 +1,19 @@
-//! All the ways in which a block closes, by bounds over intervals: its angles are divided into
-//! boxes until each holds no solution, as an equation has a bound that keeps it from zero, or
-//! exactly one, by Krawczyk's test.
-//!
-//! Given the angles, the rows that hold points together give x and y of each body as a sum of
-//! constants and of waves α cos φ + β sin φ, one an angle, whose range over an interval is known
-//! in closed form. The rows that are left must be zero. An angle that only says where a link of a
-//! known length points is eliminated as well: its two rows become one, of a distance.
+//! What is left of a block's rows when x and y of its bodies are eliminated.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::DMatrix;
-
+use super::form::{Angle, Closure, Form};
+use super::{Loops, MARGIN};
 use crate::kinematics::constraint::{Axis, Projection, Relation};
 use crate::kinematics::plan::Work;
 use crate::mechanism::{Interval, MarkerId, Scalar};
 
-/// A block of more unknowns has too many angles for boxes.
-const MOST_UNKNOWNS: usize = 60;
-/// Into so many boxes angles are divided at the most.
-const MOST_BOXES: usize = 10_000;
-/// A box narrower than this \[rad\] is not divided: there the block nearly closes, or closes in a
-/// nearly singular position.
-const NARROWEST: f64 = 1e-6;
-/// Krawczyk's test is of use in boxes narrower than this \[rad\].
-const NARROW: f64 = 1.0;
-/// By how much of its width a box is enlarged for that test: a solution may lie on its edge.
-const ENLARGED: f64 = 0.1;
-/// Angles that differ by less than this, in boxes known to hold one solution, are of the same.
-const SAME: f64 = 1e-7;
 /// How far off, scaled, what was found before may be.
 const SLACK: f64 = 1e-12;
-/// A gap below this, scaled, may be rounding.
-const MARGIN: f64 = 1e-10;
-
-/// The ways in which a block closes.
-#[derive(Debug)]
-pub(super) struct AllWays {
-    /// The unknowns in the order of the block's columns, near a solution each; all there are.
-    /// `None` if that could not be proved.
-    pub(super) ways: Option<Vec<Vec<f64>>>,
-    /// Into how many boxes the angles were divided.
-    pub(super) boxes: usize,
-}
-
-/// Finds all ways in which the rows close in the unknowns `columns`. All other unknowns are known
-/// in `work`.
-pub(super) fn all_ways(
-    rows: &[usize],
-    columns: &[usize],
-    work: &Work<'_>,
-    estimate: &[f64],
-) -> AllWays {
-    let unknown = AllWays {
-        ways: None,
-        boxes: 0,
-    };
-    let bodies = work.system.mechanism().bodies.len();
-    let from_joints = columns.iter().any(|&column| column >= 3 * bodies);
-    if from_joints || columns.len() > MOST_UNKNOWNS {
-        return unknown;
-    }
-    let mut builder = Builder {
-        work,
-        columns: columns.iter().copied().collect(),
-        rows: rows.to_vec(),
-        angles: BTreeMap::new(),
-        places: BTreeMap::new(),
-        torn: 0,
-        links: Vec::new(),
-    };
-    let Some(loops) = builder.loops() else {
-        return unknown;
-    };
-    let (solutions, boxes) = loops.solve();
-    let ways = solutions.and_then(|solutions| {
-        let at = |angles: &Vec<f64>| builder.unknowns(columns, &loops.kept, angles, estimate);
-        solutions.iter().map(at).collect()
-    });
-    AllWays { ways, boxes }
-}
-
-/// The angle of a body.
-#[derive(Clone, Copy, Debug)]
-enum Angle {
-    Known(Interval),
-    /// A torn angle and what is added to it.
-    Torn(usize, Interval),
-}
-
-impl Angle {
-    fn plus(self, turn: Interval) -> Self {
-        match self {
-            Self::Known(angle) => Self::Known(angle + turn),
-            Self::Torn(torn, offset) => Self::Torn(torn, offset + turn),
-        }
-    }
-
-    fn over(self, angles: &[Interval]) -> Interval {
-        match self {
-            Self::Known(angle) => angle,
-            Self::Torn(torn, offset) => angles[torn] + offset,
-        }
-    }
-}
-
-/// A constant and α cos φ + β sin φ for each torn angle.
-#[derive(Clone, Debug)]
-struct Form {
-    constant: Interval,
-    waves: Vec<[Interval; 2]>,
-}
-
-impl Form {
-    fn constant(constant: Interval, torn: usize) -> Self {
-        Self {
-            constant,
-            waves: vec![[Interval::point(0.0); 2]; torn],
-        }
-    }
-
-    /// self + other · factor.
-    fn plus(mut self, other: &Self, factor: Interval) -> Self {
-        self.constant = self.constant + other.constant * factor;
-        for (wave, other) in self.waves.iter_mut().zip(&other.waves) {
-            for (part, other) in wave.iter_mut().zip(other) {
-                *part = *part + *other * factor;
-            }
-        }
-        self
-    }
-
-    fn minus(self, other: &Self) -> Self {
-        self.plus(other, Interval::point(-1.0))
-    }
-
-    /// Its range over a box of angles.
-    fn over(&self, angles: &[Interval]) -> Interval {
-        let waves = self.waves.iter().zip(angles);
-        waves.fold(self.constant, |sum, (wave, angle)| {
-            sum + range(*wave, *angle)
-        })
-    }
-}
-
-impl Form {
-    /// The range of its derivative by an angle over a box.
-    fn slope(&self, angle: usize, angles: &[Interval]) -> Interval {
-        let [alpha, beta] = self.waves[angle];
-        range([beta, -alpha], angles[angle])
-    }
-}
-
-/// The range of α cos φ + β sin φ.
-fn range([alpha, beta]: [Interval; 2], phi: Interval) -> Interval {
-    let zero = |x: Interval| x.low == 0.0 && x.high == 0.0;
-    if zero(alpha) && zero(beta) {
-        return Interval::point(0.0);
-    }
-    let parts = alpha * phi.cos() + beta * phi.sin();
-    // √(α² + β²) cos(φ − atan2(β, α)), from the side on which the angle does not jump.
-    let amplitude = alpha.hypot(beta);
-    let wave = if alpha.low > 0.0 || beta.low > 0.0 || beta.high < 0.0 {
-        amplitude * (phi - beta.atan2(alpha)).cos()
-    } else {
-        -(amplitude * (phi - (-beta).atan2(-alpha)).cos())
-    };
-    let both = parts.intersection(wave);
-    if both.is_finite() { both } else { parts }
-}
-
-/// A row that is left once x and y are eliminated.
-#[derive(Debug)]
-enum Closure {
-    /// form = 0.
-    Sum(Form),
-    /// √(x² + y²) = u.
-    Distance([Form; 2], Interval),
-    /// cos(angle) x + sin(angle) y = u.
-    Projection(Angle, [Form; 2], Interval),
-}
-
-impl Closure {
-    fn forms(&self) -> &[Form] {
-        match self {
-            Self::Sum(form) => std::slice::from_ref(form),
-            Self::Distance(forms, _) | Self::Projection(_, forms, _) => forms,
-        }
-    }
-
-    /// Whether a torn angle is in the row.
-    fn contains(&self, torn: usize) -> bool {
-        let zero = [Interval::point(0.0); 2];
-        let turns = matches!(self, Self::Projection(Angle::Torn(k, _), ..) if *k == torn);
-        turns || self.forms().iter().any(|form| form.waves[torn] != zero)
-    }
-
-    /// Counts only the torn angles that are left.
-    fn keep(&mut self, kept: &[usize]) {
-        let forms: &mut [Form] = match self {
-            Self::Sum(form) => std::slice::from_mut(form),
-            Self::Distance(forms, _) | Self::Projection(_, forms, _) => forms,
-        };
-        for form in forms {
-            form.waves = kept.iter().map(|&k| form.waves[k]).collect();
-        }
-        if let Self::Projection(Angle::Torn(torn, _), ..) = self {
-            *torn = kept.iter().position(|k| k == torn).unwrap_or_default();
-        }
-    }
-
-    /// Whether the row has no zero in a box of angles, by more than `margin`.
-    fn excludes(&self, angles: &[Interval], margin: f64) -> bool {
-        let value = match self {
-            // Sharper than the square of the distance.
-            Self::Distance([x, y], u) => x.over(angles).hypot(y.over(angles)) - *u,
-            _ => self.over(angles),
-        };
-        // What is not defined contains everything.
-        value.low > margin || value.high < -margin
-    }
-
-    /// The range of the row over a box; that of a distance u is (x² + y² − u²)/(2u).
-    fn over(&self, angles: &[Interval]) -> Interval {
-        match self {
-            Self::Sum(form) => form.over(angles),
-            Self::Distance([x, y], u) => {
-                let squares = x.over(angles).square() + y.over(angles).square();
-                (squares - u.square()) / (*u + *u)
-            }
-            Self::Projection(angle, [x, y], u) => {
-                let angle = angle.over(angles);
-                angle.cos() * x.over(angles) + angle.sin() * y.over(angles) - *u
-            }
-        }
-    }
-
-    /// The range of its derivative by an angle.
-    fn slope(&self, by: usize, angles: &[Interval]) -> Interval {
-        match self {
-            Self::Sum(form) => form.slope(by, angles),
-            Self::Distance([x, y], u) => {
-                let half =
-                    x.over(angles) * x.slope(by, angles) + y.over(angles) * y.slope(by, angles);
-                half / *u
-            }
-            Self::Projection(angle, [x, y], _) => {
-                let turns = matches!(angle, Angle::Torn(torn, _) if *torn == by);
-                let angle = angle.over(angles);
-                let (cos, sin) = (angle.cos(), angle.sin());
-                let slope = cos * x.slope(by, angles) + sin * y.slope(by, angles);
-                if turns {
-                    slope + cos * y.over(angles) - sin * x.over(angles)
-                } else {
-                    slope
-                }
-            }
-        }
-    }
-}
-
-/// The equations of a block in its torn angles.
-#[derive(Debug)]
-struct Loops {
-    /// The torn angles that are left.
-    kept: Vec<usize>,
-    closures: Vec<Closure>,
-    /// What a row may be off by \[m\].
-    margin: f64,
-}
-
-/// What is known of a box of angles.
-enum Content {
-    /// It holds no solution.
-    None,
-    /// A box around it holds exactly one, near here.
-    One(Vec<f64>),
-    Unknown,
-}
-
-impl Loops {
-    /// All solutions in the angles kept, or `None` if some box could not be decided, and the
-    /// number of boxes.
-    fn solve(&self) -> (Option<Vec<Vec<f64>>>, usize) {
-        let half_turn = PI.next_up();
-        let mut boxes = vec![vec![Interval::new(-half_turn, half_turn); self.kept.len()]];
-        let mut solutions: Vec<Vec<f64>> = Vec::new();
-        let mut count = 0;
-        let width = |angle: &Interval| angle.high - angle.low;
-        while let Some(angles) = boxes.pop() {
-            count += 1;
-            match self.content(&angles) {
-                Content::None => continue,
-                Content::One(found) => {
-                    let same = |known: &Vec<f64>| {
-                        let mut pairs = known.iter().zip(&found);
-                        pairs.all(|(a, b)| (a - b - TAU * ((a - b) / TAU).round()).abs() < SAME)
-                    };
-                    if !solutions.iter().any(same) {
-                        solutions.push(found);
-                    }
-                    continue;
-                }
-                Content::Unknown => {}
-            }
-            let widest = (0..angles.len()).max_by(|&a, &b| {
-                let widths = [a, b].map(|k| width(&angles[k]));
-                widths[0].total_cmp(&widths[1]).then(b.cmp(&a))
-            });
-            let widest = widest.filter(|&k| width(&angles[k]) > NARROWEST);
-            let Some(widest) = widest.filter(|_| count + boxes.len() < MOST_BOXES) else {
-                return (None, count);
-            };
-            let middle = angles[widest].midpoint();
-            let (mut low, mut high) = (angles.clone(), angles);
-            low[widest] = Interval::new(low[widest].low, middle);
-            high[widest] = Interval::new(middle, high[widest].high);
-            boxes.extend([high, low]);
-        }
-        (Some(solutions), count)
-    }
-
-    fn content(&self, angles: &[Interval]) -> Content {
-        let mut rows = self.closures.iter();
-        if rows.any(|row| row.excludes(angles, self.margin)) {
-            return Content::None;
-        }
-        if self.kept.is_empty() {
-            return Content::One(Vec::new());
-        }
-        let narrow = angles.iter().all(|angle| angle.high - angle.low < NARROW);
-        let mut around: Vec<_> = angles
-            .iter()
-            .map(|angle| {
-                let more = ENLARGED * (angle.high - angle.low);
-                Interval::new(angle.low - more, angle.high + more)
-            })
-            .collect();
-        let Some(inner) = (narrow && self.closures.len() == self.kept.len())
-            .then(|| self.contract(&around))
-            .flatten()
-        else {
-            return Content::Unknown;
-        };
-        let misses = |(inner, around): (&Interval, &Interval)| {
-            inner.low > around.high || inner.high < around.low
-        };
-        if inner.iter().zip(&around).any(misses) {
-            return Content::None;
-        }
-        let inside = |(inner, around): (&Interval, &Interval)| {
-            inner.low > around.low && inner.high < around.high
-        };
-        if !inner.iter().zip(&around).all(inside) {
-            return Content::Unknown;
-        }
-        // The solution stays in, however often it is contracted.
-        around = inner;
-        for _ in 0..4 {
-            if let Some(inner) = self.contract(&around) {
-                let both = around.iter().zip(inner).map(|(a, b)| a.intersection(b));
-                let both: Vec<_> = both.collect();
-                if both.iter().all(|angle| angle.is_finite()) {
-                    around = both;
-                }
-            }
-        }
-        Content::One(around.iter().map(|angle| angle.midpoint()).collect())
-    }
-
-    /// Krawczyk's operator: m − Y f(m) + (1 − Y J)(x − m) contains all solutions in the box x, m
-    /// being its middle and Y near the inverse of J(m). Inside x it proves that there is one and
-    /// only one.
-    fn contract(&self, angles: &[Interval]) -> Option<Vec<Interval>> {
-        let order = self.kept.len();
-        let middle: Vec<_> = angles
-            .iter()
-            .map(|x| Interval::point(x.midpoint()))
-            .collect();
-        let slope = |row: usize, col: usize, at: &[Interval]| self.closures[row].slope(col, at);
-        let inverse =
-            DMatrix::from_fn(order, order, |row, col| slope(row, col, &middle).midpoint())
-                .try_inverse()?;
-        let values: Vec<_> = self.closures.iter().map(|row| row.over(&middle)).collect();
-        let slopes: Vec<Vec<_>> = (0..order)
-            .map(|row| (0..order).map(|col| slope(row, col, angles)).collect())
-            .collect();
-        let zero = Interval::point(0.0);
-        let contracted: Vec<_> = (0..order)
-            .map(|k| {
-                let newton =
-                    (0..order).fold(middle[k], |sum, row| sum - values[row] * inverse[(k, row)]);
-                (0..order).fold(newton, |sum, col| {
-                    let product = (0..order)
-                        .fold(zero, |sum, row| sum + slopes[row][col] * inverse[(k, row)]);
-                    let unit = Interval::point(f64::from(u8::from(k == col)));
-                    sum + (unit - product) * (angles[col] - middle[col])
-                })
-            })
-            .collect();
-        contracted
-            .iter()
-            .all(|x| x.is_finite())
-            .then_some(contracted)
-    }
-}
 
 /// Eliminates what it can of a block's unknowns.
-struct Builder<'a> {
+pub(super) struct Builder<'a> {
     work: &'a Work<'a>,
     columns: BTreeSet<usize>,
     /// Those that are not used yet.
@@ -431,9 +37,22 @@ struct Link {
     rest: [Form; 2],
 }
 
-impl Builder<'_> {
+impl<'a> Builder<'a> {
+    /// Nothing is eliminated yet.
+    pub(super) fn new(rows: &[usize], columns: &[usize], work: &'a Work<'a>) -> Self {
+        Self {
+            work,
+            columns: columns.iter().copied().collect(),
+            rows: rows.to_vec(),
+            angles: BTreeMap::new(),
+            places: BTreeMap::new(),
+            torn: 0,
+            links: Vec::new(),
+        }
+    }
+
     /// The equations that are left; `None` if the block has rows or unknowns of other kinds.
-    fn loops(&mut self) -> Option<Loops> {
+    pub(super) fn loops(&mut self) -> Option<Loops> {
         self.find_angles()?;
         self.find_places();
         let mut closures = self.closures()?;
@@ -495,7 +114,7 @@ impl Builder<'_> {
     }
 
     /// The unknowns for given torn angles, on the turns nearest the estimates.
-    fn unknowns(
+    pub(super) fn unknowns(
         &self,
         columns: &[usize],
         kept: &[usize],
