@@ -82,9 +82,10 @@ fn bodies(count: usize) -> String {
 }
 
 #[test]
-fn hundreds_of_bodies_that_nothing_drives_are_refused() {
-    let reason = refusal(&bodies(500));
-    assert!(reason.contains("degrees of freedom"), "{reason:.200}");
+fn thousands_of_bodies_that_nothing_drives_are_refused() {
+    let reason = refusal(&bodies(10_000));
+    assert!(reason.contains("30000 degrees of freedom"), "{reason:.200}");
+    assert!(reason.contains("and 9988 others"), "{reason}");
 }
 
 #[test]

@@ -256,10 +256,20 @@ fn structure_message(
         } else {
             format!("add {free} drivers for them")
         };
-        message += &format!("; free to move: {}: {add}", loose.join(", "));
+        message += &format!("; free to move: {}: {add}", some_of(loose));
     }
     if !excess.is_empty() {
-        message += &format!("; too many: remove one of {}", excess.join(", "));
+        message += &format!("; too many: remove one of {}", some_of(excess));
     }
     message
+}
+
+/// Names for a message that somebody shall read.
+fn some_of(names: &[String]) -> String {
+    const SHOWN: usize = 12;
+    if names.len() <= SHOWN + 1 {
+        return names.join(", ");
+    }
+    let others = names.len() - SHOWN;
+    format!("{} and {others} others", names[..SHOWN].join(", "))
 }

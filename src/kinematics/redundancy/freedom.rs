@@ -208,7 +208,7 @@ impl Solver {
 
 /// A factor for the k-th of several motions, so that they do not cancel: from a half to one and a
 /// half, spread evenly by the golden ratio.
-fn mixture(k: usize) -> f64 {
+pub(super) fn mixture(k: usize) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     0.5 + (GOLDEN * (k + 1) as f64).fract()
 }

@@ -22,6 +22,7 @@ use std::fmt;
 
 use closing::{Closing, evaluate_row, holds};
 use echelon::{Echelon, Row};
+use freedom::mixture;
 
 use super::assembly::Deadlock;
 use super::error::OpenJoint;
@@ -506,9 +507,22 @@ impl Solver {
     fn moved_by(&self, echelon: &Echelon) -> Vec<String> {
         /// A part of the largest motion that is not rounding.
         const MOVES: f64 = 1e-5;
+        /// More motions than this are looked at in so many mixtures of all of them: a coincidence
+        /// in which motions cancel does not come twice.
+        const FEW: usize = 64;
+        const MIXTURES: usize = 8;
+        let free = echelon.free();
+        let mixtures = if free.len() <= FEW { 0 } else { MIXTURES };
+        let single = free.iter().take_while(|_| mixtures == 0);
+        let single = single.map(|&column| vec![(column, 1.0)]);
+        let mixed = (0..mixtures).map(|which| {
+            let parts = free.iter().enumerate();
+            let parts = parts.map(|(k, &column)| (column, mixture(MIXTURES * k + which)));
+            parts.collect()
+        });
         let mut moves = vec![false; self.system.unknowns()];
-        for free in echelon.free() {
-            let vector = echelon.null_vector(&[(free, 1.0)]);
+        for motion in single.chain(mixed) {
+            let vector = echelon.null_vector(&motion);
             for (moves, value) in moves.iter_mut().zip(vector) {
                 *moves |= value.abs() > MOVES;
             }
