@@ -501,7 +501,7 @@ fn run_stops_at_a_dead_point_and_keeps_the_rows_before() {
         "{message}"
     );
     assert!(
-        message.contains("body `arm`, body `rod` line up"),
+        message.contains("body `arm` and body `rod` line up"),
         "{message}"
     );
 }
@@ -873,8 +873,8 @@ fn range_tells_the_limits() {
     // Base minus and plus arm: 0.4 m and 0.25 m.
     for wanted in [
         "side_length, from 0.35 m\n",
-        "  down to 0.15 m: dead point, where body `arm`, body `rod` line up\n",
-        "  up to   0.65 m: dead point, where body `arm`, body `rod` line up\n",
+        "  down to 0.15 m: dead point, where body `arm` and body `rod` line up\n",
+        "  up to   0.65 m: dead point, where body `arm` and body `rod` line up\n",
     ] {
         assert!(stdout(&tlv).contains(wanted), "{}", stdout(&tlv));
     }
@@ -1033,7 +1033,7 @@ fn an_fmu_carries_its_picture_and_its_page() {
     let page = String::from_utf8(content("documentation/index.html")).unwrap();
     assert!(page.contains("&lt;script&gt;alert(") && !page.contains("<script>alert"));
     for wanted in [
-        "down to 0.15 m: dead point, where body arm, body rod line up",
+        "down to 0.15 m: dead point, where body arm and body rod line up",
         "up to 0.65 m: dead point",
         "<td>arm_length</td><td>0.25</td><td>m</td><td>≥ 0.001</td>",
         "<td>arm.omega</td><td>output</td><td>rad/s</td>",

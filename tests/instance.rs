@@ -133,7 +133,7 @@ fn a_dead_point_is_told_with_driver_value_limit_and_bodies() {
     assert_eq!(
         heard.take(Category::Warning),
         [
-            "dead point, where body `arm`, body `rod` line up, after 0.8571 of the step from 0 s \
+            "dead point, where body `arm` and body `rod` line up, after 0.8571 of the step from 0 s \
              over 0.1 s: driver `side_length` was asked for 0.700000000 m and cannot go beyond \
              0.650000000 m"
         ]
@@ -157,7 +157,7 @@ fn an_approach_to_a_dead_point_is_warned_of_once() {
         for message in messages {
             assert!(
                 message.contains("near a singular position, with a reciprocal condition of")
-                    && message.ends_with("body `arm`, body `rod` all but line up"),
+                    && message.ends_with("body `arm` and body `rod` all but line up"),
                 "{message}"
             );
         }
@@ -192,7 +192,7 @@ fn a_change_point_is_an_event_not_a_warning() {
             assert!(
                 message.starts_with(
                     "change point passed on the smooth motion, with driver `crank_angle` at "
-                ) && message.ends_with("body `coupler`, body `follower` line up there"),
+                ) && message.ends_with("body `coupler` and body `follower` line up there"),
                 "{message}"
             );
             passed += 1;

@@ -14,7 +14,7 @@ use super::output::write;
 use super::picture::{Format, PLOT_WIDTH};
 use super::run::print;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
-use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample};
+use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, list};
 use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit};
 
 /// Find how far a driver can go.
@@ -125,7 +125,7 @@ fn describe(
             text,
             "  passes a change point at {} where {} line up",
             value(point.value),
-            point.bodies.join(", ")
+            list(&point.bodies, " and ")
         );
     }
     let extreme = |of: fn(&Sample) -> Option<f64>| {

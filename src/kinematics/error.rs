@@ -190,19 +190,22 @@ fn four_digits(value: f64) -> String {
     }
 }
 
-/// A message names so many open joints.
-const MOST_NAMED: usize = 8;
+/// Names for a message, with `last` before the last one; of very many only the first.
+pub(crate) fn list(names: &[String], last: &str) -> String {
+    const SHOWN: usize = 8;
+    if names.len() > SHOWN + 1 {
+        let others = names.len() - SHOWN;
+        return format!("{} and {others} others", names[..SHOWN].join(", "));
+    }
+    match names {
+        [names @ .., name] if !names.is_empty() => format!("{}{last}{name}", names.join(", ")),
+        _ => names.concat(),
+    }
+}
 
 fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {
-    let mut parts: Vec<_> = open
-        .iter()
-        .take(MOST_NAMED)
-        .map(OpenJoint::to_string)
-        .collect();
-    if open.len() > MOST_NAMED {
-        parts.push(format!("and {} others", open.len() - MOST_NAMED));
-    }
-    let open = parts.join(", ");
+    let open: Vec<_> = open.iter().map(OpenJoint::to_string).collect();
+    let open = list(&open, ", ");
     match verdict {
         Verdict::Impossible { proof, ways: 1 } => {
             format!("the mechanism cannot close: {open}; {proof}")
@@ -256,20 +259,10 @@ fn structure_message(
         } else {
             format!("add {free} drivers for them")
         };
-        message += &format!("; free to move: {}: {add}", some_of(loose));
+        message += &format!("; free to move: {}: {add}", list(loose, ", "));
     }
     if !excess.is_empty() {
-        message += &format!("; too many: remove one of {}", some_of(excess));
+        message += &format!("; too many: remove one of {}", list(excess, ", "));
     }
     message
-}
-
-/// Names for a message that somebody shall read.
-fn some_of(names: &[String]) -> String {
-    const SHOWN: usize = 12;
-    if names.len() <= SHOWN + 1 {
-        return names.join(", ");
-    }
-    let others = names.len() - SHOWN;
-    format!("{} and {others} others", names[..SHOWN].join(", "))
 }

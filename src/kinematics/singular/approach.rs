@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::{LARGEST_BLOCK, NEAR, list};
+use super::{LARGEST_BLOCK, NEAR};
+use crate::kinematics::error::list;
 use crate::kinematics::solver::Solver;
 
 /// A mechanism that has come near a singular position.
@@ -26,7 +27,7 @@ impl fmt::Display for Approach {
             f,
             "near a singular position, with a reciprocal condition of {:.1e}: {} all but line up",
             self.rcond,
-            list(&self.bodies)
+            list(&self.bodies, " and ")
         )
     }
 }

@@ -25,6 +25,7 @@ pub use approach::Approach;
 pub use crossing::Crossing;
 pub use locate::SingularKind;
 
+use super::error::list;
 use super::newton::MAX_ITERATIONS;
 use super::path::Path;
 use super::plan::{Bridged, Kernel};
@@ -93,20 +94,12 @@ pub(super) struct Careful {
 
 impl fmt::Display for SingularPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, where {} line up", self.kind, list(&self.bodies))
-    }
-}
-
-/// The most bodies that a message names.
-const MOST_NAMED: usize = 6;
-
-/// Names for a message, the first ones of many.
-fn list(names: &[String]) -> String {
-    match names.split_at_checked(MOST_NAMED) {
-        Some((named, rest)) if !rest.is_empty() => {
-            format!("{} and {} others", named.join(", "), rest.len())
-        }
-        _ => names.join(", "),
+        write!(
+            f,
+            "{}, where {} line up",
+            self.kind,
+            list(&self.bodies, " and ")
+        )
     }
 }
 
@@ -132,7 +125,7 @@ impl Solver {
             "change point passed on the smooth motion, with driver `{}` at {}: {} line up there",
             driver.name,
             driver.coordinate.kind.show(crossing.center),
-            list(&self.bodies_in_line(crossing))
+            list(&self.bodies_in_line(crossing), " and ")
         )
     }
 
