@@ -172,10 +172,14 @@ impl Coupled {
         })
     }
 
-    /// The ratio of the extreme pivots.
+    /// The ratio of the extreme pivots. That of a row of loops falls with the square of their
+    /// number, however far from a singular position they are: what is due to this is left out.
     pub(super) fn regularity(&self) -> f64 {
+        /// So many unknowns are no row yet.
+        const FEW: f64 = 24.0;
         let (low, high) = self.lu.pivot_range();
-        low / high.max(self.lu.norm())
+        let row = (self.rows.len() as f64 / FEW).max(1.0);
+        row * row * low / high.max(self.lu.norm())
     }
 
     /// Corrects the block's unknowns from where they are until Phi = 0 to rounding: solves
