@@ -5,7 +5,7 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::error::Error;
-use super::input::warn_of_misfits;
+use super::input::{Input, warn_of_misfits};
 use super::signals::Signals;
 use crate::kinematics::{Curve, Path, Solver, Start};
 use crate::mechanism::{
@@ -72,6 +72,15 @@ impl Conditions {
             driven.drivers[id.index()].source = DriverSource::Motion(Motion::Expression(motion));
         }
         Ok(driven)
+    }
+
+    /// A solver of the driven mechanism at the start of the simulation.
+    pub(super) fn solver_at_start(&self, input: &Input) -> Result<Solver, Error> {
+        let parameters = self.parameters(&input.mechanism)?;
+        let driven = Arc::new(self.driven(&input.mechanism)?);
+        let home_solver = input.assemble()?;
+        let time = input.mechanism.simulation.start;
+        start(home_solver, &driven, &parameters, time, |_| None).map_err(|error| input.error(error))
     }
 
     /// No driver follows both --drive and the signals of --input.

@@ -1,12 +1,11 @@
 //! `biela draw`
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
-use super::conditions::{self, Conditions};
+use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
 use super::picture::Format;
@@ -54,12 +53,7 @@ impl Draw {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.output.as_deref().map_or(Ok(Format::Svg), Format::of)?;
         let input = Input::read(&self.file)?;
-        let parameters = self.conditions.parameters(&input.mechanism)?;
-        let driven = Arc::new(self.conditions.driven(&input.mechanism)?);
-        let home_solver = input.assemble()?;
-        let time = input.mechanism.simulation.start;
-        let mut solver = conditions::start(home_solver, &driven, &parameters, time, |_| None)
-            .map_err(|error| input.error(error))?;
+        let mut solver = self.conditions.solver_at_start(&input)?;
         let scene = Scene::new(&mut solver, !self.no_traces);
         let sheet = Sheet::new(&scene, &solver.pose().q);
         let path = self

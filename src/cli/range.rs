@@ -49,12 +49,8 @@ impl Range {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
         let input = Input::read(&self.file)?;
         let drivers = self.drivers(&input.mechanism)?;
-        let parameters = self.conditions.parameters(&input.mechanism)?;
-        let driven = Arc::new(self.conditions.driven(&input.mechanism)?);
-        let home_solver = input.assemble()?;
-        let time = input.mechanism.simulation.start;
-        let mut solver = conditions::start(home_solver, &driven, &parameters, time, |_| None)
-            .map_err(|error| input.error(error))?;
+        let mut solver = self.conditions.solver_at_start(&input)?;
+        let driven = Arc::clone(solver.mechanism());
         let mut text = String::new();
         for &driver in &drivers {
             let start = solver.pose().drivers[driver.index()];
