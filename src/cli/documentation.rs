@@ -11,7 +11,7 @@ use super::motion::Motion;
 use super::range::{end_text, with_unit};
 use super::recording::Recording;
 use super::signals::Signals;
-use crate::drawing::animation::{Animation, escape, fill, player, style_and_script};
+use crate::drawing::animation::{Animation, escape, fill, page_with, player};
 use crate::drawing::{Scene, Sheet, png, svg};
 use crate::fmi::{Causality, Document, Kind, Quantity, Variable, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
@@ -19,7 +19,7 @@ use crate::mechanism::{
     CoordinateKind, DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of,
 };
 
-const PAGE: &str = include_str!("documentation.html");
+const MAIN: &str = include_str!("documentation.html");
 const STYLE: &str = include_str!("documentation.css");
 
 /// Width of the picture, which hosts show as an icon or beside the variables.
@@ -179,16 +179,13 @@ fn way(from: f64, range: &Range, start: f64) -> (String, f64) {
 
 fn page(mechanism: &Mechanism, sheet: &Sheet, shown: &Shown) -> String {
     let variables = variables(mechanism);
-    let [player_style, script] = style_and_script();
     let drawing = svg::write(sheet, DRAWING_WIDTH, false);
     let drawing = drawing
         .split_once("?>")
         .map_or(drawing.as_str(), |(_, svg)| svg);
-    fill(
-        PAGE,
+    let main = fill(
+        MAIN,
         &[
-            ("name", &escape(&mechanism.name)),
-            ("description", &escape(&mechanism.description)),
             ("about", &about(mechanism)),
             ("drawing", drawing),
             ("moving", &escape(&shown.moving)),
@@ -197,10 +194,9 @@ fn page(mechanism: &Mechanism, sheet: &Sheet, shown: &Shown) -> String {
             ("parameters", &parameters(&variables)),
             ("outputs", &outputs(&variables)),
             ("version", env!("CARGO_PKG_VERSION")),
-            ("style", &format!("{player_style}{STYLE}")),
-            ("script", script),
         ],
-    )
+    );
+    page_with(&mechanism.name, &mechanism.description, &main, STYLE)
 }
 
 /// Who made it and what may be done with it, as far as the file says.

@@ -14,11 +14,13 @@ use super::documentation::show;
 use super::error::Error;
 use super::input::Input;
 use super::render::render;
-use crate::drawing::animation::{escape, fill, player, style_and_script};
+use crate::drawing::animation::{escape, fill, page_with, player};
 use crate::mechanism::{Mechanism, Source};
 use server::{Answer, Server};
 
-const PAGE: &str = include_str!("watch/page.html");
+const MAIN: &str = include_str!("watch/main.html");
+const STYLE: &str = ".error { padding: 0.75rem 1rem; border: 2px solid #c0392b; \
+                     border-radius: 6px; overflow-x: auto; }\n";
 
 /// Show a mechanism moving in a browser, anew each time its file is saved.
 ///
@@ -150,25 +152,21 @@ impl View {
                 escape(error)
             )
         });
-        let [style, script] = style_and_script();
         let file = self.watch.file.display().to_string();
         let name = if self.name.is_empty() {
             &file
         } else {
             &self.name
         };
-        fill(
-            PAGE,
+        let main = fill(
+            MAIN,
             &[
-                ("name", &escape(name)),
-                ("description", &escape(&self.description)),
                 ("error", &error),
                 ("player", &self.player),
                 ("version", &self.version.to_string()),
-                ("style", style),
-                ("script", script),
             ],
-        )
+        );
+        page_with(name, &self.description, &main, STYLE)
     }
 }
 

@@ -7,7 +7,7 @@ mod film;
 mod page;
 mod stage;
 
-pub use page::{escape, fill, page, player, style_and_script};
+pub use page::{escape, fill, page, page_with, player};
 
 use super::scene::Scene;
 

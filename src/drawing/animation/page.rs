@@ -8,6 +8,7 @@ use quick_xml::writer::Writer;
 use super::Animation;
 use super::film::film;
 use super::stage::{Placement, Stage};
+use crate::drawing::scene::Scene;
 use crate::drawing::sheet::{CAPITALS, Layer, Mark};
 use crate::drawing::svg::{self, FONT_SIZE, FONTS, Xml, number};
 
@@ -21,22 +22,26 @@ const SCRIPT: &str = include_str!("player.js");
 /// The same animation gives the same bytes.
 #[must_use]
 pub fn page(animation: &Animation) -> String {
+    let Scene {
+        name, description, ..
+    } = &animation.scene;
+    page_with(name, description, &player(animation), "")
+}
+
+/// A page with [`player`]s in it: HTML with all that it needs in itself. Below the title and the
+/// description stands `main`, HTML with a `style` of its own.
+#[must_use]
+pub fn page_with(title: &str, description: &str, main: &str, style: &str) -> String {
     fill(
         PAGE,
         &[
-            ("title", &escape(&animation.scene.name)),
-            ("description", &escape(&animation.scene.description)),
-            ("style", STYLE),
-            ("player", &player(animation)),
+            ("title", &escape(title)),
+            ("description", &escape(description)),
+            ("style", &format!("{STYLE}{style}")),
+            ("main", main),
             ("script", SCRIPT),
         ],
     )
-}
-
-/// The style and the script that a page with [`player`]s needs once.
-#[must_use]
-pub fn style_and_script() -> [&'static str; 2] {
-    [STYLE, SCRIPT]
 }
 
 /// The part of a page that plays an animation, without the style and the script that players
