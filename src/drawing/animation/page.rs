@@ -206,7 +206,7 @@ mod tests {
         for (template, known) in [
             (
                 PAGE,
-                &["title", "description", "style", "player", "script"][..],
+                &["title", "description", "style", "main", "script"][..],
             ),
             (PLAYER, &["picture", "last", "film"]),
         ] {
