@@ -33,14 +33,14 @@ pub(super) struct Draw {
     output: Option<PathBuf>,
     #[command(flatten)]
     conditions: Conditions,
-    /// Width of the picture in pixels; lines and letters grow with it.
+    /// Width of the picture in pixels; lines and letters grow with it [default: 640, more where
+    /// many bodies need the room].
     #[arg(
         long,
         value_name = "PIXELS",
-        default_value_t = 640,
         value_parser = RangedU64ValueParser::<u32>::new().range(16..=8192)
     )]
-    width: u32,
+    width: Option<u32>,
     /// Leave out the paths of the points of interest.
     #[arg(long)]
     no_traces: bool,
@@ -59,6 +59,7 @@ impl Draw {
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
-        format.write(&path, &sheet, self.width, self.transparent)
+        let width = self.width.unwrap_or(sheet.width());
+        format.write(&path, &sheet, width, self.transparent)
     }
 }

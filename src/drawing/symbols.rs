@@ -132,6 +132,7 @@ impl<'a> Pen<'a> {
                     // Dark enough to be read: half the colour's light.
                     colour: Colour::of_body(index).shade(0.55),
                     follows: Rider::Body(BodyId(index)),
+                    may_miss: true,
                     candidates,
                 }),
         );
@@ -648,6 +649,7 @@ impl<'a> Pen<'a> {
             content: name.to_owned(),
             colour: Colour::DRIVER.shade(0.8),
             follows: Rider::Point(to),
+            may_miss: false,
             candidates,
         });
     }
@@ -712,6 +714,7 @@ impl<'a> Pen<'a> {
             content: name.to_owned(),
             colour: Colour::DRIVER.shade(0.8),
             follows: Rider::Point(markers[1]),
+            may_miss: false,
             candidates,
         });
     }
@@ -744,6 +747,7 @@ impl<'a> Pen<'a> {
             content: name.to_owned(),
             colour: Colour::INK,
             follows: Rider::of(at),
+            may_miss: false,
             candidates: around(center, PIN).collect(),
         });
     }

@@ -8,7 +8,7 @@ use crate::drawing::outline::{Point, convex_hull};
 use crate::drawing::rider::Rider;
 use crate::drawing::scene::{Anchor, Frame, Symbol};
 use crate::drawing::sheet::{
-    Bounds, CAPITALS, MARGIN, MOST_HEIGHT, Mark, Text, WIDTH, extent, fitting, scale_bar,
+    Bounds, CAPITALS, MARGIN, Mark, Text, WIDTH, extent, fitting, scale_bar, size,
 };
 use crate::drawing::symbols::{BESIDE, Pen};
 
@@ -53,8 +53,9 @@ impl Stage {
         let sampled = || moments.iter().step_by(every).map(|m| m.q.as_slice());
         let scene = &animation.scene;
         let q = moments.first().map_or(&[][..], |moment| &moment.q);
-        let room = Point::new(WIDTH, MOST_HEIGHT) - Point::repeat(2.0 * (MARGIN + AROUND));
-        let scale = fitting(room, extent(scene, sampled()));
+        let extent = extent(scene, sampled());
+        let room = size(scene, q, extent, WIDTH) - Point::repeat(2.0 * (MARGIN + AROUND));
+        let scale = fitting(room, extent);
 
         let mut pen = Pen::moving(scene, q, scale);
         let mut of_symbols = Vec::new();
