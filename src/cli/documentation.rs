@@ -70,8 +70,7 @@ pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, E
         },
         Document {
             path: "documentation/index.html".to_owned(),
-            content: page(&input.mechanism, &home.pose().parameters, &sheet, &shown)
-                .into_bytes(),
+            content: page(&input.mechanism, &home.pose().parameters, &sheet, &shown).into_bytes(),
         },
     ])
 }
@@ -256,10 +255,7 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
 /// The parameters with their values, [SI units].
 fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
     let rows = variables.iter().filter_map(|variable| {
-        let Kind::Real {
-            unit, min, max, ..
-        } = variable.kind
-        else {
+        let Kind::Real { unit, min, max, .. } = variable.kind else {
             let Kind::Enumeration(choices) = &variable.kind else {
                 return None;
             };

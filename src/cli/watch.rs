@@ -19,7 +19,7 @@ use crate::mechanism::{Mechanism, Source};
 use server::{Answer, Server};
 
 const MAIN: &str = include_str!("watch/main.html");
-const STYLE: &str = ".error { padding: 0.75rem 1rem; border: 2px solid #c0392b; \
+const STYLE: &str = ".error, .ended { padding: 0.75rem 1rem; border: 2px solid #c0392b; \
                      border-radius: 6px; overflow-x: auto; }\n";
 
 /// Show a mechanism moving in a browser, anew each time its file is saved.

@@ -50,8 +50,8 @@ const BETTER: f64 = 1e-6;
 
 /// Gives each label in turn the best of its places. Those that may be missing are, where no
 /// place is clear of the labels before them.
-pub(super) fn place(labels: Vec<Label>, marks: &[Mark]) -> Vec<Placed> {
-    let obstacles: Vec<Obstacle> = marks.iter().map(Obstacle::new).collect();
+pub(super) fn place<'a>(labels: Vec<Label>, marks: impl Iterator<Item = &'a Mark>) -> Vec<Placed> {
+    let obstacles: Vec<Obstacle> = marks.map(Obstacle::new).collect();
     let mut taken: Vec<Bounds> = Vec::new();
     let mut placed = Vec::new();
     for label in labels {

@@ -1,6 +1,5 @@
 //! A scene at one pose on a sheet of paper: lines, areas and texts, whatever they are written to.
 
-use super::labels::{self, Label};
 use super::lettering;
 use super::outline::{Outline, Point};
 use super::palette::Colour;
@@ -255,9 +254,8 @@ impl Draft {
         for symbol in &scene.symbols {
             pen.draw(symbol);
         }
-        let (mut marks, labels): (Vec<Mark>, Vec<Label>) = pen.finish();
+        let (mut marks, placed) = pen.finish();
         marks.sort_by_key(|mark| mark.layer);
-        let placed = labels::place(labels, &marks);
         let texts = placed.into_iter().map(|label| label.text).collect();
         let mut draft = Self {
             bounds: Bounds::NONE,

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Animation;
-use crate::drawing::labels::{self, Placed};
+use crate::drawing::labels::Placed;
 use crate::drawing::outline::{Point, convex_hull};
 use crate::drawing::rider::Rider;
 use crate::drawing::scene::{Anchor, Frame, Symbol};
@@ -85,8 +85,7 @@ impl Stage {
             }
         }
         let (marks, labels) = pen.finish();
-        let labels: Vec<(usize, Placed)> = labels::place(labels, &marks)
-            .into_iter()
+        let labels: Vec<(usize, Placed)> = (labels.into_iter())
             .map(|label| (place_of(&mut riders, label.follows), label))
             .collect();
         let mut marks: Vec<(usize, Mark)> = of_symbols.into_iter().zip(marks).collect();
