@@ -56,10 +56,15 @@ impl Draw {
         let mut solver = self.conditions.solver_at_start(&input)?;
         let scene = Scene::new(&mut solver, !self.no_traces);
         let sheet = Sheet::new(&scene, &solver.pose().q);
+        let is_named = self.output.is_some();
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
         let width = self.width.unwrap_or(sheet.width());
-        format.write(&path, &sheet, width, self.transparent)
+        format.write(&path, &sheet, width, self.transparent)?;
+        if !is_named {
+            eprintln!("wrote {}", path.display());
+        }
+        Ok(())
     }
 }

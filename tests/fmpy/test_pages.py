@@ -139,7 +139,7 @@ def test_a_phone_is_wide_enough(animated, tmp_path):
     assert slider["width"] >= 150
 
 
-@pytest.mark.parametrize("name", ["four_bar", "tlv", "cam_points"])
+@pytest.mark.parametrize("name", ["four_bar", "tlv", "cam_points", "planetary_gear"])
 def test_an_fmu_documents_itself(fmu, name, tmp_path):
     browser()
     folder = fmu(name).folder
@@ -153,6 +153,7 @@ def test_an_fmu_documents_itself(fmu, name, tmp_path):
           moved: places().join() !== first.join(),
           title: document.title,
           names: all("td:first-child").map((cell) => cell.textContent),
+          values: all("td[data-what=Value]").map((cell) => cell.textContent),
         };
         """,
     )
@@ -164,6 +165,8 @@ def test_an_fmu_documents_itself(fmu, name, tmp_path):
     assert seen["names"][-len(listed) :] == listed
     parameters = [v.name for v in variables if v.causality in {"parameter", "calculatedParameter"}]
     assert seen["names"][-len(listed) - len(parameters) : -len(listed)] == parameters
+    # Derived ones as well, which have no start value in the model description.
+    assert len(seen["values"]) == len(parameters) and all(map(float, seen["values"]))
 
 
 # A page within a page lives on when the inner one is loaded again.
