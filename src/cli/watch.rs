@@ -19,9 +19,7 @@ use crate::mechanism::{Mechanism, Source};
 use server::{Answer, Server};
 
 const MAIN: &str = include_str!("watch/main.html");
-const STYLE: &str = ".error, .warnings, .ended { padding: 0.75rem 1rem; overflow-x: auto; \
-                     border: 2px solid #c0392b; border-radius: 6px; }\n\
-                     .warnings { border-color: #e69f00; white-space: pre-wrap; }\n";
+const STYLE: &str = include_str!("watch/watch.css");
 
 /// Show a mechanism moving in a browser, anew each time its file is saved.
 ///
