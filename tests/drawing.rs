@@ -1,12 +1,16 @@
 //! Drawings of mechanisms: what is in the scene, and that the pictures are whole.
 
 mod common;
+#[path = "common/generated.rs"]
+#[allow(dead_code, reason = "each test file uses a part of this")]
+mod generated;
 
 use biela::drawing::{
     Anchor, Axis, Chart, Held, Line, Panel, Scene, Sheet, Symbol, WaySide, png, svg,
 };
 use biela::mechanism::BodyId;
 use common::{assembled, folder, parse, shipped, stems};
+use generated::{Ground, chain};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
@@ -773,5 +777,29 @@ fn the_names_of_very_many_bodies_are_left_out() {
         let picture = svg::write(&Sheet::new(&scene, &solver.pose().q), WIDTH, false);
         assert_eq!(picture.contains(">b59<"), named, "{count}");
         assert!(picture.contains(">d<"));
+        check_apart("row", &check_picture("row", &picture));
     }
+}
+
+#[test]
+fn long_chains_get_room_for_their_bars_and_names() {
+    let (mut solver, _) = assembled(&parse(&chain(20, Ground::Straight)));
+    let scene = Scene::new(&mut solver, false);
+    let sheet = Sheet::new(&scene, &solver.pose().q);
+    assert!(sheet.width() > WIDTH, "{}", sheet.width());
+    let picture = svg::write(&sheet, sheet.width(), false);
+    let labels = check_picture("chain", &picture);
+    check_apart("chain", &labels);
+    for body in &solver.mechanism().bodies {
+        assert!(labels.iter().any(|l| l.text == body.name), "{}", body.name);
+    }
+    // Where there is no room the names of bodies give way, not that of the driver.
+    let sheet = Sheet::small(&scene, &solver.pose().q);
+    let labels = check_picture("chain", &svg::write(&sheet, sheet.width(), false));
+    check_apart("chain", &labels);
+    assert!(labels.iter().any(|label| label.text == "crank_angle"));
+    // A mechanism of few bodies needs no more than usual.
+    let (mut solver, _) = assembled(&shipped("four_bar"));
+    let scene = Scene::new(&mut solver, false);
+    assert_eq!(Sheet::new(&scene, &solver.pose().q).width(), WIDTH);
 }
