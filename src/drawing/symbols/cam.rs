@@ -1,6 +1,7 @@
 //! Cams and what touches them.
 
-use super::{BAR, LINE, PIN, Pen, around, colour_of};
+use super::names::around;
+use super::{BAR, LINE, PIN, Pen, colour_of};
 use crate::drawing::labels::{Candidate, ON_WHEEL};
 use crate::drawing::outline::{Outline, Point, across, direction, unit};
 use crate::drawing::scene::Anchor;
