@@ -2,6 +2,7 @@
 
 mod block;
 mod certify;
+mod estimate;
 mod neighbourhood;
 
 use std::sync::Arc;
