@@ -5,6 +5,7 @@
 //! the standard's rules; it is asked only for what makes sense.
 
 use std::fmt::Debug;
+use std::ops::Range;
 use std::path::Path;
 
 use super::codec::{Codec, Unreadable};
@@ -178,21 +179,26 @@ pub trait Model: Sized {
         derivatives.for_each(drop);
     }
 
-    /// The place of a Real in the [table](Self::table), if it has one. Always the same; hosts
-    /// that read many values at a time get them from there much faster than one by one.
-    fn place(&self, quantity: Self::Quantity) -> Option<u32> {
-        let _ = quantity;
-        None
+    /// The value references of Reals whose values the model keeps side by side, in this order.
+    /// Always the same; hosts that read some in a row get them from [there](Self::row_values) much
+    /// faster than one by one.
+    fn row(&self) -> Range<u32> {
+        0..0
     }
 
-    /// The values of Reals side by side, up to date at the places up to `last` at least.
+    /// The values of these places of the [row](Self::row), of which there is one at least.
     ///
     /// # Errors
     ///
     /// They have no values for the values set.
-    fn table(&mut self, last: u32, phase: Phase, log: &Logger) -> Result<&[f64], Failure> {
+    fn row_values(
+        &mut self,
+        places: Range<usize>,
+        phase: Phase,
+        log: &Logger,
+    ) -> Result<&[f64], Failure> {
         let _ = (phase, log);
-        unreachable!("place {last} is none unless this is overridden")
+        unreachable!("places {places:?} are none unless this is overridden")
     }
 
     /// Computes what the value of a quantity is read from.

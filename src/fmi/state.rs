@@ -142,6 +142,20 @@ macro_rules! calls {
                     )*
                 }
             }
+
+            /// Whether the call is allowed in a state.
+            #[must_use]
+            #[inline]
+            pub fn is_allowed_in(self, interface: Interface, state: State) -> bool {
+                // Each call asks: one bit a state is quicker than a list.
+                let allowed: u16 = match (self, interface) {
+                    $(
+                        (Self::$name, Interface::ModelExchange) => 0 $(| 1 << State::$me as u16)*,
+                        (Self::$name, Interface::CoSimulation) => 0 $(| 1 << State::$cs as u16)*,
+                    )*
+                };
+                allowed >> state as u16 & 1 != 0
+            }
         }
     };
 }

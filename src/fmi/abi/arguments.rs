@@ -47,27 +47,39 @@ impl<T: Copy> Room<T> {
     }
 
     /// Writes values from the first item on, as many as there are and have room.
+    #[inline]
     pub(super) fn fill(self, values: impl IntoIterator<Item = T>) {
-        for (index, value) in (0..self.length).zip(values) {
-            // SAFETY: `index` is below the length of which `new` was told.
-            unsafe { self.pointer.add(index).write(value) };
-        }
+        let mut filled = 0;
+        // Not `for`: iterators that know of several ways choose theirs once, not at each value.
+        values.into_iter().for_each(|value| {
+            if filled < self.length {
+                // SAFETY: below the length of which `new` was told.
+                unsafe { self.pointer.add(filled).write(value) };
+                filled += 1;
+            }
+        });
     }
 }
 
+#[inline]
 fn check_array<T>(name: &str, pointer: *const T, length: usize) -> Result<(), CallError> {
-    let refuse = |why: &str| Err(CallError::Argument(format!("`{name}` {why}")));
-    if length == 0 {
-        Ok(())
+    let why = if length == 0 {
+        return Ok(());
     } else if pointer.is_null() {
-        refuse("is a null pointer")
+        "is a null pointer"
     } else if !pointer.is_aligned() {
-        refuse("is not aligned for its type")
+        "is not aligned for its type"
     } else if length > isize::MAX as usize / size_of::<T>() {
-        refuse("has an impossible length")
+        "has an impossible length"
     } else {
-        Ok(())
-    }
+        return Ok(());
+    };
+    Err(refuse(name, why))
+}
+
+#[cold]
+fn refuse(name: &str, why: &str) -> CallError {
+    CallError::Argument(format!("`{name}` {why}"))
 }
 
 /// The text behind a C string.

@@ -35,7 +35,7 @@ impl<M: Model> Instance<M> {
         // Field by field, so that a new one cannot be forgotten.
         let Self {
             quantities: _,
-            places: _,
+            row: _,
             free_inputs: _,
             logger: _,
             guid,
@@ -120,8 +120,8 @@ impl<M: Model> Instance<M> {
         serialized::read(&self.guid, bytes, |reader| Self::walk(&mut state, reader))?;
         self.check_origin(&state)?;
         // No slave is ever seen cancelled.
-        let states = Call::GetFMUstate.allowed_in(self.interface);
-        if !states.contains(&state.state) || state.state == State::StepCanceled {
+        let allowed = Call::GetFMUstate.is_allowed_in(self.interface, state.state);
+        if !allowed || state.state == State::StepCanceled {
             return Err(Error::FmuState(StateError::Impossible {
                 what: format!("it is in state {}", state.state),
             }));

@@ -9,6 +9,7 @@ mod fmu_state;
 mod stepping;
 mod values;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 pub use fmu_state::FmuState;
@@ -28,8 +29,8 @@ pub struct Instance<M: Model> {
     guid: Arc<str>,
     /// Those of the variables, side by side: hosts read many at a time.
     quantities: Box<[M::Quantity]>,
-    /// The place of each in the model's table; [`ELSEWHERE`] if it has none.
-    places: Box<[u32]>,
+    /// Those that the model keeps side by side.
+    row: Range<u32>,
     /// Whether each is an input that can have any finite value at any time.
     free_inputs: Box<[bool]>,
     interface: Interface,
@@ -40,9 +41,6 @@ pub struct Instance<M: Model> {
     /// Set by a discarded step: the host should end or go back.
     terminated: bool,
 }
-
-/// No place in a model's table.
-const ELSEWHERE: u32 = u32::MAX;
 
 fn is_free_input<Q>(variable: &Variable<Q>) -> bool {
     let unlimited = matches!(
@@ -96,12 +94,9 @@ impl<M: Model> Instance<M> {
     pub fn new(model: M, sink: Box<dyn Sink + Send>, logging_on: bool) -> Self {
         let variables = model.variables().iter();
         let quantities: Box<[_]> = variables.map(|variable| variable.quantity).collect();
-        let places = quantities.iter();
         let variables = model.variables().iter();
         Self {
-            places: places
-                .map(|&quantity| model.place(quantity).unwrap_or(ELSEWHERE))
-                .collect(),
+            row: model.row(),
             free_inputs: variables.map(is_free_input).collect(),
             quantities,
             guid: model.guid().into(),
@@ -176,12 +171,12 @@ impl<M: Model> Instance<M> {
     ///
     /// [`Error::State`] if not, [`Error::Interface`] if no state of the instance's interface
     /// does.
+    #[inline]
     pub fn allow(&self, call: Call) -> Result<(), Error> {
         let (interface, state) = (self.interface, self.state);
-        let allowed = call.allowed_in(interface);
-        if allowed.contains(&state) {
+        if call.is_allowed_in(interface, state) {
             Ok(())
-        } else if allowed.is_empty() {
+        } else if call.allowed_in(interface).is_empty() {
             Err(Error::Interface { call, interface })
         } else {
             Err(Error::State {

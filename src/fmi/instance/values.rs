@@ -1,8 +1,9 @@
 //! Setting and getting variables, and their derivatives.
 
+use std::ops::Range;
 use std::slice::Iter;
 
-use super::{ELSEWHERE, Error, Instance, check_finite};
+use super::{Error, Instance, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
@@ -135,22 +136,10 @@ impl<M: Model> Instance<M> {
         value_references: &'a [u32],
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
-        let Self { places, .. } = self;
-        // What most hosts ask for stands side by side.
-        let last = value_references.iter().map(|&value_reference| {
-            let place = places.get(value_reference as usize);
-            place.copied().unwrap_or(ELSEWHERE)
-        });
-        let last = last.fold(0, u32::max);
-        let left = value_references.iter();
-        if last != ELSEWHERE && !value_references.is_empty() {
-            let values = self.model.table(last, self.state.phase(), &self.logger)?;
-            let places = &self.places;
-            return Ok(Reals::InTable {
-                places,
-                values,
-                left,
-            });
+        if let Some(places) = self.places_in_row(value_references) {
+            let phase = self.state.phase();
+            let values = self.model.row_values(places, phase, &self.logger)?;
+            return Ok(Reals::InRow(values.iter()));
         }
         for &value_reference in value_references {
             let variable = self.variable(value_reference)?;
@@ -162,8 +151,24 @@ impl<M: Model> Instance<M> {
         Ok(Reals::OneByOne {
             model: &mut self.model,
             quantities: &self.quantities,
-            left,
+            left: value_references.iter(),
         })
+    }
+
+    /// The places in the model's row that are asked for, if they are next to each other.
+    #[inline]
+    fn places_in_row(&self, value_references: &[u32]) -> Option<Range<usize>> {
+        let first = *value_references.first()?;
+        let count = value_references.len();
+        let end = (first as usize).checked_add(count)?;
+        if first < self.row.start || end > self.row.end as usize {
+            return None;
+        }
+        // No branch a reference: quicker, as nearly all hosts ask like this.
+        let differences = (first..).zip(value_references);
+        let differ = differences.fold(0, |differ, (expected, given)| differ | (expected ^ given));
+        let start = (first - self.row.start) as usize;
+        (differ == 0).then_some(start..start + count)
     }
 
     /// `fmi2GetInteger`, for enumerations as well.
@@ -357,11 +362,7 @@ impl<M: Model> Instance<M> {
 
 /// The values of Real variables that are ready, in the order of their references.
 enum Reals<'a, M: Model> {
-    InTable {
-        places: &'a [u32],
-        values: &'a [f64],
-        left: Iter<'a, u32>,
-    },
+    InRow(Iter<'a, f64>),
     OneByOne {
         model: &'a mut M,
         quantities: &'a [M::Quantity],
@@ -375,19 +376,26 @@ impl<M: Model> Iterator for Reals<'_, M> {
     #[inline]
     fn next(&mut self) -> Option<f64> {
         match self {
-            Self::InTable {
-                places,
-                values,
-                left,
-            } => {
-                let place = places[*left.next()? as usize];
-                Some(values[place as usize])
-            }
+            Self::InRow(values) => values.next().copied(),
             Self::OneByOne {
                 model,
                 quantities,
                 left,
             } => Some(model.real(quantities[*left.next()? as usize])),
+        }
+    }
+
+    #[inline]
+    fn fold<B, F: FnMut(B, f64) -> B>(self, start: B, f: F) -> B {
+        match self {
+            Self::InRow(values) => values.copied().fold(start, f),
+            Self::OneByOne {
+                model,
+                quantities,
+                left,
+            } => left
+                .map(|&vr| model.real(quantities[vr as usize]))
+                .fold(start, f),
         }
     }
 }

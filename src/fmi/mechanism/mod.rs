@@ -11,6 +11,7 @@ mod resource;
 mod state;
 mod variables;
 
+use std::ops::Range;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
@@ -74,7 +75,9 @@ pub struct MechanismModel {
     /// Those of the committed pose.
     committed_rates: Vec<Jet>,
     rates: Rates,
-    /// q of the bodies, then its rates, where these are fresh: side by side for who reads many.
+    /// The value references of all that bodies have, nine variables each.
+    row: Range<u32>,
+    /// Their values where rates are fresh: position, velocity and acceleration of each.
     coordinates: Vec<f64>,
     freshness: Freshness,
     path: Path,
@@ -95,10 +98,12 @@ impl MechanismModel {
         let mut solver = Solver::new(Arc::clone(&mechanism))?;
         solver.assemble(&path)?;
         let home = Arc::new(solver.pose().clone());
+        let variables = variables(&mechanism);
         Ok(Self {
             guid: guid(&mechanism),
             interface,
-            variables: variables(&mechanism),
+            row: row(&variables),
+            variables,
             settings: Settings::new(&mechanism),
             inputs: start_inputs(&mechanism),
             committed: Pose::clone(&home),
@@ -211,27 +216,28 @@ impl Model for MechanismModel {
         }
     }
 
-    /// Coordinates of bodies and their rates are what most hosts ask for, and nothing else.
-    fn place(&self, quantity: Quantity) -> Option<u32> {
-        match quantity {
-            Quantity::Body(body, component, order) => {
-                let row = order as usize * self.mechanism.bodies.len() + body.index();
-                u32::try_from(3 * row + component).ok()
-            }
-            _ => None,
-        }
+    /// Coordinates of bodies and their rates are what most hosts ask for.
+    fn row(&self) -> Range<u32> {
+        self.row.clone()
     }
 
     #[inline]
-    fn table(&mut self, last: u32, phase: Phase, log: &Logger) -> Result<&[f64], Failure> {
-        let coordinates = 3 * self.mechanism.bodies.len();
-        if (last as usize) < coordinates {
+    fn row_values(
+        &mut self,
+        places: Range<usize>,
+        phase: Phase,
+        log: &Logger,
+    ) -> Result<&[f64], Failure> {
+        // What is longer has rates in it.
+        if places.len() <= 3 && places.clone().all(|place| place % 9 < 3) {
             self.refresh_pose(phase, log)?;
-            Ok(&self.solver.pose().q[..coordinates])
+            for place in places.clone() {
+                self.coordinates[place] = self.solver.pose().q[place / 9 * 3 + place % 9];
+            }
         } else {
             self.refresh_rates(phase, log)?;
-            Ok(&self.coordinates)
         }
+        Ok(&self.coordinates[places])
     }
 
     fn make_ready(
@@ -329,6 +335,17 @@ impl Settings {
             _ => None,
         }
     }
+}
+
+/// The value references of what bodies have, which stand together.
+fn row(variables: &[Variable<Quantity>]) -> Range<u32> {
+    let of_body = |variable: &Variable<_>| matches!(variable.quantity, Quantity::Body(..));
+    let first = variables.iter().position(of_body).unwrap_or(0);
+    let count = variables
+        .iter()
+        .filter(|variable| of_body(variable))
+        .count();
+    first as u32..(first + count) as u32
 }
 
 fn start_inputs(mechanism: &Mechanism) -> Vec<DriverInput> {

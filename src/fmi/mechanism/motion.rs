@@ -311,14 +311,13 @@ impl MechanismModel {
             self.solver
                 .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
                 .map_err(failed)?;
-            let part = 3 * self.mechanism.bodies.len();
-            let all = [
-                &self.solver.pose().q,
-                self.rates.velocity(),
-                self.rates.acceleration(),
-            ];
-            for (to, from) in self.coordinates.chunks_exact_mut(part.max(1)).zip(all) {
-                to.copy_from_slice(&from[..part]);
+            let (q, rates) = (&self.solver.pose().q, &self.rates);
+            let all = q.chunks_exact(3).zip(rates.velocity().chunks_exact(3));
+            let all = all.zip(rates.acceleration().chunks_exact(3));
+            for (body, ((q, v), a)) in self.coordinates.chunks_exact_mut(9).zip(all) {
+                body[..3].copy_from_slice(q);
+                body[3..6].copy_from_slice(v);
+                body[6..].copy_from_slice(a);
             }
             self.freshness = Freshness::Rates;
         }

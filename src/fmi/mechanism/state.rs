@@ -55,6 +55,7 @@ impl MechanismModel {
             path: _,
             // Computed from the pose when asked for.
             rates: _,
+            row: _,
             coordinates: _,
             home,
             settings,

@@ -66,9 +66,10 @@ pub(super) struct SideParts {
 
 /// Turns of up to this are taken from the sine and cosine at hand by their series.
 const SHORT_TURN: f64 = 0.1;
-/// After a correction of more than this there is likely to be another one: the sines in between
-/// need not be exact to the last bit.
-const LIKELY_ANOTHER: f64 = 1e-7;
+/// A correction of more than this is followed by another one, even where the gap is then within
+/// rounding: what it leaves, its square or so, has the same sign in every loop of a chain and would
+/// add up. The sines in between need not be exact to the last bit.
+const LARGEST_LAST: f64 = 4e-9;
 
 /// A frame turned on to the angle phi: to some eps, for a short turn without a sine.
 #[inline(always)]
@@ -201,7 +202,7 @@ impl Dyad {
                 turned_on(frame_a, turn_a, frame_a.phi + turn_a),
                 turned_on(frame_b, turn_b, frame_b.phi + turn_b),
             ],
-            exact: false,
+            exact: turn_a == 0.0 && turn_b == 0.0,
         };
         let before = Before {
             phi: [frame_a.phi, frame_b.phi],
@@ -246,51 +247,48 @@ impl Dyad {
             let open = largest(gap);
             let closed = open <= AT_ROUNDING * rounding
                 || (open <= STALLED * rounding && open >= 0.5 * last_gap);
-            let (mut phi_a, mut phi_b) = (frame_a.phi, frame_b.phi);
-            let mut size = 0.0;
-            if closed {
-                if now.exact {
-                    frames[a.place as usize] = BodyPose {
-                        origin: outer_a.origin + (outer_a.arm - frame_a.rotate(a.s)),
-                        ..*frame_a
-                    };
-                    frames[b.place as usize] = BodyPose {
-                        origin: outer_b.origin + (outer_b.arm - frame_b.rotate(b.s)),
-                        ..*frame_b
-                    };
-                    [a.link, b.link] = links;
-                    self.determinant = determinant;
-                    return Ok(Found {
-                        correction,
-                        open: open + rounding,
-                    });
-                }
-            } else if correction.iterations == max_iterations {
+            if closed && now.exact {
+                frames[a.place as usize] = BodyPose {
+                    origin: outer_a.origin + (outer_a.arm - frame_a.rotate(a.s)),
+                    ..*frame_a
+                };
+                frames[b.place as usize] = BodyPose {
+                    origin: outer_b.origin + (outer_b.arm - frame_b.rotate(b.s)),
+                    ..*frame_b
+                };
+                [a.link, b.link] = links;
+                self.determinant = determinant;
+                return Ok(Found {
+                    correction,
+                    open: open + rounding,
+                });
+            }
+            if correction.iterations == max_iterations {
                 return Err(Rejected);
-            } else {
-                let inverse = -1.0 / determinant;
-                let step_a = gap.dot(&links[1]) * inverse;
-                let step_b = gap.dot(&links[0]) * inverse;
-                if !(step_a + step_b).is_finite() {
-                    return Err(Rejected);
-                }
-                phi_a += step_a;
-                phi_b += step_b;
-                size = larger(step_a.abs(), step_b.abs());
-                last_gap = open;
-                correction.iterations += 1;
-                if size > LIKELY_ANOTHER {
-                    now.frames = [
+            }
+            let inverse = -1.0 / determinant;
+            let step_a = gap.dot(&links[1]) * inverse;
+            let step_b = gap.dot(&links[0]) * inverse;
+            if !(step_a + step_b).is_finite() {
+                return Err(Rejected);
+            }
+            let (phi_a, phi_b) = (frame_a.phi + step_a, frame_b.phi + step_b);
+            last_gap = open;
+            correction.iterations += 1;
+            now = if larger(step_a.abs(), step_b.abs()) > LARGEST_LAST {
+                Turned {
+                    frames: [
                         turned_on(frame_a, step_a, phi_a),
                         turned_on(frame_b, step_b, phi_b),
-                    ];
-                    now.exact = false;
+                    ],
+                    exact: false,
                 }
-            }
-            if size <= LIKELY_ANOTHER {
-                now.frames = [BodyPose::turned(phi_a), BodyPose::turned(phi_b)];
-                now.exact = true;
-            }
+            } else {
+                Turned {
+                    frames: [BodyPose::turned(phi_a), BodyPose::turned(phi_b)],
+                    exact: true,
+                }
+            };
         }
     }
 
