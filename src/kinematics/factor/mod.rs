@@ -230,6 +230,22 @@ impl Lu {
         }
     }
 
+    /// The entries of this matrix minus those of another sparse one of the same pattern, factorised
+    /// or not: row, column, value.
+    ///
+    /// # Panics
+    ///
+    /// If one of them is dense: factors take the place of its entries.
+    pub fn differences<'a>(
+        &'a self,
+        other: &'a Self,
+    ) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+        match (self, other) {
+            (Self::Sparse(lu), Self::Sparse(other)) => lu.differences(other),
+            _ => panic!("the entries of dense matrices are gone"),
+        }
+    }
+
     /// Replaces the matrix by its factors. Its norm counts as at least `least_norm`.
     ///
     /// # Errors

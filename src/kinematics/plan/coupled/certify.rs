@@ -151,7 +151,7 @@ impl Proof {
     }
 
     /// Puts the bodies back there.
-    fn put_back(&self, work: &mut Work<'_>) {
+    pub(super) fn put_back(&self, work: &mut Work<'_>) {
         for (&body, &end) in self.bodies.iter().zip(&self.ends) {
             work.at.frames_mut()[body] = end;
         }
@@ -217,7 +217,9 @@ impl Coupled {
         work: &mut Work<'_>,
         substep: &mut Substep<'_>,
     ) -> Result<(), Rejected> {
-        if substep.tubes.boxes && self.certify_in_box(work, substep) {
+        let kept = substep.tubes.boxes
+            && (self.certify_in_box(work, substep) || self.certify_in_corridor(work, substep));
+        if kept {
             self.write_tubes(work, substep);
             return Ok(());
         }
@@ -245,7 +247,11 @@ impl Coupled {
         };
         self.write_tubes(work, substep);
         if substep.tubes.boxes {
-            self.make_box(work, substep, contraction);
+            if self.proof.inverse.is_empty() {
+                self.lay_corridor(work, substep, contraction);
+            } else {
+                self.make_box(work, substep, contraction);
+            }
         }
         let load = (contraction / GOOD_CONTRACTION).powi(2);
         substep.tubes.bear(load.min(1.0))
@@ -317,7 +323,7 @@ impl Coupled {
     }
 
     /// Makes A.
-    pub(super) fn factorise_middle(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
+    fn factorise_middle(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
         let Self { block, proof, .. } = self;
         let Proof {
             middle,

@@ -2,24 +2,25 @@
 //!
 //! Here A(s) is the inverse of the Jacobian on the chord itself, so that K holds what the Jacobian
 //! changes by within the radii alone, which are of second order in the sub-step. How it changes
-//! along the chord only tells how much larger A(s) may be than A, the inverse in the middle:
+//! along the chord only tells how much larger A(s) may be than A, the inverse at the end:
 //!
-//! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J(z̄(½)))|, in the largest norm.
+//! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J(z̄(1)))|, in the largest norm.
 //!
 //! The links of a long row of loops all turn alike: their changes in A J have signs and cancel,
-//! while bounds of them would add up with the square of the row's length. So c is found from the
-//! Jacobian at the end, and what the chord leaves the rows open by from their values in its
-//! middle, where that is largest. One radius r serves all unknowns, and the test is
+//! while bounds of them would add up with the square of the row's length. So c is twice what the
+//! Jacobian in the middle of the chord differs by, and what the chord leaves the rows open by comes
+//! from their values there, where that is largest. One radius r serves all unknowns, and the test
+//! is
 //!
-//! > η / (1 − c) + k / (1 − c) < r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all else that is open).
+//! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all else that is open).
 //!
-//! Norms are estimated from below and two places stand for the whole way, so what they give is
+//! Norms are estimated from below and one place stands for the whole way, so what they give is
 //! taken larger by [`MARGIN`], and the sub-step is *checked*.
 
 use super::certify::{LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY};
 use super::{Coupled, Proof};
 use crate::kinematics::factor::Factors;
-use crate::kinematics::newton::Rejected;
+use crate::kinematics::newton::STALLED;
 use crate::kinematics::plan::{Substep, Work};
 use crate::kinematics::system::Target;
 
@@ -29,25 +30,34 @@ const MARGIN: f64 = 2.0;
 /// What the estimate of a block needs besides.
 #[derive(Debug, Default)]
 pub(super) struct Estimate {
-    /// J at the end minus J in the middle, as a sum: row, column, value.
+    /// J in the middle minus J at the end: row, column, value.
     drift: Vec<(usize, usize, f64)>,
     /// F in the middle.
     gap: Vec<f64>,
 }
 
+/// How the test was passed.
+pub(super) struct Passed {
+    /// r, and what the test makes of it, both scaled.
+    pub(super) radius: f64,
+    pub(super) next: f64,
+    /// c and the norm of K together.
+    pub(super) contraction: f64,
+}
+
 impl Estimate {
     pub(super) fn new(order: usize, entries: usize) -> Self {
         Self {
-            drift: Vec::with_capacity(2 * entries),
+            drift: Vec::with_capacity(entries),
             gap: vec![0.0; order],
         }
     }
 }
 
 impl Coupled {
-    /// Looks for a radius that passes the test; leaves what it makes of it in `next`. Returns c
-    /// and the norm of K together. The bodies are at the end of the sub-step, and then in its
-    /// middle.
+    /// Looks for a radius that passes the test and leaves it in `next`. Returns c and the norm of
+    /// K together. The bodies go from the end of the sub-step, where the block is factorised, to
+    /// its middle.
     ///
     /// # Errors
     ///
@@ -58,20 +68,28 @@ impl Coupled {
         substep: &mut Substep<'_>,
     ) -> Result<f64, Option<f64>> {
         substep.tubes.checked = true;
-        self.proof.estimate.drift.clear();
-        self.note_jacobian(work, 1.0);
         self.lay_chord(work, substep);
-        self.factorise_middle(work).map_err(|Rejected| None)?;
-        self.note_jacobian(work, -1.0);
-        let drift = {
-            let Proof {
-                condition,
-                middle,
-                estimate,
-                ..
-            } = &mut *self.proof;
-            MARGIN * condition.largest_row_of_product(&mut middle.lu, &estimate.drift)
-        };
+        let passed = self.test_chord(work, substep, 0.0, ROOM)?;
+        self.proof.next.fill(passed.next);
+        Ok(passed.contraction)
+    }
+
+    /// The test for the chord in `substep`, in whose middle the bodies are. `astray` is how far
+    /// off the motion an end of it may be, scaled; the radius tried first is `room` times what the
+    /// chord is off.
+    ///
+    /// # Errors
+    ///
+    /// It is not passed; with c and the norm of K, if they are known.
+    pub(super) fn test_chord(
+        &mut self,
+        work: &Work<'_>,
+        substep: &mut Substep<'_>,
+        astray: f64,
+        room: f64,
+    ) -> Result<Passed, Option<f64>> {
+        self.evaluate_rows(work);
+        let drift = MARGIN * 2.0 * self.drift();
         if drift.is_nan() {
             return Err(None);
         }
@@ -79,8 +97,8 @@ impl Coupled {
             return Err(Some(drift));
         }
         let larger = 1.0 / (1.0 - drift);
-        let gap = larger * MARGIN * self.gap();
-        let mut radius = ROOM * gap + f64::EPSILON;
+        let gap = larger * MARGIN * (self.farthest() + astray);
+        let mut radius = room * gap + f64::EPSILON;
         let mut last = None;
         for _ in 0..MOST_TRIES {
             let [open, change] = self.bend_around(work, substep, radius).ok_or(last)?;
@@ -90,8 +108,11 @@ impl Coupled {
                 return Err(None);
             }
             if next <= STRICTLY * radius {
-                self.proof.next.fill(next);
-                return Ok(contraction);
+                return Ok(Passed {
+                    radius,
+                    next,
+                    contraction,
+                });
             }
             if contraction >= LARGEST_CONTRACTION {
                 return Err(Some(contraction));
@@ -102,34 +123,45 @@ impl Coupled {
         Err(Some(1.0))
     }
 
-    /// Adds the block's Jacobian at the pose in `work`, times `sign`, to the drift, and notes how
-    /// far its rows are open.
-    fn note_jacobian(&mut self, work: &Work<'_>, sign: f64) {
+    /// Evaluates the rows at the pose in `work`, leaving alone what is factorised.
+    pub(super) fn evaluate_rows(&mut self, work: &Work<'_>) {
         let Self { block, proof, .. } = self;
-        let Estimate { drift, gap } = &mut proof.estimate;
-        for (local, gap) in gap.iter_mut().enumerate() {
-            let value = block.evaluate_row(local, work, |column, value| {
-                if let Some(own) = block.own(column) {
-                    drift.push((local, own, sign * value));
-                }
-            });
+        let Proof {
+            middle,
+            estimate: Estimate { gap, .. },
+            slack,
+            ..
+        } = &mut **proof;
+        block.evaluate(work, middle, |local, value| {
             let target = &work.system.equations()[block.rows[local]].target;
-            *gap = match target {
+            gap[local] = match target {
                 Target::Constant(_) => value.value,
                 // Its driver is at the end; `bend_around` has it.
                 Target::Driver(_) => 0.0,
             };
-        }
+            // What rounding left of the rows at both ends.
+            slack[local] += 2.0 * STALLED * value.rounding;
+        });
     }
 
-    /// The largest component of A F(z̄(½)).
-    fn gap(&mut self) -> f64 {
+    /// The largest norm of A (J(z̄(½)) − J(z̄(1))).
+    fn drift(&mut self) -> f64 {
         let Proof {
-            middle, estimate, ..
+            condition,
+            middle,
+            estimate: Estimate { drift, .. },
+            ..
         } = &mut *self.proof;
-        middle.lu.solve(&mut estimate.gap);
-        let gap = estimate.gap.iter();
-        gap.fold(0.0, |most, value| most.max(value.abs()))
+        drift.clear();
+        drift.extend(middle.lu.differences(&self.jacobian.lu));
+        condition.largest_row_of_product(&mut self.jacobian.lu, drift)
+    }
+
+    /// The largest component of A F, with F where the rows were evaluated.
+    pub(super) fn farthest(&mut self) -> f64 {
+        let gap = &mut self.proof.estimate.gap;
+        self.jacobian.lu.solve(gap);
+        gap.iter().fold(0.0, |most, value| most.max(value.abs()))
     }
 
     /// The largest components of |A| times what rows are open by apart from F in the middle, and
@@ -140,7 +172,12 @@ impl Coupled {
         substep: &mut Substep<'_>,
         radius: f64,
     ) -> Option<[f64; 2]> {
-        let Self { block, proof, .. } = self;
+        let Self {
+            block,
+            proof,
+            jacobian,
+            ..
+        } = self;
         let tubes = &mut *substep.tubes;
         let size = work.at.size();
         let scale = |column: usize| work.system.column_scale(column, size);
@@ -173,11 +210,11 @@ impl Coupled {
         }
         let Proof {
             condition,
-            middle,
             open,
             row,
             ..
         } = &mut **proof;
-        Some([&*open, &*row].map(|b| MARGIN * condition.largest_row(&mut middle.lu, b)))
+        let lu = &mut jacobian.lu;
+        Some([&*open, &*row].map(|b| MARGIN * condition.largest_row(lu, b)))
     }
 }
