@@ -80,11 +80,22 @@ fn the_page_follows_the_file() {
     assert_eq!(watched.get("/version"), version);
     assert!(page.contains(&format!("!== \"{version}\"")));
 
+    // Warnings stand beside the picture.
+    let unused = text.replace("[parameters]\n", "[parameters]\nidle = 1\n");
+    std::fs::write(watched.file(), unused).unwrap();
+    let warned = watched.get("/");
+    assert!(warned.contains("class=\"warnings\"") && warned.contains("class=\"film\""));
+    assert!(
+        warned.contains("nothing uses the parameter `idle`"),
+        "{warned}"
+    );
+
     // A broken file shows its error with the last good picture.
     std::fs::write(watched.file(), text.replace("ground.O\"", "ground.Oo\"")).unwrap();
     assert_ne!(watched.get("/version"), version);
     let broken = watched.get("/");
     assert!(broken.contains("no marker `Oo` on `ground`"), "{broken}");
+    assert!(!broken.contains("class=\"warnings\""));
     assert!(broken.contains("class=\"film\"") && broken.contains("<h1>pendulum</h1>"));
     std::fs::remove_file(watched.file()).unwrap();
     assert!(watched.get("/").contains("cannot read"));

@@ -6,8 +6,18 @@ use std::path::PathBuf;
 use super::error::Error;
 use super::motion::Motion;
 use crate::drawing::{Axis, Chart, Line, Panel};
-use crate::fmi::{Kind, Quantity, variables};
-use crate::mechanism::{Mechanism, Unit};
+use crate::fmi::{Kind, Order, Quantity, variables};
+use crate::mechanism::{BodyId, Mechanism, Unit};
+
+/// The lines of more bodies than this cannot be told apart.
+pub(super) const MOST_BODIES: usize = 8;
+
+/// Whether a quantity is not always the same, but for rounding.
+pub(super) fn moves(values: &[f64]) -> bool {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let [low, high] = (values.iter()).fold(none, |[low, high], v| [low.min(*v), high.max(*v)]);
+    high - low > 1e-9 * high.abs().max(low.abs()).max(1.0)
+}
 
 /// One quantity of a run.
 #[derive(Clone, Debug)]
@@ -187,6 +197,35 @@ impl Record {
         for (values, column) in self.values.iter_mut().zip(&self.columns) {
             values.push(column.read(motion));
         }
+    }
+
+    /// Leaves out the coordinates of bodies that stay what they are, and of the bodies that move
+    /// all but the first few. Says how many there are then, and how many move, if these are more.
+    pub(super) fn leave_out(&mut self) -> Option<[usize; 2]> {
+        let mut moving: Vec<Quantity> = Vec::new();
+        let mut bodies: Vec<BodyId> = Vec::new();
+        for (column, values) in self.columns.iter().zip(&self.values) {
+            if let Quantity::Body(body, _, Order::Position) = column.quantity
+                && moves(values)
+            {
+                moving.push(column.quantity);
+                if !bodies.contains(&body) {
+                    bodies.push(body);
+                }
+            }
+        }
+        let shown = &bodies[..bodies.len().min(MOST_BODIES)];
+        let keep = |quantity: &Quantity| match quantity {
+            Quantity::Body(body, ..) if !bodies.is_empty() => {
+                shown.contains(body) && moving.contains(&quantity.position())
+            }
+            _ => true,
+        };
+        let columns = std::mem::take(&mut self.columns);
+        let values = std::mem::take(&mut self.values);
+        let kept = columns.into_iter().zip(values);
+        (self.columns, self.values) = kept.filter(|(column, _)| keep(&column.quantity)).unzip();
+        (shown.len() < bodies.len()).then_some([shown.len(), bodies.len()])
     }
 
     /// Positions, velocities and accelerations, lengths and angles each in a panel of their own;

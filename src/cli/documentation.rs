@@ -24,8 +24,8 @@ const STYLE: &str = include_str!("documentation.css");
 
 /// Width of the picture, which hosts show as an icon or beside the variables.
 const ICON_WIDTH: u32 = 512;
-/// Width of the drawing on the page.
-const DRAWING_WIDTH: u32 = 640;
+/// How much larger than on its sheet the drawing is on a page that has room for it.
+const ENLARGED: f64 = 4.0 / 3.0;
 /// Pictures of the motion, and how many bodies there are in all of them at most.
 const MOMENTS: usize = 240;
 const MOST_PLACED: usize = 24_000;
@@ -59,7 +59,7 @@ pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, E
     let mut solver = Solver::new(Arc::clone(&input.mechanism)).map_err(refuse)?;
     solver.restore(home.pose());
     let scene = Scene::new(&mut solver, true);
-    let sheet = Sheet::new(&scene, &solver.pose().q);
+    let sheet = Sheet::small(&scene, &solver.pose().q);
     let picture = png::write(&sheet, ICON_WIDTH, false)
         .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
     let shown = show(&mut solver).map_err(refuse)?;
@@ -70,7 +70,7 @@ pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, E
         },
         Document {
             path: "documentation/index.html".to_owned(),
-            content: page(&input.mechanism, &sheet, &shown).into_bytes(),
+            content: page(&input.mechanism, &home.pose().parameters, &sheet, &shown).into_bytes(),
         },
     ])
 }
@@ -177,9 +177,10 @@ fn way(from: f64, range: &Range, start: f64) -> (String, f64) {
     (motion, PERIOD)
 }
 
-fn page(mechanism: &Mechanism, sheet: &Sheet, shown: &Shown) -> String {
+fn page(mechanism: &Mechanism, values: &[f64], sheet: &Sheet, shown: &Shown) -> String {
     let variables = variables(mechanism);
-    let drawing = svg::write(sheet, DRAWING_WIDTH, false);
+    let width = ENLARGED * f64::from(sheet.width());
+    let drawing = svg::write(sheet, width as u32, false);
     let drawing = drawing
         .split_once("?>")
         .map_or(drawing.as_str(), |(_, svg)| svg);
@@ -191,7 +192,7 @@ fn page(mechanism: &Mechanism, sheet: &Sheet, shown: &Shown) -> String {
             ("moving", &escape(&shown.moving)),
             ("player", &player(&shown.animation)),
             ("drivers", &drivers(mechanism, &shown.ranges)),
-            ("parameters", &parameters(&variables)),
+            ("parameters", &parameters(&variables, values)),
             ("outputs", &outputs(&variables)),
             ("version", env!("CARGO_PKG_VERSION")),
         ],
@@ -251,15 +252,10 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
     table(&["Driver", "Start", "Range, other drivers held"], rows)
 }
 
-fn parameters(variables: &[Variable<Quantity>]) -> String {
+/// The parameters with their values, [SI units].
+fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
     let rows = variables.iter().filter_map(|variable| {
-        let Kind::Real {
-            unit,
-            start,
-            min,
-            max,
-        } = variable.kind
-        else {
+        let Kind::Real { unit, min, max, .. } = variable.kind else {
             let Kind::Enumeration(choices) = &variable.kind else {
                 return None;
             };
@@ -276,7 +272,7 @@ fn parameters(variables: &[Variable<Quantity>]) -> String {
                 what,
             ]);
         };
-        let Quantity::Parameter(_) = variable.quantity else {
+        let Quantity::Parameter(parameter) = variable.quantity else {
             return None;
         };
         let shown = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v}"));
@@ -294,7 +290,8 @@ fn parameters(variables: &[Variable<Quantity>]) -> String {
         }
         Some([
             variable.name.clone(),
-            shown(start),
+            // A derived one has the rounding of its expression, which nobody asks for.
+            shown(Some(rounded(values[parameter.index()]))),
             name_of(unit),
             limits,
             what,
@@ -331,6 +328,11 @@ fn outputs(variables: &[Variable<Quantity>]) -> String {
     table(&["Variable", "Causality", "Unit", "Meaning"], rows)
 }
 
+/// Twelve digits of a number.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
 fn name_of(unit: Option<Unit>) -> String {
     unit.map_or_else(String::new, |unit| unit.name.to_owned())
 }
@@ -339,15 +341,16 @@ fn name_of(unit: Option<Unit>) -> String {
 fn table<const N: usize>(header: &[&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
     let mut html = String::from("<div class=\"table\"><table>\n<thead><tr>");
     for cell in header {
-        let _ = write!(html, "<th>{cell}</th>");
+        let _ = write!(html, "<th scope=\"col\">{cell}</th>");
     }
     html.push_str("</tr></thead>\n<tbody>\n");
     let mut empty = true;
     for row in rows {
         empty = false;
         html.push_str("<tr>");
-        for cell in row {
-            let _ = write!(html, "<td>{}</td>", escape(&cell));
+        // On a telephone each cell says what it is, as there is no room for columns.
+        for (what, cell) in header.iter().zip(row) {
+            let _ = write!(html, "<td data-what=\"{what}\">{}</td>", escape(&cell));
         }
         html.push_str("</tr>\n");
     }

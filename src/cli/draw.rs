@@ -33,14 +33,14 @@ pub(super) struct Draw {
     output: Option<PathBuf>,
     #[command(flatten)]
     conditions: Conditions,
-    /// Width of the picture in pixels; lines and letters grow with it.
+    /// Width of the picture in pixels; lines and letters grow with it [default: 640, more where
+    /// many bodies need the room].
     #[arg(
         long,
         value_name = "PIXELS",
-        default_value_t = 640,
         value_parser = RangedU64ValueParser::<u32>::new().range(16..=8192)
     )]
-    width: u32,
+    width: Option<u32>,
     /// Leave out the paths of the points of interest.
     #[arg(long)]
     no_traces: bool,
@@ -56,9 +56,15 @@ impl Draw {
         let mut solver = self.conditions.solver_at_start(&input)?;
         let scene = Scene::new(&mut solver, !self.no_traces);
         let sheet = Sheet::new(&scene, &solver.pose().q);
+        let is_named = self.output.is_some();
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
-        format.write(&path, &sheet, self.width, self.transparent)
+        let width = self.width.unwrap_or(sheet.width());
+        format.write(&path, &sheet, width, self.transparent)?;
+        if !is_named {
+            eprintln!("wrote {}", path.display());
+        }
+        Ok(())
     }
 }

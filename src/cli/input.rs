@@ -65,12 +65,19 @@ impl Input {
 /// Warns on stderr of joints that do not fit their own numbers where the solver stands, and of
 /// redundant ones.
 pub(super) fn warn_of_misfits(solver: &Solver) {
-    for redundancy in solver.redundancies() {
-        anstream::eprintln!("warning: {redundancy}");
+    for warning in misfits(solver) {
+        anstream::eprintln!("{warning}");
     }
-    for misfit in solver.misfits() {
-        anstream::eprintln!("warning: {misfit}");
-    }
+}
+
+/// What [`warn_of_misfits`] warns of, a line each.
+pub(super) fn misfits(solver: &Solver) -> Vec<String> {
+    let redundancies = solver.redundancies().into_iter().map(|r| r.to_string());
+    let misfits = solver.misfits().into_iter().map(|m| m.to_string());
+    redundancies
+        .chain(misfits)
+        .map(|what| format!("warning: {what}"))
+        .collect()
 }
 
 fn show(source: &Source, diagnostics: &[Diagnostic]) {

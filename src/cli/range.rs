@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::columns::axis;
+use super::columns::{MOST_BODIES, axis, moves};
 use super::conditions::{self, Conditions};
 use super::error::Error;
 use super::input::Input;
@@ -60,6 +60,13 @@ impl Range {
                 write(path, table(&driven, driver, &range).as_bytes())?;
             }
             if let (Some(path), Some(format)) = (&self.plot, format) {
+                let turning = turning(&driven, &range).count();
+                if turning > MOST_BODIES {
+                    eprintln!(
+                        "note: the plot shows {MOST_BODIES} of {turning} bodies that turn; --csv \
+                         has all"
+                    );
+                }
                 let sheet = Sheet::chart(&chart(&driven, driver, &range));
                 format.write(path, &sheet, format.width(PLOT_WIDTH), false)?;
             }
@@ -133,21 +140,25 @@ fn describe(
         worst.zip(known.max_by(|a, b| a.0.total_cmp(&b.0)))
     };
     if let Some(((worst, at), (best, best_at))) = extreme(|sample| sample.transmission) {
-        let _ = writeln!(
-            text,
-            "  transmission angle from {:.2} deg, at {}, to {:.2} deg, at {}",
-            worst.to_degrees(),
-            value(at),
-            best.to_degrees(),
-            value(best_at)
-        );
+        let [worst, best] = [worst, best].map(|angle| format!("{:.2} deg", angle.to_degrees()));
+        let _ = if worst == best {
+            writeln!(text, "  transmission angle {worst} everywhere")
+        } else {
+            let [at, best_at] = [at, best_at].map(value);
+            writeln!(
+                text,
+                "  transmission angle from {worst}, at {at}, to {best}, at {best_at}"
+            )
+        };
     }
-    if let Some(((worst, at), _)) = extreme(|sample| Some(sample.rcond)) {
-        let _ = writeln!(
-            text,
-            "  reciprocal condition {worst:.2e} at worst, at {}",
-            value(at)
-        );
+    if let Some(((worst, at), (best, _))) = extreme(|sample| Some(sample.rcond)) {
+        let [worst, best] = [worst, best].map(|rcond| format!("{rcond:.2e}"));
+        let _ = if worst == best {
+            writeln!(text, "  reciprocal condition {worst} everywhere")
+        } else {
+            let at = value(at);
+            writeln!(text, "  reciprocal condition {worst} at worst, at {at}")
+        };
     }
 }
 
@@ -205,6 +216,14 @@ fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
     text
 }
 
+/// The bodies whose angles change.
+fn turning(mechanism: &Mechanism, range: &Motion) -> impl Iterator<Item = usize> {
+    (0..mechanism.bodies.len()).filter(|body| {
+        let angles: Vec<f64> = range.samples.iter().map(|s| s.q[3 * body + 2]).collect();
+        moves(&angles)
+    })
+}
+
 fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
     let kind = mechanism.drivers[driver.index()].coordinate.kind;
     let unit = match kind {
@@ -217,16 +236,20 @@ fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
         look,
         values: range.samples.iter().map(of).collect(),
     };
-    let bodies = mechanism.bodies.iter().enumerate();
-    let mut panels = vec![Panel {
-        y: axis(Unit::RADIAN),
-        lines: bodies
-            .map(|(body, named)| {
-                let name = format!("{}.phi", named.name);
-                line(&name, body, &|s| s.q[3 * body + 2].to_degrees())
-            })
-            .collect(),
-    }];
+    let mut panels = Vec::new();
+    let angles: Vec<Line> = turning(mechanism, range)
+        .take(MOST_BODIES)
+        .map(|body| {
+            let name = format!("{}.phi", mechanism.bodies[body].name);
+            line(&name, body, &|s| s.q[3 * body + 2].to_degrees())
+        })
+        .collect();
+    if !angles.is_empty() {
+        panels.push(Panel {
+            y: axis(Unit::RADIAN),
+            lines: angles,
+        });
+    }
     if range.samples.iter().any(|s| s.transmission.is_some()) {
         panels.push(Panel {
             y: Axis {

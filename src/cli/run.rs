@@ -17,7 +17,7 @@ use super::progress::Progress;
 use super::recording::Recording;
 use super::signals::Signals;
 use crate::drawing::{Sheet, animation};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{CoordinateKind, Driver, DriverSource, Mechanism, Motion as Prescribed};
 
 /// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
@@ -91,8 +91,11 @@ impl Run {
         self.conditions.refuse_twice(&signals, &driven)?;
         signals.take_over(&mut driven);
         let pictured = self.plot.is_some() || self.animate.is_some();
-        if pictured && self.input.is_none() && driven.drivers.iter().all(|d| d.motion().is_none()) {
-            eprintln!("note: nothing moves; --drive or --input say how drivers move");
+        let moves = |driver: &Driver| driver.motion().is_some_and(Prescribed::uses_time);
+        if pictured && self.input.is_none() && !driven.drivers.iter().any(moves) {
+            let example = input.mechanism.drivers.first().map(example);
+            let example = example.unwrap_or_default();
+            eprintln!("note: nothing moves; --drive or --input say how drivers move{example}");
         }
         let driven = Arc::new(driven);
         let all = Column::all(&driven);
@@ -119,7 +122,15 @@ impl Run {
         )
         .map_err(|error| input.error(error))?;
         let outcome = results.follow(motion, &times, self.fills_terminal());
-        if let (Some(path), Some(format), Some(record)) = (&self.plot, format, results.record) {
+        if let (Some(path), Some(format), Some(mut record)) = (&self.plot, format, results.record) {
+            if self.variables.is_empty()
+                && let Some([shown, moving]) = record.leave_out()
+            {
+                eprintln!(
+                    "note: the plot shows {shown} of {moving} bodies that move; --variables names \
+                     others"
+                );
+            }
             let sheet = Sheet::chart(&record.chart(&driven));
             format.write(path, &sheet, format.width(PLOT_WIDTH), false)?;
         }
@@ -191,6 +202,28 @@ impl Run {
             Err(source) => Err(Error::Write { path, source }),
         }
     }
+}
+
+/// How a driver may be moved, for who has not said so.
+fn example(driver: &Driver) -> String {
+    let DriverSource::Input { start } = driver.source else {
+        return String::new();
+    };
+    let name = &driver.name;
+    let motion = match driver.coordinate.kind {
+        CoordinateKind::Angle => format!("{}*deg + 2*pi*t", round(start.to_degrees())),
+        _ => format!(
+            "{} + {}*t",
+            round(start),
+            round(0.1 * start.abs().max(0.01))
+        ),
+    };
+    format!(", for example --drive '{name} = {motion}'")
+}
+
+/// Six digits of a number.
+fn round(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 /// What becomes of a run.

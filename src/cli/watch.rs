@@ -9,18 +9,17 @@ use std::time::SystemTime;
 
 use clap::Args;
 
-use super::conditions::{self, Conditions};
+use super::conditions::Conditions;
 use super::documentation::show;
 use super::error::Error;
-use super::input::Input;
+use super::input::{Input, misfits};
 use super::render::render;
 use crate::drawing::animation::{escape, fill, page_with, player};
 use crate::mechanism::{Mechanism, Source};
 use server::{Answer, Server};
 
 const MAIN: &str = include_str!("watch/main.html");
-const STYLE: &str = ".error { padding: 0.75rem 1rem; border: 2px solid #c0392b; \
-                     border-radius: 6px; overflow-x: auto; }\n";
+const STYLE: &str = include_str!("watch/watch.css");
 
 /// Show a mechanism moving in a browser, anew each time its file is saved.
 ///
@@ -78,6 +77,8 @@ struct View {
     description: String,
     /// The last good picture.
     player: String,
+    /// What is to be said of that, one paragraph after the other.
+    warnings: Vec<String>,
     error: Option<String>,
 }
 
@@ -91,6 +92,7 @@ impl View {
             name: String::new(),
             description: String::new(),
             player: String::new(),
+            warnings: Vec::new(),
             error: None,
         }
     }
@@ -122,19 +124,17 @@ impl View {
     ///
     /// What is wrong, for people.
     fn try_look(&mut self) -> Result<(), String> {
-        let input = read(&self.watch.file)?;
+        let (input, mut warnings) = read(&self.watch.file)?;
         let folder = self.watch.file.parent().unwrap_or(Path::new(""));
         let tables = input.mechanism.table_files.iter();
         self.tables = tables.map(|table| folder.join(&table.name)).collect();
-        let text = |error: Error| error.to_string();
         let conditions = &self.watch.conditions;
-        let parameters = conditions.parameters(&input.mechanism).map_err(text)?;
-        let driven = Arc::new(conditions.driven(&input.mechanism).map_err(text)?);
-        let home = input.assemble().map_err(text)?;
-        let time = input.mechanism.simulation.start;
-        let mut solver = conditions::start(home, &driven, &parameters, time, |_| None)
-            .map_err(|error| error.to_string())?;
+        let started = conditions.reach_start(&input);
+        let started = started.map_err(|error| error.to_string())?;
+        let mut solver = started.map_err(|error| error.to_string())?;
+        warnings.extend(misfits(&solver));
         let shown = show(&mut solver).map_err(|error| error.to_string())?;
+        self.warnings = warnings;
         self.name.clone_from(&input.mechanism.name);
         self.description.clone_from(&input.mechanism.description);
         self.player = format!(
@@ -152,6 +152,14 @@ impl View {
                 escape(error)
             )
         });
+        let warnings = if self.error.is_some() || self.warnings.is_empty() {
+            String::new()
+        } else {
+            format!(
+                "<pre class=\"warnings\" role=\"status\">{}</pre>",
+                escape(&self.warnings.join("\n\n"))
+            )
+        };
         let file = self.watch.file.display().to_string();
         let name = if self.name.is_empty() {
             &file
@@ -162,6 +170,7 @@ impl View {
             MAIN,
             &[
                 ("error", &error),
+                ("warnings", &warnings),
                 ("player", &self.player),
                 ("version", &self.version.to_string()),
             ],
@@ -170,15 +179,19 @@ impl View {
     }
 }
 
-/// Reads a file without telling the terminal.
-fn read(path: &Path) -> Result<Input, String> {
+/// Reads a file without telling the terminal; also what it warns of.
+fn read(path: &Path) -> Result<(Input, Vec<String>), String> {
     let source = Source::open(path.display().to_string(), path)
         .map_err(|error| format!("cannot read `{}`: {error}", path.display()))?;
     match Mechanism::parse(&source) {
-        Ok((mechanism, _)) => Ok(Input {
-            source,
-            mechanism: Arc::new(mechanism),
-        }),
+        Ok((mechanism, warnings)) => {
+            let warnings = match warnings[..] {
+                [] => Vec::new(),
+                _ => vec![render(&source, &warnings, false)],
+            };
+            let mechanism = Arc::new(mechanism);
+            Ok((Input { source, mechanism }, warnings))
+        }
         Err(diagnostics) => Err(render(&source, &diagnostics, false)),
     }
 }

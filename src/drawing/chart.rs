@@ -100,6 +100,7 @@ impl Sheet {
         Sheet {
             title: chart.title.clone(),
             description: chart.description.clone(),
+            width: WIDTH,
             height: (y + 2.2 * LINE_HEIGHT + MARGIN).ceil(),
             marks: plot.marks,
             texts: plot.texts,

@@ -12,6 +12,8 @@ pub(super) struct Label {
     pub(super) colour: Colour,
     /// What it stays with when the mechanism moves.
     pub(super) follows: Rider,
+    /// Whether it is rather left out than written over another one.
+    pub(super) may_miss: bool,
     pub(super) candidates: Vec<Candidate>,
 }
 
@@ -46,15 +48,24 @@ pub(super) const ON_WHEEL: f64 = 3.0;
 /// A place has to be this much better: rounding decides nothing.
 const BETTER: f64 = 1e-6;
 
-/// Gives each label in turn the best of its places.
-pub(super) fn place(labels: Vec<Label>, marks: &[Mark]) -> Vec<Placed> {
-    let obstacles: Vec<Obstacle> = marks.iter().map(Obstacle::new).collect();
+/// Gives each label in turn the best of its places. Those that may be missing are, where no
+/// place is clear of the labels before them.
+pub(super) fn place<'a>(labels: Vec<Label>, marks: impl Iterator<Item = &'a Mark>) -> Vec<Placed> {
+    let obstacles: Vec<Obstacle> = marks.map(Obstacle::new).collect();
     let mut taken: Vec<Bounds> = Vec::new();
     let mut placed = Vec::new();
     for label in labels {
         let size = Point::new(lettering::width(&label.content, CAPITALS), CAPITALS);
         let mut best: Option<(f64, Candidate)> = None;
-        for candidate in &label.candidates {
+        let clear = |candidate: &&Candidate| {
+            let center = candidate.center(size);
+            let bounds = Bounds {
+                low: center - 0.5 * size,
+                high: center + 0.5 * size,
+            };
+            !label.may_miss || taken.iter().all(|other| overlap(&bounds, other) <= 0.0)
+        };
+        for candidate in label.candidates.iter().filter(clear) {
             let center = candidate.center(size);
             let bounds = around(center, size);
             let on_labels: f64 = taken.iter().map(|other| overlap(&bounds, other)).sum();

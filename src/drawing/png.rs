@@ -11,7 +11,7 @@ use tiny_skia::{
 use super::lettering;
 use super::outline::{Outline, Segment};
 use super::palette::Colour;
-use super::sheet::{CAPITALS, Sheet, WIDTH};
+use super::sheet::{CAPITALS, Sheet};
 
 /// Width of the strokes of letters.
 const LETTER_STROKE: f64 = 1.15;
@@ -25,7 +25,7 @@ pub const MOST_PIXELS: u32 = 16_384;
 /// Letters are made of strokes: no font is needed.
 #[must_use]
 pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
-    let scale = f64::from(width) / WIDTH;
+    let scale = f64::from(width) / sheet.width;
     let height = (scale * sheet.height).round() as u32;
     if width.max(height) > MOST_PIXELS {
         return None;

@@ -1,16 +1,21 @@
 //! A scene at one pose on a sheet of paper: lines, areas and texts, whatever they are written to.
 
-use super::labels::{self, Label};
 use super::lettering;
 use super::outline::{Outline, Point};
 use super::palette::Colour;
-use super::scene::Scene;
+use super::scene::{Scene, Symbol};
 use super::symbols::Pen;
 
 /// The width of a sheet, in its own units; a line is about one wide.
 pub(super) const WIDTH: f64 = 640.0;
-/// The greatest height.
-pub(super) const MOST_HEIGHT: f64 = 520.0;
+/// The greatest height, as a part of the width.
+const MOST_HEIGHT: f64 = 0.8125;
+/// The width of a small sheet, whose lines and letters are large.
+const SMALL_WIDTH: f64 = 480.0;
+/// Half of all bars are at least so long on a sheet: there is room between pins and for names.
+const ROOMY: f64 = 64.0;
+/// A sheet grows by no more than this for that.
+const MOST_GROWTH: f64 = 2.5;
 /// What stays free around everything.
 pub(super) const MARGIN: f64 = 14.0;
 /// Height of capitals.
@@ -23,6 +28,7 @@ const ROUNDS: usize = 5;
 pub struct Sheet {
     pub(super) title: String,
     pub(super) description: String,
+    pub(super) width: f64,
     pub(super) height: f64,
     /// In the order in which one covers the other.
     pub(super) marks: Vec<Mark>,
@@ -154,10 +160,22 @@ impl Bounds {
 
 impl Sheet {
     /// Draws a scene with its bodies at q, \[m, m, rad\] for each, as large as the sheet permits.
+    /// A mechanism of many short bars gets a larger sheet.
     #[must_use]
     pub fn new(scene: &Scene, q: &[f64]) -> Self {
+        Self::of_width(scene, q, WIDTH)
+    }
+
+    /// The same on a smaller sheet: for icons and telephones, with larger lines and letters.
+    #[must_use]
+    pub fn small(scene: &Scene, q: &[f64]) -> Self {
+        Self::of_width(scene, q, SMALL_WIDTH)
+    }
+
+    fn of_width(scene: &Scene, q: &[f64], width: f64) -> Self {
         let extent = extent(scene, std::iter::once(q));
-        let room = Point::new(WIDTH, MOST_HEIGHT) - Point::repeat(2.0 * MARGIN);
+        let size = size(scene, q, extent, width);
+        let room = size - Point::repeat(2.0 * MARGIN);
         let mut scale = fitting(room * 0.8, extent);
         let mut draft = Draft::new(scene, q, scale);
         for _ in 0..ROUNDS {
@@ -170,8 +188,36 @@ impl Sheet {
             scale = next;
             draft = Draft::new(scene, q, scale);
         }
-        draft.finish(scene, scale)
+        draft.finish(scene, scale, size.x)
     }
+
+    /// How wide it is, in pixels of a screen on which lines and letters are of usual size.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width as u32
+    }
+}
+
+/// The size of a sheet that would be `width` wide if the mechanism were of few bodies: larger
+/// where bars were too short to be told apart.
+pub(super) fn size(scene: &Scene, q: &[f64], extent: Point, width: f64) -> Point {
+    let usual = Point::new(width, MOST_HEIGHT * width);
+    let scale = fitting(usual - Point::repeat(2.0 * MARGIN), extent);
+    let mut lengths: Vec<f64> = (scene.symbols.iter())
+        .filter(|symbol| matches!(symbol, Symbol::Link { .. } | Symbol::Rod { .. }))
+        .map(|symbol| {
+            let mut bounds = Bounds::NONE;
+            symbol.extremes(q).into_iter().for_each(|p| bounds.add(p));
+            scale * bounds.size().norm()
+        })
+        .filter(|length| *length > 0.0)
+        .collect();
+    lengths.sort_by(f64::total_cmp);
+    let Some(median) = lengths.get(lengths.len() / 2) else {
+        return usual;
+    };
+    let growth = (ROOMY / median).clamp(1.0, MOST_GROWTH);
+    Point::new((growth * usual.x).ceil(), growth * usual.y)
 }
 
 /// The greatest scale at which something fits.
@@ -208,9 +254,8 @@ impl Draft {
         for symbol in &scene.symbols {
             pen.draw(symbol);
         }
-        let (mut marks, labels): (Vec<Mark>, Vec<Label>) = pen.finish();
+        let (mut marks, placed) = pen.finish();
         marks.sort_by_key(|mark| mark.layer);
-        let placed = labels::place(labels, &marks);
         let texts = placed.into_iter().map(|label| label.text).collect();
         let mut draft = Self {
             bounds: Bounds::NONE,
@@ -235,14 +280,14 @@ impl Draft {
     }
 
     /// Adds the scale bar below and moves everything to its place.
-    fn finish(mut self, scene: &Scene, scale: f64) -> Sheet {
+    fn finish(mut self, scene: &Scene, scale: f64, width: f64) -> Sheet {
         let corner = Point::new(self.bounds.low.x, self.bounds.high.y + 16.0);
         let (bar, text) = scale_bar(corner, scale);
         self.marks.push(bar);
         self.texts.push(text);
         self.measure();
         let size = self.bounds.size();
-        let left = (0.5 * (WIDTH - size.x)).max(MARGIN);
+        let left = (0.5 * (width - size.x)).max(MARGIN);
         let shift = Point::new(left, MARGIN) - self.bounds.low;
         for mark in &mut self.marks {
             mark.outline = mark.outline.map(|point| point + shift);
@@ -253,6 +298,7 @@ impl Draft {
         Sheet {
             title: scene.name.clone(),
             description: scene.description.clone(),
+            width,
             height: (size.y + 2.0 * MARGIN).ceil(),
             marks: self.marks,
             texts: self.texts,

@@ -8,7 +8,7 @@ use quick_xml::writer::Writer;
 
 use super::outline::{Outline, Point, Segment};
 use super::palette::Colour;
-use super::sheet::{CAPITALS, Layer, Mark, Sheet, Text, WIDTH};
+use super::sheet::{CAPITALS, Layer, Mark, Sheet, Text};
 
 pub(super) type Xml = Writer<Vec<u8>>;
 
@@ -33,8 +33,8 @@ pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> String {
 
 fn write_document(xml: &mut Xml, sheet: &Sheet, width: u32, transparent: bool) -> io::Result<()> {
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let height = number(f64::from(width) * sheet.height / WIDTH);
-    let view_box = format!("0 0 {} {}", number(WIDTH), number(sheet.height));
+    let height = number(f64::from(width) * sheet.height / sheet.width);
+    let view_box = format!("0 0 {} {}", number(sheet.width), number(sheet.height));
     let width = width.to_string();
     xml.create_element("svg")
         .with_attributes([
@@ -55,7 +55,7 @@ fn write_document(xml: &mut Xml, sheet: &Sheet, width: u32, transparent: bool) -
             if !transparent {
                 xml.create_element("rect")
                     .with_attributes([
-                        ("width", number(WIDTH).as_str()),
+                        ("width", number(sheet.width).as_str()),
                         ("height", &number(sheet.height)),
                         ("fill", &Colour::WHITE.hex()),
                     ])

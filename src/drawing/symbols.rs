@@ -4,7 +4,7 @@ mod cam;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::labels::{Candidate, Label, ON_WHEEL};
+use super::labels::{self, Candidate, Label, ON_WHEEL, Placed};
 use super::outline::{Outline, Point, across, convex_hull, direction, unit};
 use super::palette::Colour;
 use super::rider::Rider;
@@ -70,6 +70,9 @@ pub(super) struct Pen<'a> {
     /// Whether the mechanism moves: then drivers are drawn so that they can move with it.
     moving: bool,
     marks: Vec<Mark>,
+    /// Lines that change their shape when the mechanism moves, which others draw then; labels
+    /// keep clear of them all the same.
+    changing: Vec<Mark>,
     driver_labels: Vec<Label>,
     point_labels: Vec<Label>,
     /// For each body the places for its name, from all that is drawn of it.
@@ -85,6 +88,7 @@ impl<'a> Pen<'a> {
             middle: Point::zeros(),
             moving: false,
             marks: Vec::new(),
+            changing: Vec::new(),
             driver_labels: Vec::new(),
             point_labels: Vec::new(),
             body_places: scene.bodies.iter().map(|_| Vec::new()).collect(),
@@ -118,8 +122,9 @@ impl<'a> Pen<'a> {
         self.marks.len()
     }
 
-    /// All marks, and the labels in the order in which they choose their places.
-    pub(super) fn finish(self) -> (Vec<Mark>, Vec<Label>) {
+    /// All marks, and the labels at their places.
+    pub(super) fn finish(self) -> (Vec<Mark>, Vec<Placed>) {
+        // They choose their places in this order.
         let mut labels = self.driver_labels;
         labels.extend(self.point_labels);
         let bodies = self.scene.bodies.iter().zip(self.body_places).enumerate();
@@ -132,10 +137,12 @@ impl<'a> Pen<'a> {
                     // Dark enough to be read: half the colour's light.
                     colour: Colour::of_body(index).shade(0.55),
                     follows: Rider::Body(BodyId(index)),
+                    may_miss: true,
                     candidates,
                 }),
         );
-        (self.marks, labels)
+        let placed = labels::place(labels, self.marks.iter().chain(&self.changing));
+        (self.marks, placed)
     }
 
     pub(super) fn draw(&mut self, symbol: &Symbol) {
@@ -648,6 +655,7 @@ impl<'a> Pen<'a> {
             content: name.to_owned(),
             colour: Colour::DRIVER.shade(0.8),
             follows: Rider::Point(to),
+            may_miss: false,
             candidates,
         });
     }
@@ -685,9 +693,16 @@ impl<'a> Pen<'a> {
                 self.line(Layer::Driver, extension, Colour::DRIVER, THIN);
             }
         }
-        if !self.moving {
-            let arrow = 0.8 * ARROW[0] * forth;
-            let line = Outline::line(&[start + arrow, end - arrow]);
+        let arrow = 0.8 * ARROW[0] * forth;
+        let line = Outline::line(&[start + arrow, end - arrow]);
+        if self.moving {
+            self.changing.push(Mark {
+                layer: Layer::Driver,
+                outline: line,
+                fill: None,
+                stroke: None,
+            });
+        } else {
             self.line(Layer::Driver, line, Colour::DRIVER, LINE);
             self.arrow(end, forth);
             self.arrow(start, -forth);
@@ -712,6 +727,7 @@ impl<'a> Pen<'a> {
             content: name.to_owned(),
             colour: Colour::DRIVER.shade(0.8),
             follows: Rider::Point(markers[1]),
+            may_miss: false,
             candidates,
         });
     }
@@ -744,6 +760,7 @@ impl<'a> Pen<'a> {
             content: name.to_owned(),
             colour: Colour::INK,
             follows: Rider::of(at),
+            may_miss: false,
             candidates: around(center, PIN).collect(),
         });
     }

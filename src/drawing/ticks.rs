@@ -12,7 +12,7 @@ pub(super) struct Ticks {
 /// Steps within a decade.
 const DECIMAL: [f64; 3] = [1.0, 2.0, 5.0];
 /// Steps of angles from ten degrees on, that divide the turn.
-const DEGREES: [f64; 8] = [10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0];
+const DEGREES: [f64; 9] = [10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0, 360.0];
 
 impl Ticks {
     /// Ticks that enclose `low` to `high`, at most about `most` of them; `degrees` prefers parts

@@ -126,6 +126,7 @@ codes! {
     ILLEGAL_NAME = "illegal-name",
     ILLEGAL_TEXT = "illegal-text",
     ILLEGAL_VALUE = "illegal-value",
+    LARGE_ANGLE = "large-angle",
     MISSING_KEY = "missing-key",
     MISSING_MASS = "missing-mass",
     NO_BODIES = "no-bodies",

@@ -30,9 +30,10 @@ fn an_fmu_carries_its_picture_and_its_page() {
     for wanted in [
         "down to 0.15 m: dead point, where body arm and body rod line up",
         "up to 0.65 m: dead point",
-        "<td>arm_length</td><td>0.25</td><td>m</td><td>≥ 0.001</td>",
-        "<td>arm.omega</td><td>output</td><td>rad/s</td>",
-        "<td>rates</td>",
+        ">arm_length</td><td data-what=\"Value\">0.25</td><td data-what=\"Unit\">m</td>",
+        "<td data-what=\"Limits\">≥ 0.001</td>",
+        ">arm.omega</td><td data-what=\"Causality\">output</td><td data-what=\"Unit\">rad/s</td>",
+        ">rates</td>",
     ] {
         assert!(page.contains(wanted), "{wanted}");
     }

@@ -37,6 +37,8 @@ PARTS = {
     "no input, and only inputs have input derivatives": "cannot be set: it is …",
     "Integer or Enumeration": "`…` is …, not …",
     "the mechanism has none": "no … `…`; …",
+    ", for example --drive '… = …'": "note: nothing moves; …",
+    "…*deg + 2*pi*t": "note: nothing moves; …",
     "crank_angle=60*deg + 10*t": "the example for --drive",
     "crank_length=120*mm": "the example for --set",
     "; did you mean `…`?": "--variables: there is no `…`…",

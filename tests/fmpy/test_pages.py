@@ -1,115 +1,12 @@
-"""Pages on which mechanisms move, in a real browser.
+"""Pages on which mechanisms move, in a real browser."""
 
-They run where a Chromium or Chrome is found (BIELA_CHROMIUM names another one) and are skipped
-elsewhere. The browser loads the page with a script added, which uses it as a person does and
-sends back what it saw.
-"""
-
-import functools
-import http.server
-import json
-import os
-import queue
 import re
 import shutil
 import subprocess
-import threading
 
 import pytest
+from browsing import browser, visit
 from harness import ROOT, program
-
-BROWSERS = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"]
-
-# Errors are collected from the start; the visit ends with sending its findings.
-BEFORE = """<script>
-const errors = [];
-addEventListener("error", (event) => errors.push(event.message));
-console.error = console.warn = (...words) => errors.push(words.join(" "));
-</script>"""
-AFTER = """<script>
-const find = (selector) => document.querySelector(selector);
-const all = (selector) => [...document.querySelectorAll(selector)];
-const pause = (time) => new Promise((done) => setTimeout(done, time));
-const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
-const places = () => all("[data-rider]").map((part) => part.getAttribute("transform"));
-const seek = (moment) => {
-  find(".time").value = moment;
-  find(".time").dispatchEvent(new Event("input", { bubbles: true }));
-};
-const inside = (part) => {
-  const box = part.getBoundingClientRect();
-  return box.left >= 0 && box.right <= innerWidth && box.width > 0;
-};
-(async () => {
-  let seen;
-  try {
-    seen = await visit();
-  } catch (error) {
-    errors.push(String(error));
-  }
-  fetch("/seen", { method: "POST", body: JSON.stringify({ seen, errors }) });
-})();
-</script>"""
-
-
-def browser():
-    named = os.environ.get("BIELA_CHROMIUM")
-    found = [named] if named else filter(None, map(shutil.which, BROWSERS))
-    found = next(iter(found), None)
-    if found is None:
-        pytest.skip("no Chromium or Chrome on PATH: pages are not tried in a browser")
-    return found
-
-
-class Server(http.server.SimpleHTTPRequestHandler):
-    """Serves a folder on loopback, and takes what a page has to say."""
-
-    def __init__(self, *arguments, answers, **more):
-        self.answers = answers
-        super().__init__(*arguments, **more)
-
-    def do_POST(self):
-        length = int(self.headers["Content-Length"])
-        self.answers.put(json.loads(self.rfile.read(length)))
-        self.send_response(204)
-        self.end_headers()
-
-    def log_message(self, *_):
-        pass
-
-
-def visit(tmp_path, page, script, reduced=False):
-    """What a script's `visit` returns on a page; the page's errors fail the test."""
-    text = page.read_text(encoding="utf-8")
-    assert "<head>" in text and "</body>" in text
-    changed = tmp_path / "visited.html"
-    changed.write_text(
-        text.replace("<head>", "<head>" + BEFORE, 1).replace(
-            "</body>", f"<script>async function visit() {{ {script} }}</script>{AFTER}</body>"
-        ),
-        encoding="utf-8",
-    )
-    answers = queue.Queue()
-    handler = functools.partial(Server, answers=answers, directory=tmp_path)
-    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        command = [
-            *(browser(), "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic"),
-            *("--no-first-run", "--disable-background-networking", "--disable-component-update"),
-            *("--disable-sync", f"--user-data-dir={tmp_path / 'profile'}"),
-            *(["--force-prefers-reduced-motion"] if reduced else []),
-            f"http://127.0.0.1:{server.server_port}/{changed.name}",
-        ]
-        quiet = subprocess.DEVNULL
-        running = subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet)
-        try:
-            answer = answers.get(timeout=60)
-        finally:
-            running.terminate()
-            running.wait(timeout=30)
-            server.shutdown()
-    assert answer["errors"] == []
-    return answer["seen"]
 
 
 @pytest.fixture(scope="module")
@@ -242,7 +139,7 @@ def test_a_phone_is_wide_enough(animated, tmp_path):
     assert slider["width"] >= 150
 
 
-@pytest.mark.parametrize("name", ["four_bar", "tlv", "cam_points"])
+@pytest.mark.parametrize("name", ["four_bar", "tlv", "cam_points", "planetary_gear"])
 def test_an_fmu_documents_itself(fmu, name, tmp_path):
     browser()
     folder = fmu(name).folder
@@ -256,6 +153,7 @@ def test_an_fmu_documents_itself(fmu, name, tmp_path):
           moved: places().join() !== first.join(),
           title: document.title,
           names: all("td:first-child").map((cell) => cell.textContent),
+          values: all("td[data-what=Value]").map((cell) => cell.textContent),
         };
         """,
     )
@@ -267,3 +165,173 @@ def test_an_fmu_documents_itself(fmu, name, tmp_path):
     assert seen["names"][-len(listed) :] == listed
     parameters = [v.name for v in variables if v.causality in {"parameter", "calculatedParameter"}]
     assert seen["names"][-len(listed) - len(parameters) : -len(listed)] == parameters
+    # Derived ones as well, which have no start value in the model description.
+    assert len(seen["values"]) == len(parameters) and all(map(float, seen["values"]))
+
+
+# A page within a page lives on when the inner one is loaded again.
+def test_a_watched_file_is_seen_anew(tmp_path):
+    browser()
+    good = (ROOT / "mechanisms" / "pendulum.toml").read_text(encoding="utf-8")
+    file = tmp_path / "watched.toml"
+    texts = {
+        "good": good,
+        "another": good.replace('name = "pendulum"', 'name = "another"'),
+        "broken": good.replace("ground.O", "ground.Oo"),
+    }
+    actions = {
+        name: lambda text=text: file.write_text(text, encoding="utf-8")
+        for name, text in texts.items()
+    }
+    actions["good"]()
+    frame = tmp_path / "frame.html"
+    frame.write_text(
+        '<!DOCTYPE html><html><head></head><body><iframe src="/" '
+        'style="width:800px;height:800px;border:0"></iframe></body></html>',
+        encoding="utf-8",
+    )
+    watching = subprocess.Popen(
+        [program(), "watch", file], stdout=subprocess.PIPE, text=True, encoding="utf-8"
+    )
+    actions["end"] = watching.terminate
+    try:
+        seen = visit(
+            tmp_path,
+            frame,
+            """
+            const inner = (selector) => find("iframe").contentDocument.querySelector(selector);
+            const titled = (name) => until(() => inner("h1")?.textContent === name);
+            const poses = () => [...inner(".stage").querySelectorAll("[data-rider]")]
+              .map((part) => part.getAttribute("transform")).join();
+            const moves = async () => {
+              const before = poses();
+              await until(() => poses() !== before);
+            };
+            const has = (name) => fetch(name, { method: "POST" });
+            const seen = {};
+
+            await titled("pendulum");
+            await moves();
+            inner(".show[value=velocity]").click();
+            seen.atFirst = inner(".error");
+            const parts = () => inner(".stage").querySelectorAll("[data-rider]").length;
+            seen.parts = [parts()];
+
+            await has("another");
+            await titled("another");
+            await until(() => inner(".player.playing"));
+            await moves();
+            seen.velocity = inner(".show[value=velocity]").checked;
+            inner(".play").click();
+
+            await has("broken");
+            await until(() => inner(".error") && inner(".player"));
+            seen.broken = inner(".error").textContent;
+            seen.role = inner(".error").getAttribute("role");
+            seen.stillTitled = inner("h1").textContent;
+            seen.parts.push(parts());
+
+            await has("good");
+            await titled("pendulum");
+            seen.mended = inner(".error");
+            await until(() => inner(".player:not(.playing)"));
+            seen.ended = [inner(".ended").hidden];
+            await has("end");
+            await until(() => !inner(".ended").hidden);
+            return seen;
+            """,
+            actions=actions,
+            behind=watching.stdout.readline().strip().rstrip("/"),
+        )
+    finally:
+        watching.kill()
+        watching.wait()
+    assert seen["atFirst"] is None
+    # What the reader has switched on stays so on the new page.
+    assert seen["velocity"]
+    # The error with its line, and the last good picture with it.
+    assert "no marker `Oo` on `ground`" in seen["broken"] and "watched.toml:" in seen["broken"]
+    assert seen["role"] == "alert"
+    assert seen["stillTitled"] == "another"
+    assert seen["parts"][0] == seen["parts"][1] > 0
+    assert seen["mended"] is None
+    assert seen["ended"] == [True]
+
+
+def test_everything_can_be_used_without_a_mouse(animated, tmp_path):
+    """Controls have names, the one in focus is seen, and time does not talk all the while."""
+    seen = visit(
+        tmp_path,
+        animated,
+        """
+        const controls = all(".player button, .player input, .player select");
+        const named = controls.map((control) =>
+          control.getAttribute("aria-label") ?? control.closest("label")?.textContent.trim());
+        const outlines = controls.map((control) => {
+          control.focus({ focusVisible: true });
+          const { outlineStyle, outlineWidth } = getComputedStyle(control);
+          return [control === document.activeElement, outlineStyle, parseFloat(outlineWidth)];
+        });
+        seek(50);
+        return {
+          named, outlines,
+          spoken: find(".time").getAttribute("aria-valuetext"),
+          live: find(".clock").getAttribute("aria-live"),
+        };
+        """,
+    )
+    assert all(seen["named"]) and len(seen["named"]) == 6
+    # The crank's pin is the fastest at 2 pi/s * 0.1 m, or the coupler's point is faster.
+    velocity = next(name for name in seen["named"] if name.startswith("Velocity, up to"))
+    assert 0.1 * 6.283 <= float(velocity.split()[-2]) < 1 and velocity.endswith(" m/s")
+    assert seen["outlines"] == [[True, "solid", 3]] * 6
+    assert seen["spoken"] == "0.500 s"
+    assert seen["live"] == "off"
+
+
+def test_a_page_with_more_to_read_keeps_its_keys(fmu, tmp_path):
+    """Home scrolls the documentation, unless one is at the player."""
+    browser()
+    moments = visit(
+        tmp_path,
+        fmu("four_bar").folder / "documentation" / "index.html",
+        """
+        seek(30);
+        press("Home");
+        const after = [find(".time").value];
+        const key = new KeyboardEvent("keydown", { key: "Home", bubbles: true });
+        find(".player").dispatchEvent(key);
+        return [...after, find(".time").value];
+        """,
+    )
+    assert moments == ["30", "0"]
+
+
+@pytest.mark.parametrize("name", ["jansen_leg", "excavator_arm"])
+def test_names_stay_inside_the_picture_on_a_phone(fmu, name, tmp_path):
+    browser()
+    shutil.copy(fmu(name).folder / "documentation" / "index.html", tmp_path / "inner.html")
+    frame = tmp_path / "frame.html"
+    frame.write_text(
+        "<!DOCTYPE html><html><head></head><body>"
+        '<iframe src="inner.html" style="width:390px;height:800px;border:0"></iframe></body></html>'
+    )
+    outside, cells = visit(
+        tmp_path,
+        frame,
+        """
+        await pause(300);
+        const page = find("iframe").contentDocument;
+        const stage = page.querySelector(".stage").getBoundingClientRect();
+        const boxes = [...page.querySelectorAll(".names text")]
+          .map((text) => [text.textContent, text.getBoundingClientRect()]);
+        // Fonts differ by a little from the letters that the film has measured.
+        const slack = 5;
+        const outside = boxes.filter(([, box]) => box.left < stage.left - slack || box.right > stage.right + slack);
+        const cut = [...page.querySelectorAll("td")]
+          .filter((cell) => cell.textContent && cell.getBoundingClientRect().right > 390);
+        return [outside.map(([name]) => name), cut.map((cell) => cell.textContent)];
+        """,
+    )
+    assert outside == []
+    assert cells == []

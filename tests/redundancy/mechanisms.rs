@@ -108,8 +108,8 @@ pub(crate) fn lined_up(drivers: &str) -> String {
     file("O = [0, 0]", &bodies, &joints, drivers)
 }
 
-/// Three wheels on one line of shafts, the first driven, with these joints between them.
-pub(crate) fn wheels(between: &str, start: f64) -> String {
+/// Three wheels on one line of shafts, in mesh, the first driven; and these joints.
+pub(crate) fn wheels(more: &str) -> String {
     let mut bodies = String::new();
     let mut joints = String::new();
     for (name, x) in [("a", 0.0), ("b", 0.2), ("c", 0.5)] {
@@ -117,21 +117,23 @@ pub(crate) fn wheels(between: &str, start: f64) -> String {
         let (ground, own) = (format!("ground.{name}"), format!("{name}.O"));
         joints += &joint(&format!("shaft_{name}"), "revolute", &ground, &own);
     }
+    joints += &pair("ab", "gear", "[0.1, 0.1]");
+    joints += &pair("bc", "gear", "[0.1, 0.2]");
     let ground = "a = [0, 0]\nb = [0.2, 0]\nc = [0.5, 0]";
-    let driver = angle_driver("turn", "ground.a", "a.O", start);
-    file(ground, &bodies, &(joints + between), &driver)
+    let driver = angle_driver("turn", "ground.a", "a.O", 40.0);
+    file(ground, &bodies, &(joints + more), &driver)
 }
 
-pub(crate) fn pair(
-    name: &str,
-    kind: &str,
-    from: &str,
-    to: &str,
-    radii: &str,
-    more: &str,
-) -> String {
+/// A belt around the first and the last of the wheels. Open, it turns them as the gears do.
+pub(crate) fn belt(crossed: bool) -> String {
+    pair("ac", "belt", &format!("[0.05, 0.1], crossed = {crossed}"))
+}
+
+/// A joint of two wheels, whose names are its own.
+fn pair(name: &str, kind: &str, radii: &str) -> String {
+    let (from, to) = name.split_at(1);
     format!(
-        "{name} = {{ type = \"{kind}\", markers = [\"{from}.O\", \"{to}.O\"], radii = {radii}{more} }}\n"
+        "{name} = {{ type = \"{kind}\", markers = [\"{from}.O\", \"{to}.O\"], radii = {radii} }}\n"
     )
 }
 

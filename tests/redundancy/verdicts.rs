@@ -7,7 +7,7 @@ use biela::mechanism::Mechanism;
 
 use crate::common::parse;
 use crate::mechanisms::{
-    angle_driver, body, cam_touched_twice, crank_angle, file, four_bar, joint, lined_up, pair,
+    angle_driver, belt, body, cam_touched_twice, crank_angle, file, four_bar, joint, lined_up,
     parallelogram, slider_crank, welded, wheels, with_joints, without_driver,
 };
 
@@ -107,12 +107,7 @@ fn each_mechanism_has_its_verdict() {
         ),
         (
             "a belt around two gears that agree with it",
-            wheels(
-                &(pair("ab", "gear", "a", "b", "[0.1, 0.1]", "")
-                    + &pair("bc", "gear", "b", "c", "[0.1, 0.2]", "")
-                    + &pair("ac", "belt", "a", "c", "[0.05, 0.1]", "")),
-                40.0,
-            ),
+            wheels(&belt(false)),
             Redundant(&[("joint `ac`", 1, 1)]),
         ),
         (
@@ -122,12 +117,7 @@ fn each_mechanism_has_its_verdict() {
         ),
         (
             "a belt around two gears against it",
-            wheels(
-                &(pair("ab", "gear", "a", "b", "[0.1, 0.1]", "")
-                    + &pair("bc", "gear", "b", "c", "[0.1, 0.2]", "")
-                    + &pair("ac", "belt", "a", "c", "[0.05, 0.1]", ", crossed = true")),
-                40.0,
-            ),
+            wheels(&belt(true)),
             Says(
                 "the mechanism has no degree of freedom and 1 driver; too many: remove one of \
                  joint `ab`, joint `bc`, joint `ac`, driver `turn`",

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::Expected::Closes;
 use crate::mechanisms::{
-    across, cranked, driven_at_the_coupler, file, four_bar, hung, linked, middle_when_crossed,
-    six_bar, slider_crank, triangle, upright,
+    ON_LINE, PARALLEL, across, cranked, driven_at_the_coupler, four_bar, hung, lever, linked,
+    middle_when_crossed, six_bar, slider_crank, triangle, upright,
 };
 use crate::{Case, case};
 
@@ -200,15 +200,7 @@ contact = { type = "cam", markers = ["crank.O", "follower.F"], follower = "flat"
         // A point of a lever of 2 on a line 1 above its pivot.
         case(
             "a point held on a line",
-            file(
-                "P = [0, 0]\nline = [0, 1]",
-                &[("lever", "P = [0, 0], Q = [2, 0]", "0, 0, 0")],
-                r#"
-[joints]
-P = { type = "revolute", markers = ["ground.P", "lever.P"] }
-line = { type = "slot", markers = ["ground.line", "lever.Q"] }
-"#,
-            ),
+            lever(1.0, ON_LINE),
             Closes(vec![("lever.phi", PI / 6.0)]),
         ),
         case(
@@ -221,11 +213,7 @@ line = { type = "slot", markers = ["ground.line", "lever.Q"] }
         // links span 1 to 2, the point is 3 above the parallel coupler's middle.
         case(
             "a second loop that closes in the other mode of the first only",
-            six_bar(
-                [1.5, 0.5],
-                middle_when_crossed()[1] + 1.5,
-                ["0, 2, 0", "3, 0, \"90*deg\"", "0, 0, 0"],
-            ),
+            six_bar([1.5, 0.5], middle_when_crossed()[1] + 1.5, PARALLEL),
             Closes(vec![(
                 "coupler.phi",
                 (-10.0_f64 / 13.0 - 2.0).atan2(15.0 / 13.0),

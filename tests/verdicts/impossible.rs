@@ -2,8 +2,8 @@
 
 use crate::Expected::Impossible;
 use crate::mechanisms::{
-    CROSSED, PARALLEL, cranked, driven_at_the_coupler, file, linked, middle_when_crossed, six_bar,
-    slider_crank, triangle, upright,
+    CROSSED, ON_LINE, PARALLEL, cranked, driven_at_the_coupler, lever, linked, middle_when_crossed,
+    six_bar, slider_crank, triangle, upright,
 };
 use crate::{Case, case};
 
@@ -74,28 +74,15 @@ pub(crate) fn cases() -> Vec<Case> {
         // A lever's point 2 from its pivot, and a line 3 away.
         case(
             "a line out of reach",
-            file(
-                "P = [0, 0]\nline = [0, 3]",
-                &[("lever", "P = [0, 0], Q = [2, 0]", "0, 0, 0")],
-                r#"
-[joints]
-P = { type = "revolute", markers = ["ground.P", "lever.P"] }
-line = { type = "slot", markers = ["ground.line", "lever.Q"] }
-"#,
-            ),
+            lever(3.0, ON_LINE),
             one("joint `line`", 1.0),
         ),
         // The same, of a joint with an offset.
         case(
             "an offset out of reach",
-            file(
-                "P = [0, 0]",
-                &[("lever", "P = [0, 0], Q = [2, 0]", "0, 0, 0")],
-                r#"
-[joints]
-P = { type = "revolute", markers = ["ground.P", "lever.P"] }
-line = { type = "revolute_translational", markers = ["ground.P", "lever.Q"], offset = -2.5 }
-"#,
+            lever(
+                0.0,
+                r#"type = "revolute_translational", markers = ["ground.line", "lever.Q"], offset = -2.5"#,
             ),
             one("joint `line`", 0.5),
         ),

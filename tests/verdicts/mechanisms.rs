@@ -194,6 +194,24 @@ pub(crate) fn middle_when_crossed() -> [f64; 2] {
     [0.5 * b[0], 0.5 * (2.0 + b[1])]
 }
 
+/// A lever of 2 about the origin, its tip held in this way against a line at `height`.
+pub(crate) fn lever(height: f64, held: &str) -> String {
+    file(
+        &format!("P = [0, 0]\nline = [0, {height}]"),
+        &[("lever", "P = [0, 0], Q = [2, 0]", "0, 0, 0")],
+        &format!(
+            r#"
+[joints]
+P = {{ type = "revolute", markers = ["ground.P", "lever.P"] }}
+line = {{ {held} }}
+"#
+        ),
+    )
+}
+
+/// The tip of the lever on that line.
+pub(crate) const ON_LINE: &str = r#"type = "slot", markers = ["ground.line", "lever.Q"]"#;
+
 /// A driven crank and what `joint` does with it, `bodies` apart from the crank.
 pub(crate) fn cranked(
     ground: &str,

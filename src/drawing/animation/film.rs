@@ -18,7 +18,8 @@ use crate::drawing::sheet::CAPITALS;
 /// for every moment; `scales` says between which two values they run. For each rider there are
 /// three: x and y on the sheet and the angle in degrees. For each length driver there are two:
 /// the length, and where its first point is beside the line. For each point with arrows four:
-/// velocity and acceleration, as parts of the greatest there is. For each reading one.
+/// velocity and acceleration, as parts of the greatest there is, which `most` tells \[m/s, m/s²\].
+/// For each reading one.
 pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
     let moments = &animation.moments;
     let mut channels: Vec<Channel> = Vec::new();
@@ -44,7 +45,8 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
         .iter()
         .all(|m| m.rates.iter().all(|r| r.len() == m.q.len()));
     let points = if has_rates { &stage.points[..] } else { &[] };
-    channels.extend(arrows(points, moments));
+    let (of_arrows, most) = arrows(points, moments);
+    channels.extend(of_arrows);
     for reading in 0..animation.readings.len() {
         let values = moments.iter().map(|moment| moment.readings[reading]);
         channels.push(Channel::new(values.collect()));
@@ -80,6 +82,7 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
             "rider": rider,
             "at": [short(stage.scale * anchor.position[0]), short(-stage.scale * anchor.position[1])],
         })).collect::<Vec<_>>(),
+        "most": most.map(significant),
         "readings": animation.readings.iter().map(|r| json!({
             "name": r.name,
             "unit": r.unit,
@@ -99,8 +102,9 @@ fn length(driver: &LengthDriver, q: &[f64]) -> [f64; 2] {
     [length, -(from - foot).dot(&across(along))]
 }
 
-/// Velocity and acceleration of points on the sheet, each as a part of the greatest there is.
-fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> Vec<Channel> {
+/// Velocity and acceleration of points on the sheet, each as a part of the greatest there is, and
+/// those two \[m/s, m/s²\].
+fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> (Vec<Channel>, [f64; 2]) {
     let mut all: [Vec<Vec<Vector2<f64>>>; 2] = Default::default();
     let mut most = [0.0_f64; 2];
     for (_, anchor) in points {
@@ -129,7 +133,7 @@ fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> Vec<Channel> {
             }
         }
     }
-    channels
+    (channels, most)
 }
 
 /// Velocity and acceleration of a point of a rigid body.

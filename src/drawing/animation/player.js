@@ -40,6 +40,9 @@
 
     const riding = [...player.querySelectorAll("[data-rider]")];
     const names = [...player.querySelectorAll(".names text")];
+    const view = find(".stage").viewBox.baseVal;
+    // On small screens names are larger than in the film.
+    let larger = 1;
     const lengths = [...player.querySelectorAll(".length")].map((group) => [
       add(group, "path"),
       add(group, "path", "tips"),
@@ -89,17 +92,18 @@
       });
       film.labels.forEach((label, index) => {
         let [x, y] = outside(label.rider, label.at);
+        const [width, height] = label.size.map((length) => larger * length);
         if (label.side) {
           const { cos, sin } = places[label.rider];
           const [u, v] = label.side.map((part) => part / 100);
           const side = [cos * u - sin * v, sin * u + cos * v];
           // As far out as the side of the name's box that faces its place.
-          const reach = 0.5 * (label.size[0] * Math.abs(side[0]) + label.size[1] * Math.abs(side[1]));
+          const reach = 0.5 * (width * Math.abs(side[0]) + height * Math.abs(side[1]));
           x += (label.gap + reach) * side[0];
           y += (label.gap + reach) * side[1];
         }
-        names[index].setAttribute("x", fix(x));
-        names[index].setAttribute("y", fix(y + 0.5 * label.size[1]));
+        names[index].setAttribute("x", fix(within(x, 0.5 * width, view.x, view.width)));
+        names[index].setAttribute("y", fix(within(y, 0.5 * height, view.y, view.height) + 0.5 * height));
       });
       film.points.forEach((point, index) => {
         const from = outside(point.rider, point.at);
@@ -163,6 +167,12 @@
         box.parentElement.remove();
         continue;
       }
+      // How long the longest arrow is that there is.
+      const most = film.most[{ velocity: 0, acceleration: 1 }[box.value]];
+      if (most > 0) {
+        const unit = box.value === "velocity" ? "m/s" : "m/s²";
+        box.nextElementSibling.textContent += `, up to ${Number(most.toPrecision(3))} ${unit}`;
+      }
       box.addEventListener("change", () => show(box));
       show(box);
     }
@@ -187,7 +197,13 @@
       n: toggle("names"),
     };
     player.classList.toggle("still", last < 1);
-    draw();
+    function fit() {
+      const group = find(".names");
+      larger = parseFloat(getComputedStyle(group).fontSize) / Number(group.getAttribute("font-size"));
+      draw();
+    }
+    addEventListener("resize", fit);
+    fit();
     return { start: () => set(true), key: (key) => keys[key] };
   }
 
@@ -211,6 +227,11 @@
 
   function fix(number) {
     return Math.round(number * 100) / 100;
+  }
+
+  // The middle of what reaches so far to both sides, moved so that all of it is within.
+  function within(middle, half, start, length) {
+    return Math.max(start + half, Math.min(start + length - half, middle));
   }
 
   // An arrow whose length is a part of the longest.
@@ -242,11 +263,15 @@
     return [line, tip(end, forth) + tip(start, -forth)];
   }
 
-  const players = [...document.querySelectorAll(".player")].map(play);
+  const elements = [...document.querySelectorAll(".player")];
+  const players = elements.map(play);
+  // On a page with more to read, keys that are not meant for a player scroll.
+  const alone = !document.querySelector("main h2");
   document.addEventListener("keydown", (event) => {
     const { target, key } = event;
     const own = target.matches("select") || (target.matches("button, input[type=checkbox]") && key === " ");
-    const act = players[0]?.key(key);
+    const meant = elements.indexOf(target.closest(".player"));
+    const act = players[meant < 0 && alone ? 0 : meant]?.key(key);
     if (act && !own && !event.ctrlKey && !event.metaKey && !event.altKey) {
       event.preventDefault();
       act();

@@ -3,12 +3,12 @@
 use std::f64::consts::PI;
 
 use super::Animation;
-use crate::drawing::labels::{self, Placed};
+use crate::drawing::labels::Placed;
 use crate::drawing::outline::{Point, convex_hull};
 use crate::drawing::rider::Rider;
 use crate::drawing::scene::{Anchor, Frame, Symbol};
 use crate::drawing::sheet::{
-    Bounds, CAPITALS, MARGIN, MOST_HEIGHT, Mark, Text, WIDTH, extent, fitting, scale_bar,
+    Bounds, CAPITALS, MARGIN, Mark, Text, WIDTH, extent, fitting, scale_bar, size,
 };
 use crate::drawing::symbols::{BESIDE, Pen};
 
@@ -53,8 +53,9 @@ impl Stage {
         let sampled = || moments.iter().step_by(every).map(|m| m.q.as_slice());
         let scene = &animation.scene;
         let q = moments.first().map_or(&[][..], |moment| &moment.q);
-        let room = Point::new(WIDTH, MOST_HEIGHT) - Point::repeat(2.0 * (MARGIN + AROUND));
-        let scale = fitting(room, extent(scene, sampled()));
+        let extent = extent(scene, sampled());
+        let room = size(scene, q, extent, WIDTH) - Point::repeat(2.0 * (MARGIN + AROUND));
+        let scale = fitting(room, extent);
 
         let mut pen = Pen::moving(scene, q, scale);
         let mut of_symbols = Vec::new();
@@ -84,8 +85,7 @@ impl Stage {
             }
         }
         let (marks, labels) = pen.finish();
-        let labels: Vec<(usize, Placed)> = labels::place(labels, &marks)
-            .into_iter()
+        let labels: Vec<(usize, Placed)> = (labels.into_iter())
             .map(|label| (place_of(&mut riders, label.follows), label))
             .collect();
         let mut marks: Vec<(usize, Mark)> = of_symbols.into_iter().zip(marks).collect();

@@ -96,9 +96,11 @@ impl fmt::Display for SingularPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}, where {} line up",
+            "{}, where {} line{} up",
             self.kind,
-            list(&self.bodies, " and ")
+            list(&self.bodies, " and "),
+            // One body alone is in line with what drives it.
+            if self.bodies.len() == 1 { "s" } else { "" }
         )
     }
 }

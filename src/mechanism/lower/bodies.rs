@@ -40,7 +40,9 @@ impl<'a> Context<'a> {
         let expected = "an array `[x, y]` or `[x, y, angle]`";
         let items = self.items_of(value, 2..=3, expected)?;
         if items.len() == 3 {
-            return Some(self.quantities::<3>(value, expected)?.map(|q| q.expression));
+            let frame = self.quantities::<3>(value, expected)?;
+            self.warn_of_degrees(&frame[2]);
+            return Some(frame.map(|q| q.expression));
         }
         let [x, y] = self.quantities::<2>(value, expected)?;
         Some([x.expression, y.expression, Expression::constant(0.0)])
@@ -71,6 +73,9 @@ impl<'a> Context<'a> {
         let estimate = fields
             .get("estimate")
             .and_then(|value| self.quantities::<3>(value, "an array `[x, y, phi]`"));
+        if let Some([_, _, phi]) = &estimate {
+            self.warn_of_degrees(phi);
+        }
         let mass = fields.get("mass").and_then(|value| self.quantity(value));
         if let Some(mass) = &mass {
             self.check_positive(mass, "`mass`");

@@ -1,6 +1,7 @@
 //! What reading a file needs at hand, and the readers of single values.
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 use toml::de::DeValue;
 
@@ -413,6 +414,24 @@ impl<'a> Context<'a> {
                 quantity.span.clone(),
                 format!("{what} must be positive, is {}", shown(value)),
             );
+        }
+    }
+
+    /// Warns of an angle that is a bare number of more than a turn: it looks like degrees.
+    pub(super) fn warn_of_degrees(&mut self, angle: &Quantity) {
+        let text = self.source.text().get(angle.span.clone());
+        // Whoever writes an expression knows what they do.
+        let is_bare = text.is_some_and(|text| !text.starts_with(['"', '\'']));
+        if let Some(value) = angle.value.filter(|value| is_bare && value.abs() > TAU) {
+            let message = format!(
+                "an angle of {} rad is {:.1} deg",
+                shown(value),
+                value.to_degrees()
+            );
+            let warning = Diagnostic::warning(code::LARGE_ANGLE, message)
+                .label(angle.span.clone(), "")
+                .help(format!("degrees are written `\"{}*deg\"`", shown(value)));
+            self.problems.push(warning);
         }
     }
 

@@ -42,6 +42,9 @@ impl<'a> Context<'a> {
         if coordinate.kind == CoordinateKind::Distance {
             self.check_positive(&value, "a distance");
         }
+        if coordinate.kind == CoordinateKind::Angle {
+            self.warn_of_degrees(&value);
+        }
         Some(Constraint {
             name: entry.name().to_owned(),
             coordinate,
@@ -85,6 +88,9 @@ impl<'a> Context<'a> {
                 let start = start?;
                 if kind == Some(CoordinateKind::Distance) {
                     self.check_positive(&start, "the `start` of a distance");
+                }
+                if kind == Some(CoordinateKind::Angle) {
+                    self.warn_of_degrees(&start);
                 }
                 Some(DriverSource::Input {
                     start: start.value?,

@@ -5,8 +5,9 @@ use std::collections::VecDeque;
 use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
+use crate::mechanism::expression::CONSTANTS;
 use crate::mechanism::names::{either, quoted, shown};
-use crate::mechanism::syntax::Value;
+use crate::mechanism::syntax::{Value, number};
 use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, ParameterId, Unit};
 
 use super::context::{Context, Entry, Fields, Quantity};
@@ -269,13 +270,26 @@ impl<'a> Context<'a> {
         };
         let units = Unit::ALL.map(|unit| (unit.name, unit));
         let name = self.text(value)?;
-        let unit = if let Some(shown) = DisplayUnit::by_name(name) {
+        let unit = if let Some(display) = DisplayUnit::by_name(name) {
             let message = format!("{} is not an SI unit", quoted(name));
             let si = units
                 .iter()
-                .find(|(_, unit)| unit.dimension == shown.dimension);
-            let help =
-                si.map(|(si, _)| format!("values are SI: `unit = \"{si}\", display = \"{name}\"`"));
+                .find(|(_, unit)| unit.dimension == display.dimension);
+            // Whoever writes millimetres means them.
+            let number = fields
+                .get("value")
+                .and_then(|value| number(value.get_ref()));
+            let is_known = |name: &&str| CONSTANTS.iter().any(|(known, _)| known == name);
+            let constant = name.split('/').next().filter(is_known);
+            let given = match (number, constant) {
+                (Some(number), Some(constant)) => {
+                    format!("value = \"{}*{constant}\", ", shown(number))
+                }
+                _ => String::new(),
+            };
+            let help = si.map(|(si, _)| {
+                format!("values are SI: `{given}unit = \"{si}\", display = \"{name}\"`")
+            });
             self.error_with_help(code::UNKNOWN_UNIT, value.span(), message, help);
             None
         } else {
