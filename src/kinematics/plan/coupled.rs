@@ -2,12 +2,15 @@
 
 mod block;
 mod certify;
+mod corridor;
+mod estimate;
 mod neighbourhood;
 
 use std::sync::Arc;
 
 use block::{Block, Jacobian};
 use certify::Proof;
+use corridor::Corridor;
 use neighbourhood::Neighbourhood;
 
 use super::elimination::Order;
@@ -37,6 +40,7 @@ pub(in crate::kinematics) struct Coupled {
     correction: Vec<f64>,
     proof: Box<Proof>,
     neighbourhood: Neighbourhood,
+    corridor: Corridor,
 }
 
 impl Coupled {
@@ -54,6 +58,7 @@ impl Coupled {
             excess: 0.0,
             correction: vec![0.0; order],
             neighbourhood: Neighbourhood::new(order + proof.known.len()),
+            corridor: Corridor::new(order, proof.known.len()),
             proof,
         }
     }
@@ -74,6 +79,7 @@ impl Coupled {
     /// Lets go of the box that earlier steps have left.
     pub(super) fn forget_box(&mut self) {
         self.neighbourhood.forget();
+        self.corridor.forget();
     }
 
     /// Lets a sparse matrix choose its pivots anew.

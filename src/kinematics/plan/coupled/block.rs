@@ -74,20 +74,26 @@ impl Block {
         let Jacobian { lu, upstream } = jacobian;
         lu.clear();
         upstream.clear();
-        for (local, &row) in self.rows.iter().enumerate() {
-            let value = work.system.evaluate_row(
-                row,
-                work.at,
-                work.targets,
-                work.drivers,
-                |column, value| match self.own(column) {
-                    Some(own) => lu.add(local, own, value),
-                    None if value != 0.0 => upstream.push((local, column, value)),
-                    None => {}
-                },
-            );
+        for local in 0..self.rows.len() {
+            let value = self.evaluate_row(local, work, |column, value| match self.own(column) {
+                Some(own) => lu.add(local, own, value),
+                None if value != 0.0 => upstream.push((local, column, value)),
+                None => {}
+            });
             found(local, value);
         }
+    }
+
+    /// Evaluates one row, the entries of its gradient going to `entry`: column and value.
+    pub(super) fn evaluate_row(
+        &self,
+        local: usize,
+        work: &Work<'_>,
+        entry: impl FnMut(usize, f64),
+    ) -> RowValue {
+        let row = self.rows[local];
+        work.system
+            .evaluate_row(row, work.at, work.targets, work.drivers, entry)
     }
 
     /// Bounds how far a row of the block bends in the region of `tubes` around the pose in `work`,

@@ -8,13 +8,14 @@
 //! unknowns adds up with its signs, and by the gradient's change.
 //!
 //! Rows and unknowns are scaled as for Newton–Raphson. The inverse is written down for blocks of
-//! up to [`MOST_TORN`] torn unknowns; beyond, the norms of A and K are estimated, with one radius
-//! for all unknowns, and the sub-step is *checked*. So it is while parameters move: how far they
-//! change each row is then looked at where the sub-step starts only.
+//! up to [`MOST_TORN`] torn unknowns; beyond, an [estimate](super::estimate) takes the place of the
+//! proof, and the sub-step is *checked*. So it is while parameters move: how far they change each
+//! row is then looked at where the sub-step starts only.
 //!
 //! [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
 
 use super::block::{ENTRIES, Jacobian};
+use super::estimate::Estimate;
 use super::{Coupled, Place};
 use crate::kinematics::configuration::BodyPose;
 use crate::kinematics::constraint::Incidence;
@@ -30,14 +31,14 @@ const MOST_TORN: usize = 32;
 /// off its chord by φ²/8 in radians, and rarely by several times that.
 const FIRST_RADIUS: f64 = 0.1;
 /// What radii are taken larger by than they have to be, where those tried were too small.
-const ROOM: f64 = 1.25;
-const MOST_TRIES: u32 = 3;
+pub(super) const ROOM: f64 = 1.25;
+pub(super) const MOST_TRIES: u32 = 3;
 /// The norm of K with which radii are no longer looked for, and the one that a next sub-step
 /// aims at. K grows with the sub-step.
-const LARGEST_CONTRACTION: f64 = 0.9;
+pub(super) const LARGEST_CONTRACTION: f64 = 0.9;
 const GOOD_CONTRACTION: f64 = 0.6;
 /// η + K r has to be below r by a little more than the rounding of A changes it.
-const STRICTLY: f64 = 0.999;
+pub(super) const STRICTLY: f64 = 0.999;
 
 /// What the certificate of a block needs.
 #[derive(Debug)]
@@ -53,17 +54,19 @@ pub(super) struct Proof {
     joint_unknowns: Vec<usize>,
     joint_ends: Vec<f64>,
     /// The Jacobian in the middle.
-    middle: Jacobian,
+    pub(super) middle: Jacobian,
     /// A by rows, empty where it is too large.
     pub(super) inverse: Vec<f64>,
-    condition: Condition,
+    /// For where it is.
+    pub(super) estimate: Estimate,
+    pub(super) condition: Condition,
     /// What the rows are open by on the way, and what of it comes from moving parameters.
     pub(super) open: Vec<f64>,
     pub(super) slack: Vec<f64>,
     /// How far entries of the block's Jacobian may change: row, column, scaled value.
     changes: Vec<(usize, usize, f64)>,
     /// Scaled radii: of what is known, those tried, what η + K r makes of them.
-    known_radii: Vec<f64>,
+    pub(super) known_radii: Vec<f64>,
     pub(super) radii: Vec<f64>,
     pub(super) eta: Vec<f64>,
     pub(super) next: Vec<f64>,
@@ -100,7 +103,11 @@ impl Proof {
             Target::Driver(driver) => Some(driver.index()),
             Target::Constant(_) => None,
         });
-        let inverse = if order.torn() <= MOST_TORN { n * n } else { 0 };
+        let (inverse, estimate) = if order.torn() <= MOST_TORN {
+            (n * n, Estimate::default())
+        } else {
+            (0, Estimate::new(n, ENTRIES * n))
+        };
         Self {
             known_radii: vec![0.0; known.len()],
             known,
@@ -111,6 +118,7 @@ impl Proof {
             joint_unknowns,
             middle: Jacobian::new(lu.clone()),
             inverse: vec![0.0; inverse],
+            estimate,
             condition: Condition::new(n),
             open: vec![0.0; n],
             slack: vec![0.0; n],
@@ -143,7 +151,7 @@ impl Proof {
     }
 
     /// Puts the bodies back there.
-    fn put_back(&self, work: &mut Work<'_>) {
+    pub(super) fn put_back(&self, work: &mut Work<'_>) {
         for (&body, &end) in self.bodies.iter().zip(&self.ends) {
             work.at.frames_mut()[body] = end;
         }
@@ -152,14 +160,8 @@ impl Proof {
         }
     }
 
-    /// |A| b, b ≥ 0 being one value a row, added to `sum`; the same estimate everywhere where A
-    /// is not written down.
-    fn apply(&mut self, b: &[f64], sum: &mut [f64]) {
-        if self.inverse.is_empty() {
-            let most = self.condition.largest_row(&mut self.middle.lu, b);
-            sum.iter_mut().for_each(|sum| *sum += most);
-            return;
-        }
+    /// |A| b, b ≥ 0 being one value a row, added to `sum`.
+    fn apply(&self, b: &[f64], sum: &mut [f64]) {
         let rows = self.inverse.chunks_exact(b.len());
         for (sum, row) in sum.iter_mut().zip(rows) {
             let parts = row.iter().zip(b).map(|(a, b)| a.abs() * b);
@@ -215,16 +217,18 @@ impl Coupled {
         work: &mut Work<'_>,
         substep: &mut Substep<'_>,
     ) -> Result<(), Rejected> {
-        if substep.tubes.boxes && self.certify_in_box(work, substep) {
+        let kept = substep.tubes.boxes
+            && (self.certify_in_box(work, substep) || self.certify_in_corridor(work, substep));
+        if kept {
             self.write_tubes(work, substep);
             return Ok(());
         }
-        if self.proof.inverse.is_empty() {
-            substep.tubes.checked = true;
-        }
         self.proof.note_ends(work);
-        let largest = self.lay_chord(work, substep);
-        let tried = self.find_radii(work, substep, largest);
+        let tried = if self.proof.inverse.is_empty() {
+            self.estimate_radii(work, substep)
+        } else {
+            self.find_radii(work, substep)
+        };
         self.proof.put_back(work);
         for &column in self.block.columns.iter().chain(&self.proof.known) {
             substep.tubes.region[column] = 0.0;
@@ -243,7 +247,11 @@ impl Coupled {
         };
         self.write_tubes(work, substep);
         if substep.tubes.boxes {
-            self.make_box(work, substep, contraction);
+            if self.proof.inverse.is_empty() {
+                self.lay_corridor(work, substep, contraction);
+            } else {
+                self.make_box(work, substep, contraction);
+            }
         }
         let load = (contraction / GOOD_CONTRACTION).powi(2);
         substep.tubes.bear(load.min(1.0))
@@ -251,7 +259,7 @@ impl Coupled {
 
     /// Writes chords and the radii of what is known, and goes to the middle. Returns the radii to
     /// be tried first, scaled.
-    fn lay_chord(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> f64 {
+    pub(super) fn lay_chord(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> f64 {
         let Substep { from, tubes, .. } = substep;
         let size = work.at.size();
         let (mut largest, mut uncertain) = (0.0_f64, 0.0_f64);
@@ -284,8 +292,8 @@ impl Coupled {
         &mut self,
         work: &mut Work<'_>,
         substep: &mut Substep<'_>,
-        first: f64,
     ) -> Result<f64, Option<f64>> {
+        let first = self.lay_chord(work, substep);
         self.proof.radii.fill(first);
         self.factorise_middle(work).map_err(|Rejected| None)?;
         let mut last = None;
@@ -375,23 +383,12 @@ impl Coupled {
     fn open_rows(&mut self) {
         let proof = &mut *self.proof;
         let order = self.block.rows.len();
-        if proof.inverse.is_empty() {
-            for &(row, column, value) in &proof.middle.upstream {
-                if let Ok(place) = proof.known.binary_search(&column) {
-                    proof.open[row] += value.abs() * proof.known_radii[place];
-                }
-            }
-        }
         let mut eta = std::mem::take(&mut proof.eta);
-        let open = std::mem::take(&mut proof.open);
         eta.fill(0.0);
-        proof.apply(&open, &mut eta);
-        proof.open = open;
-        if !proof.inverse.is_empty() {
-            for (&column, radius) in proof.known.iter().zip(&proof.known_radii) {
-                for (eta, a) in eta.iter_mut().zip(proof.inverse.chunks_exact(order)) {
-                    *eta += proof.middle.turned(a, column).abs() * radius;
-                }
+        proof.apply(&proof.open, &mut eta);
+        for (&column, radius) in proof.known.iter().zip(&proof.known_radii) {
+            for (eta, a) in eta.iter_mut().zip(proof.inverse.chunks_exact(order)) {
+                *eta += proof.middle.turned(a, column).abs() * radius;
             }
         }
         proof.eta = eta;

@@ -119,7 +119,7 @@ impl Coupled {
         contraction: f64,
     ) {
         self.neighbourhood.holds = false;
-        if self.proof.inverse.is_empty() || contraction > WORTH_A_BOX {
+        if contraction > WORTH_A_BOX {
             return;
         }
         let size = work.at.size();
