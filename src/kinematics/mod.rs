@@ -48,6 +48,7 @@ mod singular;
 mod solver;
 mod stepping;
 mod structure;
+mod substep;
 mod system;
 pub mod variation;
 

@@ -7,11 +7,9 @@
 
 use super::Error;
 use super::error::OpenJoint;
-use super::newton::Correction;
 use super::path::Path;
-use super::plan::{Advance, Substep, Work};
 use super::singular::{Careful, NEAR, SingularPoint};
-use super::solver::{Solver, UNIT};
+use super::solver::Solver;
 use crate::mechanism::Jet;
 
 /// Why a path could not be followed to its end.
@@ -91,192 +89,249 @@ impl Solver {
     /// [`Blocked`] if the end cannot be reached on the continuous motion. The mechanism then
     /// stands at the last pose reached on the way, which is a valid one.
     pub fn follow(&mut self, path: &Path) -> Result<Progress, Blocked> {
-        let mut progress = Progress::default();
-        let mut s = 0.0;
-        let mut substep: f64 = 1.0;
-        // What a redundant constraint would have been open by, and where.
-        let mut opened: Option<(f64, OpenJoint)> = None;
-        // Whether the last sub-step was as small as one may be.
-        let mut crawls = false;
-        let blocked = |s, reason, progress| {
-            Err(Blocked {
-                s,
+        let mut walk = Walk {
+            solver: self,
+            path,
+            s: 0.0,
+            substep: 1.0,
+            careful: None,
+            opened: None,
+            crawls: false,
+            progress: Progress::default(),
+        };
+        match walk.run() {
+            Ok(()) => Ok(walk.progress),
+            Err(reason) => Err(Blocked {
+                s: walk.s,
                 reason,
-                progress,
-            })
-        };
-        self.crossed.clear();
-        self.parameters_move = path.moves_parameters();
-        if self.parameters_move && !self.pose.crossings.is_empty() {
-            // A crossing is one for these parameters.
-            self.release_crossings();
-            self.stand_at_pose();
+                progress: walk.progress,
+            }),
         }
-        if self.refresh().is_err() {
-            return blocked(s, Reason::Lost, progress);
-        }
-        self.pose.time = path.time(0.0);
-        self.drive(path, 0.0);
-        let mut careful = match self.look_ahead(path, s) {
-            Ok(careful) => careful,
-            Err(end) => return blocked(s, Reason::Singular(end), progress),
-        };
-        while s < 1.0 {
-            if !self.pose.crossings.is_empty() {
-                self.leave_crossings();
-            }
-            self.predict();
-            let smallest = (0.01 * s).clamp(SMALLEST_FIRST_SUBSTEP, SMALLEST_SUBSTEP);
-            self.origin_time = self.pose.time;
-            if self.parameters_move {
-                self.origin_parameters
-                    .copy_from_slice(&self.pose.parameters);
-            }
-            let start = s;
-            if progress.substeps >= MOST_SUBSTEPS {
-                return blocked(s, Reason::TooLong, progress);
-            }
-            // What is too small to go on with is tried once more, to tell what is in the way.
-            let small = substep < smallest;
-            if small {
-                let reason = self.reason_to_stop(path, s, substep);
-                if crawls || matches!(reason, Reason::Singular(_)) {
-                    return blocked(s, reason, progress);
-                }
-                substep = smallest;
-            }
-            crawls = small;
-            // Between its points a motion given by a table tells at its ends where it has been.
-            let most = path.next_point(start, &self.motions);
-            let mut reaches_point = false;
-            loop {
-                let mut next = if start + substep < most {
-                    start + substep
-                } else {
-                    reaches_point = true;
-                    most
-                };
-                if let Some(careful) = careful {
-                    let end = self.within_way(careful, start, next);
-                    reaches_point &= end >= next;
-                    next = end;
-                }
-                if !self.pose.crossings.is_empty() {
-                    let end = self.within_crossings(path, start, next);
-                    reaches_point |= end < next;
-                    next = end;
-                }
-                progress.substeps = progress.substeps.saturating_add(1);
-                let reached = self.try_substep(path, [start, next], &mut progress);
-                if reached == Ok(true) {
-                    s = next;
-                    break;
-                }
-                self.stand_at(path, start);
-                reaches_point = false;
-                if let Err(Reason::Contradiction(joint)) = &reached {
-                    opened.get_or_insert_with(|| (next, joint.clone()));
-                }
-                if self.change_rows() {
-                    self.stand_at(path, start);
-                    continue;
-                }
-                substep = match reached {
-                    // The rows that are solved have nothing against it.
-                    Err(Reason::Contradiction(_)) => HALVE * (next - start),
-                    _ => self.shortened(next - start),
-                };
-                if substep < smallest {
-                    let reason = match (reached, opened) {
-                        // Next to a singular position nothing holds to rounding.
-                        (Err(Reason::Contradiction(_)), Some((_, joint)))
-                            if !self.is_nearly_singular() =>
-                        {
-                            Reason::Contradiction(joint)
-                        }
-                        (Err(Reason::Value(error)), _) => Reason::Value(error),
-                        _ => self.reason_to_stop(path, start, substep),
-                    };
-                    return blocked(start, reason, progress);
-                }
-            }
-            opened.take_if(|(place, _)| *place <= s);
-            progress.crossings += self.note_crossings();
-            careful = match self.look_ahead(path, s) {
-                Ok(careful) => careful,
-                Err(end) => return blocked(s, Reason::Singular(end), progress),
-            };
-            if s < 1.0 {
-                let suggested = self.lengthened(s - start);
-                // What a point cut short was possible as well.
-                let possible = if reaches_point { substep } else { 0.0 };
-                substep = suggested.max(possible);
+    }
+}
+
+/// A mechanism on its way along a path.
+struct Walk<'a> {
+    solver: &'a mut Solver,
+    path: &'a Path,
+    /// Where it stands.
+    s: f64,
+    /// How long a sub-step to try.
+    substep: f64,
+    /// How far that may go because of what is ahead.
+    careful: Option<Careful>,
+    /// What a redundant constraint would have been open by, and where.
+    opened: Option<(f64, OpenJoint)>,
+    /// Whether the last sub-step was as small as one may be.
+    crawls: bool,
+    progress: Progress,
+}
+
+/// Where a sub-step is to end.
+#[derive(Clone, Copy)]
+struct Goal {
+    s: f64,
+    /// Whether something on the path is there, without which it would have been further on.
+    cut_short: bool,
+}
+
+impl Walk<'_> {
+    /// Goes to the end of the path.
+    ///
+    /// # Errors
+    ///
+    /// Why it went no further than `s`.
+    fn run(&mut self) -> Result<(), Reason> {
+        self.set_out()?;
+        self.look_ahead()?;
+        while self.s < 1.0 {
+            let smallest = (0.01 * self.s).clamp(SMALLEST_FIRST_SUBSTEP, SMALLEST_SUBSTEP);
+            self.prepare(smallest)?;
+            let start = self.s;
+            let cut_short = self.advance(smallest)?;
+            self.opened.take_if(|(place, _)| *place <= self.s);
+            self.progress.crossings += self.solver.note_crossings();
+            self.look_ahead()?;
+            if self.s < 1.0 {
+                let suggested = self.solver.lengthened(self.s - start);
+                // What was cut short was possible as well.
+                let possible = if cut_short { self.substep } else { 0.0 };
+                self.substep = suggested.max(possible);
             }
         }
-        Ok(progress)
+        Ok(())
     }
 
-    /// Why not even a sub-step of length `h` leads on from where the mechanism stands, which is at
-    /// `s`.
-    fn reason_to_stop(&mut self, path: &Path, s: f64, h: f64) -> Reason {
-        if let Some(end) = self.find_end(path, s) {
+    /// Makes sure that the solver stands at the start of the path.
+    fn set_out(&mut self) -> Result<(), Reason> {
+        let Self { solver, path, .. } = self;
+        solver.crossed.clear();
+        solver.parameters_move = path.moves_parameters();
+        if solver.parameters_move && !solver.pose.crossings.is_empty() {
+            // A crossing is one for these parameters.
+            solver.release_crossings();
+            solver.stand_at_pose();
+        }
+        solver.refresh().map_err(|_| Reason::Lost)?;
+        solver.pose.time = path.time(0.0);
+        solver.drive(path, 0.0);
+        Ok(())
+    }
+
+    /// Takes over the crossings of change points that are near where the mechanism stands.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be passed is right ahead.
+    fn look_ahead(&mut self) -> Result<(), Reason> {
+        let Self { solver, path, .. } = self;
+        self.careful = if solver.regularity < NEAR && !solver.parameters_move {
+            let taken = solver.take_crossings(path, self.s);
+            taken.map_err(Reason::Singular)?
+        } else {
+            None
+        };
+        Ok(())
+    }
+
+    /// Gets ready for the next sub-step, from where the mechanism stands.
+    ///
+    /// # Errors
+    ///
+    /// There is none, `smallest` being the least that is worth trying.
+    fn prepare(&mut self, smallest: f64) -> Result<(), Reason> {
+        let solver = &mut *self.solver;
+        if !solver.pose.crossings.is_empty() {
+            solver.leave_crossings();
+        }
+        solver.set_origin();
+        if self.progress.substeps >= MOST_SUBSTEPS {
+            return Err(Reason::TooLong);
+        }
+        // What is too small to go on with is tried once more, to tell what is in the way.
+        let small = self.substep < smallest;
+        if small {
+            let reason = self.reason_to_stop();
+            if self.crawls || matches!(reason, Reason::Singular(_)) {
+                return Err(reason);
+            }
+            self.substep = smallest;
+        }
+        self.crawls = small;
+        Ok(())
+    }
+
+    /// Takes a sub-step, shortened until one succeeds. Returns whether something on the path cut
+    /// it short.
+    ///
+    /// # Errors
+    ///
+    /// Not even one of length `smallest` does.
+    fn advance(&mut self, smallest: f64) -> Result<bool, Reason> {
+        // Between its points a motion given by a table tells at its ends where it has been.
+        let most = self.path.next_point(self.s, &self.solver.motions);
+        loop {
+            let goal = self.goal(most);
+            self.progress.substeps = self.progress.substeps.saturating_add(1);
+            let part = [self.s, goal.s];
+            let reached = self.solver.try_substep(self.path, part, &mut self.progress);
+            if reached == Ok(true) {
+                self.s = goal.s;
+                return Ok(goal.cut_short);
+            }
+            self.shorten(reached, goal.s, smallest)?;
+        }
+    }
+
+    /// Where the next sub-step has to end, no further than `most`.
+    fn goal(&mut self, most: f64) -> Goal {
+        let Self { solver, path, .. } = self;
+        let start = self.s;
+        let mut goal = if start + self.substep < most {
+            Goal {
+                s: start + self.substep,
+                cut_short: false,
+            }
+        } else {
+            Goal {
+                s: most,
+                cut_short: true,
+            }
+        };
+        if let Some(careful) = self.careful {
+            let end = solver.within_way(careful, start, goal.s);
+            goal.cut_short &= end >= goal.s;
+            goal.s = end;
+        }
+        if !solver.pose.crossings.is_empty() {
+            let end = solver.within_crossings(path, start, goal.s);
+            goal.cut_short |= end < goal.s;
+            goal.s = end;
+        }
+        goal
+    }
+
+    /// Returns to the start of a sub-step that failed, and chooses a shorter one or other rows.
+    ///
+    /// # Errors
+    ///
+    /// That would be shorter than `smallest`.
+    fn shorten(
+        &mut self,
+        failed: Result<bool, Reason>,
+        end: f64,
+        smallest: f64,
+    ) -> Result<(), Reason> {
+        let Self { solver, path, .. } = self;
+        solver.stand_at(path, self.s);
+        if let Err(Reason::Contradiction(joint)) = &failed {
+            self.opened.get_or_insert_with(|| (end, joint.clone()));
+        }
+        if solver.change_rows() {
+            solver.stand_at(path, self.s);
+            return Ok(());
+        }
+        self.substep = match failed {
+            // The rows that are solved have nothing against it.
+            Err(Reason::Contradiction(_)) => HALVE * (end - self.s),
+            _ => solver.shortened(end - self.s),
+        };
+        if self.substep >= smallest {
+            return Ok(());
+        }
+        match (failed, self.opened.take()) {
+            // Next to a singular position nothing holds to rounding.
+            (Err(Reason::Contradiction(_)), Some((_, joint))) if !solver.is_nearly_singular() => {
+                Err(Reason::Contradiction(joint))
+            }
+            (Err(Reason::Value(error)), _) => Err(Reason::Value(error)),
+            _ => Err(self.reason_to_stop()),
+        }
+    }
+
+    /// Why not even the present sub-step leads on from where the mechanism stands.
+    fn reason_to_stop(&mut self) -> Reason {
+        let Self { solver, path, .. } = self;
+        if let Some(end) = solver.find_end(path, self.s) {
             return Reason::Singular(end);
         }
         // Steps may become ever shorter in front of a value that makes no mechanism.
-        let ahead = self.set_path(path, (s + JUST_AHEAD).min(1.0));
-        self.stand_at(path, s);
+        let ahead = solver.set_path(path, (self.s + JUST_AHEAD).min(1.0));
+        solver.stand_at(path, self.s);
         if let Err(error) = ahead {
             return Reason::Value(error);
         }
         // However small a part of the path it is.
-        let far = |driver: &Jet| (h * driver.first).abs() > TELLS_NOTHING;
-        if self.origin_drivers.iter().any(far) {
+        let far = |driver: &Jet| (self.substep * driver.first).abs() > TELLS_NOTHING;
+        if solver.origin_drivers.iter().any(far) {
             Reason::TooLong
         } else {
             Reason::Lost
         }
     }
+}
 
-    /// Takes over the crossings of change points that are near, once a sub-step has ended.
-    ///
-    /// # Errors
-    ///
-    /// What cannot be passed is right ahead.
-    fn look_ahead(&mut self, path: &Path, s: f64) -> Result<Option<Careful>, Box<SingularPoint>> {
-        if self.regularity < NEAR && !self.parameters_move {
-            self.take_crossings(path, s)
-        } else {
-            Ok(None)
-        }
-    }
-
-    /// Computes tangent and curvature of the motion along the path where the mechanism stands,
-    /// which is where `path_drivers` are from.
-    fn predict(&mut self) {
-        std::mem::swap(&mut self.origin_drivers, &mut self.path_drivers);
-        if !self.has_unit() {
-            let drivers = std::mem::take(&mut self.origin_drivers);
-            let (plan, mut work) = self.work();
-            plan.solve_rates(&mut work, &drivers);
-            self.origin_drivers = drivers;
-        }
-    }
-
-    /// How far along the flow the part `h` of the path leads: q + h q′ + ½ h² q″, where with a
-    /// single driver q′ = q_u u′ and q″ = q_u u″ + q_uu u′².
-    fn advance_of(&self, h: f64) -> Advance {
-        match self.origin_drivers[..] {
-            [u] => Advance {
-                first: h * (u.first + 0.5 * h * u.second),
-                second: 0.5 * (h * u.first).powi(2),
-            },
-            _ => Advance {
-                first: h,
-                second: 0.5 * h * h,
-            },
-        }
-    }
-
+impl Solver {
     /// How long to try instead of a sub-step of length `h` that failed.
     fn shortened(&self, h: f64) -> f64 {
         let load = self.tubes.load();
@@ -290,139 +345,5 @@ impl Solver {
     /// How long to try after a sub-step of length `h` that succeeded.
     fn lengthened(&self, h: f64) -> f64 {
         h * (ROOM / self.tubes.load().sqrt()).min(LENGTHEN)
-    }
-
-    /// Goes from the pose to the end of a sub-step; true if that kept to the motion. If not, the
-    /// mechanism is neither here nor there, the pose apart.
-    ///
-    /// # Errors
-    ///
-    /// A value on the way is one for which the mechanism does not exist, or a redundant
-    /// constraint is one no longer.
-    fn try_substep(
-        &mut self,
-        path: &Path,
-        [start, end]: [f64; 2],
-        progress: &mut Progress,
-    ) -> Result<bool, Reason> {
-        // What holds for several steps is for steps that are taken as a whole: how a longer way is
-        // divided depends on its own proofs alone.
-        let boxes = start <= 0.0 && end >= 1.0 && !self.parameters_move;
-        let reached = self.reach(path, [start, end], boxes);
-        let mut reached = reached.map_err(Reason::Value)?;
-        if reached.is_none() && self.tubes.relied_on_box {
-            self.stand_at(path, start);
-            let again = self.reach(path, [start, end], false);
-            reached = again.map_err(Reason::Value)?;
-        }
-        let Some(correction) = reached else {
-            return Ok(false);
-        };
-        if let Some(joint) = self.opened() {
-            return Err(Reason::Contradiction(joint));
-        }
-        // The pose takes the new values with the new q, or keeps both as they are.
-        std::mem::swap(&mut self.pose.drivers, &mut self.next_drivers);
-        self.at.copy_pose(&mut self.pose.q);
-        self.regularity = correction.regularity;
-        progress.iterations = progress.iterations.saturating_add(correction.iterations);
-        progress.checked = progress.checked.saturating_add(self.tubes.checked.into());
-        Ok(true)
-    }
-
-    /// Moves the bodies to the end of a sub-step, the pose apart; `None` if that is not proved.
-    fn reach(
-        &mut self,
-        path: &Path,
-        [start, end]: [f64; 2],
-        boxes: bool,
-    ) -> Result<Option<Correction>, Error> {
-        self.set_path(path, end)?;
-        self.tubes.begin(boxes);
-        if !self.bound_course(path, [start, end])? {
-            return Ok(None);
-        }
-        let advance = self.advance_of(end - start);
-        let unit = self.has_unit().then_some(&UNIT[..]);
-        let mut work = Work {
-            system: &self.system,
-            targets: &self.targets,
-            drivers: &self.next_drivers,
-            at: &mut self.at,
-            flow: &mut self.flow,
-        };
-        let mut substep = Substep {
-            advance,
-            from: &self.pose.q,
-            tubes: &mut self.tubes,
-        };
-        Ok(self.plan.advance(&mut work, &mut substep, unit).ok())
-    }
-
-    /// Takes time, parameters and drivers from the path at s, leaving q and the pose's drivers,
-    /// which go with it, as they are.
-    pub(super) fn set_path(&mut self, path: &Path, s: f64) -> Result<(), Error> {
-        self.drive(path, s);
-        self.pose.time = path.time(s);
-        for (value, jet) in self.next_drivers.iter_mut().zip(&self.path_drivers) {
-            *value = jet.value;
-        }
-        if self.parameters_move {
-            let parameters = self.pose.parameters.iter_mut();
-            for (value, jet) in parameters.zip(&self.path_parameters) {
-                *value = jet.value;
-            }
-            self.take_over_parameters()?;
-        }
-        self.system.check_drivers(&self.next_drivers)
-    }
-
-    /// The drivers along the path at s, with their derivatives.
-    pub(super) fn drive(&mut self, path: &Path, s: f64) {
-        let Self {
-            system,
-            motions,
-            path_motions,
-            path_parameters,
-            parameters_move,
-            path_drivers,
-            ..
-        } = self;
-        let mechanism = system.mechanism();
-        if *parameters_move {
-            path.parameters(mechanism, s, path_parameters);
-            path_motions.set_parameters(|p| path_parameters[p.index()]);
-            path.drivers(s, path_motions, path_drivers);
-        } else {
-            path.drivers(s, motions, path_drivers);
-        }
-    }
-
-    /// The drivers' values at the end of a path.
-    pub fn drivers_at_end(&mut self, path: &Path) -> Vec<f64> {
-        self.path_motions
-            .set_parameters(|p| Jet::constant(path.to[p.index()]));
-        path.drivers(1.0, &self.path_motions, &mut self.path_drivers);
-        self.path_drivers
-            .iter()
-            .map(|driver| driver.value)
-            .collect()
-    }
-
-    /// Returns from a sub-step that failed to the pose, which was reached at s.
-    fn stand_at(&mut self, path: &Path, s: f64) {
-        self.pose.time = self.origin_time;
-        if self.parameters_move {
-            self.pose
-                .parameters
-                .copy_from_slice(&self.origin_parameters);
-            self.take_over_parameters()
-                .expect("these parameters were in force before");
-        }
-        self.drive(path, s);
-        self.stand_at_pose();
-        self.refresh()
-            .expect("the pose was regular when it was reached");
-        self.predict();
     }
 }
