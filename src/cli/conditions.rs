@@ -7,7 +7,7 @@ use clap::Args;
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::signals::Signals;
-use crate::kinematics::{Curve, Path, Solver, Start};
+use crate::kinematics::{self, Curve, Path, Solver, Start};
 use crate::mechanism::{
     DriverId, DriverSource, ExpressionError, Mechanism, Motion, ParameterId, Variable,
 };
@@ -76,11 +76,24 @@ impl Conditions {
 
     /// A solver of the driven mechanism at the start of the simulation.
     pub(super) fn solver_at_start(&self, input: &Input) -> Result<Solver, Error> {
+        self.reach_start(input)?.map_err(|error| input.error(error))
+    }
+
+    /// The same, or else what is in the way from the file's own pose to the start, for those who
+    /// have named the file already.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the options, or with the file's own pose.
+    pub(super) fn reach_start(
+        &self,
+        input: &Input,
+    ) -> Result<Result<Solver, kinematics::Error>, Error> {
         let parameters = self.parameters(&input.mechanism)?;
         let driven = Arc::new(self.driven(&input.mechanism)?);
         let home_solver = input.assemble()?;
         let time = input.mechanism.simulation.start;
-        start(home_solver, &driven, &parameters, time, |_| None).map_err(|error| input.error(error))
+        Ok(start(home_solver, &driven, &parameters, time, |_| None))
     }
 
     /// No driver follows both --drive and the signals of --input.
@@ -113,7 +126,7 @@ pub(super) fn start(
     parameters: &[f64],
     time: f64,
     given: impl Fn(DriverId) -> Option<f64>,
-) -> Result<Solver, crate::kinematics::Error> {
+) -> Result<Solver, kinematics::Error> {
     let home = home_solver.pose().clone();
     let mut path = Path::new(home_solver.mechanism());
     path.duration = time - home.time;

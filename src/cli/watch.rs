@@ -9,7 +9,7 @@ use std::time::SystemTime;
 
 use clap::Args;
 
-use super::conditions::{self, Conditions};
+use super::conditions::Conditions;
 use super::documentation::show;
 use super::error::Error;
 use super::input::{Input, misfits};
@@ -128,15 +128,11 @@ impl View {
         let folder = self.watch.file.parent().unwrap_or(Path::new(""));
         let tables = input.mechanism.table_files.iter();
         self.tables = tables.map(|table| folder.join(&table.name)).collect();
-        let text = |error: Error| error.to_string();
         let conditions = &self.watch.conditions;
-        let parameters = conditions.parameters(&input.mechanism).map_err(text)?;
-        let driven = Arc::new(conditions.driven(&input.mechanism).map_err(text)?);
-        let home = input.assemble().map_err(text)?;
-        warnings.extend(misfits(&home));
-        let time = input.mechanism.simulation.start;
-        let mut solver = conditions::start(home, &driven, &parameters, time, |_| None)
-            .map_err(|error| error.to_string())?;
+        let started = conditions.reach_start(&input);
+        let started = started.map_err(|error| error.to_string())?;
+        let mut solver = started.map_err(|error| error.to_string())?;
+        warnings.extend(misfits(&solver));
         let shown = show(&mut solver).map_err(|error| error.to_string())?;
         self.warnings = warnings;
         self.name.clone_from(&input.mechanism.name);

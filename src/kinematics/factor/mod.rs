@@ -34,6 +34,7 @@ pub trait Factors {
 pub struct Condition {
     probe: Vec<f64>,
     signs: Vec<f64>,
+    product: Vec<f64>,
 }
 
 impl Condition {
@@ -43,6 +44,7 @@ impl Condition {
         Self {
             probe: vec![0.0; order],
             signs: vec![0.0; order],
+            product: vec![0.0; order],
         }
     }
 
@@ -52,53 +54,49 @@ impl Condition {
         if factors.order() == 0 {
             return 1.0;
         }
-        let inverse_norm = self.norm(
-            factors,
-            |factors, x| factors.solve(x),
-            |factors, x| factors.solve_transposed(x),
-        );
-        let rcond = 1.0 / (factors.norm() * inverse_norm);
+        let rcond = 1.0 / (factors.norm() * self.norm(&mut Inverse(factors)));
         if rcond.is_finite() { rcond } else { 0.0 }
     }
 
     /// Estimate of the largest component of |A⁻¹| b, for b ≥ 0, by the same method: it is the
     /// 1-norm of diag(b) A⁻ᵀ. Never above the true value.
     pub fn largest_row(&mut self, factors: &mut impl Factors, b: &[f64]) -> f64 {
-        let scale = |x: &mut [f64]| x.iter_mut().zip(b).for_each(|(x, b)| *x *= b);
-        self.norm(
-            factors,
-            |factors, x| {
-                factors.solve_transposed(x);
-                scale(x);
-            },
-            |factors, x| {
-                scale(x);
-                factors.solve(x);
-            },
-        )
+        self.norm(&mut ScaledInverse { factors, b })
     }
 
-    /// Estimate of the 1-norm of a matrix that can be applied, and whose transpose can be.
-    fn norm<F: Factors>(
+    /// Estimate of the largest sum of magnitudes in a row of A⁻¹ B, by the same method: it is the
+    /// 1-norm of Bᵀ A⁻ᵀ. Never above the true value. B is the sum of `entries`: row, column, value.
+    pub fn largest_row_of_product(
         &mut self,
-        factors: &mut F,
-        apply: impl Fn(&mut F, &mut [f64]),
-        apply_transposed: impl Fn(&mut F, &mut [f64]),
+        factors: &mut impl Factors,
+        entries: &[(usize, usize, f64)],
     ) -> f64 {
-        let Self { probe, signs } = self;
-        let n = factors.order() as f64;
+        let mut before = std::mem::take(&mut self.product);
+        let norm = self.norm(&mut Product {
+            factors,
+            entries,
+            before: &mut before,
+        });
+        self.product = before;
+        norm
+    }
+
+    /// Estimate of the 1-norm of an operator.
+    fn norm(&mut self, operator: &mut impl Operator) -> f64 {
+        let Self { probe, signs, .. } = self;
+        let n = probe.len() as f64;
         probe.fill(1.0 / n);
         let mut norm = 0.0_f64;
         let mut previous = usize::MAX;
         // Higham: more than five rounds are never needed in practice.
         for _ in 0..5 {
-            apply(factors, probe);
+            operator.apply(probe);
             norm = norm.max(norm1(probe));
             for (sign, value) in signs.iter_mut().zip(probe.iter()) {
                 *sign = 1.0_f64.copysign(*value);
             }
             probe.copy_from_slice(signs);
-            apply_transposed(factors, probe);
+            operator.apply_transposed(probe);
             let steepest = steepest(probe);
             if steepest == previous {
                 break;
@@ -112,8 +110,82 @@ impl Condition {
             let grown = 1.0 + k as f64 / (n - 1.0).max(1.0);
             *value = if k % 2 == 0 { grown } else { -grown };
         }
-        apply(factors, probe);
+        operator.apply(probe);
         norm.max(2.0 * norm1(probe) / (3.0 * n))
+    }
+}
+
+/// A matrix of which only products are to be had.
+trait Operator {
+    /// `x` becomes its product with `x`.
+    fn apply(&mut self, x: &mut [f64]);
+
+    /// The same with its transpose.
+    fn apply_transposed(&mut self, x: &mut [f64]);
+}
+
+/// A⁻¹.
+struct Inverse<'a, F>(&'a mut F);
+
+impl<F: Factors> Operator for Inverse<'_, F> {
+    fn apply(&mut self, x: &mut [f64]) {
+        self.0.solve(x);
+    }
+
+    fn apply_transposed(&mut self, x: &mut [f64]) {
+        self.0.solve_transposed(x);
+    }
+}
+
+/// diag(b) A⁻ᵀ.
+struct ScaledInverse<'a, F> {
+    factors: &'a mut F,
+    b: &'a [f64],
+}
+
+impl<F> ScaledInverse<'_, F> {
+    fn scale(&self, x: &mut [f64]) {
+        x.iter_mut().zip(self.b).for_each(|(x, b)| *x *= b);
+    }
+}
+
+impl<F: Factors> Operator for ScaledInverse<'_, F> {
+    fn apply(&mut self, x: &mut [f64]) {
+        self.factors.solve_transposed(x);
+        self.scale(x);
+    }
+
+    fn apply_transposed(&mut self, x: &mut [f64]) {
+        self.scale(x);
+        self.factors.solve(x);
+    }
+}
+
+/// Bᵀ A⁻ᵀ, B being the sum of `entries`.
+struct Product<'a, F> {
+    factors: &'a mut F,
+    entries: &'a [(usize, usize, f64)],
+    /// Work space.
+    before: &'a mut [f64],
+}
+
+impl<F: Factors> Operator for Product<'_, F> {
+    fn apply(&mut self, x: &mut [f64]) {
+        self.factors.solve_transposed(x);
+        self.before.copy_from_slice(x);
+        x.fill(0.0);
+        for &(row, column, value) in self.entries {
+            x[column] += value * self.before[row];
+        }
+    }
+
+    fn apply_transposed(&mut self, x: &mut [f64]) {
+        self.before.copy_from_slice(x);
+        x.fill(0.0);
+        for &(row, column, value) in self.entries {
+            x[row] += value * self.before[column];
+        }
+        self.factors.solve(x);
     }
 }
 
@@ -155,6 +227,22 @@ impl Lu {
         match self {
             Self::Dense(lu) => lu.add(row, column, value),
             Self::Sparse(lu) => lu.add(row, column, value),
+        }
+    }
+
+    /// The entries of this matrix minus those of another sparse one of the same pattern, factorised
+    /// or not: row, column, value.
+    ///
+    /// # Panics
+    ///
+    /// If one of them is dense: factors take the place of its entries.
+    pub fn differences<'a>(
+        &'a self,
+        other: &'a Self,
+    ) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+        match (self, other) {
+            (Self::Sparse(lu), Self::Sparse(other)) => lu.differences(other),
+            _ => panic!("the entries of dense matrices are gone"),
         }
     }
 

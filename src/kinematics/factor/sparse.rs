@@ -108,6 +108,27 @@ impl SparseLu {
         }
     }
 
+    /// The entries of this matrix minus those of another one of the same pattern: row, column,
+    /// value.
+    pub fn differences<'a>(
+        &'a self,
+        other: &'a Self,
+    ) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+        let Rows {
+            start,
+            columns,
+            values,
+        } = &self.matrix;
+        let entries = columns.iter().zip(values).zip(&other.matrix.values);
+        let mut row = 0;
+        entries.enumerate().map(move |(place, ((&column, a), b))| {
+            while start[row + 1] <= place {
+                row += 1;
+            }
+            (row, column, a - b)
+        })
+    }
+
     /// Computes the factors. Its norm counts as at least `least_norm`. Allocates where pivots
     /// are chosen: the first time, and when those chosen have become too small.
     ///

@@ -1,11 +1,16 @@
 //! Any block of equations that have to be solved together.
 
+mod block;
 mod certify;
+mod corridor;
+mod estimate;
 mod neighbourhood;
 
 use std::sync::Arc;
 
+use block::{Block, Jacobian};
 use certify::Proof;
+use corridor::Corridor;
 use neighbourhood::Neighbourhood;
 
 use super::elimination::Order;
@@ -26,21 +31,16 @@ pub(super) struct Place {
 /// Newton–Raphson on the rows of a block, whatever they are.
 #[derive(Debug)]
 pub(in crate::kinematics) struct Coupled {
-    /// Which kernel of the plan this is.
-    index: usize,
-    rows: Vec<usize>,
-    columns: Vec<usize>,
-    places: Arc<[Place]>,
-    lu: Lu,
+    block: Block,
+    jacobian: Jacobian,
     condition: Condition,
-    /// Entries of the rows at unknowns found before: row of the block, column, scaled value.
-    upstream: Vec<(usize, usize, f64)>,
     residual: Vec<f64>,
     /// The largest residual in multiples of its rounding error.
     excess: f64,
     correction: Vec<f64>,
     proof: Box<Proof>,
     neighbourhood: Neighbourhood,
+    corridor: Corridor,
 }
 
 impl Coupled {
@@ -50,87 +50,59 @@ impl Coupled {
         let proof = Box::new(Proof::new(system, &order, &lu, &places, index));
         let Order { rows, columns, .. } = order;
         let order = rows.len();
-        /// Three bodies and an unknown of its own at the most.
-        const ENTRIES: usize = 10;
         Self {
-            index,
-            lu,
+            block: Block::new(index, rows, columns, places),
+            jacobian: Jacobian::new(lu),
             condition: Condition::new(order),
-            upstream: Vec::with_capacity(ENTRIES * order),
             residual: vec![0.0; order],
             excess: 0.0,
             correction: vec![0.0; order],
             neighbourhood: Neighbourhood::new(order + proof.known.len()),
+            corridor: Corridor::new(order, proof.known.len()),
             proof,
-            rows,
-            columns,
-            places,
         }
     }
 
     pub(in crate::kinematics) fn rows(&self) -> &[usize] {
-        &self.rows
+        &self.block.rows
     }
 
     pub(in crate::kinematics) fn columns(&self) -> &[usize] {
-        &self.columns
+        &self.block.columns
     }
 
     /// Whether its matrix is sparse, with pivots that are kept.
     pub(super) fn is_sparse(&self) -> bool {
-        matches!(self.lu, Lu::Sparse(_))
+        matches!(self.jacobian.lu, Lu::Sparse(_))
     }
 
     /// Lets go of the box that earlier steps have left.
     pub(super) fn forget_box(&mut self) {
         self.neighbourhood.forget();
+        self.corridor.forget();
     }
 
     /// Lets a sparse matrix choose its pivots anew.
     pub(super) fn forget_pivots(&mut self) {
-        self.lu.forget_pivots();
+        self.jacobian.lu.forget_pivots();
         self.proof.forget_pivots();
     }
 
     /// Chooses the pivots of its sparse matrices at the pose in `work`, unless that is singular.
     pub(super) fn choose_pivots(&mut self, work: &Work<'_>) {
         if self.factorise(work).is_ok() {
-            self.proof.choose_pivots(&self.lu);
+            self.proof.choose_pivots(&self.jacobian.lu);
         }
     }
 
     /// Evaluates the rows and their Jacobian at the pose in `work`, not yet factorised.
     fn evaluate(&mut self, work: &Work<'_>) {
-        let Self {
-            index,
-            rows,
-            places,
-            lu,
-            upstream,
-            residual,
-            ..
-        } = self;
-        lu.clear();
-        upstream.clear();
         let mut excess = 0.0;
-        for (local, &row) in rows.iter().enumerate() {
-            let value = work.system.evaluate_row(
-                row,
-                work.at,
-                work.targets,
-                work.drivers,
-                |column, value| {
-                    let place = places[column];
-                    if place.kernel == *index {
-                        lu.add(local, place.local, value);
-                    } else if value != 0.0 {
-                        upstream.push((local, column, value));
-                    }
-                },
-            );
-            residual[local] = value.value;
-            excess = nan_or_larger(excess, value.value.abs() / value.rounding);
-        }
+        self.block
+            .evaluate(work, &mut self.jacobian, |local, value| {
+                self.residual[local] = value.value;
+                excess = nan_or_larger(excess, value.value.abs() / value.rounding);
+            });
         self.excess = excess;
     }
 
@@ -138,9 +110,9 @@ impl Coupled {
     fn decompose(&mut self) -> Result<(), Rejected> {
         // A row that hardly depends on the block's own unknowns makes them run away, however
         // well the rows of the block agree with each other.
-        let upstream = self.upstream.iter().map(|(_, _, value)| value.abs());
-        self.lu
-            .factorise(upstream.fold(0.0, f64::max))
+        let Jacobian { lu, upstream } = &mut self.jacobian;
+        let upstream = upstream.iter().map(|(_, _, value)| value.abs());
+        lu.factorise(upstream.fold(0.0, f64::max))
             .map_err(|_| Rejected)
     }
 
@@ -158,7 +130,7 @@ impl Coupled {
         substep: &mut Substep<'_>,
     ) -> Result<Correction, Rejected> {
         self.note_start(work, substep);
-        for &column in &self.columns {
+        for &column in &self.block.columns {
             let before = work.at.coordinate(column);
             let predicted = substep.advance.predict(column, before, work.flow);
             work.at.set_coordinate(column, predicted);
@@ -177,9 +149,9 @@ impl Coupled {
     pub(super) fn regularity(&self) -> f64 {
         /// So many unknowns are no row yet.
         const FEW: f64 = 24.0;
-        let (low, high) = self.lu.pivot_range();
-        let row = (self.rows.len() as f64 / FEW).max(1.0);
-        row * row * low / high.max(self.lu.norm())
+        let (low, high) = self.jacobian.lu.pivot_range();
+        let row = (self.block.rows.len() as f64 / FEW).max(1.0);
+        row * row * low / high.max(self.jacobian.lu.norm())
     }
 
     /// Corrects the block's unknowns from where they are until Phi = 0 to rounding: solves
@@ -191,7 +163,7 @@ impl Coupled {
         max_iterations: u32,
     ) -> Result<Correction, Rejected> {
         // A single row can be had to the last bit, so that gears keep their phase.
-        let at_rounding = if self.rows.len() == 1 {
+        let at_rounding = if self.block.rows.len() == 1 {
             0.5
         } else {
             AT_ROUNDING
@@ -213,9 +185,9 @@ impl Coupled {
                 return Err(Rejected);
             }
             self.correction.copy_from_slice(&self.residual);
-            self.lu.solve(&mut self.correction);
+            self.jacobian.lu.solve(&mut self.correction);
             let size = work.at.size();
-            for (&column, scaled) in self.columns.iter().zip(&self.correction) {
+            for (&column, scaled) in self.block.columns.iter().zip(&self.correction) {
                 let step = scaled * work.system.column_scale(column, size);
                 let value = work.at.coordinate(column) - step;
                 work.at.set_coordinate(column, value);
@@ -233,12 +205,12 @@ impl Coupled {
             Target::Driver(driver) => drivers[driver.index()],
         };
         let scale = |row: usize| work.system.equations()[row].row_scale(work.at);
-        for (side, &row) in self.correction.iter_mut().zip(&self.rows) {
+        for (side, &row) in self.correction.iter_mut().zip(&self.block.rows) {
             *side = driver(row).first * scale(row);
         }
         let (velocity, _) = work.flow.both_mut();
         self.solve(work.system, work.at.size(), velocity);
-        for (side, &row) in self.correction.iter_mut().zip(&self.rows) {
+        for (side, &row) in self.correction.iter_mut().zip(&self.block.rows) {
             let equation = &work.system.equations()[row];
             let quadratic = equation.constraint.quadratic(work.at, work.flow.velocity());
             *side = (driver(row).second - quadratic) * scale(row);
@@ -256,7 +228,7 @@ impl Coupled {
         side: &[f64],
         x: &mut [f64],
     ) {
-        for (entry, &row) in self.correction.iter_mut().zip(&self.rows) {
+        for (entry, &row) in self.correction.iter_mut().zip(&self.block.rows) {
             *entry = side[row] * system.equations()[row].row_scale(at);
         }
         self.solve(system, at.size(), x);
@@ -265,16 +237,16 @@ impl Coupled {
     /// Solves for the block's entries of `rates`, whose entries upstream are known, with the
     /// scaled right-hand side in `correction`.
     fn solve(&mut self, system: &crate::kinematics::System, size: f64, rates: &mut [f64]) {
-        for &(row, column, value) in &self.upstream {
+        for &(row, column, value) in &self.jacobian.upstream {
             self.correction[row] -= value * rates[column] / system.column_scale(column, size);
         }
-        self.lu.solve(&mut self.correction);
-        for (&column, scaled) in self.columns.iter().zip(&self.correction) {
+        self.jacobian.lu.solve(&mut self.correction);
+        for (&column, scaled) in self.block.columns.iter().zip(&self.correction) {
             rates[column] = scaled * system.column_scale(column, size);
         }
     }
 
     pub(super) fn rcond(&mut self) -> f64 {
-        self.condition.rcond(&mut self.lu)
+        self.condition.rcond(&mut self.jacobian.lu)
     }
 }

@@ -8,16 +8,18 @@
 //! unknowns adds up with its signs, and by the gradient's change.
 //!
 //! Rows and unknowns are scaled as for Newton–Raphson. The inverse is written down for blocks of
-//! up to [`MOST_TORN`] torn unknowns; beyond, the norms of A and K are estimated, with one radius
-//! for all unknowns, and the sub-step is *checked*. So it is while parameters move: how far they
-//! change each row is then looked at where the sub-step starts only.
+//! up to [`MOST_TORN`] torn unknowns; beyond, an [estimate](super::estimate) takes the place of the
+//! proof, and the sub-step is *checked*. So it is while parameters move: how far they change each
+//! row is then looked at where the sub-step starts only.
 //!
 //! [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
 
+use super::block::{ENTRIES, Jacobian};
+use super::estimate::Estimate;
 use super::{Coupled, Place};
 use crate::kinematics::configuration::BodyPose;
-use crate::kinematics::constraint::{Gradient, Incidence, Region};
-use crate::kinematics::factor::{Condition, Factors, Lu};
+use crate::kinematics::constraint::Incidence;
+use crate::kinematics::factor::{Condition, Lu};
 use crate::kinematics::newton::{Rejected, STALLED};
 use crate::kinematics::plan::elimination::Order;
 use crate::kinematics::plan::{Substep, Work};
@@ -29,14 +31,14 @@ const MOST_TORN: usize = 32;
 /// off its chord by φ²/8 in radians, and rarely by several times that.
 const FIRST_RADIUS: f64 = 0.1;
 /// What radii are taken larger by than they have to be, where those tried were too small.
-const ROOM: f64 = 1.25;
-const MOST_TRIES: u32 = 3;
+pub(super) const ROOM: f64 = 1.25;
+pub(super) const MOST_TRIES: u32 = 3;
 /// The norm of K with which radii are no longer looked for, and the one that a next sub-step
 /// aims at. K grows with the sub-step.
-const LARGEST_CONTRACTION: f64 = 0.9;
+pub(super) const LARGEST_CONTRACTION: f64 = 0.9;
 const GOOD_CONTRACTION: f64 = 0.6;
 /// η + K r has to be below r by a little more than the rounding of A changes it.
-const STRICTLY: f64 = 0.999;
+pub(super) const STRICTLY: f64 = 0.999;
 
 /// What the certificate of a block needs.
 #[derive(Debug)]
@@ -52,19 +54,19 @@ pub(super) struct Proof {
     joint_unknowns: Vec<usize>,
     joint_ends: Vec<f64>,
     /// The Jacobian in the middle.
-    middle: Lu,
+    pub(super) middle: Jacobian,
     /// A by rows, empty where it is too large.
     pub(super) inverse: Vec<f64>,
-    condition: Condition,
+    /// For where it is.
+    pub(super) estimate: Estimate,
+    pub(super) condition: Condition,
     /// What the rows are open by on the way, and what of it comes from moving parameters.
     pub(super) open: Vec<f64>,
     pub(super) slack: Vec<f64>,
-    /// Entries of the middle's rows at known unknowns: row, place in `known`, scaled value.
-    upstream: Vec<(usize, usize, f64)>,
     /// How far entries of the block's Jacobian may change: row, column, scaled value.
     changes: Vec<(usize, usize, f64)>,
     /// Scaled radii: of what is known, those tried, what η + K r makes of them.
-    known_radii: Vec<f64>,
+    pub(super) known_radii: Vec<f64>,
     pub(super) radii: Vec<f64>,
     pub(super) eta: Vec<f64>,
     pub(super) next: Vec<f64>,
@@ -101,8 +103,11 @@ impl Proof {
             Target::Driver(driver) => Some(driver.index()),
             Target::Constant(_) => None,
         });
-        let inverse = if order.torn() <= MOST_TORN { n * n } else { 0 };
-        let entries = 10 * n;
+        let (inverse, estimate) = if order.torn() <= MOST_TORN {
+            (n * n, Estimate::default())
+        } else {
+            (0, Estimate::new(n, ENTRIES * n))
+        };
         Self {
             known_radii: vec![0.0; known.len()],
             known,
@@ -111,13 +116,13 @@ impl Proof {
             bodies,
             joint_ends: vec![0.0; joint_unknowns.len()],
             joint_unknowns,
-            middle: lu.clone(),
+            middle: Jacobian::new(lu.clone()),
             inverse: vec![0.0; inverse],
+            estimate,
             condition: Condition::new(n),
             open: vec![0.0; n],
             slack: vec![0.0; n],
-            upstream: Vec::with_capacity(entries),
-            changes: Vec::with_capacity(entries),
+            changes: Vec::with_capacity(ENTRIES * n),
             radii: vec![0.0; n],
             eta: vec![0.0; n],
             next: vec![0.0; n],
@@ -126,12 +131,12 @@ impl Proof {
     }
 
     pub(super) fn forget_pivots(&mut self) {
-        self.middle.forget_pivots();
+        self.middle.lu.forget_pivots();
     }
 
     /// Takes over the pivots of the block's own matrix.
     pub(super) fn choose_pivots(&mut self, lu: &Lu) {
-        self.middle.clone_from(lu);
+        self.middle.lu.clone_from(lu);
     }
 
     /// Notes where the bodies end.
@@ -146,7 +151,7 @@ impl Proof {
     }
 
     /// Puts the bodies back there.
-    fn put_back(&self, work: &mut Work<'_>) {
+    pub(super) fn put_back(&self, work: &mut Work<'_>) {
         for (&body, &end) in self.bodies.iter().zip(&self.ends) {
             work.at.frames_mut()[body] = end;
         }
@@ -155,14 +160,8 @@ impl Proof {
         }
     }
 
-    /// |A| b, b ≥ 0 being one value a row, added to `sum`; the same estimate everywhere where A
-    /// is not written down.
-    fn apply(&mut self, b: &[f64], sum: &mut [f64]) {
-        if self.inverse.is_empty() {
-            let most = self.condition.largest_row(&mut self.middle, b);
-            sum.iter_mut().for_each(|sum| *sum += most);
-            return;
-        }
+    /// |A| b, b ≥ 0 being one value a row, added to `sum`.
+    fn apply(&self, b: &[f64], sum: &mut [f64]) {
         let rows = self.inverse.chunks_exact(b.len());
         for (sum, row) in sum.iter_mut().zip(rows) {
             let parts = row.iter().zip(b).map(|(a, b)| a.abs() * b);
@@ -176,7 +175,7 @@ impl Coupled {
     /// of the rows there. The block's unknowns are there, those found before at their ends.
     pub(super) fn note_start(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) {
         let bodies = 3 * work.system.mechanism().bodies.len();
-        for &column in &self.columns {
+        for &column in &self.block.columns {
             if column < bodies && column % 3 == 2 {
                 let frame = &work.at.frames()[column / 3];
                 let tube = substep.tubes.body_mut(column / 3);
@@ -192,7 +191,7 @@ impl Coupled {
         for &column in &self.proof.known {
             work.at.set_coordinate(column, substep.from[column]);
         }
-        for (slack, &row) in self.proof.slack.iter_mut().zip(&self.rows) {
+        for (slack, &row) in self.proof.slack.iter_mut().zip(&self.block.rows) {
             let equation = &work.system.equations()[row];
             let target = match equation.target {
                 Target::Constant(_) => work.system.target(row, work.targets, work.drivers),
@@ -218,18 +217,20 @@ impl Coupled {
         work: &mut Work<'_>,
         substep: &mut Substep<'_>,
     ) -> Result<(), Rejected> {
-        if substep.tubes.boxes && self.certify_in_box(work, substep) {
+        let kept = substep.tubes.boxes
+            && (self.certify_in_box(work, substep) || self.certify_in_corridor(work, substep));
+        if kept {
             self.write_tubes(work, substep);
             return Ok(());
         }
-        if self.proof.inverse.is_empty() {
-            substep.tubes.checked = true;
-        }
         self.proof.note_ends(work);
-        let largest = self.lay_chord(work, substep);
-        let tried = self.find_radii(work, substep, largest);
+        let tried = if self.proof.inverse.is_empty() {
+            self.estimate_radii(work, substep)
+        } else {
+            self.find_radii(work, substep)
+        };
         self.proof.put_back(work);
-        for &column in self.columns.iter().chain(&self.proof.known) {
+        for &column in self.block.columns.iter().chain(&self.proof.known) {
             substep.tubes.region[column] = 0.0;
             substep.tubes.chord[column] = 0.0;
         }
@@ -246,7 +247,11 @@ impl Coupled {
         };
         self.write_tubes(work, substep);
         if substep.tubes.boxes {
-            self.make_box(work, substep, contraction);
+            if self.proof.inverse.is_empty() {
+                self.lay_corridor(work, substep, contraction);
+            } else {
+                self.make_box(work, substep, contraction);
+            }
         }
         let load = (contraction / GOOD_CONTRACTION).powi(2);
         substep.tubes.bear(load.min(1.0))
@@ -254,7 +259,7 @@ impl Coupled {
 
     /// Writes chords and the radii of what is known, and goes to the middle. Returns the radii to
     /// be tried first, scaled.
-    fn lay_chord(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> f64 {
+    pub(super) fn lay_chord(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> f64 {
         let Substep { from, tubes, .. } = substep;
         let size = work.at.size();
         let (mut largest, mut uncertain) = (0.0_f64, 0.0_f64);
@@ -264,13 +269,13 @@ impl Coupled {
             *radius = tubes.radius(column) / scale;
             uncertain = uncertain.max(*radius);
         }
-        for &column in self.columns.iter().chain(&self.proof.known) {
+        for &column in self.block.columns.iter().chain(&self.proof.known) {
             let end = work.at.coordinate(column);
             let chord = end - from[column];
             tubes.chord[column] = chord;
             largest = largest.max(chord.abs() / work.system.column_scale(column, size));
         }
-        for &column in self.columns.iter().chain(&self.proof.known) {
+        for &column in self.block.columns.iter().chain(&self.proof.known) {
             let middle = from[column] + 0.5 * tubes.chord[column];
             work.at.set_coordinate(column, middle);
         }
@@ -287,8 +292,8 @@ impl Coupled {
         &mut self,
         work: &mut Work<'_>,
         substep: &mut Substep<'_>,
-        first: f64,
     ) -> Result<f64, Option<f64>> {
+        let first = self.lay_chord(work, substep);
         self.proof.radii.fill(first);
         self.factorise_middle(work).map_err(|Rejected| None)?;
         let mut last = None;
@@ -319,99 +324,52 @@ impl Coupled {
 
     /// Makes A.
     fn factorise_middle(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
-        let Self {
-            index,
-            rows,
-            places,
-            proof,
-            ..
-        } = self;
+        let Self { block, proof, .. } = self;
         let Proof {
-            known,
             middle,
-            upstream,
             inverse,
             open,
             slack,
             row: unit,
             ..
         } = &mut **proof;
-        middle.clear();
-        upstream.clear();
-        for (local, &row) in rows.iter().enumerate() {
-            let value = work.system.evaluate_row(
-                row,
-                work.at,
-                work.targets,
-                work.drivers,
-                |column, value| {
-                    let place = places[column];
-                    if place.kernel == *index {
-                        middle.add(local, place.local, value);
-                    } else if let Ok(place) = known.binary_search(&column) {
-                        upstream.push((local, place, value));
-                    }
-                },
-            );
+        block.evaluate(work, middle, |local, value| {
             // What rounding left of the rows at both ends.
-            unit[local] = 2.0 * STALLED * value.rounding;
-        }
-        open.copy_from_slice(unit);
+            open[local] = 2.0 * STALLED * value.rounding;
+        });
         for (slack, open) in slack.iter_mut().zip(&*open) {
             *slack += open;
         }
-        middle.factorise(0.0).map_err(|_| Rejected)?;
-        let order = rows.len();
-        for column in 0..inverse.len() / order.max(1) {
-            unit.fill(0.0);
-            unit[column] = 1.0;
-            middle.solve(unit);
-            for (row, value) in unit.iter().enumerate() {
-                inverse[row * order + column] = *value;
-            }
+        middle.lu.factorise(0.0).map_err(|_| Rejected)?;
+        if !inverse.is_empty() {
+            middle.invert(inverse, unit);
         }
         Ok(())
     }
 
     /// Bounds how the rows bend in the region that the chord and the radii reach.
     fn bend_rows(&mut self, work: &Work<'_>, substep: &mut Substep<'_>) -> Option<()> {
-        let Self {
-            index,
-            rows,
-            columns,
-            places,
-            proof,
-            ..
-        } = self;
+        let Self { block, proof, .. } = self;
         let tubes = &mut *substep.tubes;
         let size = work.at.size();
         let scale = |column: usize| work.system.column_scale(column, size);
-        let own = columns.iter().zip(&proof.radii);
+        let own = block.columns.iter().zip(&proof.radii);
         let known = proof.known.iter().zip(&proof.known_radii);
         for (&column, radius) in own.chain(known) {
             tubes.region[column] = 0.5 * tubes.chord[column].abs() + radius * scale(column);
         }
         proof.changes.clear();
-        for (local, &row) in rows.iter().enumerate() {
-            let equation = &work.system.equations()[row];
-            let row_scale = equation.row_scale(work.at);
-            let region = Region {
-                radii: &tubes.region,
-            };
-            let mut change = Gradient::new();
-            let bend = equation
-                .constraint
-                .bend(work.at, &region, &tubes.chord, &mut change)?;
-            let mut open = 0.125 * bend * row_scale;
-            if let Target::Driver(driver) = equation.target {
-                open += tubes.drivers[driver.index()] * row_scale;
+        for (local, &row) in block.rows.iter().enumerate() {
+            let bend = block.bend(local, work, tubes)?;
+            let mut open = 0.125 * bend.along;
+            if let Target::Driver(driver) = work.system.equations()[row].target {
+                open += tubes.drivers[driver.index()] * bend.row_scale;
             }
-            for (column, value) in change.entries() {
-                let value = value * row_scale * scale(column);
-                let place = places[column];
+            for (column, value) in bend.changes() {
+                let value = value * scale(column);
                 if value == 0.0 {
-                } else if place.kernel == *index {
-                    proof.changes.push((local, place.local, value));
+                } else if let Some(own) = block.own(column) {
+                    proof.changes.push((local, own, value));
                 } else if let Ok(place) = proof.known.binary_search(&column) {
                     open += value * proof.known_radii[place];
                 }
@@ -424,24 +382,13 @@ impl Coupled {
     /// η: |A| times what the rows are open by, and what comes from radii of what is known.
     fn open_rows(&mut self) {
         let proof = &mut *self.proof;
-        let order = self.rows.len();
-        if proof.inverse.is_empty() {
-            for &(row, place, value) in &proof.upstream {
-                proof.open[row] += value.abs() * proof.known_radii[place];
-            }
-        }
+        let order = self.block.rows.len();
         let mut eta = std::mem::take(&mut proof.eta);
-        let open = std::mem::take(&mut proof.open);
         eta.fill(0.0);
-        proof.apply(&open, &mut eta);
-        proof.open = open;
-        if !proof.inverse.is_empty() {
-            for (place, radius) in proof.known_radii.iter().enumerate() {
-                let entries = proof.upstream.iter().filter(|entry| entry.1 == place);
-                for (eta, a) in eta.iter_mut().zip(proof.inverse.chunks_exact(order)) {
-                    let turned: f64 = entries.clone().map(|(row, _, value)| a[*row] * value).sum();
-                    *eta += turned.abs() * radius;
-                }
+        proof.apply(&proof.open, &mut eta);
+        for (&column, radius) in proof.known.iter().zip(&proof.known_radii) {
+            for (eta, a) in eta.iter_mut().zip(proof.inverse.chunks_exact(order)) {
+                *eta += proof.middle.turned(a, column).abs() * radius;
             }
         }
         proof.eta = eta;
@@ -478,7 +425,7 @@ impl Coupled {
         let Substep { from, tubes, .. } = substep;
         let bodies = 3 * work.system.mechanism().bodies.len();
         let size = work.at.size();
-        for (&column, radius) in self.columns.iter().zip(&self.proof.next) {
+        for (&column, radius) in self.block.columns.iter().zip(&self.proof.next) {
             let radius = radius * work.system.column_scale(column, size);
             if column >= bodies {
                 tubes.set_joint_unknown(column, radius);

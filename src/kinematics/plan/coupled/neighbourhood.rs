@@ -18,8 +18,7 @@
 //! passes there.
 
 use super::Coupled;
-use crate::kinematics::constraint::{Gradient, Region};
-use crate::kinematics::factor::Factors;
+use crate::kinematics::certificate::Tubes;
 use crate::kinematics::newton::STALLED;
 use crate::kinematics::plan::{Substep, Work};
 use crate::kinematics::system::Target;
@@ -69,11 +68,12 @@ impl Coupled {
     /// `next`; false if that cannot be had.
     pub(super) fn certify_in_box(&mut self, work: &Work<'_>, substep: &mut Substep<'_>) -> bool {
         let Self {
-            columns,
+            block,
             proof,
             neighbourhood: area,
             ..
         } = self;
+        let columns = &block.columns;
         if !area.holds {
             return false;
         }
@@ -119,11 +119,12 @@ impl Coupled {
         contraction: f64,
     ) {
         self.neighbourhood.holds = false;
-        if self.proof.inverse.is_empty() || contraction > WORTH_A_BOX {
+        if contraction > WORTH_A_BOX {
             return;
         }
         let size = work.at.size();
         let largest = self
+            .block
             .columns
             .iter()
             .chain(&self.proof.known)
@@ -134,7 +135,8 @@ impl Coupled {
             .fold(0.0, f64::max);
         // What stands still is given some room, too.
         let largest = largest.max(f64::EPSILON);
-        self.invert();
+        let proof = &mut *self.proof;
+        self.jacobian.invert(&mut proof.inverse, &mut proof.row);
         // The region of the single step was about half as wide as the step.
         let mut width = (0.5 * largest * GOOD_CONTRACTION / contraction).min(LARGEST_WIDTH);
         for _ in 0..2 {
@@ -151,20 +153,6 @@ impl Coupled {
         }
     }
 
-    /// Writes down A at the pose.
-    fn invert(&mut self) {
-        let order = self.rows.len();
-        let proof = &mut *self.proof;
-        for column in 0..order {
-            proof.row.fill(0.0);
-            proof.row[column] = 1.0;
-            self.lu.solve(&mut proof.row);
-            for (row, value) in proof.row.iter().enumerate() {
-                proof.inverse[row * order + column] = *value;
-            }
-        }
-    }
-
     /// Finds h, m and what goes with them for a box of this width; false if a relation is not
     /// smooth in it.
     fn measure_box(
@@ -174,22 +162,12 @@ impl Coupled {
         largest: f64,
         width: f64,
     ) -> bool {
-        let Self {
-            index,
-            rows,
-            columns,
-            places,
-            upstream,
-            proof,
-            neighbourhood: area,
-            ..
-        } = self;
-        let proof = &mut **proof;
+        let area = &mut self.neighbourhood;
         let tubes = &mut *substep.tubes;
         let size = work.at.size();
         let scale = |column: usize| work.system.column_scale(column, size);
-        let order = rows.len();
-        for (k, &column) in columns.iter().chain(&proof.known).enumerate() {
+        let all = || self.block.columns.iter().chain(&self.proof.known);
+        for (k, &column) in all().enumerate() {
             let end = work.at.coordinate(column);
             let moved = (end - substep.from[column]).abs() / scale(column);
             let width = width * (moved / largest).max(LEAST_PART) * scale(column);
@@ -197,27 +175,29 @@ impl Coupled {
             area.centre[k] = end;
             area.inverse_width[k] = 1.0 / width;
         }
-        let scaled = |column: usize, tubes: &crate::kinematics::certificate::Tubes| {
-            tubes.region[column] / scale(column)
-        };
-        // Of each row: δ B in `open`, δ B upstream alone in `slack`, its rounding in `eta`; a
-        // driver's one in `radii`.
-        let mut smooth = true;
-        for (local, &row) in rows.iter().enumerate() {
-            let equation = &work.system.equations()[row];
-            let row_scale = equation.row_scale(work.at);
-            let region = Region {
-                radii: &tubes.region,
+        let smooth = self.bend_rows_in_box(work, tubes);
+        if smooth {
+            self.gather_rows(work, tubes);
+        }
+        for &column in self.block.columns.iter().chain(&self.proof.known) {
+            tubes.region[column] = 0.0;
+        }
+        self.proof.slack.fill(0.0);
+        smooth
+    }
+
+    /// Writes of each row: δ B to `open`, δ B upstream alone to `slack`, its rounding to `eta`, a
+    /// driver's one to `radii`. False if a relation is not smooth in the box.
+    fn bend_rows_in_box(&mut self, work: &Work<'_>, tubes: &Tubes) -> bool {
+        let Self { block, proof, .. } = self;
+        for (local, &row) in block.rows.iter().enumerate() {
+            let Some(bend) = block.bend(local, work, tubes) else {
+                return false;
             };
-            let mut change = Gradient::new();
-            let bend = equation
-                .constraint
-                .bend(work.at, &region, &tubes.chord, &mut change);
-            smooth &= bend.is_some();
             let (mut own, mut known) = (0.0, 0.0);
-            for (column, value) in change.entries() {
-                let part = value * row_scale * tubes.region[column];
-                if places[column].kernel == *index {
+            for (column, value) in bend.changes() {
+                let part = value * tubes.region[column];
+                if block.own(column).is_some() {
                     own += part;
                 } else {
                     known += part;
@@ -230,31 +210,39 @@ impl Coupled {
                 .evaluate_row(row, work.at, work.targets, work.drivers, |_, _| {})
                 .rounding;
             proof.eta[local] = 2.0 * STALLED * rounding;
-            proof.radii[local] = match equation.target {
-                Target::Driver(_) => row_scale,
+            proof.radii[local] = match work.system.equations()[row].target {
+                Target::Driver(_) => bend.row_scale,
                 Target::Constant(_) => 0.0,
             };
         }
+        true
+    }
+
+    /// Finds h, m and what goes with them from what is known of each row.
+    fn gather_rows(&mut self, work: &Work<'_>, tubes: &Tubes) {
+        let Self {
+            block,
+            jacobian,
+            proof,
+            neighbourhood: area,
+            ..
+        } = self;
+        let size = work.at.size();
+        let scaled = |column: usize| tubes.region[column] / work.system.column_scale(column, size);
         (area.contraction, area.upstream) = (0.0, 0.0);
         (area.driver, area.rounding) = (0.0, 0.0);
-        for (k, row) in proof.inverse.chunks_exact(order).enumerate() {
+        let rows = proof.inverse.chunks_exact(block.rows.len());
+        for (row, &column) in rows.zip(&block.columns) {
             let apply = |b: &[f64]| row.iter().zip(b).map(|(a, b)| a.abs() * b).sum::<f64>();
-            let width = scaled(columns[k], tubes);
+            let width = scaled(column);
             let mut known = apply(&proof.slack);
             for &column in &proof.known {
-                let entries = upstream.iter().filter(|entry| entry.1 == column);
-                let turned: f64 = entries.map(|(local, _, value)| row[*local] * value).sum();
-                known += turned.abs() * scaled(column, tubes);
+                known += jacobian.turned(row, column).abs() * scaled(column);
             }
             area.contraction = area.contraction.max(apply(&proof.open) / width);
             area.upstream = area.upstream.max(known / width);
             area.rounding = area.rounding.max(apply(&proof.eta) / width);
             area.driver = area.driver.max(apply(&proof.radii) / width);
         }
-        for &column in columns.iter().chain(&proof.known) {
-            tubes.region[column] = 0.0;
-        }
-        proof.slack.fill(0.0);
-        smooth
     }
 }

@@ -1,0 +1,220 @@
+//! What stands in for the certificate of blocks whose inverse is too large to be written down.
+//!
+//! Here A(s) is the inverse of the Jacobian on the chord itself, so that K holds what the Jacobian
+//! changes by within the radii alone, which are of second order in the sub-step. How it changes
+//! along the chord only tells how much larger A(s) may be than A, the inverse at the end:
+//!
+//! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J(z̄(1)))|, in the largest norm.
+//!
+//! The links of a long row of loops all turn alike: their changes in A J have signs and cancel,
+//! while bounds of them would add up with the square of the row's length. So c is twice what the
+//! Jacobian in the middle of the chord differs by, and what the chord leaves the rows open by comes
+//! from their values there, where that is largest. One radius r serves all unknowns, and the test
+//! is
+//!
+//! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all else that is open).
+//!
+//! Norms are estimated from below and one place stands for the whole way, so what they give is
+//! taken larger by [`MARGIN`], and the sub-step is *checked*.
+
+use super::certify::{LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY};
+use super::{Coupled, Proof};
+use crate::kinematics::factor::Factors;
+use crate::kinematics::newton::STALLED;
+use crate::kinematics::plan::{Substep, Work};
+use crate::kinematics::system::Target;
+
+/// What estimates are taken larger by.
+const MARGIN: f64 = 2.0;
+
+/// What the estimate of a block needs besides.
+#[derive(Debug, Default)]
+pub(super) struct Estimate {
+    /// J in the middle minus J at the end: row, column, value.
+    drift: Vec<(usize, usize, f64)>,
+    /// F in the middle.
+    gap: Vec<f64>,
+}
+
+/// How the test was passed.
+pub(super) struct Passed {
+    /// r, and what the test makes of it, both scaled.
+    pub(super) radius: f64,
+    pub(super) next: f64,
+    /// c and the norm of K together.
+    pub(super) contraction: f64,
+}
+
+impl Estimate {
+    pub(super) fn new(order: usize, entries: usize) -> Self {
+        Self {
+            drift: Vec::with_capacity(entries),
+            gap: vec![0.0; order],
+        }
+    }
+}
+
+impl Coupled {
+    /// Looks for a radius that passes the test and leaves it in `next`. Returns c and the norm of
+    /// K together. The bodies go from the end of the sub-step, where the block is factorised, to
+    /// its middle.
+    ///
+    /// # Errors
+    ///
+    /// There is none; with c and the norm of K, if they are known.
+    pub(super) fn estimate_radii(
+        &mut self,
+        work: &mut Work<'_>,
+        substep: &mut Substep<'_>,
+    ) -> Result<f64, Option<f64>> {
+        substep.tubes.checked = true;
+        self.lay_chord(work, substep);
+        let passed = self.test_chord(work, substep, 0.0, ROOM)?;
+        self.proof.next.fill(passed.next);
+        Ok(passed.contraction)
+    }
+
+    /// The test for the chord in `substep`, in whose middle the bodies are. `astray` is how far
+    /// off the motion an end of it may be, scaled; the radius tried first is `room` times what the
+    /// chord is off.
+    ///
+    /// # Errors
+    ///
+    /// It is not passed; with c and the norm of K, if they are known.
+    pub(super) fn test_chord(
+        &mut self,
+        work: &Work<'_>,
+        substep: &mut Substep<'_>,
+        astray: f64,
+        room: f64,
+    ) -> Result<Passed, Option<f64>> {
+        self.evaluate_rows(work);
+        let drift = MARGIN * 2.0 * self.drift();
+        if drift.is_nan() {
+            return Err(None);
+        }
+        if drift >= LARGEST_CONTRACTION {
+            return Err(Some(drift));
+        }
+        let larger = 1.0 / (1.0 - drift);
+        let gap = larger * MARGIN * (self.farthest() + astray);
+        let mut radius = room * gap + f64::EPSILON;
+        let mut last = None;
+        for _ in 0..MOST_TRIES {
+            let [open, change] = self.bend_around(work, substep, radius).ok_or(last)?;
+            let next = gap + larger * (open + change);
+            let contraction = drift + larger * change / radius;
+            if contraction.is_nan() {
+                return Err(None);
+            }
+            if next <= STRICTLY * radius {
+                return Ok(Passed {
+                    radius,
+                    next,
+                    contraction,
+                });
+            }
+            if contraction >= LARGEST_CONTRACTION {
+                return Err(Some(contraction));
+            }
+            last = Some(contraction);
+            radius = ROOM * next / (1.0 - contraction);
+        }
+        Err(Some(1.0))
+    }
+
+    /// Evaluates the rows at the pose in `work`, leaving alone what is factorised.
+    pub(super) fn evaluate_rows(&mut self, work: &Work<'_>) {
+        let Self { block, proof, .. } = self;
+        let Proof {
+            middle,
+            estimate: Estimate { gap, .. },
+            slack,
+            ..
+        } = &mut **proof;
+        block.evaluate(work, middle, |local, value| {
+            let target = &work.system.equations()[block.rows[local]].target;
+            gap[local] = match target {
+                Target::Constant(_) => value.value,
+                // Its driver is at the end; `bend_around` has it.
+                Target::Driver(_) => 0.0,
+            };
+            // What rounding left of the rows at both ends.
+            slack[local] += 2.0 * STALLED * value.rounding;
+        });
+    }
+
+    /// The largest norm of A (J(z̄(½)) − J(z̄(1))).
+    fn drift(&mut self) -> f64 {
+        let Proof {
+            condition,
+            middle,
+            estimate: Estimate { drift, .. },
+            ..
+        } = &mut *self.proof;
+        drift.clear();
+        drift.extend(middle.lu.differences(&self.jacobian.lu));
+        condition.largest_row_of_product(&mut self.jacobian.lu, drift)
+    }
+
+    /// The largest component of A F, with F where the rows were evaluated.
+    pub(super) fn farthest(&mut self) -> f64 {
+        let gap = &mut self.proof.estimate.gap;
+        self.jacobian.lu.solve(gap);
+        gap.iter().fold(0.0, |most, value| most.max(value.abs()))
+    }
+
+    /// The largest components of |A| times what rows are open by apart from F in the middle, and
+    /// of |A| times what their gradients change by within this radius, times the radius.
+    fn bend_around(
+        &mut self,
+        work: &Work<'_>,
+        substep: &mut Substep<'_>,
+        radius: f64,
+    ) -> Option<[f64; 2]> {
+        let Self {
+            block,
+            proof,
+            jacobian,
+            ..
+        } = self;
+        let tubes = &mut *substep.tubes;
+        let size = work.at.size();
+        let scale = |column: usize| work.system.column_scale(column, size);
+        for &column in &block.columns {
+            tubes.region[column] = radius * scale(column);
+        }
+        for (&column, radius) in proof.known.iter().zip(&proof.known_radii) {
+            tubes.region[column] = radius * scale(column);
+        }
+        for local in 0..block.rows.len() {
+            let bend = block.bend(local, work, tubes)?;
+            let (mut open, mut change) = (proof.slack[local], 0.0);
+            if let Target::Driver(driver) = work.system.equations()[block.rows[local]].target {
+                open += 0.125 * bend.along + tubes.drivers[driver.index()] * bend.row_scale;
+            }
+            for (column, value) in bend.changes() {
+                let value = value * scale(column);
+                if block.own(column).is_some() {
+                    change += value * radius;
+                } else if let Ok(place) = proof.known.binary_search(&column) {
+                    open += value * proof.known_radii[place];
+                }
+            }
+            (proof.open[local], proof.row[local]) = (open, change);
+        }
+        for &(local, column, value) in &proof.middle.upstream {
+            if let Ok(place) = proof.known.binary_search(&column) {
+                proof.open[local] += value.abs() * proof.known_radii[place];
+            }
+        }
+        let Proof {
+            condition,
+            open,
+            row,
+            ..
+        } = &mut **proof;
+        let lu = &mut jacobian.lu;
+        Some([&*open, &*row].map(|b| MARGIN * condition.largest_row(lu, b)))
+    }
+}

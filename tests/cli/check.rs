@@ -1,0 +1,193 @@
+//! `biela check`
+
+use crate::common;
+use crate::program::{altered, biela, stderr, stdout};
+
+#[test]
+fn check_describes_a_mechanism() {
+    let assert = biela(&["check", "mechanisms/four_bar.toml"]).success();
+    assert_eq!(stderr(&assert), "");
+    insta::assert_snapshot!(
+        stdout(&assert).split("\n  residual").next().unwrap_or_default(),
+        @r"
+    four_bar: Crank–rocker four-bar linkage (cuadrilátero articulado)
+
+      bodies                 3    crank, coupler, rocker
+      unknowns               9    x, y, phi of each body
+      constraints            8    O2 (2), A (2), B (2), O4 (2)
+      drivers                1    crank_angle (input)
+      degrees of freedom     1    all driven
+
+    assembled at
+      crank_angle = 60.000000 deg
+
+      body            x [m]         y [m]     phi [deg]     moved [m]  turned [deg]
+      crank        0.000000      0.000000     60.000000      0.000000      0.000000
+      coupler      0.050000      0.086603     41.451706      0.003397     21.451706
+      rocker       0.400000      0.000000    122.824780      0.000000     12.824780
+
+      transmission = 81.373073 deg
+    "
+    );
+}
+
+/// What stands behind the line that starts with `heading`.
+fn behind<'a>(text: &'a str, heading: &str) -> &'a str {
+    let (_, behind) = text.split_once(heading).expect("it is there");
+    behind.split_once('\n').expect("there is more").1
+}
+
+/// Pasted into the file, the estimates that `check` prints are the pose: to the digits printed.
+#[test]
+fn printed_estimates_can_be_pasted() {
+    for name in common::stems("mechanisms", "toml") {
+        let file = format!("mechanisms/{name}.toml");
+        let assert = biela(&["check", &file, "--estimates"]).success();
+        let output = stdout(&assert);
+        let text = std::fs::read_to_string(common::folder(&file)).expect("it is shipped");
+        let text = common::pasted(&text, behind(&output, "estimates of this pose"));
+        // A file with tables beside it can only be read from its folder.
+        if text.contains(".csv") {
+            continue;
+        }
+        let (solver, _) = common::assembled(&common::parse(&text));
+        let moves = solver.moves().expect("estimates are numbers");
+        for moved in moves {
+            // Twelve digits of a length below 1 m, or of 360 degrees.
+            assert!(
+                moved.length < 1e-11 && moved.angle < 1e-10,
+                "{name}: {moved:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn modes_are_listed_with_their_estimates() {
+    let assert = biela(&["check", "mechanisms/four_bar.toml", "--modes"]).success();
+    insta::assert_snapshot!(behind(&stdout(&assert), "  residual"), @r#"
+
+    1 other way to close at these values (these are all)
+
+    # 1: reciprocal condition 5.09e-1, largest move from the estimates 1.73
+
+    [bodies.crank]
+    estimate = [0, 0, "60*deg"]
+    [bodies.coupler]
+    estimate = [0.05, 0.0866025403784, "-69.2474787749*deg"]
+    [bodies.rocker]
+    estimate = [0.4, 0, "209.379447784*deg"]
+    "#);
+}
+
+#[test]
+fn a_mechanism_that_does_not_close_is_shown_at_its_nearest() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("value = 0.10", "value = 0.80")],
+    );
+    let assert = biela(&["check", &file, "--estimates"]).code(1);
+    insta::assert_snapshot!(behind(&stdout(&assert), "  drivers"), @r#"
+
+    not assembled; the pose that comes nearest
+
+      body            x [m]         y [m]     phi [deg]     moved [m]  turned [deg]
+      crank        0.000000      0.000000     60.000000      0.000000      0.000000
+      coupler      0.400000      0.692820    -90.000000      0.697060    110.000000
+      rocker       0.400000      0.142820     90.000000      0.142820     20.000000
+
+    estimates of this pose, to paste into the tables of the bodies
+
+    [bodies.crank]
+    estimate = [0, 0, "60*deg"]
+    [bodies.coupler]
+    estimate = [0.4, 0.692820323028, "-90*deg"]
+    [bodies.rocker]
+    estimate = [0.4, 0.142820323028, "90*deg"]
+    "#);
+    assert!(
+        stderr(&assert).contains("the mechanism cannot close: joint `O4` stays open by 142.8 mm")
+    );
+}
+
+#[test]
+fn redundant_constraints_are_named_and_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let again = "A_again = { type = \"revolute\", markers = [\"crank.A\", \"coupler.A\"] }";
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("\n[drivers]", &format!("{again}\n\n[drivers]"))],
+    );
+    let assert = biela(&["check", &file]).success();
+    assert_eq!(
+        stderr(&assert),
+        "warning: constraint equations of joint `A_again` are redundant: 2 of its 2 follow from \
+         the others; they are set aside and watched\n"
+    );
+    let text = stdout(&assert);
+    let line = "  redundant              2    2 of the 2 of joint `A_again`\n";
+    assert!(text.contains(line), "{text}");
+    assert!(
+        text.contains("  degrees of freedom     1    all driven\n"),
+        "{text}"
+    );
+}
+
+#[test]
+fn check_tells_scripts_what_it_finds() {
+    let folder = tempfile::tempdir().unwrap();
+    let check = |arguments: &[&str], code: i32| {
+        let mut all = vec!["check", "--format", "json"];
+        all.extend(arguments);
+        let assert = biela(&all).code(code);
+        assert_eq!(stderr(&assert), "");
+        serde_json::from_str::<serde_json::Value>(&stdout(&assert)).unwrap()
+    };
+    let good = check(&["mechanisms/four_bar.toml", "--modes"], 0);
+    assert_eq!(good["ok"], true);
+    assert_eq!(good["diagnostics"].as_array().map(Vec::len), Some(0));
+    assert_eq!(good["mechanism"]["name"], "four_bar");
+    assert_eq!(good["mechanism"]["unknowns"], 9);
+    let joint = serde_json::json!({ "name": "O2", "equations": 2 });
+    assert_eq!(good["mechanism"]["joints"][0], joint);
+    let crank = &good["assembled"]["bodies"][0];
+    assert!((crank["phi"].as_f64().unwrap() - 60_f64.to_radians()).abs() < 1e-12);
+    assert_eq!(good["assembled"]["measures"][0]["unit"], "rad");
+    assert_eq!(
+        good["assembled"]["modes"]["others"]
+            .as_array()
+            .map(Vec::len),
+        Some(1)
+    );
+
+    // A file that is wrong, with the places.
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("\"crank.A\", ", "\"crank.AA\", ")],
+    );
+    let bad = check(&[&file], 1);
+    assert_eq!(bad["ok"], false);
+    let diagnostic = &bad["diagnostics"][0];
+    assert_eq!(diagnostic["severity"], "error");
+    assert_eq!(diagnostic["code"], "unknown-marker");
+    let start = &diagnostic["labels"][0]["start"];
+    let text = std::fs::read_to_string(&file).unwrap();
+    let line = usize::try_from(start["line"].as_u64().unwrap()).unwrap();
+    assert!(text.lines().nth(line - 1).unwrap().contains("crank.AA"));
+    assert!(bad.get("mechanism").is_none() && bad.get("assembled").is_none());
+
+    // One that does not close: the coupler is too short by 50 mm at 60 deg or more.
+    let short = [("value = 0.25", "value = 0.01")];
+    let open = check(&[&altered(folder.path(), "four_bar", &short)], 1);
+    assert_eq!(open["ok"], false);
+    assert!(
+        open["error"]["message"].as_str().unwrap().contains("open"),
+        "{open}"
+    );
+    assert!(open["error"]["open"][0]["gap"].as_f64().unwrap() > 0.0);
+    assert_eq!(open["error"]["nearest"].as_array().map(Vec::len), Some(3));
+}

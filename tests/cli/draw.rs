@@ -1,0 +1,69 @@
+//! `biela draw`
+
+use assert_cmd::Command;
+
+use crate::program::{biela, stderr, stdout};
+
+#[test]
+fn draw_writes_what_the_extension_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |name: &str, more: &[&str]| {
+        let path = folder.path().join(name);
+        let mut arguments = vec!["draw", "mechanisms/four_bar.toml", "-o"];
+        arguments.push(path.to_str().unwrap());
+        arguments.extend(more);
+        let assert = biela(&arguments).success();
+        assert_eq!(stdout(&assert) + &stderr(&assert), "");
+        std::fs::read(path).unwrap()
+    };
+    let svg = draw("a.svg", &[]);
+    let text = String::from_utf8(svg.clone()).unwrap();
+    assert!(text.starts_with("<?xml") && text.contains("width=\"640\""));
+    assert!(text.contains("class=\"traces\"") && text.contains("<rect"));
+    assert!(svg == draw("b.SVG", &[]));
+    let bare = draw("c.svg", &["--no-traces", "--transparent", "--width", "320"]);
+    let bare = String::from_utf8(bare).unwrap();
+    assert!(!bare.contains("class=\"traces\"") && !bare.contains("<rect"));
+    assert!(bare.contains("width=\"320\"") && bare.contains("viewBox=\"0 0 640 "));
+    assert!(draw("d.png", &[]).starts_with(b"\x89PNG"));
+    let printed = biela(&["draw", "mechanisms/four_bar.toml", "-o", "-"]).success();
+    assert_eq!(stdout(&printed), text);
+    // Without -o, under the mechanism's own name where one is.
+    Command::new(env!("CARGO_BIN_EXE_biela"))
+        .current_dir(folder.path())
+        .args([
+            "draw",
+            concat!(env!("CARGO_MANIFEST_DIR"), "/mechanisms/four_bar.toml"),
+        ])
+        .assert()
+        .success();
+    assert!(svg == std::fs::read(folder.path().join("four_bar.svg")).unwrap());
+}
+
+#[test]
+fn draw_shows_the_pose_that_is_asked_for() {
+    let draw = |more: &[&str]| {
+        let mut arguments = vec!["draw", "mechanisms/four_bar.toml", "-o", "-"];
+        arguments.extend(more);
+        stdout(&biela(&arguments).success())
+    };
+    let home = draw(&[]);
+    // The file's own values, as a motion that keeps still, change nothing.
+    assert_eq!(home, draw(&["--drive", "crank_angle = 60*deg"]));
+    assert_eq!(home, draw(&["--set", "crank_length = 100*mm"]));
+    let turned = draw(&["--drive", "crank_angle = 120*deg"]);
+    assert_ne!(home, turned);
+    // The crank turns fully from there too.
+    assert!(turned.contains("class=\"traces\""));
+    assert_ne!(home, draw(&["--set", "crank_length = 80*mm"]));
+    assert_ne!(home, draw(&["--drive", "crank_angle = 60*deg + t/10"]));
+    biela(&[
+        "draw",
+        "mechanisms/four_bar.toml",
+        "-o",
+        "-",
+        "--drive",
+        "crank = 1",
+    ])
+    .code(2);
+}

@@ -1,0 +1,123 @@
+//! `biela run --input`: drivers that follow the values of a file.
+
+use crate::program::{altered, biela, column, stderr, stdout};
+
+#[test]
+fn run_follows_the_values_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |content: &str, more: &[&str]| {
+        let path = folder.path().join("inputs.csv");
+        std::fs::write(&path, content).unwrap();
+        let mut arguments = vec![
+            "run",
+            "mechanisms/tlv.toml",
+            "--input",
+            path.to_str().unwrap(),
+        ];
+        arguments.extend(["--stop", "4", "--step", "0.5"]);
+        arguments.extend(more);
+        biela(&arguments)
+    };
+    // Straight lines, held before and after, with a jump at 2 s.
+    let content = "time,side_length.position\n1,0.3\n2,0.4\n2.0,0.5\n3,0.45\n";
+    let csv = stdout(&run(content, &[]).success());
+    let near = |found: &[f64], expected: &[f64]| {
+        let pairs = found.iter().zip(expected);
+        found.len() == expected.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12)
+    };
+    let position = column(&csv, "side_length.position");
+    assert!(
+        near(
+            &position,
+            &[0.3, 0.3, 0.3, 0.35, 0.5, 0.475, 0.45, 0.45, 0.45]
+        ),
+        "{position:?}"
+    );
+    let velocity = column(&csv, "side_length.velocity");
+    assert!(
+        near(
+            &velocity,
+            &[0.0, 0.0, 0.1, 0.1, -0.05, -0.05, 0.0, 0.0, 0.0]
+        ),
+        "{velocity:?}"
+    );
+    // The arm is where the law of cosines has it.
+    let [base, arm] = [0.4, 0.25_f64];
+    let parameters = std::fs::read_to_string("mechanisms/tlv.toml").unwrap();
+    assert!(parameters.contains("value = 0.40") && parameters.contains("value = 0.25"));
+    for (phi, u) in column(&csv, "arm.phi").iter().zip(&position) {
+        let expected = ((base * base + arm * arm - u * u) / (2.0 * base * arm)).acos();
+        assert!((phi - expected).abs() < 1e-12, "{phi} {expected}");
+    }
+    // Rates that the file gives count, and short names do.
+    let content = "time, side_length, side_length.velocity, side_length.acceleration\n\
+                   # a comment\n0,0.3,0.1,0.0\n4,0.5,0.2,1\n";
+    let csv = stdout(&run(content, &[]).success());
+    assert!((column(&csv, "side_length.velocity")[4] - 0.15).abs() < 1e-12);
+    assert!((column(&csv, "side_length.acceleration")[4] - 0.5).abs() < 1e-12);
+    for (content, more, expected) in [
+        (
+            "t,side_length\n0,0.3\n",
+            &[][..],
+            "the first column is `t`; expected `time`",
+        ),
+        (
+            "time,side\n0,0.3\n",
+            &[],
+            "column `side` is no variable of a driver; expected `side_length.position`",
+        ),
+        (
+            "time,side_length\n0,x\n",
+            &[],
+            "line 2: `x` is not a finite number",
+        ),
+        (
+            "time,side_length\n1,0.3\n0,0.3\n",
+            &[],
+            "line 3: time goes back to 0",
+        ),
+        ("time,side_length\n", &[], "no rows"),
+        (
+            "time,side_length.velocity\n0,1\n",
+            &[],
+            "no column `side_length.position`",
+        ),
+        (
+            "time,side_length,side_length.position\n0,1,1\n",
+            &[],
+            "two columns",
+        ),
+        (
+            "time,side_length\n0,0.3,1\n",
+            &[],
+            "found record with 3 fields",
+        ),
+        (
+            "time,side_length\n0,0.3\n",
+            &["--drive", "side_length=1"],
+            "both --drive and --input",
+        ),
+    ] {
+        let message = stderr(&run(content, more).code(2));
+        assert!(message.contains(expected), "{message}");
+    }
+    // A motion of the file gives way.
+    let content = "time,crank_angle.position\n0,0\n1,1\n";
+    let path = folder.path().join("crank.csv");
+    std::fs::write(&path, content).unwrap();
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("start = \"60*deg\"", "motion = \"60*deg + t\"")],
+    );
+    let csv = biela(&[
+        "run",
+        &file,
+        "--input",
+        path.to_str().unwrap(),
+        "--stop",
+        "1",
+    ])
+    .success();
+    assert!(column(&stdout(&csv), "crank.phi")[0].abs() < 1e-12);
+}

@@ -1,0 +1,16 @@
+//! The commands as a user types them; `watch` has a test of its own.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod check;
+mod draw;
+mod exit_codes;
+mod export;
+mod help;
+mod input;
+mod new;
+mod pictures_of_runs;
+mod program;
+mod range;
+mod run;

@@ -1,0 +1,113 @@
+//! `biela run --plot` and `--animate`
+
+use crate::program::{biela, stderr, stdout};
+
+#[test]
+fn run_plots_what_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = |name: &str, more: &[&str]| {
+        let path = folder.path().join(name);
+        let mut arguments = vec!["run", "mechanisms/four_bar.toml", "--plot"];
+        arguments.extend([
+            path.to_str().unwrap(),
+            "--drive",
+            "crank_angle = 60*deg + 5*t",
+        ]);
+        arguments.extend(more);
+        let assert = biela(&arguments).success();
+        (stdout(&assert), std::fs::read(path).unwrap())
+    };
+    // Without -o there is no CSV; with it there are both.
+    let (csv, picture) = plot("a.svg", &[]);
+    assert_eq!(csv, "");
+    let picture = String::from_utf8(picture).unwrap();
+    for wanted in [
+        ">angle [deg]<",
+        ">transmission.velocity<",
+        ">crank_angle.acceleration<",
+    ] {
+        assert!(picture.contains(wanted), "{wanted}");
+    }
+    let (csv, picture) = plot("b.svg", &["-o", "-", "--variables", "coupler.P.x"]);
+    assert!(csv.starts_with("time,coupler.P.x\n"));
+    let picture = String::from_utf8(picture).unwrap();
+    assert!(picture.contains(">coupler.P.x<") && !picture.contains("transmission"));
+    assert!(plot("c.png", &[]).1.starts_with(b"\x89PNG"));
+    // A run that is cut short is drawn up to there.
+    let path = folder.path().join("d.svg");
+    let path = path.to_str().unwrap();
+    let drive = "side_length = 0.35 + 0.1*t";
+    biela(&[
+        "run",
+        "mechanisms/tlv.toml",
+        "--drive",
+        drive,
+        "--stop",
+        "5",
+        "--plot",
+        path,
+    ])
+    .code(1);
+    let picture = std::fs::read_to_string(path).unwrap();
+    assert!(picture.contains(">side_length.position<"));
+    assert!(picture.contains(">2.5<") && !picture.contains(">3.5<"));
+}
+
+#[test]
+fn run_animates() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("page.html");
+    let path = path.to_str().unwrap();
+    let film = |arguments: &[&str], code: i32| {
+        let mut all = vec!["run", "--animate", path];
+        all.extend(arguments);
+        let assert = biela(&all).code(code);
+        assert_eq!(stdout(&assert), "");
+        let page = std::fs::read_to_string(path).unwrap();
+        let film = page.split("class=\"film\">").nth(1).unwrap();
+        let film = &film[..film.find("</script>").unwrap()];
+        let film: serde_json::Value = serde_json::from_str(film).unwrap();
+        (film, stderr(&assert))
+    };
+    let four_bar = "mechanisms/four_bar.toml";
+    let drive = "crank_angle = 60*deg + t";
+    let (shown, messages) = film(
+        &[
+            four_bar, "--drive", drive, "--stop", "1.05", "--step", "0.1",
+        ],
+        0,
+    );
+    assert_eq!(messages, "");
+    assert_eq!(shown["moments"], 12);
+    assert_eq!(shown["stop"], 1.05);
+    assert_eq!(shown["readings"][0]["name"], "crank_angle");
+    let (shown, _) = film(
+        &[four_bar, "--drive", drive, "--variables", "crank.omega"],
+        0,
+    );
+    assert_eq!(shown["readings"].as_array().unwrap().len(), 1);
+    assert_eq!(shown["readings"][0]["unit"], "deg/s");
+    // Every second of 10,002 rows.
+    let many = [
+        four_bar, "--drive", drive, "--stop", "1.0001", "--step", "0.0001",
+    ];
+    let (shown, _) = film(&many, 0);
+    assert_eq!(shown["moments"], 5001);
+    assert!((shown["step"].as_f64().unwrap() - 2e-4).abs() < 1e-15);
+    // A run that is cut short is shown up to there, and one that stands still is told of.
+    let blocked = "side_length = 0.35 + 0.1*t";
+    let tlv = [
+        "mechanisms/tlv.toml",
+        "--drive",
+        blocked,
+        "--stop",
+        "5",
+        "--step",
+        "0.5",
+    ];
+    let (shown, messages) = film(&tlv, 1);
+    assert_eq!(shown["moments"], 6);
+    assert!(messages.contains("dead point"), "{messages}");
+    let (_, messages) = film(&[four_bar], 0);
+    assert!(messages.contains("note: nothing moves"), "{messages}");
+}

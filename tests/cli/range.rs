@@ -1,0 +1,91 @@
+//! `biela range`
+
+use crate::program::{biela, column, stderr, stdout};
+
+#[test]
+fn range_tells_the_limits() {
+    let folder = tempfile::tempdir().unwrap();
+    let [csv, plot] = ["range.csv", "range.svg"].map(|name| folder.path().join(name));
+    let [csv, plot] = [&csv, &plot].map(|path| path.to_str().unwrap());
+    let range = |arguments: &[&str]| {
+        let mut all = vec!["range"];
+        all.extend(arguments);
+        biela(&all)
+    };
+    let tlv = range(&["mechanisms/tlv.toml", "--csv", csv, "--plot", plot]).success();
+    // Base minus and plus arm: 0.4 m and 0.25 m.
+    for wanted in [
+        "side_length, from 0.35 m\n",
+        "  down to 0.15 m: dead point, where body `arm` and body `rod` line up\n",
+        "  up to   0.65 m: dead point, where body `arm` and body `rod` line up\n",
+    ] {
+        assert!(stdout(&tlv).contains(wanted), "{}", stdout(&tlv));
+    }
+    let table = std::fs::read_to_string(csv).unwrap();
+    let lengths = column(&table, "side_length.position");
+    assert!(lengths.is_sorted() && (lengths[0] - 0.15).abs() < 1e-12);
+    for (length, phi) in lengths.iter().zip(column(&table, "arm.phi")) {
+        let expected = (0.4_f64 * 0.4 + 0.25 * 0.25 - length * length) / (2.0 * 0.4 * 0.25);
+        // At a limit the angle goes with the root of the distance from it.
+        assert!(
+            (phi.cos() - expected.clamp(-1.0, 1.0)).abs() < 1e-12,
+            "{length}"
+        );
+    }
+    assert!(
+        column(&table, "rcond")
+            .iter()
+            .all(|rcond| (0.0..=1.0).contains(rcond))
+    );
+    let picture = std::fs::read_to_string(plot).unwrap();
+    assert!(picture.contains(">side_length [m]<") && picture.contains(">arm.phi<"));
+
+    // A table on stdout stands alone.
+    let printed = stdout(&range(&["mechanisms/four_bar.toml", "--csv", "-"]).success());
+    assert_eq!(column(&printed, "transmission_angle").len(), 361);
+    let text = stdout(&range(&["mechanisms/four_bar.toml"]).success());
+    assert!(
+        text.contains("turns fully: after a turn the mechanism is where it was"),
+        "{text}"
+    );
+    // 0.25 m and 0.30 m span 0.5 m there.
+    assert!(
+        text.contains("transmission angle from 49.46 deg, at 180 deg"),
+        "{text}"
+    );
+    // With a base that is too long for the crank to turn.
+    let text = stdout(&range(&["mechanisms/four_bar.toml", "--set", "base=0.48"]).success());
+    let limit = ((0.1_f64 * 0.1 + 0.48 * 0.48 - 0.55 * 0.55) / (2.0 * 0.1 * 0.48)).acos();
+    let found = text.split("up to   ").nth(1);
+    let found = found.and_then(|rest| rest.split(' ').next());
+    let found: f64 = found
+        .expect("there is a limit")
+        .parse()
+        .expect("it is a number");
+    // Ten decimals are shown.
+    assert!((found - limit.to_degrees()).abs() < 1e-10, "{text}");
+    assert!(text.contains("dead point"), "{text}");
+
+    let both = stdout(&range(&["mechanisms/pantograph.toml"]).success());
+    assert!(
+        both.contains("tracer_x, from") && both.contains("\ntracer_y, from"),
+        "{both}"
+    );
+    for (arguments, expected) in [
+        (
+            &["mechanisms/pantograph.toml", "--plot", plot][..],
+            "--csv and --plot need one",
+        ),
+        (
+            &["mechanisms/tlv.toml", "--driver", "side"],
+            "no driver `side`; expected `side_length`",
+        ),
+        (
+            &["mechanisms/tlv.toml", "--plot", "x.pdf"],
+            "neither the extension",
+        ),
+    ] {
+        let message = stderr(&range(arguments).code(2));
+        assert!(message.contains(expected), "{message}");
+    }
+}

@@ -1,0 +1,160 @@
+//! `biela run`: the table that it writes, and what stops it.
+
+use crate::program::{biela, column, stderr, stdout};
+
+#[test]
+fn run_writes_exact_rates() {
+    // u = 60° + 10 t + t²: u̇ = 10 + 2 t, ü = 2. The crank's phi is u itself.
+    let drive = "crank_angle = 60*deg + 10*t + t^2";
+    let arguments = [
+        "run",
+        "mechanisms/four_bar.toml",
+        "--drive",
+        drive,
+        "--stop",
+        "1",
+        "--step",
+        "0.3",
+    ];
+    let csv = stdout(&biela(&arguments).success());
+    let time = column(&csv, "time");
+    assert_eq!(time, [0.0, 0.3, 0.6, 0.899_999_999_999_999_9, 1.0]);
+    for (row, t) in time.iter().enumerate() {
+        let expected = [
+            ("crank.phi", 60_f64.to_radians() + 10.0 * t + t * t),
+            ("crank.omega", 10.0 + 2.0 * t),
+            ("crank.alpha", 2.0),
+            ("crank_angle.velocity", 10.0 + 2.0 * t),
+        ];
+        for (name, value) in expected {
+            assert!(
+                (column(&csv, name)[row] - value).abs() < 1e-13,
+                "{name} at {t}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_motion_of_the_file_gives_way_to_one_of_the_command_line() {
+    let run = biela(&[
+        "run",
+        "mechanisms/pick_and_place.toml",
+        "--drive",
+        "travel = 0.1 + t",
+        "--stop",
+        "0.1",
+        "--step",
+        "0.1",
+    ])
+    .code(0);
+    let table = stdout(&run);
+    let mut rows = table.lines().skip(1).map(|row| row.split(',').nth(1));
+    assert_eq!(rows.next(), Some(Some("0.1")));
+    assert_eq!(rows.next(), Some(Some("0.2")));
+}
+
+#[test]
+fn run_keeps_the_assembly_mode_however_far_the_start_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("out.csv");
+    let file = file.to_str().unwrap();
+    let drive = "crank_angle = 500*deg + t";
+    biela(&[
+        "run",
+        "mechanisms/four_bar.toml",
+        "--drive",
+        drive,
+        "--set",
+        "crank_length = 80*mm",
+        "-o",
+        file,
+    ])
+    .success();
+    let csv = std::fs::read_to_string(file).unwrap();
+    assert!((column(&csv, "crank.phi")[0] - 500_f64.to_radians()).abs() < 1e-12);
+    // In the other mode the transmission angle is negative.
+    assert!(
+        column(&csv, "transmission.position")
+            .iter()
+            .all(|angle| *angle > 0.0)
+    );
+    assert_eq!(column(&csv, "time").len(), 201);
+}
+
+#[test]
+fn run_stops_at_a_dead_point_and_keeps_the_rows_before() {
+    let drive = "side_length = 0.35 + 0.1*t";
+    let assert = biela(&[
+        "run",
+        "mechanisms/tlv.toml",
+        "--drive",
+        drive,
+        "--stop",
+        "5",
+        "--step",
+        "0.5",
+    ])
+    .code(1);
+    // 0.65 m, where arm and base are in line, is reached at 3 s.
+    let time = column(&stdout(&assert), "time");
+    assert_eq!(time.last(), Some(&2.5));
+    let message = stderr(&assert);
+    assert!(message.contains("dead point"), "{message}");
+    assert!(
+        message.contains("`side_length` at 0.650000000"),
+        "{message}"
+    );
+    assert!(
+        message.contains("body `arm` and body `rod` line up"),
+        "{message}"
+    );
+}
+
+#[test]
+fn run_tells_of_change_points_and_of_approaches() {
+    let run = |file: &str, drive: &str| {
+        stderr(
+            &biela(&[
+                "run", file, "--drive", drive, "--stop", "1", "--step", "0.01",
+            ])
+            .success(),
+        )
+    };
+    let message = run("mechanisms/parallelogram.toml", "crank_angle = 1 + 6*t");
+    let passed = "note: t = 0.36 s: change point passed on the smooth motion";
+    assert!(message.contains(passed), "{message}");
+    assert_eq!(message.lines().count(), 2, "{message}");
+    let message = run("mechanisms/tlv.toml", "side_length = 0.35 + 0.29999999*t");
+    assert!(
+        message.contains("warning: t = 1 s: near a singular position"),
+        "{message}"
+    );
+    assert_eq!(message.lines().count(), 1, "{message}");
+}
+
+#[test]
+fn run_writes_the_variables_that_are_asked_for() {
+    let header = |more: &[&str]| {
+        let mut arguments = vec!["run", "mechanisms/four_bar.toml", "--stop", "0.1"];
+        arguments.extend(more);
+        let csv = stdout(&biela(&arguments).success());
+        csv.lines().next().expect("there is a header").to_owned()
+    };
+    assert_eq!(
+        header(&["--variables", "crank.phi,coupler.P,transmission.velocity"]),
+        "time,crank.phi,coupler.P.x,coupler.P.y,coupler.P.vx,coupler.P.vy,coupler.P.ax,coupler.P.ay,\
+         transmission.velocity"
+    );
+    let all = header(&[]);
+    assert!(all.starts_with(
+        "time,crank_angle.position,crank_angle.velocity,crank_angle.acceleration,crank.x,"
+    ));
+    assert!(all.ends_with(",transmission.acceleration"));
+    let assert = biela(&["run", "mechanisms/four_bar.toml", "--variables", "cupler.P"]).code(2);
+    let message = stderr(&assert);
+    assert!(
+        message.contains("no `cupler.P`; did you mean `coupler.P`?"),
+        "{message}"
+    );
+}

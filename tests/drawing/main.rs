@@ -1,0 +1,18 @@
+//! Drawings of mechanisms: what is in the scene, and that the pictures are whole.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/generated.rs"]
+#[allow(dead_code, reason = "each test file uses a part of this")]
+mod generated;
+
+mod cams;
+mod charts;
+mod gallery;
+mod links;
+mod pictures;
+mod scenes;
+mod sheets;
+mod traces;
+mod ways;
+mod wheels;

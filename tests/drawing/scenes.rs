@@ -1,0 +1,26 @@
+//! Scenes of mechanisms, and what is looked for in them.
+
+use biela::drawing::{Scene, Symbol};
+
+use crate::common::{assembled, parse, shipped};
+
+pub(crate) fn scene_of(text: &str) -> Scene {
+    Scene::new(&mut assembled(&parse(text)).0, true)
+}
+
+/// The scene of a shipped mechanism.
+pub(crate) fn scene(name: &str) -> Scene {
+    Scene::new(&mut assembled(&shipped(name)).0, true)
+}
+
+/// The points of a body's link, if it has one.
+pub(crate) fn link(scene: &Scene, body: usize) -> Option<Vec<[f64; 2]>> {
+    scene.symbols.iter().find_map(|s| match s {
+        Symbol::Link { body: of, points } if of.index() == body => Some(points.clone()),
+        _ => None,
+    })
+}
+
+pub(crate) fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-12
+}

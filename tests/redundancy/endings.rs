@@ -1,0 +1,88 @@
+//! Redundancies that end on the way: with a parameter, or with the pose.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use biela::kinematics::{Error, Reason};
+use biela::mechanism::Mechanism;
+
+use crate::common::{assembled, parse, straight_to};
+use crate::mechanisms::{angle_driver, body, file, joint, parallelogram, with_joints};
+
+/// A rod beside the coupler that may have another length.
+fn with_rod() -> Arc<Mechanism> {
+    let text = with_joints(
+        &parallelogram(&[], 60.0, true),
+        "rod = { type = \"link\", markers = [\"crank.A\", \"rocker.B\"], length = \"rod_length\" }",
+    );
+    parse(&text.replace(
+        "[ground.markers]",
+        "[parameters]\nrod_length = 0.4\n[ground.markers]",
+    ))
+}
+
+#[test]
+fn a_parameter_that_ends_a_redundancy_is_refused() {
+    let mechanism = with_rod();
+    let (mut solver, mut path) = assembled(&mechanism);
+    let home = solver.pose().clone();
+    path.from = vec![0.4];
+    path.to = vec![0.41];
+    let blocked = solver.follow(&path).expect_err("the rod is too long");
+    let Reason::Contradiction(open) = &blocked.reason else {
+        panic!("{blocked:?}");
+    };
+    assert_eq!(open.element, "joint `rod`");
+    // The gap is that of the first attempt, over all of the path.
+    assert!((open.gap - 0.01).abs() < 1e-12, "{open}");
+    // A gap of a thousand millionth of the size counts as one.
+    let reached = solver.pose().parameters[0] - 0.4;
+    assert!((0.0..1e-9).contains(&reached), "{reached:e}");
+    let error = solver.assemble(&path).expect_err("nor can it be assembled");
+    let Error::Contradiction { elements, open } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!(elements[..], ["joint `A`", "joint `B`", "joint `rod`"]);
+    assert_eq!(open.to_string(), "joint `rod` stays open by 10.00 mm");
+    // Nothing is lost.
+    solver.restore(&home);
+    assert!(solver.residual() < 4.0 * f64::EPSILON);
+    path.to = vec![0.4];
+    straight_to(&solver, &mut path, 2.0);
+    solver.follow(&path).expect("it moves as before");
+    assert!(solver.residual() < 8.0 * f64::EPSILON);
+}
+
+/// A follower held at the height of a cam that is round for anyone who measures, until it has
+/// turned on to its lobe.
+#[test]
+fn a_redundancy_that_ends_on_the_way_stops_the_mechanism_there() {
+    let bodies = body("cam", "O = [0, 0]", "0, 0, \"90*deg\"")
+        + &body("follower", "P = [0, 0, \"90*deg\"]", "0, 0.05, 0");
+    let joints = joint("O", "revolute", "ground.O", "cam.O")
+        + &joint("guide", "translational", "ground.up", "follower.P")
+        + "contact = { type = \"cam\", markers = [\"cam.O\", \"follower.P\"], follower = \"knife\", \
+           profile = \"0.05 + 0.01*sin(theta/2)^40\" }\n\
+           [constraints]\n\
+           level = { coordinate = \"y\", markers = [\"ground.O\", \"follower.P\"], value = 0.05 }\n";
+    let driver = angle_driver("turn", "ground.O", "cam.O", 90.0);
+    let ground = "O = [0, 0]\nup = [0, 0, \"90*deg\"]";
+    let text = file(ground, &bodies, &joints, &driver);
+    let (mut solver, mut path) = assembled(&parse(&text));
+    assert_eq!(solver.redundancies()[0].element, "constraint `level`");
+    // The contact is at theta = 90° − u.
+    straight_to(&solver, &mut path, -TAU / 12.0);
+    let blocked = solver
+        .follow(&path)
+        .expect_err("the lobe begins on the way");
+    let Reason::Contradiction(open) = &blocked.reason else {
+        panic!("{blocked:?}");
+    };
+    assert_eq!(open.element, "constraint `level`");
+    // A gap is a thousand millionth of the size, 0.05 m; its rounding is a thousandth of that.
+    let theta = 2.0 * (1e-9_f64 * 0.05 / 0.01).powf(1.0 / 40.0).asin();
+    let reached = solver.pose().drivers[0];
+    assert!((TAU / 4.0 - reached - theta).abs() < 1e-3, "{reached}");
+    // What is told is what was found to be open beyond.
+    assert!(open.gap > 5e-11, "{open}");
+}

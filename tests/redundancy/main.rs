@@ -1,0 +1,16 @@
+//! Constraints that say nothing new or contradict each other, and drivers that are too few, too
+//! many or on the wrong things.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/generated.rs"]
+#[allow(dead_code, reason = "also used by `benches/`")]
+mod generated;
+
+mod chains;
+mod cranks;
+mod endings;
+mod mechanisms;
+mod twins;
+mod verdicts;
+mod warning;

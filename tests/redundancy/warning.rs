@@ -1,0 +1,71 @@
+//! What an FMU says of redundant constraints.
+
+use std::f64::consts::TAU;
+use std::sync::{Arc, Mutex};
+
+use biela::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
+
+use crate::common::parse;
+use crate::mechanisms::parallelogram;
+
+/// What was said above is said in the FMU's log, once.
+#[test]
+fn the_host_is_warned_once() {
+    struct Warnings(Arc<Mutex<Vec<String>>>);
+    impl Sink for Warnings {
+        fn write(&self, status: Status, _: Category, message: &str) {
+            if status == Status::Warning {
+                let mut warnings = self.0.lock().expect("one thread");
+                warnings.push(message.to_owned());
+            }
+        }
+    }
+    let warnings = Arc::new(Mutex::new(Vec::new()));
+    let sink = Box::new(Warnings(Arc::clone(&warnings)));
+    let mechanism = parse(&parallelogram(&[[0.2, 0.1]], 60.0, true));
+    let model = MechanismModel::new(mechanism, Interface::CoSimulation).expect("it closes");
+    let mut instance = Instance::new(model, sink, false);
+    instance.setup_experiment(0.0, None).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
+    instance.exit_initialization_mode().expect("it starts");
+    // Through both flat poses; what is saved next to one goes on as the original does.
+    let mut saved = None;
+    for step in 0..25 {
+        let angle = TAU / 6.0 + TAU / 24.0 * f64::from(step + 1);
+        instance.set_real(&[0], &[angle]).expect("an input");
+        instance
+            .do_step(f64::from(step), 1.0)
+            .expect("nothing is in the way");
+        if step == 7 {
+            // At 180 degrees.
+            saved = Some(instance.fmu_state().expect("legal"));
+        }
+    }
+    let outputs: Vec<u32> = (5..14).collect();
+    let mut values = [vec![0.0; 9], vec![0.0; 9]];
+    instance
+        .get_real(&outputs, &mut values[0])
+        .expect("readable");
+    instance
+        .set_fmu_state(&saved.expect("it was saved"))
+        .expect("its own");
+    for step in 8..25 {
+        let angle = TAU / 6.0 + TAU / 24.0 * f64::from(step + 1);
+        instance.set_real(&[0], &[angle]).expect("an input");
+        instance
+            .do_step(f64::from(step), 1.0)
+            .expect("nothing is in the way");
+    }
+    instance
+        .get_real(&outputs, &mut values[1])
+        .expect("readable");
+    assert_eq!(values[0], values[1]);
+    let warnings = warnings.lock().expect("one thread");
+    assert_eq!(
+        warnings[..],
+        [
+            "constraint equations of joint `O5` are redundant: 1 of its 2 follows from the others; \
+          it is set aside and watched"
+        ]
+    );
+}
