@@ -9,8 +9,11 @@ use super::Animation;
 use super::film::film;
 use super::stage::{Placement, Stage};
 use crate::drawing::scene::Scene;
-use crate::drawing::sheet::{CAPITALS, Layer, Mark};
+use crate::drawing::sheet::{CAPITALS, Layer, Mark, WIDTH};
 use crate::drawing::svg::{self, FONT_SIZE, FONTS, Xml, number};
+
+/// What is wider than this, in units of the sheet, is moved to and fro on small screens.
+const USUAL: f64 = 1.2 * WIDTH;
 
 const PAGE: &str = include_str!("page.html");
 const PLAYER: &str = include_str!("player.html");
@@ -98,9 +101,11 @@ fn write_picture(xml: &mut Xml, animation: &Animation, stage: &Stage) -> io::Res
     let view = [corner.x, corner.y, size.x, size.y].map(number).join(" ");
     let q = animation.moments.first().map_or(&[][..], |m| &m.q);
     let placements = stage.placements(q);
+    let is_wide = size.x > USUAL;
+    let class = if is_wide { "stage wide" } else { "stage" };
     xml.create_element("svg")
         .with_attributes([
-            ("class", "stage"),
+            ("class", class),
             ("viewBox", &view),
             ("role", "img"),
             ("aria-label", &format!("{}, moving", animation.scene.name)),

@@ -7,6 +7,8 @@
   const TIP = 7;
   // A driven length shorter than this is drawn this long, to both sides.
   const SHORT = 18;
+  // Height of a line of letters over that of capitals.
+  const LINE = 1.4;
   const INSET = 5.2;
   const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
   // How long a film lasts at the speeds that are offered, and at the first one, in seconds.
@@ -43,6 +45,8 @@
     const view = find(".stage").viewBox.baseVal;
     // On small screens names are larger than in the film.
     let larger = 1;
+    // Middle and size of each.
+    let boxes = [];
     const lengths = [...player.querySelectorAll(".length")].map((group) => [
       add(group, "path"),
       add(group, "path", "tips"),
@@ -90,7 +94,7 @@
         lengths[index][0].setAttribute("d", line);
         lengths[index][1].setAttribute("d", tips);
       });
-      film.labels.forEach((label, index) => {
+      boxes = film.labels.map((label, index) => {
         let [x, y] = outside(label.rider, label.at);
         const [width, height] = label.size.map((length) => larger * length);
         if (label.side) {
@@ -102,8 +106,11 @@
           x += (label.gap + reach) * side[0];
           y += (label.gap + reach) * side[1];
         }
-        names[index].setAttribute("x", fix(within(x, 0.5 * width, view.x, view.width)));
-        names[index].setAttribute("y", fix(within(y, 0.5 * height, view.y, view.height) + 0.5 * height));
+        x = within(x, 0.5 * width, view.x, view.width);
+        y = within(y, 0.5 * height, view.y, view.height);
+        names[index].setAttribute("x", fix(x));
+        names[index].setAttribute("y", fix(y + 0.5 * height));
+        return { x, y, width, height };
       });
       film.points.forEach((point, index) => {
         const from = outside(point.rider, point.at);
@@ -161,8 +168,8 @@
     for (const s of offered) {
       speed.add(new Option(s === 1 ? "real time" : s < 1 ? `1/${Math.round(1 / s)}` : `×${s}`, s, s === best, s === best));
     }
-    const boxes = [...player.querySelectorAll(".show")];
-    for (const box of boxes) {
+    const switches = [...player.querySelectorAll(".show")];
+    for (const box of switches) {
       if (box.value !== "names" && film.points.length === 0) {
         box.parentElement.remove();
         continue;
@@ -185,7 +192,7 @@
       set(false);
       go(moment + by);
     };
-    const toggle = (name) => () => boxes.find((box) => box.value === name && box.isConnected)?.click();
+    const toggle = (name) => () => switches.find((box) => box.value === name && box.isConnected)?.click();
     const keys = {
       " ": () => set(!playing),
       ArrowLeft: step(-1),
@@ -201,6 +208,17 @@
       const group = find(".names");
       larger = parseFloat(getComputedStyle(group).fontSize) / Number(group.getAttribute("font-size"));
       draw();
+      // Where they have grown, one that would be over another is left out.
+      const apart = (a, b) =>
+        2 * Math.abs(a.x - b.x) >= a.width + b.width || 2 * Math.abs(a.y - b.y) >= LINE * (a.height + b.height);
+      const seen = [];
+      names.forEach((name, index) => {
+        const fits = larger === 1 || seen.every((box) => apart(box, boxes[index]));
+        name.style.display = fits ? "" : "none";
+        if (fits) {
+          seen.push(boxes[index]);
+        }
+      });
     }
     addEventListener("resize", fit);
     fit();
