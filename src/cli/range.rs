@@ -14,7 +14,7 @@ use super::output::write;
 use super::picture::{Format, PLOT_WIDTH};
 use super::run::print;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
-use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, list};
+use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, in_line};
 use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit};
 
 /// Find how far a driver can go.
@@ -126,9 +126,9 @@ fn describe(
     for point in &range.crossings {
         let _ = writeln!(
             text,
-            "  passes a change point at {} where {} line up",
+            "  passes a change point at {} where {}",
             value(point.value),
-            list(&point.bodies, " and ")
+            in_line(&point.bodies, "")
         );
     }
     let extreme = |of: fn(&Sample) -> Option<f64>| {

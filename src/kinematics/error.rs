@@ -191,7 +191,7 @@ fn four_digits(value: f64) -> String {
 }
 
 /// Names for a message, with `last` before the last one; of very many only the first.
-pub(crate) fn list(names: &[String], last: &str) -> String {
+fn list(names: &[String], last: &str) -> String {
     const SHOWN: usize = 8;
     if names.len() > SHOWN + 1 {
         let others = names.len() - SHOWN;
@@ -201,6 +201,12 @@ pub(crate) fn list(names: &[String], last: &str) -> String {
         [names @ .., name] if !names.is_empty() => format!("{}{last}{name}", names.join(", ")),
         _ => names.concat(),
     }
+}
+
+/// Says that bodies line up, with something before that: one alone is in line with what drives it.
+pub(crate) fn in_line(bodies: &[String], almost: &str) -> String {
+    let verb = if bodies.len() == 1 { "lines" } else { "line" };
+    format!("{} {almost}{verb} up", list(bodies, " and "))
 }
 
 fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {
@@ -265,4 +271,19 @@ fn structure_message(
         message += &format!("; too many: remove one of {}", list(excess, ", "));
     }
     message
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_line;
+
+    #[test]
+    fn one_body_lines_up_and_two_line_up() {
+        let bodies = ["body `rod`", "body `crank`"].map(str::to_owned);
+        assert_eq!(
+            in_line(&bodies[..1], "all but "),
+            "body `rod` all but lines up"
+        );
+        assert_eq!(in_line(&bodies, ""), "body `rod` and body `crank` line up");
+    }
 }

@@ -57,7 +57,7 @@ pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
 pub use element::Element;
-pub(crate) use error::list;
+pub(crate) use error::in_line;
 pub use error::{Error, OpenJoint, Proof, Verdict};
 pub use fit::{Misfit, MisfitKind};
 pub use modes::{Mode, Modes};

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{LARGEST_BLOCK, NEAR};
-use crate::kinematics::error::list;
+use crate::kinematics::error::in_line;
 use crate::kinematics::solver::Solver;
 
 /// A mechanism that has come near a singular position.
@@ -25,9 +25,9 @@ impl fmt::Display for Approach {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "near a singular position, with a reciprocal condition of {:.1e}: {} all but line up",
+            "near a singular position, with a reciprocal condition of {:.1e}: {}",
             self.rcond,
-            list(&self.bodies, " and ")
+            in_line(&self.bodies, "all but ")
         )
     }
 }

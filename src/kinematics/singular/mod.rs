@@ -25,7 +25,7 @@ pub use approach::Approach;
 pub use crossing::Crossing;
 pub use locate::SingularKind;
 
-use super::error::list;
+use super::error::in_line;
 use super::newton::MAX_ITERATIONS;
 use super::path::Path;
 use super::plan::{Bridged, Kernel};
@@ -94,14 +94,7 @@ pub(super) struct Careful {
 
 impl fmt::Display for SingularPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{}, where {} line{} up",
-            self.kind,
-            list(&self.bodies, " and "),
-            // One body alone is in line with what drives it.
-            if self.bodies.len() == 1 { "s" } else { "" }
-        )
+        write!(f, "{}, where {}", self.kind, in_line(&self.bodies, ""))
     }
 }
 
@@ -124,10 +117,10 @@ impl Solver {
     pub fn describe_crossing(&self, crossing: &Crossing) -> String {
         let driver = &self.mechanism().drivers[crossing.driver.index()];
         format!(
-            "change point passed on the smooth motion, with driver `{}` at {}: {} line up there",
+            "change point passed on the smooth motion, with driver `{}` at {}: {} there",
             driver.name,
             driver.coordinate.kind.show(crossing.center),
-            list(&self.bodies_in_line(crossing), " and ")
+            in_line(&self.bodies_in_line(crossing), "")
         )
     }
 
