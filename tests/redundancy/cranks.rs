@@ -1,8 +1,6 @@
 //! Three cranks and more on one coupler, turned through the poses where they are flat.
 
-use std::f64::consts::{PI, TAU};
-
-use biela::kinematics::Reason;
+use std::f64::consts::TAU;
 
 use crate::common::{assembled, parse, straight_to};
 use crate::mechanisms::{double, parallelogram};
@@ -50,23 +48,40 @@ fn turn_three_cranks(runs: &[(u32, u32)]) {
     }
 }
 
-/// With their pins in line three cranks laid flat lose rank whatever rows are chosen: refused for
-/// that, and not for a contradiction, though nothing holds to rounding there.
+/// With their pins in line cranks laid flat lose rank whatever rows are chosen: change points that
+/// are crossed part by part, each part reading the crossing of the one before.
 #[test]
-fn three_cranks_in_line_stop_where_they_are_flat() {
-    let text = parallelogram(&[[0.2, 0.0]], 60.0, true);
-    let (mut solver, mut path) = assembled(&parse(&text));
-    straight_to(&solver, &mut path, 1.2 * PI);
-    let blocked = solver
-        .follow(&path)
-        .expect_err("a change point with redundant rows");
-    assert!(
-        !matches!(blocked.reason, Reason::Contradiction(_)),
-        "{blocked:?}"
-    );
-    // As near as the rows set aside hold to 1e-9: rounding by the square of the distance.
-    assert!((solver.pose().drivers[0] - PI).abs() < 1e-3, "{blocked:?}");
-    assert!(solver.residual() < 1.1e-9);
+fn cranks_in_line_cross_their_change_points() {
+    for more in [
+        &[[0.2, 0.0]][..],
+        &[[0.05, 0.0]],
+        &[[0.37, 0.0]],
+        &[[-0.3, 0.0]],
+        &[[0.8, 0.0]],
+        &[[0.1, 0.0], [0.3, 0.0]],
+    ] {
+        let mechanism = parse(&parallelogram(more, 60.0, true));
+        let turning = mechanism.bodies.iter().enumerate();
+        let turning: Vec<_> = turning
+            .filter(|(_, body)| body.name != "coupler")
+            .map(|(place, _)| 3 * place + 2)
+            .collect();
+        for steps in [7, 30] {
+            let (mut solver, mut path) = assembled(&mechanism);
+            for step in 1..=2 * steps {
+                let angle = TAU / 6.0 + TAU * f64::from(step) / f64::from(steps);
+                straight_to(&solver, &mut path, angle);
+                solver
+                    .follow(&path)
+                    .unwrap_or_else(|blocked| panic!("{more:?}, {step} of {steps}: {blocked:?}"));
+                for &phi in &turning {
+                    // As what is interpolated next to a change point.
+                    let off = solver.pose().q[phi] - angle;
+                    assert!(off.abs() < 1e-9, "{more:?}, {step} of {steps}: {off:e}");
+                }
+            }
+        }
+    }
 }
 
 /// A change point is one for all rows: redundant ones elsewhere do not keep the mechanism from

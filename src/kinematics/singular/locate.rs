@@ -34,6 +34,9 @@ impl fmt::Display for SingularKind {
 
 /// The largest ε, in eps of the mechanism's size, that counts as rounding.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// The same where what is read comes from a crossing: how well that is interpolated, and more than
+/// the rounding of any mechanism that lies near the origin.
+const INTERPOLATED: f64 = 1e-10;
 /// Newton's corrections in the plane of α and τ. Where it converges quadratically a few are
 /// enough; where motions touch each of them takes a part of the distance, a third as a rule.
 const MAX_STEPS: usize = 60;
@@ -67,7 +70,12 @@ pub(super) fn find(block: &mut Reduced<'_>, reach: f64) -> Finding {
     });
     let mut near = None;
     if let Some(sheet) = critical {
-        if sheet.epsilon.abs() <= ROUNDING * block.extent() {
+        let rounding = if block.reads_crossings() {
+            INTERPOLATED
+        } else {
+            ROUNDING * block.extent()
+        };
+        if sheet.epsilon.abs() <= rounding {
             return crossing(block, sheet);
         }
         match vertex(&sheet, start) {

@@ -466,6 +466,12 @@ impl<'a> Reduced<'a> {
         self.equations().1.singular_values()
     }
 
+    /// Whether something that the block reads comes from a crossing.
+    pub(super) fn reads_crossings(&self) -> bool {
+        let mut kernels = self.before.iter();
+        kernels.any(|kernel| matches!(kernel, Kernel::Bridged(_)))
+    }
+
     /// The largest distance from the origin of a coordinate of the block, scaled, and of what its
     /// angles read: rounding is this many eps.
     pub(super) fn extent(&self) -> f64 {
