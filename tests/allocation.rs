@@ -154,6 +154,7 @@ fn a_step_of_the_solver_allocates_nothing() {
         ("chain", chain(20, Ground::Zigzag)),
         ("small lift", scissor_lift(2)),
         ("large lift", scissor_lift(12)),
+        ("very large lift", scissor_lift(20)),
         ("chain with a pin doubled", {
             let pin = "A_again = { type = \"revolute\", markers = [\"crank.A\", \"coupler_1.A\"] }";
             chain(5, Ground::Zigzag).replace("[drivers]", &format!("{pin}\n[drivers]"))

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use biela::fmi::{
     Category, Error, Failure, Instance as Fmu, Interface, MechanismModel, Sink, State, Status,
 };
-use common::{Instance, instance_of, shipped};
+use common::{Instance, instance_of, parse, shipped};
 
 /// Messages of a category, as they come.
 #[derive(Clone, Default)]
@@ -199,4 +199,67 @@ fn a_change_point_is_an_event_not_a_warning() {
         }
     }
     assert_eq!(passed, 2);
+}
+
+/// References in a row are read from a table, others one by one: both give the same, whichever
+/// bodies are outputs, and positions do not wait for rates.
+#[test]
+fn references_in_a_row_read_as_each_by_itself() {
+    let text = std::fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/mechanisms/four_bar.toml"
+    ));
+    let text = text.expect("it is shipped");
+    for bodies in [
+        None,
+        Some("'crank'"),
+        Some("'rocker', 'crank'"),
+        Some("'coupler', 'rocker'"),
+        Some("'rocker'"),
+        Some(""),
+    ] {
+        let outputs = bodies.map_or(String::new(), |list| format!("bodies = [{list}]\n"));
+        let text = text.replace("[outputs]\n", &format!("[outputs]\n{outputs}"));
+        let mut instance = started(instance_of(parse(&text), Interface::CoSimulation));
+        let reals: Vec<_> = instance.variables().iter().zip(0_u32..).collect();
+        let reals: Vec<_> = reals
+            .into_iter()
+            .filter(|(variable, _)| variable.kind.is_real())
+            .map(|(variable, reference)| (variable.name.clone(), reference))
+            .collect();
+        for (name, by) in [("crank_angle.position", 0.3), ("crank_angle.velocity", 2.0)] {
+            let input = reals
+                .iter()
+                .find(|(real, _)| real == name)
+                .expect("it has it");
+            let now = read(&mut instance, &[name])[0];
+            instance
+                .set_real(&[input.1], &[now + by])
+                .expect("an input");
+        }
+        instance.do_step(0.0, 0.1).expect("the crank turns freely");
+        for from in 0..reals.len() {
+            for to in from + 1..=reals.len() {
+                let row: Vec<_> = reals[from..to]
+                    .iter()
+                    .map(|(_, reference)| *reference)
+                    .collect();
+                let mut together = vec![0.0; row.len()];
+                instance.get_real(&row, &mut together).expect("it stands");
+                let reversed: Vec<_> = row.iter().rev().copied().collect();
+                let mut apart = vec![0.0; row.len()];
+                instance.get_real(&reversed, &mut apart).expect("it stands");
+                apart.reverse();
+                assert_eq!(together, apart, "{bodies:?}: {:?}", &reals[from..to]);
+            }
+        }
+        // Whose they are, too.
+        let rocker: Vec<_> = reals
+            .iter()
+            .filter(|(name, _)| name == "rocker.x")
+            .collect();
+        for (name, _) in rocker {
+            assert_eq!(read(&mut instance, &[name]), [0.4], "{bodies:?}");
+        }
+    }
 }

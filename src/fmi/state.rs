@@ -307,3 +307,23 @@ calls! {
         []
         [StepComplete StepInProgress StepFailed Terminated];
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Call, Interface, State};
+
+    #[test]
+    fn bits_and_lists_say_the_same() {
+        for &call in Call::ALL {
+            for interface in Interface::ALL {
+                for state in State::ALL {
+                    assert_eq!(
+                        call.is_allowed_in(interface, state),
+                        call.allowed_in(interface).contains(&state),
+                        "{call:?}, {interface}, {state}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -75,7 +75,7 @@ pub struct MechanismModel {
     /// Those of the committed pose.
     committed_rates: Vec<Jet>,
     rates: Rates,
-    /// The value references of all that bodies have, nine variables each.
+    /// The value references of what the bodies among the outputs have, nine variables each.
     row: Range<u32>,
     /// Their values where rates are fresh: position, velocity and acceleration of each.
     coordinates: Vec<f64>,
@@ -111,7 +111,7 @@ impl MechanismModel {
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             rates: Rates::new(home.q.len()),
-            coordinates: vec![0.0; 9 * mechanism.bodies.len()],
+            coordinates: vec![0.0; 9 * mechanism.outputs.bodies.len()],
             freshness: Freshness::Stale,
             path,
             progress: Progress::default(),
@@ -232,7 +232,8 @@ impl Model for MechanismModel {
         if places.len() <= 3 && places.clone().all(|place| place % 9 < 3) {
             self.refresh_pose(phase, log)?;
             for place in places.clone() {
-                self.coordinates[place] = self.solver.pose().q[place / 9 * 3 + place % 9];
+                let body = self.mechanism.outputs.bodies[place / 9].index();
+                self.coordinates[place] = self.solver.pose().q[3 * body + place % 9];
             }
         } else {
             self.refresh_rates(phase, log)?;
@@ -337,7 +338,7 @@ impl Settings {
     }
 }
 
-/// The value references of what bodies have, which stand together.
+/// The value references of what the bodies among the outputs have, which stand together.
 fn row(variables: &[Variable<Quantity>]) -> Range<u32> {
     let of_body = |variable: &Variable<_>| matches!(variable.quantity, Quantity::Body(..));
     let first = variables.iter().position(of_body).unwrap_or(0);

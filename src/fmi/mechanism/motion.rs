@@ -314,13 +314,14 @@ impl MechanismModel {
             self.solver
                 .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
                 .map_err(failed)?;
-            let (q, rates) = (&self.solver.pose().q, &self.rates);
-            let all = q.chunks_exact(3).zip(rates.velocity().chunks_exact(3));
-            let all = all.zip(rates.acceleration().chunks_exact(3));
-            for (body, ((q, v), a)) in self.coordinates.chunks_exact_mut(9).zip(all) {
-                body[..3].copy_from_slice(q);
-                body[3..6].copy_from_slice(v);
-                body[6..].copy_from_slice(a);
+            let q = &self.solver.pose().q;
+            let (velocity, acceleration) = (self.rates.velocity(), self.rates.acceleration());
+            let bodies = self.mechanism.outputs.bodies.iter();
+            for (to, body) in self.coordinates.chunks_exact_mut(9).zip(bodies) {
+                let own = 3 * body.index()..3 * body.index() + 3;
+                to[..3].copy_from_slice(&q[own.clone()]);
+                to[3..6].copy_from_slice(&velocity[own.clone()]);
+                to[6..].copy_from_slice(&acceleration[own]);
             }
             self.freshness = Freshness::Rates;
         }

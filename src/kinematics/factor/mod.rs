@@ -91,7 +91,7 @@ impl Condition {
         // Higham: more than five rounds are never needed in practice.
         for _ in 0..5 {
             operator.apply(probe);
-            norm = norm.max(norm1(probe));
+            norm = nan_or_larger(norm, norm1(probe));
             for (sign, value) in signs.iter_mut().zip(probe.iter()) {
                 *sign = 1.0_f64.copysign(*value);
             }
@@ -111,8 +111,13 @@ impl Condition {
             *value = if k % 2 == 0 { grown } else { -grown };
         }
         operator.apply(probe);
-        norm.max(2.0 * norm1(probe) / (3.0 * n))
+        nan_or_larger(norm, 2.0 * norm1(probe) / (3.0 * n))
     }
+}
+
+/// The larger of two numbers; unlike `f64::max` it keeps what is not a number.
+fn nan_or_larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
 }
 
 /// A matrix of which only products are to be had.
@@ -302,5 +307,72 @@ impl Factors for Lu {
             Self::Dense(lu) => lu.solve_transposed(b),
             Self::Sparse(lu) => lu.solve_transposed(b),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+    use proptest::prelude::*;
+
+    use super::{Condition, SparseLu};
+
+    const ORDER: usize = 12;
+
+    /// A dominant diagonal and some entries beside it.
+    fn matrix(values: &[f64]) -> (SparseLu, DMatrix<f64>) {
+        let beside = |k: usize| [k, (k + 3) % ORDER, (5 * k + 1) % ORDER];
+        let mut lu = SparseLu::new((0..ORDER).map(|k| beside(k).to_vec()).collect());
+        let mut dense = DMatrix::zeros(ORDER, ORDER);
+        lu.clear();
+        for k in 0..ORDER {
+            for (place, &column) in beside(k).iter().enumerate() {
+                let value = values[3 * k + place] + if column == k { 3.0 } else { 0.0 };
+                lu.add(k, column, value);
+                dense[(k, column)] += value;
+            }
+        }
+        lu.factorise(0.0).expect("it is regular");
+        (lu, dense)
+    }
+
+    proptest! {
+        /// Higham: such estimates are hardly ever below a third of the truth.
+        #[test]
+        fn estimates_come_near_the_truth_from_below(
+            values in prop::collection::vec(-1.0..1.0_f64, 3 * ORDER),
+            b in prop::collection::vec(0.0..1.0_f64, ORDER),
+            product in prop::collection::vec((0..ORDER, 0..ORDER, -1.0..1.0_f64), 1..30),
+        ) {
+            let (mut lu, dense) = matrix(&values);
+            let inverse = dense.try_inverse().expect("it is regular");
+            let row = (inverse.abs() * nalgebra::DVector::from_column_slice(&b)).max();
+            let mut other = DMatrix::zeros(ORDER, ORDER);
+            for &(row, column, value) in &product {
+                other[(row, column)] += value;
+            }
+            let rows = inverse * other;
+            let rows = rows.row_iter().map(|row| row.abs().sum());
+            let largest = rows.fold(0.0, f64::max);
+            let mut condition = Condition::new(ORDER);
+            for (estimate, truth) in [
+                (condition.largest_row(&mut lu, &b), row),
+                (condition.largest_row_of_product(&mut lu, &product), largest),
+            ] {
+                prop_assert!(estimate <= truth * (1.0 + 1e-12), "{estimate} {truth}");
+                prop_assert!(estimate >= 0.1 * truth, "{estimate} {truth}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_no_small_number() {
+        let (mut lu, _) = matrix(&[0.0; 3 * ORDER]);
+        let mut condition = Condition::new(ORDER);
+        let entries = [(0, 0, f64::NAN), (1, 1, 5.0)];
+        assert!(condition.largest_row_of_product(&mut lu, &entries).is_nan());
+        let mut b = [1.0; ORDER];
+        b[0] = f64::NAN;
+        assert!(condition.largest_row(&mut lu, &b).is_nan());
     }
 }

@@ -5,6 +5,8 @@ mod certify;
 mod corridor;
 mod estimate;
 mod neighbourhood;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 

@@ -149,7 +149,7 @@ impl Plan {
     /// Lets go of what proofs for earlier steps are kept for others.
     pub(super) fn forget_boxes(&mut self) {
         for kernel in &mut self.kernels {
-            if let Kernel::Coupled(kernel) = kernel {
+            if let Some(kernel) = kernel.coupled_mut() {
                 kernel.forget_box();
             }
         }
@@ -158,14 +158,8 @@ impl Plan {
     /// Lets sparse matrices choose their pivots anew; the plan has then to be factorised again.
     pub(super) fn forget_pivots(&mut self) {
         for kernel in &mut self.kernels {
-            match kernel {
-                Kernel::Coupled(kernel) => kernel.forget_pivots(),
-                Kernel::Bridged(bridged) => {
-                    if let Kernel::Coupled(kernel) = &mut bridged.kernel {
-                        kernel.forget_pivots();
-                    }
-                }
-                _ => {}
+            if let Some(kernel) = kernel.coupled_mut() {
+                kernel.forget_pivots();
             }
         }
     }
@@ -273,6 +267,15 @@ impl Plan {
 }
 
 impl Kernel {
+    /// The block of any equations that it is, or that a crossing stands for.
+    fn coupled_mut(&mut self) -> Option<&mut Coupled> {
+        match self {
+            Self::Coupled(kernel) => Some(kernel),
+            Self::Bridged(bridged) => bridged.kernel.coupled_mut(),
+            Self::Pinned(_) | Self::Dyad(_) | Self::Slide(_) => None,
+        }
+    }
+
     /// The rows of Phi that it satisfies.
     pub(super) fn rows(&self) -> &[usize] {
         match self {

@@ -2,7 +2,7 @@
 //!
 //! The test of [`estimate`](super::estimate) holds for any line near the motion, not only for the
 //! chord of a step that was taken. Tried along a line that goes on for many steps, from where one
-//! starts to where velocity and acceleration lead, it makes a corridor: for each place on the line
+//! starts to where velocity and acceleration lead, with A where that one ended, it makes a corridor: for each place on the line
 //! there is one root within its radius, and that moves continuously. A step both of whose ends are
 //! in the corridor keeps to the motion.
 //!
@@ -12,6 +12,7 @@
 use super::Coupled;
 use super::estimate::Passed;
 use crate::kinematics::plan::{Advance, Substep, Work};
+use crate::kinematics::system::nan_or_larger;
 
 /// A corridor is laid where a single step has c and a norm of K of up to this.
 const WORTH_A_CORRIDOR: f64 = 0.05;
@@ -21,8 +22,10 @@ const GOOD_CONTRACTION: f64 = 0.25;
 /// characteristic lengths.
 const MOST_STEPS: f64 = 200.0;
 const LARGEST_MOVE: f64 = 0.2;
-/// Its radius, in parts of how far the motion may be off its line.
-const ROOM: f64 = 4.0;
+/// Its radius at first, in parts of how far the motion may be off its line.
+const WIDE: f64 = 4.0;
+/// How much more a driver may stray from its chord in later steps than in the first one.
+const STRAYS: f64 = 2.0;
 /// Ends of steps are in it up to this part of its radius: the place on the line is not quite that
 /// of the driver.
 const WITHIN: f64 = 0.5;
@@ -63,9 +66,15 @@ impl Corridor {
         self.holds = false;
     }
 
-    /// How far along it the leading unknown is.
+    /// How far along it the leading unknown is. A block at rest has a line of no length, at whose
+    /// beginning it stays.
     fn along(&self, leading: f64) -> f64 {
-        (leading - self.start[self.leading]) / self.way[self.leading]
+        let moved = leading - self.start[self.leading];
+        if moved == 0.0 {
+            0.0
+        } else {
+            moved / self.way[self.leading]
+        }
     }
 }
 
@@ -97,12 +106,14 @@ impl Coupled {
         }
         let size = work.at.size();
         let lines = block.columns.iter().zip(&corridor.start).zip(&corridor.way);
-        let mut off = 0.0_f64;
+        let mut off = 0.0;
         for ((&column, start), way) in lines {
             let off_at = |value: f64, s: f64| (value - (start + s * way)).abs();
-            let farther =
-                off_at(substep.from[column], from).max(off_at(work.at.coordinate(column), to));
-            off = off.max(farther / work.system.column_scale(column, size));
+            let farther = nan_or_larger(
+                off_at(substep.from[column], from),
+                off_at(work.at.coordinate(column), to),
+            );
+            off = nan_or_larger(off, farther / work.system.column_scale(column, size));
         }
         if off > WITHIN * corridor.radius || off.is_nan() {
             return false;
@@ -137,13 +148,14 @@ impl Coupled {
         }
         let proof = &mut *self.proof;
         proof.known_radii.fill(AT_REST);
-        self.corridor.off_single = proof.next[0];
-        self.corridor.stray = 2.0 * substep.tubes.drivers[proof.drivers[0]];
+        // The rounding of drivers grows on the way; what it moves does so no more than that.
+        self.corridor.off_single = STRAYS * proof.next[0];
+        self.corridor.stray = STRAYS * substep.tubes.drivers[proof.drivers[0]];
         let steps = (GOOD_CONTRACTION / contraction).min(MOST_STEPS);
         self.lay_line(work, substep, steps);
         let passed = self.test_line(work, substep);
         self.proof.put_back(work);
-        for &column in &self.block.columns {
+        for &column in self.block.columns.iter().chain(&self.proof.known) {
             substep.tubes.region[column] = 0.0;
             substep.tubes.chord[column] = 0.0;
         }
@@ -153,8 +165,7 @@ impl Coupled {
         }
     }
 
-    /// Writes the line to the corridor and as chord. That of a block at rest has no length:
-    /// nothing is found on it later.
+    /// Writes the line to the corridor and as chord.
     fn lay_line(&mut self, work: &Work<'_>, substep: &mut Substep<'_>, steps: f64) {
         let Self {
             block, corridor, ..
@@ -185,19 +196,10 @@ impl Coupled {
     /// How the line passes the test, if it does.
     fn test_line(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> Option<Passed> {
         self.proof.slack.fill(0.0);
-        self.stand_on_line(work, 1.0);
+        self.stand_on_chord(work, substep, 1.0);
         self.evaluate_rows(work);
-        let astray = self.farthest();
-        self.stand_on_line(work, 0.5);
-        self.test_chord(work, substep, astray, ROOM).ok()
-    }
-
-    /// Moves the block's unknowns to a place on the line, from 0 to 1.
-    fn stand_on_line(&self, work: &mut Work<'_>, s: f64) {
-        let line = self.corridor.start.iter().zip(&self.corridor.way);
-        for (&column, (start, way)) in self.block.columns.iter().zip(line) {
-            work.at.set_coordinate(column, start + s * way);
-        }
+        let far = [self.drift(), self.farthest()];
+        self.test_chord(work, substep, far, WIDE).ok()
     }
 
     /// Whether unknowns found before stand where they do in the corridor.

@@ -2,15 +2,15 @@
 //!
 //! Here A(s) is the inverse of the Jacobian on the chord itself, so that K holds what the Jacobian
 //! changes by within the radii alone, which are of second order in the sub-step. How it changes
-//! along the chord only tells how much larger A(s) may be than A, the inverse at the end:
+//! along the chord only tells how much larger A(s) may be than A = J⁻¹ at the end of the sub-step:
 //!
-//! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J(z̄(1)))|, in the largest norm.
+//! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J)|, in the largest norm.
 //!
 //! The links of a long row of loops all turn alike: their changes in A J have signs and cancel,
-//! while bounds of them would add up with the square of the row's length. So c is twice what the
-//! Jacobian in the middle of the chord differs by, and what the chord leaves the rows open by comes
-//! from their values there, where that is largest. One radius r serves all unknowns, and the test
-//! is
+//! while bounds of them would add up with the square of the row's length. So c is taken from the
+//! Jacobian itself where that differs most, at the far end of the chord, and what the chord leaves
+//! the rows open by from their values in its middle. One radius r serves all unknowns, and the
+//! test is
 //!
 //! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all else that is open).
 //!
@@ -22,7 +22,7 @@ use super::{Coupled, Proof};
 use crate::kinematics::factor::Factors;
 use crate::kinematics::newton::STALLED;
 use crate::kinematics::plan::{Substep, Work};
-use crate::kinematics::system::Target;
+use crate::kinematics::system::{Target, nan_or_larger};
 
 /// What estimates are taken larger by.
 const MARGIN: f64 = 2.0;
@@ -30,9 +30,10 @@ const MARGIN: f64 = 2.0;
 /// What the estimate of a block needs besides.
 #[derive(Debug, Default)]
 pub(super) struct Estimate {
-    /// J in the middle minus J at the end: row, column, value.
+    /// J where the rows were evaluated last minus J where the block is factorised: row, column,
+    /// value.
     drift: Vec<(usize, usize, f64)>,
-    /// F in the middle.
+    /// F where the rows were evaluated last.
     gap: Vec<f64>,
 }
 
@@ -69,32 +70,40 @@ impl Coupled {
     ) -> Result<f64, Option<f64>> {
         substep.tubes.checked = true;
         self.lay_chord(work, substep);
-        let passed = self.test_chord(work, substep, 0.0, ROOM)?;
+        self.stand_on_chord(work, substep, 0.0);
+        self.evaluate_rows(work);
+        let drift = self.drift();
+        let passed = self.test_chord(work, substep, [drift, 0.0], ROOM)?;
         self.proof.next.fill(passed.next);
         Ok(passed.contraction)
     }
 
-    /// The test for the chord in `substep`, in whose middle the bodies are. `astray` is how far
-    /// off the motion an end of it may be, scaled; the radius tried first is `room` times what the
-    /// chord is off.
+    /// The test for the chord in `substep`, to whose middle the bodies go. `drift` is the norm of A
+    /// times what the Jacobian differs by at its far end, `astray` how far off the motion that end
+    /// may be, scaled; the radius tried first is `room` times what the chord is off.
     ///
     /// # Errors
     ///
     /// It is not passed; with c and the norm of K, if they are known.
     pub(super) fn test_chord(
         &mut self,
-        work: &Work<'_>,
+        work: &mut Work<'_>,
         substep: &mut Substep<'_>,
-        astray: f64,
+        [drift, astray]: [f64; 2],
         room: f64,
     ) -> Result<Passed, Option<f64>> {
-        self.evaluate_rows(work);
-        let drift = MARGIN * 2.0 * self.drift();
+        let drift = MARGIN * drift;
         if drift.is_nan() {
             return Err(None);
         }
         if drift >= LARGEST_CONTRACTION {
             return Err(Some(drift));
+        }
+        self.stand_on_chord(work, substep, 0.5);
+        self.evaluate_rows(work);
+        let proof = &mut *self.proof;
+        for (slack, rounding) in proof.slack.iter_mut().zip(&proof.row) {
+            *slack += rounding;
         }
         let larger = 1.0 / (1.0 - drift);
         let gap = larger * MARGIN * (self.farthest() + astray);
@@ -123,13 +132,14 @@ impl Coupled {
         Err(Some(1.0))
     }
 
-    /// Evaluates the rows at the pose in `work`, leaving alone what is factorised.
+    /// Evaluates the rows at the pose in `work`, leaving alone what is factorised; what rounding
+    /// may have left of them goes to `row`.
     pub(super) fn evaluate_rows(&mut self, work: &Work<'_>) {
         let Self { block, proof, .. } = self;
         let Proof {
             middle,
             estimate: Estimate { gap, .. },
-            slack,
+            row: rounding,
             ..
         } = &mut **proof;
         block.evaluate(work, middle, |local, value| {
@@ -139,13 +149,21 @@ impl Coupled {
                 // Its driver is at the end; `bend_around` has it.
                 Target::Driver(_) => 0.0,
             };
-            // What rounding left of the rows at both ends.
-            slack[local] += 2.0 * STALLED * value.rounding;
+            // What it leaves of the rows at both ends of a chord.
+            rounding[local] = 2.0 * STALLED * value.rounding;
         });
     }
 
-    /// The largest norm of A (J(z̄(½)) − J(z̄(1))).
-    fn drift(&mut self) -> f64 {
+    /// Moves all unknowns of the rows to a place on the chord in `substep`, from 0 to 1.
+    pub(super) fn stand_on_chord(&self, work: &mut Work<'_>, substep: &Substep<'_>, s: f64) {
+        for &column in self.block.columns.iter().chain(&self.proof.known) {
+            let place = substep.from[column] + s * substep.tubes.chord[column];
+            work.at.set_coordinate(column, place);
+        }
+    }
+
+    /// The norm of A times what the Jacobian differs by where the rows were evaluated last.
+    pub(super) fn drift(&mut self) -> f64 {
         let Proof {
             condition,
             middle,
@@ -161,7 +179,8 @@ impl Coupled {
     pub(super) fn farthest(&mut self) -> f64 {
         let gap = &mut self.proof.estimate.gap;
         self.jacobian.lu.solve(gap);
-        gap.iter().fold(0.0, |most, value| most.max(value.abs()))
+        gap.iter()
+            .fold(0.0, |most, value| nan_or_larger(most, value.abs()))
     }
 
     /// The largest components of |A| times what rows are open by apart from F in the middle, and
