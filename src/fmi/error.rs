@@ -3,6 +3,7 @@
 use super::UriError;
 use super::log::Category;
 use super::state::{Call, Interface, State};
+use crate::mechanism::shown;
 
 /// How a call ended, in the order of `fmi2Status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -83,7 +84,7 @@ pub enum Error {
         why: &'static str,
     },
     /// NaN or infinity.
-    #[error("`{name}` cannot be set to {value}: not a finite number")]
+    #[error("`{name}` cannot be set to {}: not a finite number", shown(*.value))]
     NotFinite {
         /// The variable or argument.
         name: String,
@@ -91,7 +92,7 @@ pub enum Error {
         value: f64,
     },
     /// Outside `min` and `max`.
-    #[error("`{name}` cannot be set to {value}: expected {}", range(*.min, *.max))]
+    #[error("`{name}` cannot be set to {}: expected {}", shown(*.value), range(*.min, *.max))]
     Range {
         /// The variable.
         name: String,
@@ -290,9 +291,9 @@ fn categories() -> String {
 
 fn range(min: Option<f64>, max: Option<f64>) -> String {
     match (min, max) {
-        (Some(min), Some(max)) => format!("{min} to {max}"),
-        (Some(min), None) => format!("at least {min}"),
-        (None, Some(max)) => format!("at most {max}"),
+        (Some(min), Some(max)) => format!("{} to {}", shown(min), shown(max)),
+        (Some(min), None) => format!("at least {}", shown(min)),
+        (None, Some(max)) => format!("at most {}", shown(max)),
         (None, None) => "any number".to_owned(),
     }
 }

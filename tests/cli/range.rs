@@ -71,6 +71,11 @@ fn range_tells_the_limits() {
         both.contains("tracer_x, from") && both.contains("\ntracer_y, from"),
         "{both}"
     );
+    let slider = stdout(&range(&["mechanisms/rack_drive.toml"]).success());
+    assert!(
+        slider.contains("  reciprocal condition 1.00 everywhere\n"),
+        "{slider}"
+    );
     for (arguments, expected) in [
         (
             &["mechanisms/pantograph.toml", "--plot", plot][..],
@@ -78,7 +83,7 @@ fn range_tells_the_limits() {
         ),
         (
             &["mechanisms/tlv.toml", "--driver", "side"],
-            "no driver `side`; expected `side_length`",
+            "--driver: no driver `side`; did you mean `side_length`?",
         ),
         (
             &["mechanisms/tlv.toml", "--plot", "x.pdf"],
