@@ -37,7 +37,7 @@ pub enum Failure {
 #[non_exhaustive]
 pub enum Error {
     /// The call belongs to the other interface.
-    #[error("{} is not for {interface}, for which this instance was made", call.name())]
+    #[error("not for {interface}, for which this instance was made")]
     Interface {
         /// The call.
         call: Call,
@@ -45,10 +45,7 @@ pub enum Error {
         interface: Interface,
     },
     /// The call is not allowed in the present state.
-    #[error(
-        "{} is not allowed in state {state}; it is allowed in {}",
-        call.name(), states(call.allowed_in(*interface))
-    )]
+    #[error("not allowed in state {state}, only in {}", states(call.allowed_in(*interface)))]
     State {
         /// The call.
         call: Call,
@@ -84,7 +81,7 @@ pub enum Error {
         why: &'static str,
     },
     /// NaN or infinity.
-    #[error("`{name}` cannot be set to {}: not a finite number", shown(*.value))]
+    #[error("`{name}` is {}: expected a finite number", shown(*.value))]
     NotFinite {
         /// The variable or argument.
         name: String,

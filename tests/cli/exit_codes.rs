@@ -146,7 +146,7 @@ fn bad_usage_exits_with_2() {
                 "--set",
                 "base=sqrt(-arm_length)",
             ],
-            "--set: `base` cannot be set to NaN: not a finite number",
+            "--set: `base` is NaN: expected a finite number",
         ),
         (
             &[
