@@ -175,6 +175,8 @@ mod tests {
             "0,1,start\n0.5,-2e-3,end\n",
             "  0   1\n# between\n0.5\t-2e-3\n",
             "time angle\n0 1\n0.5 -2e-3\n",
+            "0,1\n   \n0.5,-2e-3\n# end",
+            "0 1\n0.5 -2e-3\n# end",
         ] {
             let read = rows(text, None).expect(text);
             let numbers: Vec<_> = read.into_iter().map(|(_, row)| row).collect();
