@@ -112,8 +112,7 @@ impl Column {
     }
 
     fn belongs_to(&self, name: &str) -> bool {
-        let rest = self.name.strip_prefix(name);
-        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        is_of(&self.name, name)
     }
 
     pub(super) fn read(&self, motion: &Motion) -> f64 {
@@ -122,32 +121,28 @@ impl Column {
     }
 }
 
-/// That a marker or body exists, of which `name` is or would be a quantity, but is no output.
+/// Whether a variable has the name of its owner, or that and more: `crank.phi` is of `crank`.
+fn is_of(name: &str, owner: &str) -> bool {
+    let rest = name.strip_prefix(owner);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// Says that what would have a variable of this name exists, but is no output.
 fn no_output(name: &str, mechanism: &Mechanism) -> Option<String> {
-    let within = |owner: &str| {
-        let rest = name.strip_prefix(owner)?;
-        (rest.is_empty() || rest.starts_with('.')).then_some(())
-    };
-    let mut markers = (0..mechanism.markers.len()).map(MarkerId);
-    let marker = markers.find_map(|id| {
-        let path = mechanism.marker_path(id);
-        (!mechanism.outputs.markers.contains(&id)).then_some(())?;
-        within(&path)?;
-        Some(format!(
-            "marker `{path}` is no output; list it in `markers` of `[outputs]`"
-        ))
-    });
-    let mut bodies = (0..mechanism.bodies.len()).map(BodyId);
-    marker.or_else(|| {
-        bodies.find_map(|id| {
-            (!mechanism.outputs.bodies.contains(&id)).then_some(())?;
-            let body = &mechanism.bodies[id.index()].name;
-            within(body)?;
-            Some(format!(
-                "body `{body}` is no output; list it in `bodies` of `[outputs]`"
-            ))
-        })
-    })
+    let outputs = &mechanism.outputs;
+    let markers = (0..mechanism.markers.len()).map(MarkerId);
+    let markers = markers
+        .filter(|id| !outputs.markers.contains(id))
+        .map(|id| ("marker", mechanism.marker_path(id), "markers"));
+    let bodies = (0..mechanism.bodies.len()).map(BodyId);
+    let bodies = bodies
+        .filter(|id| !outputs.bodies.contains(id))
+        .map(|id| ("body", mechanism.bodies[id.index()].name.clone(), "bodies"));
+    let mut silent = markers.chain(bodies);
+    let (what, owner, list) = silent.find(|(_, owner, _)| is_of(name, owner))?;
+    Some(format!(
+        "{what} `{owner}` is no output; list it in `{list}` of `[outputs]`"
+    ))
 }
 
 /// The column, or what has columns, that may be meant by a name that is none.
