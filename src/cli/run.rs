@@ -45,6 +45,7 @@ pub(super) struct Run {
     /// Between two rows values go straight, before the first and after the last they hold, and
     /// at a time that stands twice they jump: as FMPy does it. Velocities are those of the
     /// columns .velocity, or else the slopes; accelerations those of .acceleration, or else zero.
+    /// Columns are separated by commas, semicolons, tabs or blanks.
     #[arg(short, long, value_name = "CSV")]
     input: Option<PathBuf>,
     /// Start time in seconds [default: the file's].
