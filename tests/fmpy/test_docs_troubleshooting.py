@@ -147,7 +147,7 @@ FILE_MESSAGES = [
 ]
 """Of the reader."""
 
-ANSWER = re.compile(r"^(?:error|warning)\[([a-z-]+)\]: (.*)$", re.MULTILINE)
+ANSWER = re.compile(r"^(?:error|warning)\[([a-z0-9-]+)\]: (.*)$", re.MULTILINE)
 
 SNAPSHOTS = sorted(
     {
@@ -188,7 +188,7 @@ def test_reviewed_answers_are_explained(code):
 
 def test_every_code_is_there():
     text = dict(SOURCES)["mechanism/diagnostic.rs"]
-    codes = set(re.findall(r'^    [A-Z_]+ = "([a-z-]+)",$', text, re.MULTILINE))
+    codes = set(re.findall(r'^    [A-Z0-9_]+ = "([a-z0-9-]+)",$', text, re.MULTILINE))
     assert codes == {code for heading, code, _ in rows() if heading == FILE_TABLE}
 
 
