@@ -125,7 +125,7 @@ make_environment() {
 }
 
 install_packages() {
-    say "installing the packages of $LOCK (420 MB on disk)"
+    say "installing the packages of $LOCK (550 MB on disk)"
     # Wheels only: a Python without wheels fails here at once, not in an hour of compiling.
     "$VENV_PYTHON" -m pip install --quiet --only-binary :all: --require-hashes -r "$LOCK" ||
         fail "the packages of $LOCK could not be installed (see pip's message above)" \

@@ -4,7 +4,7 @@ mod common;
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use biela::kinematics::{Path, Reason, Solver};
+use biela::kinematics::{Path, Rates, Reason, Solver};
 use biela::mechanism::{DriverId, Jet, ParameterId};
 use common::{assembled, parse, shipped};
 
@@ -147,10 +147,7 @@ fn times_that_parameters_disorder_are_refused_and_lose_nothing() {
     let Reason::Value(error) = &blocked.reason else {
         panic!("{blocked:?}");
     };
-    assert_eq!(
-        error.to_string(),
-        "driver `x` has no finite value with these parameter values"
-    );
+    assert_eq!(error.to_string(), "driver `x` has no finite value");
     // It stands where the second and third time meet, and can go back.
     assert!((solver.pose().parameters[0] - 1.0).abs() < 1e-9);
     solver.restore(&before);
@@ -158,6 +155,28 @@ fn times_that_parameters_disorder_are_refused_and_lose_nothing() {
     path.duration = 0.2;
     solver.follow(&path).expect("as before");
     assert!((solver.pose().q[0] - 1.0).abs() < 1e-15);
+}
+
+/// √(1 − t) ends with an endless slope, and has no value beyond. The mechanism is not to blame.
+#[test]
+fn a_motion_without_rates_is_named() {
+    let mut solver = wheel("'sqrt(1 - t)'");
+    let mut path = Path::new(solver.mechanism());
+    path.duration = 1.0;
+    solver.follow(&path).expect("a wheel turns freely");
+    let mut rates = Rates::new(3);
+    let motion = at(&solver, 1.0);
+    let error = solver
+        .solve_rates(|_| motion, &mut rates)
+        .expect_err("the slope is endless");
+    let expected = "driver `turn` has no finite velocity or acceleration";
+    assert_eq!(error.to_string(), expected);
+    path.start = 1.0;
+    let blocked = solver.follow(&path).expect_err("there is no value");
+    let Reason::Value(error) = &blocked.reason else {
+        panic!("{blocked:?}");
+    };
+    assert_eq!(error.to_string(), "driver `turn` has no finite value");
 }
 
 #[test]

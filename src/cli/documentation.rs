@@ -261,7 +261,7 @@ fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
             };
             let items: Vec<String> = (1..)
                 .zip(choices.items)
-                .map(|(number, (name, what))| format!("{number} {name}: {what}"))
+                .map(|(number, (name, what))| format!("{number} ({name}) {what}"))
                 .collect();
             let what = format!("{}: {}", variable.description, items.join("; "));
             return Some([

@@ -36,7 +36,7 @@ pub enum Failure {
 #[non_exhaustive]
 pub enum Error {
     /// The call belongs to the other interface.
-    #[error("{} is not for {interface}, for which this instance was made", call.name())]
+    #[error("not for {interface}, for which this instance was made")]
     Interface {
         /// The call.
         call: Call,
@@ -44,10 +44,7 @@ pub enum Error {
         interface: Interface,
     },
     /// The call is not allowed in the present state.
-    #[error(
-        "{} is not allowed in state {state}; it is allowed in {}",
-        call.name(), states(call.allowed_in(*interface))
-    )]
+    #[error("not allowed in state {state}, only in {}", states(call.allowed_in(*interface)))]
     State {
         /// The call.
         call: Call,
@@ -83,7 +80,7 @@ pub enum Error {
         why: &'static str,
     },
     /// NaN or infinity.
-    #[error("`{name}` cannot be set to {value}: not a finite number")]
+    #[error("`{name}` is {value}: expected a finite number")]
     NotFinite {
         /// The variable or argument.
         name: String,

@@ -41,6 +41,14 @@ pub enum Error {
         /// What the expression is for.
         what: String,
     },
+    /// The motion of a driver has no finite value, or no finite rates.
+    #[error("{driver} has no finite {quantity}")]
+    NoMotion {
+        /// The driver.
+        driver: String,
+        /// What it has not.
+        quantity: &'static str,
+    },
     /// A distance is to be held at a value that no distance can have.
     #[error("{what} would hold a distance at {value} m; a distance must be positive")]
     NotPositive {

@@ -277,7 +277,8 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] where the pose is singular and no rates exist.
+    /// [`Error::Singular`] where the pose is singular and no rates exist, [`Error::NoMotion`] for
+    /// rates of a driver that are not finite.
     pub fn solve_rates(
         &mut self,
         driver: impl Fn(DriverId) -> Jet,
@@ -285,8 +286,8 @@ impl Solver {
     ) -> Result<(), Error> {
         self.refresh()?;
         let finite = if self.has_unit() {
-            let driver = driver(DriverId(0));
-            self.flow.run(driver.first, driver.second, rates)
+            let Jet { first, second, .. } = driver(DriverId(0));
+            self.flow.run(first, second, rates)
         } else {
             for (index, jet) in self.host_drivers.iter_mut().enumerate() {
                 *jet = driver(DriverId(index));
@@ -301,7 +302,25 @@ impl Solver {
             self.plan.solve_rates(&mut work, &self.host_drivers);
             rates.is_finite()
         };
-        if finite { Ok(()) } else { Err(SINGULAR_HERE) }
+        if finite {
+            Ok(())
+        } else {
+            Err(self.why_no_rates(driver))
+        }
+    }
+
+    /// Why there are no finite rates for these rates of the drivers.
+    #[cold]
+    fn why_no_rates(&self, driver: impl Fn(DriverId) -> Jet) -> Error {
+        let mut drivers = (0..self.pose.drivers.len()).map(DriverId);
+        let endless = drivers.find(|&id| {
+            let Jet { first, second, .. } = driver(id);
+            !(first.is_finite() && second.is_finite())
+        });
+        endless.map_or(SINGULAR_HERE, |id| Error::NoMotion {
+            driver: self.system.describe_driver(id),
+            quantity: "velocity or acceleration",
+        })
     }
 
     /// Value, rate and acceleration of a measure of the mechanism at the present pose. Allocates

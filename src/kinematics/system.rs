@@ -287,13 +287,16 @@ impl System {
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] or [`Error::NotPositive`], naming the driver.
+    /// [`Error::NoMotion`] or [`Error::NotPositive`], naming the driver.
     pub fn check_drivers(&self, drivers: &[f64]) -> Result<(), Error> {
         for (&row, &value) in self.driver_rows.iter().zip(drivers) {
             let equation = &self.equations[row];
             let what = || equation.element.describe(&self.mechanism);
             if !value.is_finite() {
-                return Err(Error::NotFinite { what: what() });
+                return Err(Error::NoMotion {
+                    driver: what(),
+                    quantity: "value",
+                });
             }
             if !equation.constraint.admits(value) {
                 return Err(Error::NotPositive {
@@ -303,6 +306,12 @@ impl System {
             }
         }
         Ok(())
+    }
+
+    /// A driver as messages name it.
+    pub(super) fn describe_driver(&self, driver: DriverId) -> String {
+        let row = self.driver_rows[driver.index()];
+        self.equations[row].element.describe(&self.mechanism)
     }
 
     /// Fixes the whole turns of each angle row that is not a driver: the ones nearest the present

@@ -32,13 +32,13 @@ SetReal A 1 @crank_length 0.1 -> a fixed parameter, and initialization has ended
 SetInteger A 1 @rates 2 -> a fixed parameter, and initialization has ended
 SetRealInputDerivatives A 1 @crank.phi 1 1 -> only inputs have input derivatives
 # Values. What is right before what is wrong is not taken either.
-SetReal A 1 @crank_angle.position nan -> not a finite number
-SetReal A 1 @crank_angle.velocity inf -> not a finite number
-SetReal A 2 @crank_angle.position,@crank_angle.acceleration 1.3,-inf -> not a finite number
+SetReal A 1 @crank_angle.position nan -> expected a finite number
+SetReal A 1 @crank_angle.velocity inf -> expected a finite number
+SetReal A 2 @crank_angle.position,@crank_angle.acceleration 1.3,-inf -> expected a finite number
 SetReal A 2 @crank_angle.position,@rocker_length 1.3,0 -> cannot be set to 0: expected at least 0.001
 SetRealInputDerivatives A 1 @crank_angle.position 0 1 -> order 0 are not known; expected 1 or 2
 SetRealInputDerivatives A 2 @crank_angle.position,@crank_angle.position 1,3 1,1 -> order 3 are not known
-SetRealInputDerivatives A 1 @crank_angle.position 1 nan -> not a finite number
+SetRealInputDerivatives A 1 @crank_angle.position 1 nan -> expected a finite number
 # Output derivatives.
 GetRealOutputDerivatives A 1 9999 1 room -> no variable with value reference 9999
 GetRealOutputDerivatives A 1 @crank_angle.position 1 room -> `crank_angle.position` is no output
@@ -49,8 +49,8 @@ GetRealOutputDerivatives A 2 @crank.phi,@crank.phi 1,-2147483648 room -> cannot 
 DoStep A 0.5 0.1 1 -> is not where the last step ended, 0 s
 DoStep A 0 0 1 -> the step size 0 s is not positive
 DoStep A 0 -0.1 1 -> the step size -0.1 s is not positive
-DoStep A nan 0.1 1 -> `currentCommunicationPoint` cannot be set to NaN
-DoStep A 0 inf 1 -> `communicationStepSize` cannot be set to inf
+DoStep A nan 0.1 1 -> `currentCommunicationPoint` is NaN
+DoStep A 0 inf 1 -> `communicationStepSize` is inf
 DoStep A 0 1.5 1 -> passes the stop time 1 s
 # Arrays.
 GetReal A 1 NULL room -> `vr` is a null pointer
@@ -79,7 +79,7 @@ GetDirectionalDerivative A 1 NULL 1 @crank_angle.position 1 room -> `vUnknown_re
 GetDirectionalDerivative A 1 @crank.phi 1 NULL 1 room -> `vKnown_ref` is a null pointer
 GetDirectionalDerivative A 1 @crank.phi 1 @crank_angle.position NULL room -> `dvKnown` is a null pointer
 GetDirectionalDerivative A 1 @crank.phi 1 @crank_angle.position 1 NULL -> `dvUnknown` is a null pointer
-GetDirectionalDerivative A 1 @crank.phi 1 @crank_angle.position nan room -> not a finite number
+GetDirectionalDerivative A 1 @crank.phi 1 @crank_angle.position nan room -> expected a finite number
 GetDirectionalDerivative A 1 @crank.phi 1 9999 1 room -> no variable with value reference 9999
 GetDirectionalDerivative A 1 9999 1 @crank_angle.position 1 room -> no variable with value reference 9999
 GetDirectionalDerivative A 1 @crank.phi 1 @crank_length 1 room -> `crank_length`: derivatives are taken by inputs
@@ -87,9 +87,9 @@ GetDirectionalDerivative A 1 @crank.phi 1 @crank.phi 1 room -> `crank.phi`: deri
 GetDirectionalDerivative A 1 @solver.rcond 1 @crank_angle.position 1 room -> `solver.rcond`: derivatives are taken of outputs
 GetDirectionalDerivative A 1 @rates 1 @crank_angle.position 1 room -> `rates`: derivatives are taken of outputs
 # Model exchange is another interface.
-SetTime A 1 -> is not for co-simulation
-GetDerivatives A 0 -> is not for co-simulation
-CompletedIntegratorStep A room room -> is not for co-simulation
+SetTime A 1 -> not for co-simulation
+GetDerivatives A 0 -> not for co-simulation
+CompletedIntegratorStep A room room -> not for co-simulation
 # FMU states; there is none in slot 0.
 GetFMUstate A NULL -> `FMUstate` is a null pointer
 SetFMUstate A NULL -> `FMUstate` is a null pointer
@@ -109,20 +109,20 @@ SetDebugLogging A 1 2 logEvents,logNothing -> no log category `logNothing`; expe
 
 /// The same in state `instantiated`.
 const REFUSED_BEFORE: &str = "
-SetupExperiment A nan NULL -> `startTime` cannot be set to NaN
-SetupExperiment A 0 inf -> `stopTime` cannot be set to inf
+SetupExperiment A nan NULL -> `startTime` is NaN
+SetupExperiment A 0 inf -> `stopTime` is inf
 SetupExperiment A 2 1 -> the stop time 1 s is before the start time 2 s
 SetInteger A 1 @rates 0 -> expected 1 to 3
 SetInteger A 2 @rates,@extrapolation 2,3 -> expected 1 to 2
 SetInteger A 1 @rates -2147483648 -> expected 1 to 3
 SetReal A 1 @crank_length -1 -> expected at least 0.001
-SetReal A 1 @crank_length nan -> not a finite number
+SetReal A 1 @crank_length nan -> expected a finite number
 ";
 
 /// The same in continuous-time mode of model exchange.
 const REFUSED_IN_EXCHANGE: &str = "
-SetTime A nan -> `time` cannot be set to NaN
-SetTime A inf -> `time` cannot be set to inf
+SetTime A nan -> `time` is NaN
+SetTime A inf -> `time` is inf
 CompletedIntegratorStep A NULL room -> `enterEventMode` is a null pointer
 CompletedIntegratorStep A room NULL -> `terminateSimulation` is a null pointer
 SetContinuousStates A 1 -> there are none
@@ -133,10 +133,10 @@ GetNominalsOfContinuousStates A 1 -> there are none
 SetReal A 1 @rocker_length 0.31 -> `rocker_length` cannot be set: it is a tunable parameter, which changes in event mode
 SetReal A 1 @crank_length 0.11 -> `crank_length` cannot be set: it is a fixed parameter
 SetReal A 1 @crank.phi 1 -> `crank.phi` cannot be set: it is an output
-SetReal A 1 @crank_angle.position nan -> not a finite number
-DoStep A 0 0.1 1 -> is not for model exchange
-SetRealInputDerivatives A 1 @crank_angle.position 1 1 -> is not for model exchange
-GetStatus A 0 room -> is not for model exchange
+SetReal A 1 @crank_angle.position nan -> expected a finite number
+DoStep A 0 0.1 1 -> not for model exchange
+SetRealInputDerivatives A 1 @crank_angle.position 1 1 -> not for model exchange
+GetStatus A 0 room -> not for model exchange
 NewDiscreteStates A room -> not allowed in state continuousTimeMode
 ";
 

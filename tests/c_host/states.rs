@@ -325,10 +325,10 @@ fn check_states_of(interface: Interface) {
                 let expected = if own.contains(&true) || function == "CancelStep" {
                     format!("not allowed in state {state}")
                 } else {
-                    format!("is not for {interface}")
+                    format!("not for {interface}")
                 };
                 let expected = match (function, interface) {
-                    ("CancelStep", Interface::ModelExchange) => "is not for model exchange",
+                    ("CancelStep", Interface::ModelExchange) => "not for model exchange",
                     _ => &expected,
                 };
                 assert!(reason.contains(expected), "{reason}");

@@ -24,8 +24,8 @@ NOT_RUN = {
     "python3 -m venv env": "for packages to be downloaded into",
     "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
     "biela watch piston.toml": "runs until it is ended; tests/watch.rs has tests of its own",
-    "python parameter_sweep.py": "test_examples.py runs it",
-    "python dask_sweep.py": "test_examples.py runs it",
+    "env/bin/python parameter_sweep.py": "test_examples.py runs it",
+    "env/bin/python dask_sweep.py": "test_examples.py runs it",
     'export PATH="$HOME/.local/bin:$PATH"': "of the user's own shell",
 }
 """Commands in blocks marked `norun`, each with the reason."""

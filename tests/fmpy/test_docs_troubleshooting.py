@@ -77,7 +77,8 @@ PARTS = {
     "it is in state …": "is none that an instance could be in: …",
     "this FMU provides no directional derivatives": "of a model without them, which none is",
     "FMU state set: … at t = … s": "an event",
-    "t = … s: … sub-steps, … of them checked, not proved; … iterations, residual …": "solver detail",
+    "t = … s: sub-steps ……, iterations …, residual …": "solver detail",
+    " (… checked, not proved)": "solver detail",
     ".hidden callback_log": "for the linker",
     ".private_extern _callback_log": "for the linker",
 }

@@ -279,9 +279,12 @@ impl MechanismModel {
                 checked,
                 ..
             } = self.progress;
+            let checked = match checked {
+                0 => String::new(),
+                checked => format!(" ({checked} checked, not proved)"),
+            };
             let message = format!(
-                "t = {} s: {substeps} sub-steps, {checked} of them checked, not proved; \
-                 {iterations} iterations, residual {:.1e}",
+                "t = {} s: sub-steps {substeps}{checked}, iterations {iterations}, residual {:.1e}",
                 self.time,
                 self.solver.residual()
             );
