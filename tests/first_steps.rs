@@ -143,7 +143,7 @@ fn what_is_the_same_everywhere_is_said_so() {
         "{text}"
     );
     assert!(
-        text.contains("  reciprocal condition 1.00e0 everywhere\n"),
+        text.contains("  reciprocal condition 1.00 everywhere\n"),
         "{text}"
     );
     let table = std::fs::read_to_string(folder.path().join("range.csv")).expect("it is written");

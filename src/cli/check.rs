@@ -217,8 +217,9 @@ fn describe_pose(solver: &mut Solver) -> String {
     }
     let _ = writeln!(
         out,
-        "\n  residual {:.1e}, reciprocal condition {rcond:.2e}",
-        solver.residual(),
+        "\n  residual {}, reciprocal condition {}",
+        scientific(solver.residual(), 1),
+        scientific(rcond, 2)
     );
     if rcond < NEARLY_SINGULAR {
         let _ = writeln!(
@@ -281,9 +282,9 @@ fn describe_modes(mechanism: &Mechanism, modes: &Modes) -> String {
         };
         let _ = writeln!(
             out,
-            "\n# {}: reciprocal condition {:.2e}{nearly}, largest move from the estimates {:.2}\n\n{}",
+            "\n# {}: reciprocal condition {}{nearly}, largest move from the estimates {:.2}\n\n{}",
             index + 1,
-            mode.rcond,
+            scientific(mode.rcond, 2),
             mode.distance,
             as_estimates(mechanism, &mode.q).trim_end()
         );
@@ -296,6 +297,15 @@ fn with_unit(kind: CoordinateKind, value: f64) -> String {
         CoordinateKind::Angle => format!("{:.6} deg", tidy(value.to_degrees())),
         _ => format!("{:.6} m", tidy(value)),
     }
+}
+
+/// A number with so many decimals and a power of ten, where it has one.
+pub(super) fn scientific(value: f64, decimals: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let text = format!("{value:.decimals$e}");
+    text.strip_suffix("e0").map_or(text.clone(), str::to_owned)
 }
 
 /// Zero where six decimals would show a negative zero.

@@ -7,7 +7,7 @@ use super::error::Error;
 use super::motion::Motion;
 use crate::drawing::{Axis, Chart, Line, Panel};
 use crate::fmi::{Kind, Order, Quantity, variables};
-use crate::mechanism::{BodyId, Mechanism, Unit};
+use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
 
 /// The lines of more bodies than this cannot be told apart.
 pub(super) const MOST_BODIES: usize = 8;
@@ -65,27 +65,21 @@ impl Column {
 
     /// Those that have one of the names, or belong to what has it: `crank` stands for all
     /// variables of that body, `coupler.P` for those of that marker.
-    pub(super) fn named(columns: &[Self], names: &[String]) -> Result<Vec<Self>, Error> {
-        for name in names {
-            if !columns.iter().any(|column| column.belongs_to(name)) {
-                let nearest = columns
-                    .iter()
-                    .flat_map(|column| {
-                        column
-                            .name
-                            .match_indices('.')
-                            .map(|(at, _)| &column.name[..at])
-                            .chain([column.name.as_str()])
-                    })
-                    .map(|known| (strsim::damerau_levenshtein(known, name), known))
-                    .min_by_key(|(distance, _)| *distance);
-                let help = nearest.map_or_else(String::new, |(_, known)| {
-                    format!("; did you mean `{known}`?")
-                });
-                return Err(Error::Usage(format!(
-                    "--variables: there is no `{name}`{help}"
-                )));
-            }
+    pub(super) fn named(
+        columns: &[Self],
+        names: &[String],
+        mechanism: &Mechanism,
+    ) -> Result<Vec<Self>, Error> {
+        let names = names.iter().map(|name| name.trim());
+        let names: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
+        if names.is_empty() {
+            return Err(Error::Usage("--variables: no variable is named".to_owned()));
+        }
+        let belongs = |name| columns.iter().any(|column| column.belongs_to(name));
+        if let Some(name) = names.iter().find(|name| !belongs(name)) {
+            let why = no_output(name, mechanism)
+                .unwrap_or_else(|| format!("there is no `{name}`{}", suggestion(name, columns)));
+            return Err(Error::Usage(format!("--variables: {why}")));
         }
         let chosen = columns
             .iter()
@@ -118,14 +112,52 @@ impl Column {
     }
 
     fn belongs_to(&self, name: &str) -> bool {
-        let rest = self.name.strip_prefix(name);
-        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        is_of(&self.name, name)
     }
 
     pub(super) fn read(&self, motion: &Motion) -> f64 {
         self.quantity
             .read(&motion.solver, &motion.rates, &motion.driver_rates)
     }
+}
+
+/// Whether a variable has the name of its owner, or that and more: `crank.phi` is of `crank`.
+fn is_of(name: &str, owner: &str) -> bool {
+    let rest = name.strip_prefix(owner);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// Says that what would have a variable of this name exists, but is no output.
+fn no_output(name: &str, mechanism: &Mechanism) -> Option<String> {
+    let outputs = &mechanism.outputs;
+    let markers = (0..mechanism.markers.len()).map(MarkerId);
+    let markers = markers
+        .filter(|id| !outputs.markers.contains(id))
+        .map(|id| ("marker", mechanism.marker_path(id), "markers"));
+    let bodies = (0..mechanism.bodies.len()).map(BodyId);
+    let bodies = bodies
+        .filter(|id| !outputs.bodies.contains(id))
+        .map(|id| ("body", mechanism.bodies[id.index()].name.clone(), "bodies"));
+    let mut silent = markers.chain(bodies);
+    let (what, owner, list) = silent.find(|(_, owner, _)| is_of(name, owner))?;
+    Some(format!(
+        "{what} `{owner}` is no output; list it in `{list}` of `[outputs]`"
+    ))
+}
+
+/// The column, or what has columns, that may be meant by a name that is none.
+fn suggestion(name: &str, columns: &[Column]) -> String {
+    let names = || columns.iter().map(|column| column.name.as_str());
+    let mut owners = Vec::new();
+    for (owner, _) in names().filter_map(|name| name.split_once('.')) {
+        if !owners.contains(&owner) {
+            owners.push(owner);
+        }
+    }
+    let markers = names().filter_map(|name| Some(name.rsplit_once('.')?.0));
+    let mut further: Vec<&str> = markers.chain(names()).collect();
+    further.dedup();
+    help(name, &owners, &further).map_or_else(String::new, |help| format!("; {help}"))
 }
 
 /// The CSV: one column a quantity.

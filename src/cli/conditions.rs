@@ -8,9 +8,11 @@ use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::message::Message;
 use super::signals::Signals;
+use crate::fmi;
 use crate::kinematics::{self, Curve, Path, Solver, Start};
 use crate::mechanism::{
-    DriverId, DriverSource, ExpressionError, Mechanism, Motion, ParameterId, Variable,
+    DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Parameter, ParameterId, Unit,
+    Variable, help, not_finite, quoted, shown,
 };
 
 /// Options of all commands that move a mechanism away from its file's values.
@@ -29,12 +31,14 @@ impl Conditions {
     /// The parameters in force.
     pub(super) fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
         let mut values = mechanism.default_parameters();
+        let mut given = vec![false; values.len()];
         for assignment in &self.set {
             let (name, text) = split(assignment, "--set", "crank_length=120*mm")?;
             let id = mechanism.parameter_id(name).ok_or_else(|| {
                 let names = mechanism.parameters.iter().map(|p| p.name.as_str());
-                unknown("parameter", name, names)
+                unknown("--set", "parameter", name, names)
             })?;
+            once("--set", name, &mut given[id.index()])?;
             let parameter = &mechanism.parameters[id.index()];
             if parameter.derived {
                 return Err(Error::Usage(format!(
@@ -45,31 +49,46 @@ impl Conditions {
                 .parse_expression(text, None)
                 .map_err(|error| in_argument("--set", text, &error))?
                 .evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
-            let too_low = parameter.min.is_some_and(|min| value < min);
-            let too_high = parameter.max.is_some_and(|max| value > max);
-            if !value.is_finite() || too_low || too_high {
-                return Err(Error::Usage(format!(
-                    "--set: {value} is not a permitted value of `{name}`"
-                )));
-            }
+            check_limits(parameter, value)?;
             values[id.index()] = value;
         }
         mechanism.derive_parameters(&mut values);
         Ok(values)
     }
 
-    /// The mechanism with the motions of --drive prescribed.
-    pub(super) fn driven(&self, mechanism: &Mechanism) -> Result<Mechanism, Error> {
+    /// The mechanism with the motions of --drive prescribed, whose values and rates are finite at
+    /// the time `start` with these parameters.
+    pub(super) fn driven(
+        &self,
+        mechanism: &Mechanism,
+        parameters: &[f64],
+        start: f64,
+    ) -> Result<Mechanism, Error> {
         let mut driven = mechanism.clone();
+        let mut given = vec![false; driven.drivers.len()];
         for assignment in &self.drive {
             let (name, text) = split(assignment, "--drive", "crank_angle=60*deg + 10*t")?;
             let id = mechanism.driver_id(name).ok_or_else(|| {
                 let names = mechanism.drivers.iter().map(|d| d.name.as_str());
-                unknown("driver", name, names)
+                unknown("--drive", "driver", name, names)
             })?;
+            once("--drive", name, &mut given[id.index()])?;
             let motion = mechanism
                 .parse_expression(text, Some(Variable::Time))
                 .map_err(|error| in_argument("--drive", text, &error))?;
+            let at_start = motion.evaluate(
+                &|p: ParameterId| Jet::constant(parameters[p.index()]),
+                Jet::variable(start),
+            );
+            if let Some(what) = not_finite(at_start) {
+                let (time, whole) = (shown(start), quoted(text));
+                let error = ExpressionError {
+                    message: format!("at t = {time}, {what} of {whole} is not finite"),
+                    span: 0..text.len(),
+                    help: None,
+                };
+                return Err(in_argument("--drive", text, &error));
+            }
             driven.drivers[id.index()].source = DriverSource::Motion(Motion::Expression(motion));
         }
         Ok(driven)
@@ -91,9 +110,9 @@ impl Conditions {
         input: &Input,
     ) -> Result<Result<Solver, kinematics::Error>, Error> {
         let parameters = self.parameters(&input.mechanism)?;
-        let driven = Arc::new(self.driven(&input.mechanism)?);
-        let home_solver = input.assemble()?;
         let time = input.mechanism.simulation.start;
+        let driven = Arc::new(self.driven(&input.mechanism, &parameters, time)?);
+        let home_solver = input.assemble()?;
         Ok(start(home_solver, &driven, &parameters, time, |_| None))
     }
 
@@ -181,14 +200,50 @@ fn split<'a>(
         })
 }
 
+/// Refuses a second value for what has one.
+fn once(option: &str, name: &str, given: &mut bool) -> Result<(), Error> {
+    if std::mem::replace(given, true) {
+        return Err(Error::Usage(format!("{option}: `{name}` is given twice")));
+    }
+    Ok(())
+}
+
+/// Refuses what the FMU refuses, in its words.
+fn check_limits(parameter: &Parameter, value: f64) -> Result<(), Error> {
+    let name = parameter.name.clone();
+    let (min, max) = (parameter.min, parameter.max);
+    if !value.is_finite() {
+        let error = fmi::Error::NotFinite { name, value };
+        return Err(Error::Usage(format!("--set: {error}")));
+    }
+    if min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max) {
+        let unit = parameter.unit.filter(|unit| *unit != Unit::ONE);
+        let unit = unit.map_or_else(String::new, |unit| format!(" {}", unit.name));
+        let error = fmi::Error::Range {
+            name,
+            value,
+            min,
+            max,
+        };
+        return Err(Error::Usage(format!("--set: {error}{unit}")));
+    }
+    Ok(())
+}
+
 /// What to say of a name that stands for nothing.
-pub(super) fn unknown<'a>(what: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Error {
-    let names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
+pub(super) fn unknown<'a>(
+    option: &str,
+    what: &str,
+    name: &str,
+    names: impl Iterator<Item = &'a str>,
+) -> Error {
+    let names: Vec<_> = names.collect();
     let help = match names[..] {
-        [] => "the mechanism has none".to_owned(),
-        _ => format!("expected {}", names.join(", ")),
+        [] => Some("the mechanism has none".to_owned()),
+        _ => help(name, &names, &[]),
     };
-    Error::Usage(format!("no {what} `{name}`; {help}"))
+    let help = help.map_or_else(String::new, |help| format!("; {help}"));
+    Error::Usage(format!("{option}: no {what} `{name}`{help}"))
 }
 
 fn in_argument(option: &str, text: &str, error: &ExpressionError) -> Error {
@@ -197,8 +252,9 @@ fn in_argument(option: &str, text: &str, error: &ExpressionError) -> Error {
         .help
         .as_ref()
         .map_or_else(String::new, |help| format!("; {help}"));
-    Error::Usage(format!(
-        "{option}: {}{help}\n  {text}\n  {:column$}^",
-        error.message, ""
-    ))
+    let mut message = format!("{option}: {}{help}", error.message);
+    if !text.is_empty() {
+        message += &format!("\n  {text}\n  {:column$}^", "");
+    }
+    Error::Usage(message)
 }

@@ -243,7 +243,7 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
                 format!("turns fully; the mechanism is back after {turns} turns")
             }
             Some(range) => {
-                let end = |end| end_text(end, DriverId(index), &value);
+                let end = |end| end_text(end, DriverId(index), kind);
                 format!("down to {}; up to {}", end(&range.lower), end(&range.upper))
             }
         };

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use clap::builder::RangedU64ValueParser;
+use clap::builder::RangedI64ValueParser;
 
 use super::conditions::Conditions;
 use super::error::Error;
@@ -40,7 +40,8 @@ pub(super) struct Draw {
     #[arg(
         long,
         value_name = "PIXELS",
-        value_parser = RangedU64ValueParser::<u32>::new().range(16..=8192)
+        allow_negative_numbers = true,
+        value_parser = RangedI64ValueParser::<u32>::new().range(16..=8192)
     )]
     width: Option<u32>,
     /// Leave out the paths of the points of interest.

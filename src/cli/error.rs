@@ -21,8 +21,8 @@ pub(super) enum Error {
         error: kinematics::Error,
     },
     /// A run met a dead point.
-    #[error("{0}")]
-    DeadPoint(String),
+    #[error("{file}: {why}")]
+    DeadPoint { file: String, why: String },
     /// The command's arguments make no sense.
     #[error("{0}")]
     Usage(String),
@@ -57,7 +57,7 @@ impl Error {
 
     pub(super) fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Diagnosed | Self::Mechanism { .. } | Self::DeadPoint(_) => ExitCode::from(1),
+            Self::Diagnosed | Self::Mechanism { .. } | Self::DeadPoint { .. } => ExitCode::from(1),
             // Whoever closed the pipe had enough.
             Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => {
                 ExitCode::SUCCESS

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::conditions;
-use super::error::Error;
 use super::message::Message;
 use super::signals::Signals;
 use crate::kinematics::{Curve, Path, Rates, Reason, Solver};
@@ -68,7 +67,11 @@ impl Motion {
     }
 
     /// Goes on to `time`, from one point of the signals to the next.
-    pub(super) fn advance(&mut self, time: f64) -> Result<(), Error> {
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot, and where that is.
+    pub(super) fn advance(&mut self, time: f64) -> Result<(), String> {
         while self.solver.pose().time < time {
             let start = self.solver.pose().time;
             self.go(self.signals.next_point(start).min(time))?;
@@ -78,7 +81,7 @@ impl Motion {
             }
         }
         self.solve_rates()
-            .map_err(|error| Error::DeadPoint(format!("at t = {time} s: {error}")))
+            .map_err(|error| format!("at t = {time} s: {error}"))
     }
 
     /// Directs the drivers that follow signals to where these lead from here; whether any of
@@ -104,7 +107,7 @@ impl Motion {
     }
 
     /// Follows the drivers' curves until `time`.
-    fn go(&mut self, time: f64) -> Result<(), Error> {
+    fn go(&mut self, time: f64) -> Result<(), String> {
         self.aim();
         self.path.start = self.solver.pose().time;
         self.path.duration = time - self.path.start;
@@ -138,13 +141,19 @@ impl Motion {
             .filter(|(index, (driver, _))| {
                 driver.motion().is_some() || self.signals.has(DriverId(*index))
             })
-            .map(|(_, (driver, value))| format!("`{}` at {value:.9}", driver.name))
+            .map(|(_, (driver, value))| {
+                format!(
+                    "`{}` at {}",
+                    driver.name,
+                    driver.coordinate.kind.show(*value)
+                )
+            })
             .collect();
-        Err(Error::DeadPoint(format!(
+        Err(format!(
             "{why} at t = {:.9} s: the mechanism cannot go on, with {}",
             pose.time,
             moving.join(", ")
-        )))
+        ))
     }
 
     fn solve_rates(&mut self) -> Result<(), crate::kinematics::Error> {

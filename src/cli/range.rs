@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
+use super::check::scientific;
 use super::columns::{MOST_BODIES, axis, moves};
 use super::conditions::{self, Conditions};
 use super::error::Error;
@@ -16,7 +17,7 @@ use super::output::{is_stdout, print, write};
 use super::picture::{Format, PLOT_WIDTH};
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
 use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, in_line};
-use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit};
+use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit, shown};
 
 /// Find how far a driver can go.
 ///
@@ -89,7 +90,7 @@ impl Range {
         if let Some(name) = &self.driver {
             let driver = mechanism.driver_id(name).ok_or_else(|| {
                 let names = mechanism.drivers.iter().map(|d| d.name.as_str());
-                conditions::unknown("driver", name, names)
+                conditions::unknown("--driver", "driver", name, names)
             })?;
             return Ok(vec![driver]);
         }
@@ -127,7 +128,7 @@ fn describe(
         );
     } else {
         for (way, end) in [("down to", &range.lower), ("up to", &range.upper)] {
-            let _ = writeln!(text, "  {way:<8}{}", end_text(end, driver, &value));
+            let _ = writeln!(text, "  {way:<8}{}", end_text(end, driver, kind));
         }
     }
     for point in &range.crossings {
@@ -159,7 +160,7 @@ fn describe(
         };
     }
     if let Some(((worst, at), (best, _))) = extreme(|sample| Some(sample.rcond)) {
-        let [worst, best] = [worst, best].map(|rcond| format!("{rcond:.2e}"));
+        let [worst, best] = [worst, best].map(|rcond| scientific(rcond, 2));
         let _ = if worst == best {
             writeln!(text, "  reciprocal condition {worst} everywhere")
         } else {
@@ -169,7 +170,8 @@ fn describe(
     }
 }
 
-pub(super) fn end_text(end: &End, driver: DriverId, value: &impl Fn(f64) -> String) -> String {
+pub(super) fn end_text(end: &End, driver: DriverId, kind: CoordinateKind) -> String {
+    let value = |value: f64| with_unit(kind, value);
     match end {
         End::Turns(_) => "no limit".to_owned(),
         End::Singular(point) => format!("{}: {point}", value(point.drivers[driver.index()])),
@@ -181,21 +183,35 @@ pub(super) fn end_text(end: &End, driver: DriverId, value: &impl Fn(f64) -> Stri
             };
             format!("{}: {reason}", value(*at))
         }
-        End::NotFound { value: at } => format!("{} and farther: no limit was found", value(*at)),
+        // Where the search ended is no property of the mechanism.
+        End::NotFound { value: at } => {
+            format!("{} and farther: no limit was found", about(kind, *at))
+        }
     }
 }
 
 /// Ten decimals: limits are located to rounding.
 pub(super) fn with_unit(kind: CoordinateKind, value: f64) -> String {
-    let (value, unit) = match kind {
-        CoordinateKind::Angle => (value.to_degrees(), "deg"),
-        _ => (value, "m"),
-    };
-    // What is smaller is rounding.
-    let value = if value.abs() < 5e-11 { 0.0 } else { value };
+    let (value, unit) = in_unit(kind, value);
     let text = format!("{value:.10}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
+    // What is smaller is rounding.
+    let text = if text == "-0" { "0" } else { text };
     format!("{text} {unit}")
+}
+
+/// Four digits.
+fn about(kind: CoordinateKind, value: f64) -> String {
+    let (value, unit) = in_unit(kind, value);
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    format!("{} {unit}", shown(rounded))
+}
+
+fn in_unit(kind: CoordinateKind, value: f64) -> (f64, &'static str) {
+    match kind {
+        CoordinateKind::Angle => (value.to_degrees(), "deg"),
+        _ => (value, "m"),
+    }
 }
 
 fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
@@ -237,7 +253,7 @@ fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
         CoordinateKind::Angle => Unit::RADIAN,
         _ => Unit::METRE,
     };
-    let shown = |unit: Unit| unit.display.map_or(1.0, |display| display.factor);
+    let factor = unit.display.map_or(1.0, |display| display.factor);
     let line = |name: &str, look: usize, of: &dyn Fn(&Sample) -> f64| Line {
         name: name.to_owned(),
         look,
@@ -287,7 +303,7 @@ fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
             unit: axis(unit).unit,
         },
         at: (range.samples.iter())
-            .map(|sample| sample.driver * shown(unit))
+            .map(|sample| sample.driver * factor)
             .collect(),
         panels,
     }

@@ -19,7 +19,9 @@ use super::progress::Progress;
 use super::recording::Recording;
 use super::signals::Signals;
 use crate::drawing::{Sheet, animation};
-use crate::mechanism::{CoordinateKind, Driver, DriverSource, Mechanism, Motion as Prescribed};
+use crate::mechanism::{
+    CoordinateKind, Driver, DriverSource, Mechanism, Motion as Prescribed, shown,
+};
 
 /// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
@@ -45,6 +47,7 @@ pub(super) struct Run {
     /// Between two rows values go straight, before the first and after the last they hold, and
     /// at a time that stands twice they jump: as FMPy does it. Velocities are those of the
     /// columns .velocity, or else the slopes; accelerations those of .acceleration, or else zero.
+    /// Columns are separated by commas, semicolons, tabs or blanks.
     #[arg(short, long, value_name = "CSV")]
     input: Option<PathBuf>,
     /// Start time in seconds [default: the file's].
@@ -54,7 +57,7 @@ pub(super) struct Run {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     stop: Option<f64>,
     /// Time between rows in seconds [default: the file's].
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     step: Option<f64>,
     /// What to write and plot, separated by commas: variables such as crank.phi, or all of a
     /// body, marker, driver or measure by its name [default: in the CSV all; plotted drivers and
@@ -79,6 +82,11 @@ pub(super) struct Run {
 const MOST_ROWS: f64 = 1e9;
 /// More rows than this are not held for a picture.
 const MOST_PLOTTED: u64 = 1_000_000;
+/// Of a CSV larger than this, in bytes, one is told before.
+const LARGE: f64 = 2e9;
+/// Seventeen digits, which tell any two numbers apart, with sign, point and comma.
+const BYTES_PER_NUMBER: f64 = 20.0;
+
 impl Run {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
@@ -91,7 +99,7 @@ impl Run {
         ])?;
         let times = self.times(&input.mechanism)?;
         let parameters = self.conditions.parameters(&input.mechanism)?;
-        let mut driven = self.conditions.driven(&input.mechanism)?;
+        let mut driven = (self.conditions).driven(&input.mechanism, &parameters, times.start)?;
         let signals = match &self.input {
             Some(path) => Signals::read(path, &driven)?,
             None => Signals::default(),
@@ -113,10 +121,13 @@ impl Run {
             let told = Recording::of_interest(&all);
             (all, plotted, told)
         } else {
-            let chosen = Column::named(&all, &self.variables)?;
+            let chosen = Column::named(&all, &self.variables, &driven)?;
             (chosen.clone(), chosen.clone(), chosen)
         };
         let home_solver = input.assemble()?;
+        if let Some(size) = self.size(&times, &written) {
+            Message::Note(size).show();
+        }
         let mut results = Results {
             table: self.table(&written)?,
             record: format.map(|_| Record::new(plotted)),
@@ -130,7 +141,8 @@ impl Run {
             times.start,
         )
         .map_err(|error| input.error(error))?;
-        let outcome = results.follow(motion, &times, self.fills_terminal());
+        let file = input.source.name();
+        let outcome = results.follow(motion, file, &times, self.fills_terminal());
         if let (Some(path), Some(format), Some(mut record)) = (&self.plot, format, results.record) {
             if self.variables.is_empty()
                 && let Some([shown, moving]) = record.leave_out()
@@ -157,25 +169,34 @@ impl Run {
         let stop = self.stop.unwrap_or(simulation.stop);
         let step = self.step.unwrap_or(simulation.step);
         let refuse = |message: String| Err(Error::Usage(message));
-        if !(start.is_finite() && stop.is_finite() && stop >= start) {
+        for (option, value) in [("--start", start), ("--stop", stop), ("--step", step)] {
+            if !value.is_finite() {
+                return refuse(format!("{option} is {value}; expected a finite number"));
+            }
+        }
+        let [from, to] = [start, stop].map(shown);
+        if stop < start {
             return refuse(format!(
-                "cannot run from {start} s to {stop} s: the stop time must not be before the start"
+                "cannot run from {from} s to {to} s: the stop time must not be before the start"
             ));
         }
-        if !(step.is_finite() && step > 0.0) {
+        if step <= 0.0 {
+            let step = shown(step);
             return refuse(format!("--step is {step}; expected a positive time"));
         }
         // A last step shorter than this part of the others is rounding.
         let steps = ((stop - start) / step - 1e-9).ceil().max(0.0);
-        if steps > MOST_ROWS {
+        if steps >= MOST_ROWS {
+            let step = shown(step);
             return refuse(format!(
-                "a step of {step} s from {start} s to {stop} s makes {steps:.1e} rows"
+                "a step of {step} s from {from} s to {to} s makes more than {MOST_ROWS:e} rows"
             ));
         }
         let steps = steps as u64;
-        if self.plot.is_some() && steps >= MOST_PLOTTED {
+        let rows = steps + 1;
+        if self.plot.is_some() && rows > MOST_PLOTTED {
             return refuse(format!(
-                "--plot: {steps} steps are more than the {MOST_PLOTTED} of which a picture is made"
+                "--plot: {rows} rows are more than the {MOST_PLOTTED} of which a picture is made"
             ));
         }
         Ok(Times {
@@ -213,6 +234,20 @@ impl Run {
         let output = self.output.clone();
         let pictured = self.plot.is_some() || self.animate.is_some();
         output.or_else(|| (!pictured).then(|| PathBuf::from(STDOUT)))
+    }
+
+    /// How large a CSV file becomes, if that is much.
+    fn size(&self, times: &Times, columns: &[Column]) -> Option<String> {
+        let path = self.csv().filter(|path| !is_stdout(path))?;
+        let (rows, columns) = (times.steps + 1, columns.len() + 1);
+        let bytes = rows as f64 * columns as f64 * BYTES_PER_NUMBER;
+        (bytes > LARGE).then(|| {
+            format!(
+                "`{}` takes about {:.1} GB: {rows} rows of {columns} columns",
+                path.display(),
+                bytes / 1e9
+            )
+        })
     }
 
     /// Whether the CSV scrolls over the terminal.
@@ -265,8 +300,14 @@ struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Goes along with a motion; what is reached before an error is kept.
-    fn follow(&mut self, mut motion: Motion, times: &Times, quiet: bool) -> Result<(), Error> {
+    /// Goes along with a motion of a file's mechanism; what is reached before an error is kept.
+    fn follow(
+        &mut self,
+        mut motion: Motion,
+        file: &str,
+        times: &Times,
+        quiet: bool,
+    ) -> Result<(), Error> {
         let mut progress = Progress::new(times.steps, quiet);
         if let Some(table) = &mut self.table {
             table.write_header()?;
@@ -278,7 +319,10 @@ impl Results<'_> {
                 progress.clear();
                 notice.show();
             }
-            advanced?;
+            advanced.map_err(|why| Error::DeadPoint {
+                file: file.to_owned(),
+                why,
+            })?;
             self.add(&motion)?;
             progress.done(row);
         }

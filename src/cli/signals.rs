@@ -4,7 +4,9 @@ use std::path::Path;
 
 use super::error::Error;
 use crate::fmi::Order;
-use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
+use crate::mechanism::{
+    DriverId, DriverSource, Jet, Mechanism, Separated, comma_hint, help, quoted, shown,
+};
 
 /// Values of drivers over time, straight from each point to the next; before the first and after
 /// the last they hold. At a time that stands twice the value jumps: there and afterwards counts
@@ -28,7 +30,8 @@ const SAME: f64 = 1e-9;
 
 impl Signals {
     /// Reads a file as FMPy does: the first column is `time`, the others are the drivers'
-    /// variables, `crank_angle.position` or `crank_angle` for short.
+    /// variables, `crank_angle.position` or `crank_angle` for short. Columns are separated as in
+    /// the tables of a mechanism file.
     pub(super) fn read(path: &Path, mechanism: &Mechanism) -> Result<Self, Error> {
         let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
             path: path.to_owned(),
@@ -39,31 +42,52 @@ impl Signals {
     }
 
     fn parse(text: &str, mechanism: &Mechanism) -> Result<Self, String> {
-        let mut reader = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
-        let header = reader.headers().map_err(|error| error.to_string())?.clone();
-        if header.get(0) != Some("time") {
-            let found = header.get(0).unwrap_or_default();
+        let separated = Separated::new(text);
+        let mut rows = separated.rows();
+        let Some((_, header)) = rows.next() else {
+            return Err("it is empty; expected a line of column names, `time` first".to_owned());
+        };
+        let header = without_empty_end(&header, 0);
+        if header.first() != Some(&"time") {
+            let found = header.first().unwrap_or(&"");
             return Err(format!("the first column is `{found}`; expected `time`"));
         }
         let mut signals = Self::default();
         let mut places = Vec::new();
-        for name in header.iter().skip(1) {
+        for name in &header[1..] {
             places.push(signals.add(name, mechanism)?);
         }
-        for record in reader.records() {
-            let record = record.map_err(|error| error.to_string())?;
-            let line = record.position().map_or(0, csv::Position::line);
+        if places.is_empty() {
+            return Err("it has no column besides `time`".to_owned());
+        }
+        for (line, record) in rows {
+            let fields = without_empty_end(&record, header.len());
+            if fields.len() != header.len() {
+                let columns = if fields.len() == 1 {
+                    "column"
+                } else {
+                    "columns"
+                };
+                return Err(format!(
+                    "line {line} has {} {columns}; the first has names for {}",
+                    fields.len(),
+                    header.len()
+                ));
+            }
             let number = |index: usize| {
-                let field = record.get(index).unwrap_or_default();
+                let field = fields[index];
                 let number = field.parse().ok().filter(|number: &f64| number.is_finite());
-                number.ok_or_else(|| format!("line {line}: `{field}` is not a finite number"))
+                number.ok_or_else(|| {
+                    let hint = comma_hint(field);
+                    format!(
+                        "line {line}: {} is not a finite number{hint}",
+                        quoted(field)
+                    )
+                })
             };
             let time = number(0)?;
             if signals.times.last().is_some_and(|last| time < *last) {
-                return Err(format!("line {line}: time goes back to {time}"));
+                return Err(format!("line {line}: time goes back to {}", shown(time)));
             }
             signals.times.push(time);
             for (index, (signal, order)) in places.iter().enumerate() {
@@ -97,12 +121,15 @@ impl Signals {
             })
             .unwrap_or((name, 0));
         let driver = mechanism.driver_id(driver_name).ok_or_else(|| {
-            let drivers = mechanism.drivers.iter();
-            let known: Vec<_> = drivers.map(|d| format!("`{}.position`", d.name)).collect();
-            format!(
-                "column `{name}` is no variable of a driver; expected {}",
-                known.join(", ")
-            )
+            let names = || mechanism.drivers.iter().map(|driver| driver.name.as_str());
+            let of = |order: Order| names().map(move |name| format!("{name}.{}", order.suffix()));
+            let variables: Vec<String> = Order::ALL.into_iter().flat_map(of).collect();
+            let variables: Vec<&str> = variables.iter().map(String::as_str).collect();
+            let (positions, rates) = variables.split_at(mechanism.drivers.len());
+            let further: Vec<&str> = names().chain(rates.iter().copied()).collect();
+            let help = help(name, positions, &further);
+            let help = help.map_or_else(String::new, |help| format!("; {help}"));
+            format!("column {} is no variable of a driver{help}", quoted(name))
         })?;
         let known = self
             .signals
@@ -188,6 +215,16 @@ impl Signals {
             second: 0.0,
         }
     }
+}
+
+/// The fields of a row without empty ones at its end, which separators leave there; so many are
+/// kept.
+fn without_empty_end(record: &csv::StringRecord, kept: usize) -> Vec<&str> {
+    let mut fields: Vec<&str> = record.iter().collect();
+    while fields.len() > kept && fields.last() == Some(&"") {
+        fields.pop();
+    }
+    fields
 }
 
 impl Signal {

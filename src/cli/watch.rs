@@ -50,8 +50,10 @@ impl Watch {
     pub(super) fn run(self) -> Result<(), Error> {
         // What is wrong with the file may be mended while it is watched, the command not.
         if let Ok((input, _)) = read(&self.file)? {
-            self.conditions.parameters(&input.mechanism)?;
-            self.conditions.driven(&input.mechanism)?;
+            let start = input.mechanism.simulation.start;
+            let parameters = self.conditions.parameters(&input.mechanism)?;
+            self.conditions
+                .driven(&input.mechanism, &parameters, start)?;
         }
         let server = Server::new(self.port)?;
         // A closed pipe is no reason to stop: the browser may have the address already.

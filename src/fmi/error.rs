@@ -3,6 +3,7 @@
 use super::UriError;
 use super::log::Category;
 use super::state::{Call, Interface, State};
+use crate::mechanism::shown;
 
 /// How a call ended, in the order of `fmi2Status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -80,7 +81,7 @@ pub enum Error {
         why: &'static str,
     },
     /// NaN or infinity.
-    #[error("`{name}` is {value}: expected a finite number")]
+    #[error("`{name}` is {}: expected a finite number", shown(*.value))]
     NotFinite {
         /// The variable or argument.
         name: String,
@@ -88,7 +89,7 @@ pub enum Error {
         value: f64,
     },
     /// Outside `min` and `max`.
-    #[error("`{name}` cannot be set to {value}: expected {}", range(*.min, *.max))]
+    #[error("`{name}` cannot be set to {}: expected {}", shown(*.value), range(*.min, *.max))]
     Range {
         /// The variable.
         name: String,
@@ -287,9 +288,9 @@ fn categories() -> String {
 
 fn range(min: Option<f64>, max: Option<f64>) -> String {
     match (min, max) {
-        (Some(min), Some(max)) => format!("{min} to {max}"),
-        (Some(min), None) => format!("at least {min}"),
-        (None, Some(max)) => format!("at most {max}"),
+        (Some(min), Some(max)) => format!("{} to {}", shown(min), shown(max)),
+        (Some(min), None) => format!("at least {}", shown(min)),
+        (None, Some(max)) => format!("at most {}", shown(max)),
         (None, None) => "any number".to_owned(),
     }
 }

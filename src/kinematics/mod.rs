@@ -57,6 +57,7 @@ pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
 pub use element::Element;
+#[cfg(feature = "cli")]
 pub(crate) use error::in_line;
 pub use error::{Error, OpenJoint, Proof, Verdict};
 pub use fit::{Misfit, MisfitKind};

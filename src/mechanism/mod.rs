@@ -29,11 +29,18 @@ pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use lower::is_identifier;
 #[cfg(feature = "cli")]
 pub use lower::schema;
+#[cfg(feature = "cli")]
+pub(crate) use motion::not_finite;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
+pub(crate) use names::shown;
+#[cfg(feature = "cli")]
+pub(crate) use names::{help, quoted};
 pub use parameter::Parameter;
 pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
+#[cfg(feature = "cli")]
+pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
 
 /// A planar mechanism as its file describes it, checked for names, types and units, not yet for

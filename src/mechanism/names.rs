@@ -90,9 +90,7 @@ impl<'a, T: Copy> NameTable<'a, T> {
         let mut candidates: Vec<&str> = self.meanings.keys().copied().collect();
         // A hash map has no order of its own; the help must have one.
         candidates.sort_unstable();
-        let own = candidates.len();
-        candidates.extend(further);
-        did_you_mean(name, &candidates).or_else(|| list(&candidates[..own]))
+        help(name, &candidates, further)
     }
 }
 
@@ -106,9 +104,10 @@ impl<'a, T: Copy> FromIterator<(&'a str, T)> for NameTable<'a, T> {
     }
 }
 
-/// The nearest candidate, or else all of them if they are few.
-pub(super) fn help(name: &str, candidates: &[&str]) -> Option<String> {
-    did_you_mean(name, candidates).or_else(|| list(candidates))
+/// The nearest candidate, or else all of them if they are few; `further` ones may be meant too, but
+/// are not listed.
+pub(crate) fn help(name: &str, candidates: &[&str], further: &[&str]) -> Option<String> {
+    did_you_mean(name, &[candidates, further].concat()).or_else(|| list(candidates))
 }
 
 /// "did you mean `crank`?", if that is near.
@@ -179,7 +178,7 @@ pub(super) fn joined(candidates: &[&str], conjunction: &str) -> String {
 }
 
 /// A number as people write it: every digit, but no rows of zeros.
-pub(super) fn shown(number: f64) -> String {
+pub(crate) fn shown(number: f64) -> String {
     if number == 0.0 || (1e-4..1e7).contains(&number.abs()) {
         format!("{number}")
     } else {
@@ -188,7 +187,7 @@ pub(super) fn shown(number: f64) -> String {
 }
 
 /// A piece of the file in back quotes, on one line, cut where it is very long.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let mut shown: String = text
         .chars()
         .take(MAX_QUOTED_LENGTH)

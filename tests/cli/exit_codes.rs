@@ -66,14 +66,57 @@ fn bad_usage_exits_with_2() {
             &["run", "mechanisms/tlv.toml", "--stop", "-1"],
             "must not be before the start",
         ),
-        (&["run", "mechanisms/tlv.toml", "--step", "1e-300"], "rows"),
+        (
+            &["run", "mechanisms/tlv.toml", "--step", "1e-300"],
+            "makes more than 1e9 rows",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--step", "-1"],
+            "--step is -1; expected a positive time",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--stop", "inf"],
+            "--stop is inf; expected a finite number",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--start", "nan"],
+            "--start is NaN; expected a finite number",
+        ),
+        (
+            &[
+                "run",
+                "mechanisms/tlv.toml",
+                "--step",
+                "0.01",
+                "--stop",
+                "1e300",
+            ],
+            "a step of 0.01 s from 0 s to 1e300 s makes more than 1e9 rows",
+        ),
+        (
+            &[
+                "run",
+                "mechanisms/tlv.toml",
+                "--step",
+                "1e-6",
+                "--stop",
+                "1",
+                "-p",
+                "x.svg",
+            ],
+            "--plot: 1000001 rows are more than the 1000000 of which a picture is made",
+        ),
         (
             &["run", "mechanisms/tlv.toml", "--drive", "side_length"],
             "has no `=`",
         ),
         (
             &["run", "mechanisms/tlv.toml", "--drive", "side=1"],
-            "no driver `side`; expected `side_length`",
+            "--drive: no driver `side`; did you mean `side_length`?",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--drive", "foo=1"],
+            "--drive: no driver `foo`; expected `side_length`",
         ),
         (
             &[
@@ -86,11 +129,63 @@ fn bad_usage_exits_with_2() {
         ),
         (
             &["run", "mechanisms/tlv.toml", "--set", "bas=1"],
-            "no parameter `bas`",
+            "--set: no parameter `bas`; did you mean `base`?",
         ),
         (
             &["run", "mechanisms/tlv.toml", "--set", "base=0"],
-            "not a permitted value",
+            "--set: `base` cannot be set to 0: expected at least 0.001 m",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--set", "base=-1e300"],
+            "--set: `base` cannot be set to -1e300: expected at least 0.001 m",
+        ),
+        (
+            &[
+                "run",
+                "mechanisms/tlv.toml",
+                "--set",
+                "base=sqrt(-arm_length)",
+            ],
+            "--set: `base` is NaN: expected a finite number",
+        ),
+        (
+            &[
+                "run",
+                "mechanisms/tlv.toml",
+                "--set",
+                "base=1",
+                "-s",
+                "base = 1",
+            ],
+            "--set: `base` is given twice",
+        ),
+        (
+            &[
+                "draw",
+                "mechanisms/tlv.toml",
+                "-d",
+                "side_length=1",
+                "-d",
+                "side_length=1",
+            ],
+            "--drive: `side_length` is given twice",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--drive", "side_length="],
+            "--drive: the expression is empty; write a number or a formula over the parameters\n",
+        ),
+        (
+            &["run", "mechanisms/tlv.toml", "--drive", "side_length= 1/t"],
+            "--drive: at t = 0, the value of `1/t` is not finite\n  1/t\n  ^\n",
+        ),
+        (
+            &[
+                "draw",
+                "mechanisms/tlv.toml",
+                "--drive",
+                "side_length=sqrt(t)",
+            ],
+            "--drive: at t = 0, the velocity of `sqrt(t)` is not finite\n",
         ),
         (&["run", "mechanisms/tlv.toml", "--set", "base=t"], "--set"),
         (
@@ -119,7 +214,11 @@ fn bad_usage_exits_with_2() {
         ),
         (
             &["watch", "mechanisms/tlv.toml", "--drive", "side=1"],
-            "no driver `side`; expected `side_length`",
+            "no driver `side`; did you mean `side_length`?",
+        ),
+        (
+            &["draw", "mechanisms/tlv.toml", "--width", "-5"],
+            "-5 is not in 16..=8192",
         ),
         (
             &["export", "mechanisms/tlv.toml", "--runtime", "mechanisms"],

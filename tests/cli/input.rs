@@ -55,6 +55,19 @@ fn run_follows_the_values_of_a_file() {
     let csv = stdout(&run(content, &[]).success());
     assert!((column(&csv, "side_length.velocity")[4] - 0.15).abs() < 1e-12);
     assert!((column(&csv, "side_length.acceleration")[4] - 0.5).abs() < 1e-12);
+    // Whatever separates the columns, and however lines begin and end.
+    for content in [
+        "time;side_length\n1;0.3\n3;0.5\n",
+        "time\tside_length\n1\t0.3\n3\t0.5\n",
+        "\u{feff}time  side_length\r\n 1 0.3\r\n3 0.5",
+        "\u{feff}time,side_length\r\n1,0.3\r\n3,0.5\r\n",
+        "time,side_length,\n1,0.3,\n   \n3,0.5,\n# end",
+    ] {
+        let csv = stdout(&run(content, &[]).success());
+        let position = column(&csv, "side_length.position");
+        let expected = [0.3, 0.3, 0.3, 0.35, 0.4, 0.45, 0.5, 0.5, 0.5];
+        assert!(near(&position, &expected), "{content}: {position:?}");
+    }
     for (content, more, expected) in [
         (
             "t,side_length\n0,0.3\n",
@@ -64,7 +77,29 @@ fn run_follows_the_values_of_a_file() {
         (
             "time,side\n0,0.3\n",
             &[],
-            "column `side` is no variable of a driver; expected `side_length.position`",
+            "column `side` is no variable of a driver; did you mean `side_length.position`?",
+        ),
+        (
+            "time,foo\n0,0.3\n",
+            &[],
+            "column `foo` is no variable of a driver; expected `side_length.position`\n",
+        ),
+        (
+            "",
+            &[],
+            "it is empty; expected a line of column names, `time` first",
+        ),
+        ("# nothing", &[], "it is empty"),
+        ("time\n0\n", &[], "it has no column besides `time`"),
+        (
+            "time;side_length\n0;0,3\n",
+            &[],
+            "line 2: `0,3` is not a finite number; decimals stand after a point",
+        ),
+        (
+            "# a comment\ntime,side_length\n0,0.3\n\n1\n",
+            &[],
+            "line 5 has 1 column; the first has names for 2",
         ),
         (
             "time,side_length\n0,x\n",
@@ -90,7 +125,7 @@ fn run_follows_the_values_of_a_file() {
         (
             "time,side_length\n0,0.3,1\n",
             &[],
-            "found record with 3 fields",
+            "line 2 has 3 columns; the first has names for 2",
         ),
         (
             "time,side_length\n0,0.3\n",

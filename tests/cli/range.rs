@@ -71,6 +71,20 @@ fn range_tells_the_limits() {
         both.contains("tracer_x, from") && both.contains("\ntracer_y, from"),
         "{both}"
     );
+    // Numbers of few digits where more say nothing.
+    for (file, expected) in [
+        (
+            "mechanisms/scotch_yoke.toml",
+            "  reciprocal condition 1.00 everywhere\n",
+        ),
+        (
+            "mechanisms/pick_and_place.toml",
+            "  up to   10.04 m and farther: no limit was found\n",
+        ),
+    ] {
+        let text = stdout(&range(&[file]).success());
+        assert!(text.contains(expected), "{text}");
+    }
     for (arguments, expected) in [
         (
             &["mechanisms/pantograph.toml", "--plot", plot][..],
@@ -78,7 +92,7 @@ fn range_tells_the_limits() {
         ),
         (
             &["mechanisms/tlv.toml", "--driver", "side"],
-            "no driver `side`; expected `side_length`",
+            "--driver: no driver `side`; did you mean `side_length`?",
         ),
         (
             &["mechanisms/tlv.toml", "--plot", "x.pdf"],

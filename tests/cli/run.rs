@@ -1,6 +1,6 @@
 //! `biela run`: the table that it writes, and what stops it.
 
-use crate::program::{biela, column, stderr, stdout};
+use crate::program::{altered, biela, column, stderr, stdout};
 
 #[test]
 fn run_writes_exact_rates() {
@@ -100,9 +100,12 @@ fn run_stops_at_a_dead_point_and_keeps_the_rows_before() {
     let time = column(&stdout(&assert), "time");
     assert_eq!(time.last(), Some(&2.5));
     let message = stderr(&assert);
-    assert!(message.contains("dead point"), "{message}");
     assert!(
-        message.contains("`side_length` at 0.650000000"),
+        message.starts_with("error: mechanisms/tlv.toml: dead point"),
+        "{message}"
+    );
+    assert!(
+        message.contains("with `side_length` at 0.650000000 m"),
         "{message}"
     );
     assert!(
@@ -142,7 +145,10 @@ fn run_writes_the_variables_that_are_asked_for() {
         csv.lines().next().expect("there is a header").to_owned()
     };
     assert_eq!(
-        header(&["--variables", "crank.phi,coupler.P,transmission.velocity"]),
+        header(&[
+            "--variables",
+            "crank.phi, coupler.P ,transmission.velocity,"
+        ]),
         "time,crank.phi,coupler.P.x,coupler.P.y,coupler.P.vx,coupler.P.vy,coupler.P.ax,coupler.P.ay,\
          transmission.velocity"
     );
@@ -151,10 +157,60 @@ fn run_writes_the_variables_that_are_asked_for() {
         "time,crank_angle.position,crank_angle.velocity,crank_angle.acceleration,crank.x,"
     ));
     assert!(all.ends_with(",transmission.acceleration"));
-    let assert = biela(&["run", "mechanisms/four_bar.toml", "--variables", "cupler.P"]).code(2);
-    let message = stderr(&assert);
+    let refusal =
+        |file: &str, names: &str| stderr(&biela(&["run", file, "--variables", names]).code(2));
+    for (names, expected) in [
+        (
+            "cupler.P",
+            "there is no `cupler.P`; did you mean `coupler.P`?",
+        ),
+        (
+            "transmission.volocity",
+            "there is no `transmission.volocity`; did you mean `transmission.velocity`?",
+        ),
+        (
+            "foo",
+            "there is no `foo`; expected `crank_angle`, `crank`, `coupler`, `rocker` or \
+             `transmission`",
+        ),
+        (
+            "crank.phi, rocker.B.x",
+            "marker `rocker.B` is no output; list it in `markers` of `[outputs]`",
+        ),
+        ("", "no variable is named"),
+        (" , ", "no variable is named"),
+    ] {
+        let message = refusal("mechanisms/four_bar.toml", names);
+        assert_eq!(message, format!("error: --variables: {expected}\n"));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let narrowed = [("[outputs]\n", "[outputs]\nbodies = [\"rocker\"]\n")];
+    let file = altered(folder.path(), "four_bar", &narrowed);
+    let message = refusal(&file, "crank.phi");
     assert!(
-        message.contains("no `cupler.P`; did you mean `coupler.P`?"),
+        message.contains("body `crank` is no output; list it in `bodies` of `[outputs]`"),
         "{message}"
     );
+}
+
+#[test]
+fn run_tells_how_large_a_file_becomes() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("out.csv");
+    let file = file.to_str().unwrap();
+    // A dead point is near, so that nothing large is written.
+    let run = |stop: &str, output: &str| {
+        let drive = "side_length = 0.649999 + t";
+        let mut arguments = vec!["run", "mechanisms/tlv.toml", "--drive", drive];
+        arguments.extend(["--variables", "arm.phi", "--step", "0.01"]);
+        arguments.extend(["--stop", stop, "--output", output]);
+        stderr(&biela(&arguments).code(1))
+    };
+    // 2 columns of 20 bytes.
+    let message = run("1e6", file);
+    let note = format!("note: `{file}` takes about 4.0 GB: 100000001 rows of 2 columns\n");
+    assert!(message.starts_with(&note), "{message}");
+    for message in [run("4e5", file), run("1e6", "-")] {
+        assert!(message.starts_with("error: "), "{message}");
+    }
 }

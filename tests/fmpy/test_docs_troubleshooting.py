@@ -41,7 +41,6 @@ PARTS = {
     "…*deg + 2*pi*t": "note: nothing moves; …",
     "crank_angle=60*deg + 10*t": "the example for --drive",
     "crank_length=120*mm": "the example for --set",
-    "; did you mean `…`?": "--variables: there is no `…`…",
     "beyond, …, redundant up to here": "… at t = … s: the mechanism cannot go on, with …",
     "about the solver": "cannot be set: it is …",
     "the running program": "cannot read `…`",

@@ -413,7 +413,7 @@ fn function_help(name: &str) -> Option<String> {
         "sgn" | "signum" => "sign",
         "fabs" => "abs",
         "fmod" | "rem" => "mod",
-        _ => return names::help(name, &FUNCTIONS.map(|(known, _)| known)),
+        _ => return names::help(name, &FUNCTIONS.map(|(known, _)| known), &[]),
     };
     Some(format!("did you mean `{ours}`?"))
 }

@@ -185,7 +185,7 @@ impl<'a> Context<'a> {
             let key = entry.name();
             if !legal.contains(&key) {
                 let message = format!("unknown key {} in {}", quoted(key), fields.subject);
-                let help = names::help(key, legal);
+                let help = names::help(key, legal, &[]);
                 self.error_with_help(code::UNKNOWN_KEY, entry.key.span(), message, help);
             }
         }
@@ -449,7 +449,7 @@ impl<'a> Context<'a> {
         }
         let words: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();
         let message = format!("no {what} {}", quoted(text));
-        self.error_with_help(code, value.span(), message, names::help(text, &words));
+        self.error_with_help(code, value.span(), message, names::help(text, &words, &[]));
         None
     }
 }

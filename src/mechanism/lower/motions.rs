@@ -3,6 +3,7 @@
 use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
+use crate::mechanism::motion::not_finite;
 use crate::mechanism::names::shown;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{
@@ -131,12 +132,7 @@ impl<'a> Context<'a> {
         let mut in_force = MotionInForce::new(motion, values.len());
         in_force.set_parameters(|id| Jet::constant(values[id.index()].unwrap_or(0.0)));
         let start = in_force.evaluate(Jet::variable(start_time));
-        let derivatives = [
-            (start.value, "the value"),
-            (start.first, "the velocity"),
-            (start.second, "the acceleration"),
-        ];
-        if let Some((_, what)) = derivatives.iter().find(|(value, _)| !value.is_finite()) {
+        if let Some(what) = not_finite(start) {
             self.not_finite(
                 value.span(),
                 &format!("at t = {}, {what}", shown(start_time)),

@@ -188,6 +188,18 @@ impl<N: Number> MotionInForce<N> {
     }
 }
 
+/// What of a motion, evaluated over time, is not finite: the first of value, velocity and
+/// acceleration.
+pub(crate) fn not_finite(motion: Jet) -> Option<&'static str> {
+    let parts = [
+        (motion.value, "the value"),
+        (motion.first, "the velocity"),
+        (motion.second, "the acceleration"),
+    ];
+    let (_, what) = parts.into_iter().find(|(part, _)| !part.is_finite())?;
+    Some(what)
+}
+
 impl MotionTable {
     fn evaluate<N: Number>(&self, spline: &Spline<N>, t: N) -> N {
         let (times, values) = (spline.knots(), spline.values());

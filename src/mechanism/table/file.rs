@@ -1,7 +1,8 @@
 //! Tables in CSV files.
 
-use std::borrow::Cow;
 use std::fmt::Write as _;
+
+use super::separated::{Separated, comma_hint};
 
 /// Tables with more points are refused: each costs several hundred bytes in every instance.
 pub(in crate::mechanism) const MOST_POINTS: usize = 100_000;
@@ -55,14 +56,6 @@ pub(in crate::mechanism) enum TableFileError {
     },
 }
 
-fn comma_hint(found: &str) -> &'static str {
-    if found.contains(',') {
-        "; decimals stand after a point"
-    } else {
-        ""
-    }
-}
-
 fn no_column(name: &str, header: &[String]) -> String {
     if header.iter().all(|known| known.parse::<f64>().is_ok()) {
         return format!("it has no line of column names, so no column `{name}`");
@@ -80,9 +73,8 @@ pub(in crate::mechanism) type Row = (u64, [f64; 2]);
 impl TableFile {
     /// Reads two columns: those called `columns`, or the first two.
     ///
-    /// Columns are separated by commas, semicolons, tabs or, where there are none of these, by
-    /// blanks. Lines that start with `#` are skipped. The first other line has the columns' names
-    /// if `columns` asks for them, or if neither of its first two fields is a number.
+    /// The first line that is no comment has the columns' names if `columns` asks for them, or if
+    /// neither of its first two fields is a number.
     ///
     /// # Errors
     ///
@@ -91,23 +83,11 @@ impl TableFile {
         &self,
         columns: Option<[&str; 2]>,
     ) -> Result<Vec<Row>, TableFileError> {
-        let text = self.text.trim_start_matches('\u{feff}');
-        let (delimiter, text) = separated(text);
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .comment(Some(b'#'))
-            .delimiter(delimiter)
-            .trim(csv::Trim::All)
-            .flexible(true)
-            .from_reader(text.as_bytes());
+        let separated = Separated::new(&self.text);
         let mut places = [0, 1];
         let mut rows = Vec::new();
         let mut header = Vec::new();
-        // Reading from memory that holds valid UTF-8 does not fail.
-        for (index, record) in reader.records().flatten().enumerate() {
-            let line = record
-                .position()
-                .map_or(0, |place| line_of_record(&text, place));
+        for (index, (line, record)) in separated.rows().enumerate() {
             if index == 0 {
                 let mut used = record.iter().take(2);
                 if columns.is_some() || used.all(|field| field.parse::<f64>().is_err()) {
@@ -148,16 +128,6 @@ impl TableFile {
     }
 }
 
-/// The line on which a record stands; its place is before the lines that the reader skipped.
-fn line_of_record(text: &str, place: &csv::Position) -> u64 {
-    let rest = usize::try_from(place.byte()).map_or("", |byte| text.get(byte..).unwrap_or(""));
-    let skipped = rest
-        .lines()
-        .take_while(|line| line.is_empty() || line.starts_with('#'))
-        .count();
-    place.line() + skipped as u64
-}
-
 fn find_columns(names: [&str; 2], header: &[String]) -> Result<[usize; 2], TableFileError> {
     let mut places = [0; 2];
     for (place, name) in places.iter_mut().zip(names) {
@@ -170,28 +140,6 @@ fn find_columns(names: [&str; 2], header: &[String]) -> Result<[usize; 2], Table
             })?;
     }
     Ok(places)
-}
-
-/// What separates the columns: whichever the first line that is no comment has. Blanks are made
-/// commas, which leaves the lines where they are.
-fn separated(text: &str) -> (u8, Cow<'_, str>) {
-    let is_comment = |line: &str| line.starts_with('#');
-    let first = text
-        .lines()
-        .find(|line| !is_comment(line) && !line.trim().is_empty())
-        .unwrap_or_default();
-    let mut delimiters = [b'\t', b';', b','].into_iter();
-    if let Some(delimiter) = delimiters.find(|delimiter| first.as_bytes().contains(delimiter)) {
-        return (delimiter, text.into());
-    }
-    let lines = text.lines().map(|line| {
-        if is_comment(line) {
-            line.to_owned()
-        } else {
-            line.split_whitespace().collect::<Vec<_>>().join(",")
-        }
-    });
-    (b',', lines.collect::<Vec<_>>().join("\n").into())
 }
 
 #[cfg(test)]
@@ -227,6 +175,8 @@ mod tests {
             "0,1,start\n0.5,-2e-3,end\n",
             "  0   1\n# between\n0.5\t-2e-3\n",
             "time angle\n0 1\n0.5 -2e-3\n",
+            "0,1\n   \n0.5,-2e-3\n# end",
+            "0 1\n0.5 -2e-3\n# end",
         ] {
             let read = rows(text, None).expect(text);
             let numbers: Vec<_> = read.into_iter().map(|(_, row)| row).collect();

@@ -1,9 +1,12 @@
 //! Tables of points, whose numbers are expressions over the parameters.
 
 mod file;
+mod separated;
 
 pub(super) use file::MOST_POINTS;
 pub use file::TableFile;
+#[cfg(feature = "cli")]
+pub(crate) use separated::{Separated, comma_hint};
 
 use super::{Expression, Number, ParameterId};
 

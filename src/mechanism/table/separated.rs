@@ -1,0 +1,82 @@
+//! Numbers as text, column by column, as the usual programs write them.
+
+use std::borrow::Cow;
+
+/// A text of columns separated by commas, semicolons, tabs or, where there are none of these, by
+/// blanks. Lines that start with `#` are skipped, and so are empty ones and a byte order mark.
+#[derive(Debug)]
+pub(crate) struct Separated<'a> {
+    text: Cow<'a, str>,
+    delimiter: u8,
+}
+
+impl<'a> Separated<'a> {
+    /// What separates the columns is whichever the first line that is no comment has.
+    pub(crate) fn new(text: &'a str) -> Self {
+        let text = text.trim_start_matches('\u{feff}');
+        let first = text
+            .lines()
+            .find(|line| !is_comment(line) && !line.trim().is_empty())
+            .unwrap_or_default();
+        let mut delimiters = [b'\t', b';', b','].into_iter();
+        if let Some(delimiter) = delimiters.find(|delimiter| first.as_bytes().contains(delimiter)) {
+            let text = text.into();
+            return Self { text, delimiter };
+        }
+        // Commas for blanks leave the lines where they are.
+        let lines = text.lines().map(|line| {
+            if is_comment(line) {
+                line.to_owned()
+            } else {
+                line.split_whitespace().collect::<Vec<_>>().join(",")
+            }
+        });
+        Self {
+            text: lines.collect::<Vec<_>>().join("\n").into(),
+            delimiter: b',',
+        }
+    }
+
+    /// The rows, however many columns each has: the line, from 1, and the fields without the
+    /// blanks round them.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (u64, csv::StringRecord)> {
+        let reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .comment(Some(b'#'))
+            .delimiter(self.delimiter)
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .from_reader(self.text.as_bytes());
+        // Reading from memory that holds valid UTF-8 does not fail.
+        let records = reader.into_records().flatten();
+        let has_fields = |record: &csv::StringRecord| record.len() > 1 || record.get(0) != Some("");
+        records.filter(has_fields).map(|record| {
+            let line = record.position().map_or(0, |place| self.line(place));
+            (line, record)
+        })
+    }
+
+    /// The line on which a record stands; its place is before the lines that the reader skipped.
+    fn line(&self, place: &csv::Position) -> u64 {
+        let rest =
+            usize::try_from(place.byte()).map_or("", |byte| self.text.get(byte..).unwrap_or(""));
+        let skipped = rest
+            .lines()
+            .take_while(|line| line.is_empty() || is_comment(line))
+            .count();
+        place.line() + skipped as u64
+    }
+}
+
+fn is_comment(line: &str) -> bool {
+    line.starts_with('#')
+}
+
+/// What to say besides of a field that is no number.
+pub(crate) fn comma_hint(found: &str) -> &'static str {
+    if found.contains(',') {
+        "; decimals stand after a point"
+    } else {
+        ""
+    }
+}
