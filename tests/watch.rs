@@ -26,12 +26,13 @@ impl Watched {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("watched.toml");
         std::fs::write(&file, text).expect("it can be written");
+        let told = std::fs::File::create(folder.path().join("stderr")).expect("a file");
         let mut child = Command::new(env!("CARGO_BIN_EXE_biela"))
             .arg("watch")
             .arg(file)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
-            .stderr(Stdio::null())
+            .stderr(Stdio::from(told))
             .spawn()
             .expect("the program runs");
         let mut line = String::new();
@@ -43,6 +44,11 @@ impl Watched {
             address: address.trim_end_matches('/').to_owned(),
             folder,
         }
+    }
+
+    /// What stderr has been told.
+    fn told(&self) -> String {
+        std::fs::read_to_string(self.folder.path().join("stderr")).expect("it is text")
     }
 
     fn file(&self) -> PathBuf {
@@ -99,6 +105,12 @@ fn the_page_follows_the_file() {
     assert!(broken.contains("class=\"film\"") && broken.contains("<h1>pendulum</h1>"));
     std::fs::remove_file(watched.file()).unwrap();
     assert!(watched.get("/").contains("cannot read"));
+    // The terminal is told once of each.
+    assert!(watched.get("/").contains("cannot read"));
+    let told = watched.told();
+    for error in ["watched.toml:20:45", "error: cannot read "] {
+        assert_eq!(told.matches(error).count(), 1, "{told}");
+    }
 
     let renamed = text.replace("name = \"pendulum\"", "name = \"another\"");
     std::fs::write(watched.file(), renamed).unwrap();
@@ -134,4 +146,22 @@ fn only_this_machine_is_answered_and_only_what_there_is() {
     }
     // It goes on after that.
     assert!(watched.get("/version").parse::<u64>().is_ok());
+}
+
+#[test]
+fn a_port_that_is_taken_is_named() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port().to_string();
+    let ended = Command::new(env!("CARGO_BIN_EXE_biela"))
+        .args(["watch", "mechanisms/pendulum.toml", "--port", &port])
+        .output()
+        .unwrap();
+    assert_eq!(ended.status.code(), Some(2));
+    assert!(ended.stdout.is_empty());
+    let message = String::from_utf8(ended.stderr).unwrap();
+    assert!(
+        message.starts_with(&format!("error: cannot listen on port {port}: ")),
+        "{message}"
+    );
+    assert!(message.contains("--port names another"), "{message}");
 }

@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use super::error::Error;
 use super::estimates::as_estimates;
 use super::input::{Input, warn_of_misfits};
-use super::run::print;
+use super::output::print;
 use crate::kinematics::{self, Element, Modes, Path, Rates, Solver};
 use crate::mechanism::{CoordinateKind, DriverSource, Mechanism};
 
@@ -60,10 +60,9 @@ impl Check {
                 "--estimates is of --format text: the pose is in the JSON".to_owned(),
             ));
         }
-        let (report, ok) = json::report(&self.file, self.modes)?;
+        let (report, outcome) = json::report(&self.file, self.modes);
         print(&format!("{report:#}\n"))?;
-        // What is wrong has been told.
-        if ok { Ok(()) } else { Err(Error::Diagnosed) }
+        outcome
     }
 
     fn tell(self) -> Result<(), Error> {

@@ -4,7 +4,7 @@ use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
 use super::error::Error;
-use super::run::print;
+use super::output::print;
 
 /// Print what makes a shell complete the arguments of biela.
 #[derive(Args, Debug)]

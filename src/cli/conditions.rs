@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
+use super::message::Message;
 use super::signals::Signals;
 use crate::fmi;
 use crate::kinematics::{self, Curve, Path, Solver, Start};
@@ -174,10 +175,9 @@ pub(super) fn start(
         }
     }
     if let Start::Reassembled(_) = home_solver.start(&home, &path)? {
-        eprintln!(
-            "warning: no continuous motion leads from the file's own pose to these values: \
-             assembled there from the estimates, possibly in another assembly mode"
-        );
+        let warning = "no continuous motion leads from the file's own pose to these values: \
+                       assembled there from the estimates, possibly in another assembly mode";
+        Message::Warning(warning.to_owned()).show();
     }
     let mut solver = Solver::new(Arc::clone(driven))?;
     solver.restore(home_solver.pose());

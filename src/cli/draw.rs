@@ -8,6 +8,8 @@ use clap::builder::RangedI64ValueParser;
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
+use super::message::tell;
+use super::originals::Originals;
 use super::picture::Format;
 use crate::drawing::{Scene, Sheet};
 
@@ -54,17 +56,18 @@ impl Draw {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.output.as_deref().map_or(Ok(Format::Svg), Format::of)?;
         let input = Input::read(&self.file)?;
-        let mut solver = self.conditions.solver_at_start(&input)?;
-        let scene = Scene::new(&mut solver, !self.no_traces);
-        let sheet = Sheet::new(&scene, &solver.pose().q);
         let is_named = self.output.is_some();
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
+        Originals::new(&self.file, &input.mechanism).refuse_as(&[Some(&path)])?;
+        let mut solver = self.conditions.solver_at_start(&input)?;
+        let scene = Scene::new(&mut solver, !self.no_traces);
+        let sheet = Sheet::new(&scene, &solver.pose().q);
         let width = self.width.unwrap_or(sheet.width());
         format.write(&path, &sheet, width, self.transparent)?;
         if !is_named {
-            eprintln!("wrote {}", path.display());
+            tell(format_args!("wrote {}", path.display()));
         }
         Ok(())
     }

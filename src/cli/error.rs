@@ -3,13 +3,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::builder::styling::{AnsiColor, Style};
-
+use super::message::Message;
+use super::output::shown;
 use crate::fmi::PackageError;
 use crate::kinematics;
-
-/// As the renderer of file errors has it.
-const ERROR: Style = AnsiColor::BrightRed.on_default().bold();
 
 /// A command that could not do its work.
 #[derive(Debug, thiserror::Error)]
@@ -35,15 +32,15 @@ pub(super) enum Error {
         path: PathBuf,
         source: std::io::Error,
     },
-    /// A file cannot be written.
-    #[error("cannot write `{}`: {source}", path.display())]
+    /// A file, or stdout for `-`, cannot be written.
+    #[error("cannot write {}: {source}", shown(path))]
     Write {
         path: PathBuf,
         source: std::io::Error,
     },
     /// Nobody can be served.
-    #[error("cannot listen: {0}")]
-    Listen(std::io::Error),
+    #[error("cannot listen on port {port}: {source}; --port names another, 0 a free one")]
+    Listen { port: u16, source: std::io::Error },
     /// The FMU cannot be put together.
     #[error(transparent)]
     Package(#[from] PackageError),
@@ -54,7 +51,7 @@ impl Error {
         match self {
             Self::Diagnosed => {}
             Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => {}
-            _ => anstream::eprintln!("{ERROR}error{ERROR:#}: {self}"),
+            _ => Message::Error(self.to_string()).show(),
         }
     }
 
@@ -68,7 +65,7 @@ impl Error {
             Self::Usage(_)
             | Self::Read { .. }
             | Self::Write { .. }
-            | Self::Listen(_)
+            | Self::Listen { .. }
             | Self::Package(_) => ExitCode::from(2),
         }
     }

@@ -8,9 +8,12 @@ use clap::Args;
 use super::documentation;
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
-use super::output::write;
+use super::message::tell;
+use super::originals::Originals;
+use super::output::{is_stdout, write};
 use super::runtime;
 use crate::fmi::{describe, write_fmu};
+use crate::kinematics::Solver;
 
 /// Export a mechanism as an FMI 2.0 FMU, for co-simulation and for model exchange.
 ///
@@ -28,10 +31,11 @@ use crate::fmi::{describe, write_fmu};
 pub(super) struct Export {
     /// The mechanism file.
     file: PathBuf,
-    /// The FMU to write [default: the mechanism's name with .fmu in the current folder].
+    /// The FMU to write, `-` for stdout [default: the mechanism's name with .fmu in the current
+    /// folder].
     #[arg(short, long, value_name = "FMU")]
     output: Option<PathBuf>,
-    /// Write only the FMU's modelDescription.xml to this file.
+    /// Write only the FMU's modelDescription.xml to this file, `-` for stdout.
     #[arg(long, value_name = "XML", conflicts_with = "output")]
     model_description: Option<PathBuf>,
     /// Folder of runtime libraries, one subfolder a platform: linux64/biela.so, win64/biela.dll
@@ -44,17 +48,25 @@ impl Export {
     pub(super) fn run(self) -> Result<(), Error> {
         let generated = generation_time()?;
         let input = Input::read(&self.file)?;
-        let solver = input.assemble()?;
-        warn_of_misfits(&solver);
         let mechanism = &input.mechanism;
+        let originals = Originals::new(&self.file, mechanism);
         if let Some(path) = self.model_description {
+            originals.refuse_as(&[Some(&path)])?;
+            let solver = assemble(&input)?;
             let xml = describe(mechanism, solver.structure()).write(generated.as_deref());
             return write(&path, &xml);
         }
-        let libraries = runtime::find(self.runtime.as_deref())?;
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", mechanism.name)));
+        let libraries = runtime::find(self.runtime.as_deref())?;
+        let files = libraries.iter().map(|library| library.path.as_path());
+        files
+            .fold(originals, |known, file| {
+                known.with("a runtime library", file)
+            })
+            .refuse_as(&[Some(&path)])?;
+        let solver = assemble(&input)?;
         let documents = documentation::documents(&input, &solver)?;
         let mut archive = Cursor::new(Vec::new());
         write_fmu(
@@ -68,14 +80,27 @@ impl Export {
         )?;
         write(&path, archive.get_ref())?;
         let platforms: Vec<_> = libraries.iter().map(|l| l.platform.name).collect();
-        eprintln!("wrote {} ({})", path.display(), platforms.join(", "));
+        let name = if is_stdout(&path) {
+            "stdout".into()
+        } else {
+            path.to_string_lossy()
+        };
+        tell(format_args!("wrote {name} ({})", platforms.join(", ")));
         Ok(())
     }
 }
 
+/// A solver at the file's own pose; what does not fit there is told.
+fn assemble(input: &Input) -> Result<Solver, Error> {
+    let solver = input.assemble()?;
+    warn_of_misfits(&solver);
+    Ok(solver)
+}
+
 /// The time that `SOURCE_DATE_EPOCH` gives, as the schema's `dateTime`.
 fn generation_time() -> Result<Option<String>, Error> {
-    let Some(value) = std::env::var_os("SOURCE_DATE_EPOCH") else {
+    let value = std::env::var_os("SOURCE_DATE_EPOCH");
+    let Some(value) = value.filter(|value| !value.is_empty()) else {
         return Ok(None);
     };
     value

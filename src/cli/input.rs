@@ -5,6 +5,7 @@ use std::path::Path as FilePath;
 use std::sync::Arc;
 
 use super::error::Error;
+use super::message::{Message, tell};
 use super::render::render;
 use crate::kinematics::{Path, Solver};
 use crate::mechanism::{Diagnostic, Mechanism, Source};
@@ -66,23 +67,20 @@ impl Input {
 /// redundant ones.
 pub(super) fn warn_of_misfits(solver: &Solver) {
     for warning in misfits(solver) {
-        anstream::eprintln!("{warning}");
+        warning.show();
     }
 }
 
-/// What [`warn_of_misfits`] warns of, a line each.
-pub(super) fn misfits(solver: &Solver) -> Vec<String> {
+/// What [`warn_of_misfits`] warns of.
+pub(super) fn misfits(solver: &Solver) -> Vec<Message> {
     let redundancies = solver.redundancies().into_iter().map(|r| r.to_string());
     let misfits = solver.misfits().into_iter().map(|m| m.to_string());
-    redundancies
-        .chain(misfits)
-        .map(|what| format!("warning: {what}"))
-        .collect()
+    redundancies.chain(misfits).map(Message::Warning).collect()
 }
 
 fn show(source: &Source, diagnostics: &[Diagnostic]) {
     if !diagnostics.is_empty() {
         let styled = std::io::stderr().is_terminal();
-        anstream::eprintln!("{}\n", render(source, diagnostics, styled));
+        tell(render(source, diagnostics, styled) + "\n");
     }
 }

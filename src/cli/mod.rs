@@ -3,12 +3,6 @@
 //! Results go to stdout, messages to stderr. The exit status is 0, or 1 for a mechanism that is
 //! not right, or 2 for a command that is not.
 
-#![allow(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "a command prints"
-)]
-
 mod check;
 mod columns;
 mod completions;
@@ -19,8 +13,10 @@ mod error;
 mod estimates;
 mod export;
 mod input;
+mod message;
 mod motion;
 mod new;
+mod originals;
 mod output;
 mod picture;
 mod progress;

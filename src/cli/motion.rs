@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::conditions;
+use super::message::Message;
 use super::signals::Signals;
 use crate::kinematics::{Curve, Path, Rates, Reason, Solver};
 use crate::mechanism::{DriverId, Jet, Mechanism};
@@ -14,7 +15,7 @@ pub(super) struct Motion {
     /// Value, velocity and acceleration of each driver.
     pub(super) driver_rates: Vec<Jet>,
     /// What people should know of the way: singular positions that are near, or passed.
-    pub(super) notices: Vec<String>,
+    pub(super) notices: Vec<Message>,
     path: Path,
     signals: Signals,
     /// Whether a notice told of the singular position that is near.
@@ -112,12 +113,13 @@ impl Motion {
         self.path.duration = time - self.path.start;
         let Err(blocked) = self.solver.follow(&self.path) else {
             if let Some(approach) = self.solver.approach(&mut self.near_singular) {
-                self.notices
-                    .push(format!("warning: t = {time} s: {approach}"));
+                let notice = format!("t = {time} s: {approach}");
+                self.notices.push(Message::Warning(notice));
             }
             for crossing in self.solver.crossed() {
                 let passed = self.solver.describe_crossing(crossing);
-                self.notices.push(format!("note: t = {time} s: {passed}"));
+                let notice = format!("t = {time} s: {passed}");
+                self.notices.push(Message::Note(notice));
             }
             return Ok(());
         };

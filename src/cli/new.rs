@@ -7,6 +7,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use super::error::Error;
+use super::message::tell;
 use crate::mechanism::is_identifier;
 
 /// Write a commented mechanism to start from.
@@ -113,8 +114,8 @@ impl New {
             create(&folder.join(name), text)?;
         }
         let path = folder.join(&files[0].0);
-        let shown = path.display();
-        eprintln!("wrote {shown}; now: biela check {shown}");
+        let (shown, quoted) = (path.display(), quoted(&path.to_string_lossy()));
+        tell(format_args!("wrote {shown}; now: biela check {quoted}"));
         Ok(())
     }
 }
@@ -136,6 +137,20 @@ fn create(path: &Path, text: &str) -> Result<(), Error> {
             source,
         },
     })
+}
+
+/// An argument as a shell takes it for one word.
+fn quoted(argument: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_-./:\\,+@%=".contains(c);
+    let special = |c: char| !plain(c) || (c == '\\' && !cfg!(windows));
+    if !argument.contains(special) {
+        argument.to_owned()
+    } else if cfg!(windows) {
+        // No file there has a double quote in its name.
+        format!("\"{argument}\"")
+    } else {
+        format!("'{}'", argument.replace('\'', "'\\''"))
+    }
 }
 
 fn exists(path: &Path) -> Error {
@@ -177,6 +192,23 @@ mod tests {
             assert_eq!(mechanism.name, "new_one");
             assert!(warnings.is_empty(), "{}", template.name);
             assert_eq!(mechanism.table_files.len(), template.tables.len());
+        }
+    }
+
+    #[cfg(not(windows))]
+    #[test]
+    fn what_a_shell_would_take_apart_is_quoted() {
+        for plain in ["a.toml", "./sub-1/a_b.toml", "../año/x.toml"] {
+            assert_eq!(quoted(plain), plain);
+        }
+        for (special, expected) in [
+            ("a b.toml", "'a b.toml'"),
+            ("$HOME/a.toml", "'$HOME/a.toml'"),
+            ("a\\b", "'a\\b'"),
+            ("it's", "'it'\\''s'"),
+            ("~/a", "'~/a'"),
+        ] {
+            assert_eq!(quoted(special), expected);
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::Error;
-use super::output::write;
+use super::output::{is_stdout, write};
 use crate::drawing::{Sheet, png, svg};
 
 /// What to write.
@@ -28,18 +28,12 @@ impl Format {
 
     /// The format of a file; `-` is SVG.
     pub(super) fn of(path: &Path) -> Result<Self, Error> {
-        if path.as_os_str() == "-" {
+        if is_stdout(path) {
             return Ok(Self::Svg);
         }
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_ascii_lowercase());
-        match extension
-            .as_deref()
-            .and_then(|extension| extension.to_str())
-        {
-            Some("svg") => Ok(Self::Svg),
-            Some("png") => Ok(Self::Png),
+        match &*extension(path) {
+            "svg" => Ok(Self::Svg),
+            "png" => Ok(Self::Png),
             _ => Err(Error::Usage(format!(
                 "`{}` has neither the extension .svg nor .png",
                 path.display()
@@ -62,4 +56,10 @@ impl Format {
         };
         write(path, &picture)
     }
+}
+
+/// The extension of a file in small letters, empty if it has none.
+pub(super) fn extension(path: &Path) -> String {
+    let extension = path.extension().unwrap_or_default();
+    extension.to_string_lossy().to_ascii_lowercase()
 }

@@ -36,16 +36,17 @@ impl Progress {
         if elapsed < PATIENCE || fresh {
             return;
         }
-        eprint!("\r{}", line(rows, self.total, elapsed));
         // A terminal that is gone is no reason to stop.
-        let _ = std::io::stderr().flush();
+        let mut stderr = std::io::stderr();
+        let _ = write!(stderr, "\r{}", line(rows, self.total, elapsed));
+        let _ = stderr.flush();
         self.shown = Some(Instant::now());
     }
 
     /// Clears the line, for others to write.
     pub(super) fn clear(&mut self) {
         if self.shown.take().is_some() {
-            eprint!("\r\x1b[K");
+            let _ = write!(std::io::stderr(), "\r\x1b[K");
         }
     }
 }

@@ -11,9 +11,10 @@ use super::columns::{MOST_BODIES, axis, moves};
 use super::conditions::{self, Conditions};
 use super::error::Error;
 use super::input::Input;
-use super::output::write;
+use super::message::Message;
+use super::originals::Originals;
+use super::output::{is_stdout, print, write};
 use super::picture::{Format, PLOT_WIDTH};
-use super::run::print;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
 use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, in_line};
 use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit, shown};
@@ -40,7 +41,7 @@ pub(super) struct Range {
     #[arg(long, value_name = "CSV")]
     csv: Option<PathBuf>,
     /// Plot angles of bodies, transmission angle and reciprocal condition over the driver's value;
-    /// the picture's extension, .svg or .png, decides.
+    /// the picture's extension, .svg or .png, decides, and `-` is SVG to stdout.
     #[arg(short, long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
 }
@@ -49,6 +50,8 @@ impl Range {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
         let input = Input::read(&self.file)?;
+        Originals::new(&self.file, &input.mechanism)
+            .refuse_as(&[self.csv.as_deref(), self.plot.as_deref()])?;
         let drivers = self.drivers(&input.mechanism)?;
         let mut solver = self.conditions.solver_at_start(&input)?;
         let driven = Arc::clone(solver.mechanism());
@@ -63,17 +66,21 @@ impl Range {
             if let (Some(path), Some(format)) = (&self.plot, format) {
                 let turning = turning(&driven, &range).count();
                 if turning > MOST_BODIES {
-                    eprintln!(
-                        "note: the plot shows {MOST_BODIES} of {turning} bodies that turn; --csv \
-                         has all"
+                    let note = format!(
+                        "the plot shows {MOST_BODIES} of {turning} bodies that turn; --csv has all"
                     );
+                    Message::Note(note).show();
                 }
                 let sheet = Sheet::chart(&chart(&driven, driver, &range));
                 format.write(path, &sheet, format.width(PLOT_WIDTH), false)?;
             }
         }
-        // A table on stdout is not mixed with words.
-        if self.csv.is_none_or(|path| path.as_os_str() != "-") {
+        // A table or a picture on stdout is not mixed with words.
+        if ![self.csv, self.plot]
+            .iter()
+            .flatten()
+            .any(|path| is_stdout(path))
+        {
             print(&text)?;
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! `biela run`
 
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -10,9 +10,11 @@ use super::columns::{Column, Record, Table};
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
+use super::message::Message;
 use super::motion::Motion;
-use super::output::write;
-use super::picture::{Format, PLOT_WIDTH};
+use super::originals::Originals;
+use super::output::{STDOUT, is_stdout, write};
+use super::picture::{Format, PLOT_WIDTH, extension};
 use super::progress::Progress;
 use super::recording::Recording;
 use super::signals::Signals;
@@ -67,11 +69,11 @@ pub(super) struct Run {
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
     /// Plot positions, velocities and accelerations over time; the picture's extension, .svg or
-    /// .png, decides.
+    /// .png, decides, and `-` is SVG to stdout.
     #[arg(short, long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
-    /// Write a page, .html, on which the mechanism moves; it needs nothing from elsewhere. Of more
-    /// than 10,000 rows it shows every second, third and so on.
+    /// Write a page, .html or .htm or `-` for stdout, on which the mechanism moves; it needs
+    /// nothing from elsewhere. Of more than 10,000 rows it shows every second, third and so on.
     #[arg(short, long, value_name = "PAGE")]
     animate: Option<PathBuf>,
 }
@@ -88,7 +90,13 @@ const BYTES_PER_NUMBER: f64 = 20.0;
 impl Run {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
+        self.check_page()?;
         let input = Input::read(&self.file)?;
+        self.originals(&input.mechanism).refuse_as(&[
+            self.csv().as_deref(),
+            self.plot.as_deref(),
+            self.animate.as_deref(),
+        ])?;
         let times = self.times(&input.mechanism)?;
         let parameters = self.conditions.parameters(&input.mechanism)?;
         let mut driven = (self.conditions).driven(&input.mechanism, &parameters, times.start)?;
@@ -103,7 +111,8 @@ impl Run {
         if pictured && self.input.is_none() && !driven.drivers.iter().any(moves) {
             let example = input.mechanism.drivers.first().map(example);
             let example = example.unwrap_or_default();
-            eprintln!("note: nothing moves; --drive or --input say how drivers move{example}");
+            let note = format!("nothing moves; --drive or --input say how drivers move{example}");
+            Message::Note(note).show();
         }
         let driven = Arc::new(driven);
         let all = Column::all(&driven);
@@ -117,7 +126,7 @@ impl Run {
         };
         let home_solver = input.assemble()?;
         if let Some(size) = self.size(&times, &written) {
-            eprintln!("note: {size}");
+            Message::Note(size).show();
         }
         let mut results = Results {
             table: self.table(&written)?,
@@ -138,10 +147,10 @@ impl Run {
             if self.variables.is_empty()
                 && let Some([shown, moving]) = record.leave_out()
             {
-                eprintln!(
-                    "note: the plot shows {shown} of {moving} bodies that move; --variables names \
-                     others"
+                let note = format!(
+                    "the plot shows {shown} of {moving} bodies that move; --variables names others"
                 );
+                Message::Note(note).show();
             }
             let sheet = Sheet::chart(&record.chart(&driven));
             format.write(path, &sheet, format.width(PLOT_WIDTH), false)?;
@@ -198,16 +207,38 @@ impl Run {
         })
     }
 
+    /// The page is read by its extension.
+    fn check_page(&self) -> Result<(), Error> {
+        match &self.animate {
+            Some(path) if !is_stdout(path) && !matches!(&*extension(path), "html" | "htm") => {
+                Err(Error::Usage(format!(
+                    "`{}` has neither the extension .html nor .htm",
+                    path.display()
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What is read.
+    fn originals(&self, mechanism: &Mechanism) -> Originals {
+        let originals = Originals::new(&self.file, mechanism);
+        match &self.input {
+            Some(path) => originals.with("the file of --input", path),
+            None => originals,
+        }
+    }
+
     /// Where the CSV goes, if there is one.
     fn csv(&self) -> Option<PathBuf> {
         let output = self.output.clone();
         let pictured = self.plot.is_some() || self.animate.is_some();
-        output.or_else(|| (!pictured).then(|| PathBuf::from("-")))
+        output.or_else(|| (!pictured).then(|| PathBuf::from(STDOUT)))
     }
 
     /// How large a CSV file becomes, if that is much.
     fn size(&self, times: &Times, columns: &[Column]) -> Option<String> {
-        let path = self.csv().filter(|path| path.as_os_str() != "-")?;
+        let path = self.csv().filter(|path| !is_stdout(path))?;
         let (rows, columns) = (times.steps + 1, columns.len() + 1);
         let bytes = rows as f64 * columns as f64 * BYTES_PER_NUMBER;
         (bytes > LARGE).then(|| {
@@ -221,16 +252,16 @@ impl Run {
 
     /// Whether the CSV scrolls over the terminal.
     fn fills_terminal(&self) -> bool {
-        self.csv().is_some_and(|path| path.as_os_str() == "-") && std::io::stdout().is_terminal()
+        self.csv().is_some_and(|path| is_stdout(&path)) && std::io::stdout().is_terminal()
     }
 
     fn table<'a>(&self, columns: &'a [Column]) -> Result<Option<Table<'a>>, Error> {
         let Some(path) = self.csv() else {
             return Ok(None);
         };
-        if path.as_os_str() == "-" {
+        if is_stdout(&path) {
             let stdout = Box::new(std::io::stdout().lock());
-            return Ok(Some(Table::new(columns, stdout, PathBuf::from("stdout"))));
+            return Ok(Some(Table::new(columns, stdout, path)));
         }
         match std::fs::File::create(&path) {
             Ok(file) => Ok(Some(Table::new(columns, Box::new(file), path))),
@@ -286,7 +317,7 @@ impl Results<'_> {
             let advanced = motion.advance(times.at(row));
             for notice in motion.notices.drain(..) {
                 progress.clear();
-                anstream::eprintln!("{notice}");
+                notice.show();
             }
             advanced.map_err(|why| Error::DeadPoint {
                 file: file.to_owned(),
@@ -331,14 +362,4 @@ impl Times {
             self.start + row as f64 * self.step
         }
     }
-}
-
-/// Prints to stdout, where the reader may have gone.
-pub(super) fn print(text: &str) -> Result<(), Error> {
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .map_err(|source| Error::Write {
-            path: PathBuf::from("stdout"),
-            source,
-        })
 }

@@ -1,5 +1,7 @@
 //! Where the runtime libraries are that go into an FMU.
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use super::error::Error;
@@ -23,6 +25,7 @@ pub(super) fn find(folder: Option<&Path>) -> Result<Vec<RuntimeLibrary>, Error> 
         }
     };
     if !found.is_empty() {
+        found.iter().try_for_each(check)?;
         return Ok(found);
     }
     let help = match folder {
@@ -48,6 +51,32 @@ fn in_folder(folder: &Path) -> Vec<RuntimeLibrary> {
         })
         .filter(|library| library.path.is_file())
         .collect()
+}
+
+/// Refuses what is no shared library of its platform, by the bytes with which these begin.
+fn check(library: &RuntimeLibrary) -> Result<(), Error> {
+    let mut start = Vec::new();
+    let read = File::open(&library.path).and_then(|file| file.take(4).read_to_end(&mut start));
+    if let Err(source) = read {
+        return Err(Error::Read {
+            path: library.path.clone(),
+            source,
+        });
+    }
+    let (kind, known): (_, &[&[u8]]) = match library.platform.extension {
+        "dll" => ("PE", &[b"MZ"]),
+        // Of one processor with 64 bits, or of several.
+        "dylib" => ("Mach-O", &[b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe"]),
+        _ => ("ELF", &[b"\x7fELF"]),
+    };
+    if known.iter().any(|known| start.starts_with(known)) {
+        return Ok(());
+    }
+    Err(Error::Usage(format!(
+        "`{}` is no shared library for {}: it does not begin as {kind} files do",
+        library.path.display(),
+        library.platform.name
+    )))
 }
 
 fn beside(program: &Path) -> Vec<RuntimeLibrary> {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::Error;
-use super::output::write;
+use super::output::{STDOUT, write};
 use crate::mechanism;
 
 /// Print a JSON Schema (2020-12) of mechanism files, by which editors complete and check them.
@@ -20,7 +20,7 @@ pub(super) struct Schema {
         short,
         long,
         value_name = "JSON",
-        default_value = "-",
+        default_value = STDOUT,
         hide_default_value = true
     )]
     output: PathBuf,

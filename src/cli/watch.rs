@@ -2,7 +2,7 @@
 
 mod server;
 
-use std::io::Write as _;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -13,6 +13,9 @@ use super::conditions::Conditions;
 use super::documentation::show;
 use super::error::Error;
 use super::input::{Input, misfits};
+use super::message::{Message, tell};
+use super::originals::tables;
+use super::output::print;
 use super::render::render;
 use crate::drawing::animation::{escape, fill, page_with, player};
 use crate::mechanism::{Mechanism, Source};
@@ -45,10 +48,16 @@ pub(super) struct Watch {
 
 impl Watch {
     pub(super) fn run(self) -> Result<(), Error> {
-        let server = Server::new(self.port).map_err(Error::Listen)?;
-        println!("{}", server.address());
-        // Whoever started it may wait for the address; a closed pipe is no reason to stop.
-        let _ = std::io::stdout().flush();
+        // What is wrong with the file may be mended while it is watched, the command not.
+        if let Ok((input, _)) = read(&self.file)? {
+            let start = input.mechanism.simulation.start;
+            let parameters = self.conditions.parameters(&input.mechanism)?;
+            self.conditions
+                .driven(&input.mechanism, &parameters, start)?;
+        }
+        let server = Server::new(self.port)?;
+        // A closed pipe is no reason to stop: the browser may have the address already.
+        let _ = print(&format!("{}\n", server.address()));
         let mut view = View::new(self);
         view.look();
         server.serve(|path| match path {
@@ -105,6 +114,9 @@ impl View {
         }
         self.version += 1;
         self.error = self.try_look().err();
+        if let Some(error) = &self.error {
+            tell(error);
+        }
         // The file may name other tables now.
         self.seen = self.stamps();
     }
@@ -124,16 +136,13 @@ impl View {
     ///
     /// What is wrong, for people.
     fn try_look(&mut self) -> Result<(), String> {
-        let (input, mut warnings) = read(&self.watch.file)?;
-        let folder = self.watch.file.parent().unwrap_or(Path::new(""));
-        let tables = input.mechanism.table_files.iter();
-        self.tables = tables.map(|table| folder.join(&table.name)).collect();
-        let conditions = &self.watch.conditions;
-        let started = conditions.reach_start(&input);
-        let started = started.map_err(|error| error.to_string())?;
-        let mut solver = started.map_err(|error| error.to_string())?;
-        warnings.extend(misfits(&solver));
-        let shown = show(&mut solver).map_err(|error| error.to_string())?;
+        let read = read(&self.watch.file).map_err(told)?;
+        let (input, mut warnings) = read?;
+        self.tables = tables(&self.watch.file, &input.mechanism).collect();
+        let started = self.watch.conditions.reach_start(&input);
+        let mut solver = started.map_err(told)?.map_err(told)?;
+        warnings.extend(misfits(&solver).iter().map(ToString::to_string));
+        let shown = show(&mut solver).map_err(told)?;
         self.warnings = warnings;
         self.name.clone_from(&input.mechanism.name);
         self.description.clone_from(&input.mechanism.description);
@@ -179,11 +188,14 @@ impl View {
     }
 }
 
-/// Reads a file without telling the terminal; also what it warns of.
-fn read(path: &Path) -> Result<(Input, Vec<String>), String> {
-    let source = Source::open(path.display().to_string(), path)
-        .map_err(|error| format!("cannot read `{}`: {error}", path.display()))?;
-    match Mechanism::parse(&source) {
+/// Reads a file without telling the terminal; also what it warns of. Or else what is wrong in it,
+/// for people.
+fn read(path: &Path) -> Result<Result<(Input, Vec<String>), String>, Error> {
+    let source = Source::open(path.display().to_string(), path).map_err(|source| Error::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(match Mechanism::parse(&source) {
         Ok((mechanism, warnings)) => {
             let warnings = match warnings[..] {
                 [] => Vec::new(),
@@ -193,5 +205,10 @@ fn read(path: &Path) -> Result<(Input, Vec<String>), String> {
             Ok((Input { source, mechanism }, warnings))
         }
         Err(diagnostics) => Err(render(&source, &diagnostics, false)),
-    }
+    })
+}
+
+/// An error as people read it.
+fn told(error: impl Display) -> String {
+    Message::Error(error.to_string()).to_string()
 }

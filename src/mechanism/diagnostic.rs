@@ -132,6 +132,7 @@ codes! {
     NO_BODIES = "no-bodies",
     NOT_FINITE = "not-finite",
     NOT_TUNABLE = "not-tunable",
+    NOT_UTF_8 = "not-utf-8",
     OUT_OF_RANGE = "out-of-range",
     PARAMETER_CYCLE = "parameter-cycle",
     RESERVED_NAME = "reserved-name",

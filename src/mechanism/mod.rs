@@ -6,6 +6,7 @@
 //! the parameters. Nothing here computes a pose.
 
 mod diagnostic;
+mod encoding;
 mod expression;
 mod id;
 mod lookup;

@@ -5,6 +5,8 @@ use std::io::{self, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::encoding::{NotUtf8, decode};
+
 /// A stretch of the text, in bytes.
 pub type Span = Range<usize>;
 
@@ -28,6 +30,8 @@ const LARGEST_TABLE: u64 = 64 << 20;
 pub struct Source {
     name: String,
     text: String,
+    /// Why the text is not what the file has.
+    fault: Option<NotUtf8>,
     /// Where the files are that it names.
     folder: Option<PathBuf>,
     /// Byte offset at which each line starts.
@@ -45,21 +49,24 @@ impl Source {
         Self {
             name: name.into(),
             text,
+            fault: None,
             folder: None,
             line_starts,
         }
     }
 
     /// Reads the file at `path`, named `name` in messages. Files that it names are looked for
-    /// beside it.
+    /// beside it. A file that is not UTF-8 is no mechanism, which is told with all else that is
+    /// wrong in it: by [`Mechanism::parse`](super::Mechanism::parse).
     ///
     /// # Errors
     ///
-    /// The file cannot be read, is not UTF-8, or is larger than any mechanism.
+    /// The file cannot be read, or is larger than any mechanism.
     pub fn open(name: impl Into<String>, path: &Path) -> io::Result<Self> {
-        let text = read_bounded(path, LARGEST_MECHANISM)?;
+        let (text, fault) = decode(read_bounded(path, LARGEST_MECHANISM)?);
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
         Ok(Self {
+            fault,
             folder: Some(folder),
             ..Self::new(name, text)
         })
@@ -81,7 +88,11 @@ impl Source {
         let path = folder.join(name);
         // Opening a pipe would wait for whoever writes to it.
         if std::fs::metadata(&path)?.is_file() {
-            read_bounded(&path, LARGEST_TABLE)
+            let (text, fault) = decode(read_bounded(&path, LARGEST_TABLE)?);
+            fault.map_or(Ok(text), |fault| {
+                let why = format!("it {fault}; save it as UTF-8");
+                Err(io::Error::new(io::ErrorKind::InvalidData, why))
+            })
         } else {
             refuse("it is not a file")
         }
@@ -97,6 +108,11 @@ impl Source {
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// Why the text is not what the file has, if it is not.
+    pub(super) fn fault(&self) -> Option<NotUtf8> {
+        self.fault
     }
 
     /// The place of a byte offset; one past the end of the text counts as its end.
@@ -155,16 +171,16 @@ fn is_portable(name: &str) -> bool {
         && !name.starts_with(' ')
 }
 
-fn read_bounded(path: &Path, largest: u64) -> io::Result<String> {
-    let mut text = String::new();
+fn read_bounded(path: &Path, largest: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
     let read = File::open(path)?
         .take(largest + 1)
-        .read_to_string(&mut text)?;
+        .read_to_end(&mut bytes)?;
     if read as u64 > largest {
         let why = format!("it has more than {largest} bytes");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
     }
-    Ok(text)
+    Ok(bytes)
 }
 
 #[cfg(test)]

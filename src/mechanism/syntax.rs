@@ -22,8 +22,15 @@ const DUPLICATE_KEY: &str = "duplicate key";
 ///
 /// # Errors
 ///
-/// The first syntax error: one slip brings a dozen others after it.
+/// The file is not UTF-8; or the first syntax error: one slip brings a dozen others after it.
 pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Diagnostic>), Diagnostic> {
+    if let Some(fault) = source.fault() {
+        return Err(
+            Diagnostic::error(code::NOT_UTF_8, format!("the file {fault}"))
+                .label(fault.span(), "")
+                .help("save it as UTF-8".to_owned()),
+        );
+    }
     let (document, errors) = DeTable::parse_recoverable(source.text());
     let mut duplicates = Vec::new();
     for error in errors {

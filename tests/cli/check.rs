@@ -1,5 +1,7 @@
 //! `biela check`
 
+use assert_cmd::Command;
+
 use crate::common;
 use crate::program::{altered, biela, stderr, stdout};
 
@@ -127,6 +129,16 @@ fn redundant_constraints_are_named_and_warned_of() {
         "warning: constraint equations of joint `A_again` are redundant: 2 of its 2 follow from \
          the others; they are set aside and watched\n"
     );
+    // On a terminal the kind has its colour, as that of what is wrong in the file.
+    let colourful = Command::new(env!("CARGO_BIN_EXE_biela"))
+        .env("CLICOLOR_FORCE", "1")
+        .args(["check", &file])
+        .assert();
+    let message = stderr(&colourful.success());
+    assert!(
+        message.starts_with("\u{1b}[") && message.contains("mwarning\u{1b}[0m: constraint"),
+        "{message:?}"
+    );
     let text = stdout(&assert);
     let line = "  redundant              2    2 of the 2 of joint `A_again`\n";
     assert!(text.contains(line), "{text}");
@@ -143,7 +155,8 @@ fn check_tells_scripts_what_it_finds() {
         let mut all = vec!["check", "--format", "json"];
         all.extend(arguments);
         let assert = biela(&all).code(code);
-        assert_eq!(stderr(&assert), "");
+        // Of a file that cannot be read stderr tells as ever.
+        assert_eq!(stderr(&assert).is_empty(), code != 2);
         serde_json::from_str::<serde_json::Value>(&stdout(&assert)).unwrap()
     };
     let good = check(&["mechanisms/four_bar.toml", "--modes"], 0);
@@ -179,6 +192,14 @@ fn check_tells_scripts_what_it_finds() {
     let line = usize::try_from(start["line"].as_u64().unwrap()).unwrap();
     assert!(text.lines().nth(line - 1).unwrap().contains("crank.AA"));
     assert!(bad.get("mechanism").is_none() && bad.get("assembled").is_none());
+
+    let latin = check(&["tests/diagnostics/not-utf-8.toml"], 1);
+    assert_eq!(latin["diagnostics"][0]["code"], "not-utf-8");
+    let missing = check(&["no_such_file.toml"], 2);
+    assert_eq!(missing["file"], "no_such_file.toml");
+    assert_eq!(missing["ok"], false);
+    let message = missing["error"]["message"].as_str().unwrap();
+    assert!(message.starts_with("cannot read `no_such_file.toml`: "));
 
     // One that does not close: the coupler is too short by 50 mm at 60 deg or more.
     let short = [("value = 0.25", "value = 0.01")];

@@ -205,6 +205,18 @@ fn bad_usage_exits_with_2() {
             "invalid value '0' for '--width <PIXELS>'",
         ),
         (
+            &["run", "mechanisms/tlv.toml", "--animate", "tlv.svg"],
+            "`tlv.svg` has neither the extension .html nor .htm",
+        ),
+        (
+            &["watch", "no_such_file.toml"],
+            "cannot read `no_such_file.toml`",
+        ),
+        (
+            &["watch", "mechanisms/tlv.toml", "--drive", "side=1"],
+            "no driver `side`; did you mean `side_length`?",
+        ),
+        (
             &["draw", "mechanisms/tlv.toml", "--width", "-5"],
             "-5 is not in 16..=8192",
         ),
@@ -225,5 +237,37 @@ fn bad_usage_exits_with_2() {
         let assert = biela(arguments).code(2);
         let message = stderr(&assert);
         assert!(message.contains(expected), "{arguments:?}: {message}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_changes_no_status_but_that_of_results() {
+    let full = || std::fs::File::create("/dev/full").unwrap();
+    for (arguments, status) in [
+        (&["check", "no_such_file.toml"][..], 2),
+        (&["check", "tests/diagnostics/syntax.toml"], 1),
+        (&["check", "tests/diagnostics/floating-body.toml"], 1),
+        // That nothing moves is noted.
+        (&["run", "mechanisms/four_bar.toml", "--plot", "-"], 0),
+        (&["fly"], 2),
+    ] {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_biela"));
+        let ended = command.args(arguments).stderr(full()).output().unwrap();
+        assert_eq!(ended.status.code(), Some(status), "{arguments:?}");
+    }
+    // What is held back until a line or the program ends is missed as well.
+    for arguments in [
+        &["check", "mechanisms/tlv.toml"][..],
+        &["run", "mechanisms/tlv.toml"],
+        &["draw", "mechanisms/tlv.toml", "-o", "-"],
+        &["export", "mechanisms/tlv.toml", "--model-description", "-"],
+    ] {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_biela"));
+        let command = command.args(arguments).stdout(full());
+        let ended = command.output().unwrap();
+        assert_eq!(ended.status.code(), Some(2), "{arguments:?}");
+        let message = String::from_utf8(ended.stderr).unwrap();
+        assert!(message.contains("cannot write stdout: "), "{message}");
     }
 }

@@ -4,7 +4,7 @@ use std::io::Read as _;
 
 use assert_cmd::Command;
 
-use crate::program::{altered, biela};
+use crate::program::{altered, biela, stderr};
 
 #[test]
 fn an_fmu_carries_its_picture_and_its_page() {
@@ -55,7 +55,8 @@ fn export_is_reproducible_and_dated_only_on_demand() {
         std::fs::read(path).unwrap()
     };
     let first = export("a.fmu", None);
-    assert!(first == export("b.fmu", None));
+    // What is set to nothing counts as not set.
+    assert!(first == export("b.fmu", Some("")));
     assert!(first != export("c.fmu", Some("1700000000")));
     assert!(export("d.fmu", Some("1700000000")) == export("e.fmu", Some("1700000000")));
     Command::new(env!("CARGO_BIN_EXE_biela"))
@@ -63,4 +64,49 @@ fn export_is_reproducible_and_dated_only_on_demand() {
         .args(["export", "mechanisms/tlv.toml"])
         .assert()
         .code(2);
+}
+
+#[test]
+fn only_shared_libraries_of_their_platform_are_packed() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |library: &str, start: &[u8]| {
+        let path = folder.path().join(library);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, start).unwrap();
+    };
+    let fmu = folder.path().join("tlv.fmu");
+    let [fmu, libraries] = [fmu.as_path(), folder.path()].map(|path| path.to_str().unwrap());
+    let export = || {
+        let file = "mechanisms/tlv.toml";
+        biela(&["export", file, "-o", fmu, "--runtime", libraries])
+    };
+    // What files begin with, by the standards of their formats.
+    let kinds = [
+        ("linux64/biela.so", &b"\x7fELF\x02\x01\x01"[..]),
+        ("win64/biela.dll", b"MZ\x90\0"),
+        ("darwin64/biela.dylib", b"\xcf\xfa\xed\xfe"),
+    ];
+    for (library, start) in kinds {
+        write(library, start);
+    }
+    let message = stderr(&export().success());
+    assert!(
+        message.ends_with(" (linux64, win64, darwin64)\n"),
+        "{message}"
+    );
+    for (library, start) in kinds {
+        let others = kinds.iter().filter(|(other, _)| *other != library);
+        let wrong = others.map(|(_, start)| *start);
+        for wrong in wrong.chain([&b""[..], &start[..1], b"a text"]) {
+            write(library, wrong);
+            let message = stderr(&export().code(2));
+            let platform = library.split('/').next().unwrap();
+            let expected = format!("is no shared library for {platform}: ");
+            assert!(message.contains(&expected), "{message}");
+        }
+        write(library, start);
+    }
+    // For several processors.
+    write("darwin64/biela.dylib", b"\xca\xfe\xba\xbe");
+    export().success();
 }

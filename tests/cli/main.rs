@@ -10,6 +10,7 @@ mod export;
 mod help;
 mod input;
 mod new;
+mod overwriting;
 mod pictures_of_runs;
 mod program;
 mod range;

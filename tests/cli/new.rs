@@ -19,6 +19,17 @@ fn new_writes_a_mechanism_once() {
         message,
         "wrote my_linkage.toml; now: biela check my_linkage.toml\n"
     );
+    // Commands can be pasted.
+    std::fs::create_dir(folder.path().join("my own")).unwrap();
+    let message = stderr(&new(&["a", "--folder", "my own"]).success());
+    let path = std::path::Path::new("my own").join("a.toml");
+    let path = path.display();
+    let quote = if cfg!(windows) { '"' } else { '\'' };
+    assert_eq!(
+        message,
+        format!("wrote {path}; now: biela check {quote}{path}{quote}\n")
+    );
+    std::fs::remove_dir_all(folder.path().join("my own")).unwrap();
     let text = std::fs::read_to_string(folder.path().join("my_linkage.toml")).unwrap();
     let shipped = std::fs::read_to_string("mechanisms/four_bar.toml").unwrap();
     assert_eq!(

@@ -12,20 +12,27 @@ use crate::mechanism::{CoordinateKind, Diagnostic, DriverSource, Mechanism, Sour
 
 /// All that `biela check` finds out about a file, in SI units, and whether the file is right.
 ///
-/// Keys that make no sense for what was found are left out: `mechanism` where the file could not
-/// be read, `pose` where it was not assembled, `modes` where they were not asked for.
-pub(super) fn report(file: &FilePath, modes: bool) -> Result<(Value, bool), Error> {
+/// Keys that make no sense for what was found are left out: `mechanism` where the file is none,
+/// `assembled` where it was not, `modes` where they were not asked for.
+///
+/// With it comes how the command ends. Only a file that cannot be read is left to be told of.
+pub(super) fn report(file: &FilePath, modes: bool) -> (Value, Result<(), Error>) {
     let name = file.display().to_string();
-    let source = Source::open(name.as_str(), file).map_err(|source| Error::Read {
-        path: file.to_owned(),
-        source,
-    })?;
     let mut report = json!({ "file": name, "ok": false });
+    let source = match Source::open(name, file) {
+        Ok(source) => source,
+        Err(source) => {
+            let path = file.to_owned();
+            let error = Error::Read { path, source };
+            report["error"] = json!({ "message": error.to_string() });
+            return (report, Err(error));
+        }
+    };
     let (mechanism, warnings) = match Mechanism::parse(&source) {
         Ok((mechanism, warnings)) => (Arc::new(mechanism), warnings),
         Err(errors) => {
             report["diagnostics"] = diagnostics(&source, &errors);
-            return Ok((report, false));
+            return (report, Err(Error::Diagnosed));
         }
     };
     report["diagnostics"] = diagnostics(&source, &warnings);
@@ -34,7 +41,7 @@ pub(super) fn report(file: &FilePath, modes: bool) -> Result<(Value, bool), Erro
         Ok(found) => {
             report["ok"] = json!(true);
             report["assembled"] = found;
-            Ok((report, true))
+            (report, Ok(()))
         }
         Err(error) => {
             report["error"] = json!({ "message": error.to_string() });
@@ -45,7 +52,7 @@ pub(super) fn report(file: &FilePath, modes: bool) -> Result<(Value, bool), Erro
                     .collect();
                 report["error"]["nearest"] = poses(&mechanism, nearest);
             }
-            Ok((report, false))
+            (report, Err(Error::Diagnosed))
         }
     }
 }

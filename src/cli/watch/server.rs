@@ -55,10 +55,13 @@ impl Answer {
 }
 
 impl Server {
-    pub(super) fn new(port: u16) -> io::Result<Self> {
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
-        let port = listener.local_addr()?.port();
-        Ok(Self { listener, port })
+    pub(super) fn new(port: u16) -> Result<Self, Error> {
+        let listen = || {
+            let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+            let port = listener.local_addr()?.port();
+            Ok(Self { listener, port })
+        };
+        listen().map_err(|source| Error::Listen { port, source })
     }
 
     pub(super) fn address(&self) -> String {
@@ -68,7 +71,10 @@ impl Server {
     /// Answers one request after the other, by their paths, for as long as it can.
     pub(super) fn serve(&self, mut answer: impl FnMut(&str) -> Answer) -> Result<(), Error> {
         loop {
-            let (stream, _) = self.listener.accept().map_err(Error::Listen)?;
+            let (stream, _) = self.listener.accept().map_err(|source| Error::Listen {
+                port: self.port,
+                source,
+            })?;
             // A browser that goes away is no error.
             let _ = self.talk(&stream, &mut answer);
         }
