@@ -210,24 +210,15 @@ fn once(option: &str, name: &str, given: &mut bool) -> Result<(), Error> {
 
 /// Refuses what the FMU refuses, in its words.
 fn check_limits(parameter: &Parameter, value: f64) -> Result<(), Error> {
-    let name = parameter.name.clone();
-    let (min, max) = (parameter.min, parameter.max);
-    if !value.is_finite() {
-        let error = fmi::Error::NotFinite { name, value };
-        return Err(Error::Usage(format!("--set: {error}")));
-    }
-    if min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max) {
+    let limits = [parameter.min, parameter.max];
+    fmi::error::check_limits(&parameter.name, value, limits).map_err(|error| {
         let unit = parameter.unit.filter(|unit| *unit != Unit::ONE);
-        let unit = unit.map_or_else(String::new, |unit| format!(" {}", unit.name));
-        let error = fmi::Error::Range {
-            name,
-            value,
-            min,
-            max,
+        let unit = match (&error, unit) {
+            (fmi::Error::Range { .. }, Some(unit)) => format!(" {}", unit.name),
+            _ => String::new(),
         };
-        return Err(Error::Usage(format!("--set: {error}{unit}")));
-    }
-    Ok(())
+        Error::Usage(format!("--set: {error}{unit}"))
+    })
 }
 
 /// What to say of a name that stands for nothing.

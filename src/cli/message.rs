@@ -16,22 +16,23 @@ pub(super) enum Message {
 impl Message {
     /// Tells it on stderr, its kind in the colour that the renderer of diagnostics has for it.
     pub(super) fn show(&self) {
-        let (style, kind, text) = match self {
-            Self::Error(text) => (DEFAULT_ERROR_STYLE, "error", text),
-            Self::Warning(text) => (DEFAULT_WARNING_STYLE, "warning", text),
-            Self::Note(text) => (DEFAULT_NOTE_STYLE, "note", text),
-        };
+        let (kind, style, text) = self.parts();
         tell(format_args!("{style}{kind}{style:#}: {text}"));
+    }
+
+    /// Its kind, how that looks, and what it says.
+    fn parts(&self) -> (&'static str, impl Display, &str) {
+        match self {
+            Self::Error(text) => ("error", DEFAULT_ERROR_STYLE, text),
+            Self::Warning(text) => ("warning", DEFAULT_WARNING_STYLE, text),
+            Self::Note(text) => ("note", DEFAULT_NOTE_STYLE, text),
+        }
     }
 }
 
 impl Display for Message {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let (kind, text) = match self {
-            Self::Error(text) => ("error", text),
-            Self::Warning(text) => ("warning", text),
-            Self::Note(text) => ("note", text),
-        };
+        let (kind, _, text) = self.parts();
         write!(f, "{kind}: {text}")
     }
 }

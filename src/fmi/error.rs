@@ -295,6 +295,24 @@ fn range(min: Option<f64>, max: Option<f64>) -> String {
     }
 }
 
+/// Refuses what a Real with these limits cannot be.
+pub(crate) fn check_limits(
+    name: &str,
+    value: f64,
+    [min, max]: [Option<f64>; 2],
+) -> Result<(), Error> {
+    check_finite(name, value)?;
+    if min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max) {
+        return Err(Error::Range {
+            name: name.to_owned(),
+            value,
+            min,
+            max,
+        });
+    }
+    Ok(())
+}
+
 /// Refuses NaN and infinity.
 pub(super) fn check_finite(name: &str, value: f64) -> Result<(), Error> {
     if value.is_finite() {

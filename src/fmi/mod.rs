@@ -17,7 +17,7 @@
 
 mod abi;
 mod codec;
-mod error;
+pub(crate) mod error;
 mod instance;
 mod log;
 mod mechanism;

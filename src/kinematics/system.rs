@@ -12,6 +12,7 @@ use super::configuration::{
 use super::constraint::{
     self, Constraint, Dimension, Gradient, Incidence, JointUnknown, TurnEffect,
 };
+use super::factor::nan_or_larger;
 use super::variation::{Varied, VariedConfiguration};
 use super::{Element, Error, joint};
 use crate::mechanism::{DriverId, Expression, Mechanism, ParameterId, Profile, ProfileInForce};
@@ -122,11 +123,6 @@ pub(super) struct RowValue {
     pub(super) value: f64,
     /// Estimated rounding error of the value.
     pub(super) rounding: f64,
-}
-
-/// The larger of two numbers; unlike `f64::max` it keeps a NaN, wherever it stands.
-pub(super) fn nan_or_larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
 }
 
 impl System {
@@ -419,22 +415,6 @@ impl Equation {
         match self.constraint.dimension() {
             Dimension::Length => 1.0 / at.size(),
             Dimension::Angle => 1.0,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::nan_or_larger;
-
-    #[test]
-    fn no_entry_that_is_not_a_number_is_overlooked() {
-        for place in 0..3 {
-            let mut entries = [0.0, 2.0, 0.0];
-            let largest = entries.into_iter().fold(0.0, nan_or_larger);
-            assert!((largest - 2.0).abs() < f64::EPSILON);
-            entries[place] = f64::NAN;
-            assert!(entries.into_iter().fold(0.0, nan_or_larger).is_nan());
         }
     }
 }

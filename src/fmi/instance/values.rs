@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::slice::Iter;
 
 use super::{Error, Instance, check_finite};
+use crate::fmi::error::check_limits;
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
@@ -402,18 +403,11 @@ impl<M: Model> Iterator for Reals<'_, M> {
 
 /// Whether a Real variable can have a value.
 pub(in crate::fmi) fn check_value<Q>(variable: &Variable<Q>, value: f64) -> Result<(), Error> {
-    check_finite(&variable.name, value)?;
-    if let Kind::Real { min, max, .. } = variable.kind
-        && (min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max))
-    {
-        return Err(Error::Range {
-            name: variable.name.clone(),
-            value,
-            min,
-            max,
-        });
-    }
-    Ok(())
+    let limits = match variable.kind {
+        Kind::Real { min, max, .. } => [min, max],
+        _ => [None; 2],
+    };
+    check_limits(&variable.name, value, limits)
 }
 
 fn wrong_type<Q>(variable: &Variable<Q>, expected: &'static str) -> Error {

@@ -115,8 +115,8 @@ impl Condition {
     }
 }
 
-/// The larger of two numbers; unlike `f64::max` it keeps what is not a number.
-fn nan_or_larger(a: f64, b: f64) -> f64 {
+/// The larger of two numbers; unlike `f64::max` it keeps a NaN, wherever it stands.
+pub(in crate::kinematics) fn nan_or_larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
 }
 
@@ -315,7 +315,7 @@ mod tests {
     use nalgebra::DMatrix;
     use proptest::prelude::*;
 
-    use super::{Condition, SparseLu};
+    use super::{Condition, SparseLu, nan_or_larger};
 
     const ORDER: usize = 12;
 
@@ -362,6 +362,17 @@ mod tests {
                 prop_assert!(estimate <= truth * (1.0 + 1e-12), "{estimate} {truth}");
                 prop_assert!(estimate >= 0.1 * truth, "{estimate} {truth}");
             }
+        }
+    }
+
+    #[test]
+    fn no_entry_that_is_not_a_number_is_overlooked() {
+        for place in 0..3 {
+            let mut entries = [0.0, 2.0, 0.0];
+            let largest = entries.into_iter().fold(0.0, nan_or_larger);
+            assert!((largest - 2.0).abs() < f64::EPSILON);
+            entries[place] = f64::NAN;
+            assert!(entries.into_iter().fold(0.0, nan_or_larger).is_nan());
         }
     }
 

@@ -18,9 +18,9 @@ use neighbourhood::Neighbourhood;
 use super::elimination::Order;
 use super::{Substep, Work};
 use crate::kinematics::configuration::Configuration;
-use crate::kinematics::factor::{Condition, Factors, Lu};
+use crate::kinematics::factor::{Condition, Factors, Lu, nan_or_larger};
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
-use crate::kinematics::system::{System, Target, nan_or_larger};
+use crate::kinematics::system::{System, Target};
 use crate::mechanism::Jet;
 
 /// Where an unknown is found: the kernel, and its place among the unknowns of that kernel.

@@ -1,10 +1,10 @@
 //! Closing a mechanism on rows that may be more than enough, or too few.
 
 use crate::kinematics::constraint::Incidence;
-use crate::kinematics::factor::{Factors, SparseLu};
+use crate::kinematics::factor::{Factors, SparseLu, nan_or_larger};
 use crate::kinematics::newton::{AT_ROUNDING, STALLED};
 use crate::kinematics::plan::Work;
-use crate::kinematics::system::{RowValue, System, nan_or_larger};
+use crate::kinematics::system::{RowValue, System};
 
 use super::echelon::Row;
 

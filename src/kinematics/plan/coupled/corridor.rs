@@ -11,8 +11,8 @@
 
 use super::Coupled;
 use super::estimate::Passed;
+use crate::kinematics::factor::nan_or_larger;
 use crate::kinematics::plan::{Advance, Substep, Work};
-use crate::kinematics::system::nan_or_larger;
 
 /// A corridor is laid where a single step has c and a norm of K of up to this.
 const WORTH_A_CORRIDOR: f64 = 0.05;

@@ -19,10 +19,10 @@
 
 use super::certify::{LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY};
 use super::{Coupled, Proof};
-use crate::kinematics::factor::Factors;
+use crate::kinematics::factor::{Factors, nan_or_larger};
 use crate::kinematics::newton::STALLED;
 use crate::kinematics::plan::{Substep, Work};
-use crate::kinematics::system::{Target, nan_or_larger};
+use crate::kinematics::system::Target;
 
 /// What estimates are taken larger by.
 const MARGIN: f64 = 2.0;
