@@ -30,7 +30,7 @@ pub struct Progress {
     pub iterations: u32,
     /// Sub-steps, failed ones included; one for an ordinary step.
     pub substeps: u32,
-    /// Change points passed; [`Solver::crossed`] has them.
+    /// Change points passed; [`Solver::crossed`](crate::kinematics::Solver::crossed) has them.
     pub crossings: u32,
     /// How many of those that succeeded are *checked*, not proved: that one continuous motion
     /// joins their ends rests on an estimate. So it is for blocks of more than 32 torn unknowns,
