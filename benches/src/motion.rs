@@ -130,7 +130,7 @@ impl Moving {
         };
         let progress = self
             .solver
-            .follow(&self.path)
+            .track(&self.path)
             .expect("nothing is in the way");
         self.solver
             .solve_rates(|_| driver, &mut self.rates)

@@ -111,7 +111,7 @@ impl Motion {
         self.aim();
         self.path.start = self.solver.pose().time;
         self.path.duration = time - self.path.start;
-        let Err(blocked) = self.solver.follow(&self.path) else {
+        let Err(blocked) = self.solver.track(&self.path) else {
             if let Some(approach) = self.solver.approach(&mut self.near_singular) {
                 let notice = format!("t = {time} s: {approach}");
                 self.notices.push(Message::Warning(notice));

@@ -112,7 +112,7 @@ fn turn(
 
 /// Goes along a path as far as possible; false if that is not to its end.
 fn advance(solver: &mut Solver, path: &Path, poses: &mut Vec<Vec<f64>>) -> bool {
-    let followed = solver.follow(path);
+    let followed = solver.track(path);
     poses.push(solver.pose().q.clone());
     followed.is_ok()
 }
