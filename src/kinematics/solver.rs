@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::analysis::{self, Direction, GeometryWarning, Modes, Range, RangeSettings, Sensitivity};
 use super::assembly::estimate::{Move, estimate, moves};
 use super::block::Crossing;
-use super::constraint::{Gradient, point_acceleration, point_velocity};
 use super::continuation::{Blocked, PathTracker, Progress};
 use super::error::Error;
 use super::initial_pose::{self, Assembly, Start};
@@ -200,29 +199,13 @@ impl Solver {
     /// Returns value, rate and acceleration of a measure at the present pose. Allocates nothing.
     #[must_use]
     pub fn measure(&self, index: usize, rates: &Rates) -> Jet {
-        let measure = &self.model.measures[index];
-        let at = &self.state.at;
-        let mut gradient = Gradient::new();
-        measure.gradient(at, &mut gradient);
-        let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
-        Jet {
-            value: measure.value(at),
-            first: gradient.dot(q_dot),
-            second: gradient.dot(q_ddot) + measure.quadratic(at, q_dot),
-        }
+        self.state.measure(&*self.model.measures[index], rates)
     }
 
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.
     #[must_use]
     pub fn marker(&self, marker: MarkerId, rates: &Rates) -> [Jet; 2] {
-        let marker = self.state.at.marker(marker);
-        let velocity = point_velocity(marker, rates.velocity());
-        let acceleration = point_acceleration(marker, rates.velocity(), rates.acceleration());
-        [0, 1].map(|component| Jet {
-            value: marker.point[component],
-            first: velocity[component],
-            second: acceleration[component],
-        })
+        self.state.marker(marker, rates)
     }
 
     /// Returns value, velocity and acceleration of a driver with a prescribed motion at a time, for
@@ -231,12 +214,6 @@ impl Solver {
     #[must_use]
     pub fn motion(&self, driver: DriverId, time: f64) -> Jet {
         self.state.motions.evaluate(driver, Jet::variable(time))
-    }
-
-    /// Returns the drivers' values at the end of a path.
-    #[must_use]
-    pub fn drivers_at_end(&self, path: &Path) -> Vec<f64> {
-        path.drivers_at_end(self.mechanism())
     }
 
     /// Returns the distance of each body from its estimate at the present pose.
@@ -271,12 +248,6 @@ impl Solver {
     /// positions it costs a comparison.
     pub fn approach(&mut self, near: &mut bool) -> Option<Approach> {
         singular::approach(&mut self.model, &mut self.state, near)
-    }
-
-    /// Returns the bodies that line up at a change point of this mechanism.
-    #[must_use]
-    pub fn bodies_in_line(&self, crossing: &Crossing) -> Vec<String> {
-        singular::bodies_in_line(&self.model, crossing)
     }
 
     /// Returns the message for a change point that was passed.

@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use super::block::{BlockState, Crossing};
 use super::configuration::Configuration;
+use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity};
 use super::error::Error;
 use super::linear::Row;
 use super::model::Model;
 use super::newton::Rejected;
 use super::path::{Motions, Path, Rates};
 use super::system::{RowValue, System, Targets};
-use crate::mechanism::{DriverId, Jet};
+use crate::mechanism::{DriverId, Jet, MarkerId};
 
 /// The pose of a mechanism: all that decides where it is and how it goes on from there.
 #[derive(Clone, Debug, PartialEq)]
@@ -324,6 +325,30 @@ impl State {
         } else {
             Err(self.explain_rates(&model.system, driver))
         }
+    }
+
+    /// Returns value, rate and acceleration of a measure at the pose.
+    pub(super) fn measure(&self, measure: &dyn Constraint, rates: &Rates) -> Jet {
+        let mut gradient = Gradient::new();
+        measure.gradient(&self.at, &mut gradient);
+        let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
+        Jet {
+            value: measure.value(&self.at),
+            first: gradient.dot(q_dot),
+            second: gradient.dot(q_ddot) + measure.quadratic(&self.at, q_dot),
+        }
+    }
+
+    /// Returns point, velocity and acceleration of a marker: the x component, then the y component.
+    pub(super) fn marker(&self, marker: MarkerId, rates: &Rates) -> [Jet; 2] {
+        let marker = self.at.marker(marker);
+        let velocity = point_velocity(marker, rates.velocity());
+        let acceleration = point_acceleration(marker, rates.velocity(), rates.acceleration());
+        [0, 1].map(|component| Jet {
+            value: marker.point[component],
+            first: velocity[component],
+            second: acceleration[component],
+        })
     }
 
     /// Returns the cause of rates that are not finite.

@@ -216,7 +216,7 @@ impl MechanismModel {
             Reason::Singular(point) => (point.drivers.clone(), point.s),
             _ => (self.solver.pose().drivers.clone(), blocked.s),
         };
-        let asked = self.solver.drivers_at_end(&self.path);
+        let asked = self.path.drivers_at_end(&self.mechanism);
         let mut parts: Vec<String> = self
             .mechanism
             .drivers
