@@ -5,7 +5,7 @@ use crate::kinematics::Error;
 use crate::kinematics::path::{Curve, Path};
 use crate::kinematics::solver::Solver;
 use crate::kinematics::system::{System, Target};
-use crate::mechanism::{DriverId, Expression, Interval, Jet3, MarkerId, Number, ParameterId};
+use crate::mechanism::{DriverId, Expression, Interval, Jet3, MarkerId, ParameterId};
 
 /// How far a prescribed motion that is not smooth may leave its chord, in radians and
 /// characteristic lengths: one that jumps by more is refused where it jumps.
@@ -58,6 +58,12 @@ impl Slips {
     }
 }
 
+/// A number over a range, with this slope throughout.
+fn linear(range: Interval, slope: f64) -> Jet3<Interval> {
+    let zero = Interval::point(0.0);
+    Jet3::new(range, [Interval::point(slope), zero, zero])
+}
+
 impl Solver {
     /// Notes how drivers and parameters run over a part of `path`, at whose end drivers and
     /// parameters are those in force. False if nothing can be said: a motion jumps, or a number
@@ -82,7 +88,7 @@ impl Solver {
             let strays = match curve {
                 // Of second order: its second derivative is the same everywhere.
                 Curve::Input { .. } => {
-                    let second = self.path_drivers[index].second;
+                    let second = self.path_drivers[index].second();
                     Some(0.125 * (end - start).powi(2) * second.abs())
                 }
                 Curve::Motion => self.motion_strays(path, part, DriverId(index), [from, to]),
@@ -108,11 +114,7 @@ impl Solver {
         let [begin, stop] = [path.time(start), path.time(end)];
         let duration = stop - begin;
         let bounds = if self.parameters_move {
-            let t = Jet3 {
-                value: Interval::new(begin, stop),
-                first: Interval::point(path.duration),
-                ..Jet3::constant(0.0)
-            };
+            let t = linear(Interval::new(begin, stop), path.duration);
             let parameters = &self.tubes.slips.parameters;
             let bounds = self
                 .motions
@@ -120,8 +122,8 @@ impl Solver {
             if bounds.is_none() {
                 // A table whose points move: at both ends its second derivative is at hand.
                 self.tubes.checked = true;
-                let second = self.path_drivers[driver.index()].second;
-                let before = self.origin_drivers[driver.index()].second;
+                let second = self.path_drivers[driver.index()].second();
+                let before = self.origin_drivers[driver.index()].second();
                 let most = 2.0 * second.abs().max(before.abs());
                 return Some(0.125 * (end - start).powi(2) * most);
             }
@@ -138,7 +140,7 @@ impl Solver {
             let parameter = |p: ParameterId| Jet3::constant(parameters[p.index()]);
             self.motions.enclose(driver, t, &parameter)?
         };
-        let second = bounds.second.magnitude();
+        let second = bounds.second().magnitude();
         if self.parameters_move && second.is_finite() {
             return Some(0.125 * (end - start).powi(2) * second);
         }
@@ -157,11 +159,8 @@ impl Solver {
         let ways = path.from.iter().zip(&path.to);
         for (parameter, (&from, &to)) in slips.parameters.iter_mut().zip(ways) {
             let ends = [at(start, from, to), at(end, from, to)];
-            *parameter = Jet3 {
-                value: Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1])),
-                first: Interval::point(to - from),
-                ..Jet3::constant(0.0)
-            };
+            let range = Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
+            *parameter = linear(range, to - from);
         }
         mechanism.derive_parameters(&mut slips.parameters);
         let parameters = &slips.parameters;
