@@ -1,6 +1,12 @@
-//! The functions of the expression language by name.
+//! The constants and functions of the expression language by name.
+
+use std::f64::consts::PI;
 
 use crate::mechanism::number::{Number, Unary};
+
+/// The constants of the language; `deg`, `mm` and `cm` bring a number to SI units.
+pub(in crate::mechanism) const CONSTANTS: [(&str, f64); 4] =
+    [("pi", PI), ("deg", PI / 180.0), ("mm", 1e-3), ("cm", 1e-2)];
 
 /// A function of two arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +55,11 @@ pub(super) const FUNCTIONS: [(&str, Function); 22] = [
     ("min", Function::Binary(Binary::Min)),
     ("max", Function::Binary(Binary::Max)),
 ];
+
+/// The names of all functions.
+pub(in crate::mechanism) fn function_names() -> impl Iterator<Item = &'static str> {
+    FUNCTIONS.iter().map(|(name, _)| *name)
+}
 
 impl Function {
     pub(super) fn by_name(name: &str) -> Option<Self> {

@@ -14,24 +14,13 @@ mod token;
 #[cfg(test)]
 mod tests;
 
-use std::f64::consts::PI;
-
 use function::Binary;
-
+pub(super) use function::{CONSTANTS, function_names};
 pub use parse::ExpressionError;
 pub(super) use parse::Scope;
 
 use super::ParameterId;
 use super::number::{self, Interval, Jet3, Number, Unary};
-
-/// The constants of the language; `deg`, `mm` and `cm` bring a number to SI units.
-pub(super) const CONSTANTS: [(&str, f64); 4] =
-    [("pi", PI), ("deg", PI / 180.0), ("mm", 1e-3), ("cm", 1e-2)];
-
-/// The names of all functions.
-pub(super) fn function_names() -> impl Iterator<Item = &'static str> {
-    function::FUNCTIONS.iter().map(|(name, _)| *name)
-}
 
 /// The variable of an expression, besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! From text to expression: a Pratt parser that says where an error is.
 
-use super::function::{FUNCTIONS, Function};
+use super::function::{CONSTANTS, FUNCTIONS, Function};
 use super::token::{Token, TokenKind, scan};
-use super::{CONSTANTS, Expression, MAX_STACK, Operation, Variable, run};
+use super::{Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::{self, NameTable, quoted};
 use crate::mechanism::{ParameterId, Span};
 

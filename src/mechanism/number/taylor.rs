@@ -50,12 +50,18 @@ impl<S: Number, const N: usize> Taylor<S, N> {
         Self::fixed(S::constant(value))
     }
 
+    /// A linear function of the variable, here of this `value` and with this `slope`.
+    #[must_use]
+    pub fn linear(value: S, slope: S) -> Self {
+        let mut linear = Self::fixed(value);
+        linear.derivatives[0] = slope;
+        linear
+    }
+
     /// The variable itself at `value`: its first derivative is 1.
     #[must_use]
     pub fn variable(value: S) -> Self {
-        let mut variable = Self::fixed(value);
-        variable.derivatives[0] = S::constant(1.0);
-        variable
+        Self::linear(value, S::constant(1.0))
     }
 
     /// A number whose derivatives are not known.

@@ -4,6 +4,8 @@ mod enclosures;
 mod text;
 mod third_derivatives;
 
+use std::f64::consts::PI;
+
 use proptest::prelude::*;
 
 use super::*;
