@@ -82,8 +82,8 @@ pub fn four_bar(crank: Jet, out: &mut [f64; OUTPUTS]) {
         four_bar_solve(
             &LENGTHS,
             crank.value,
-            crank.first,
-            crank.second,
+            crank.first(),
+            crank.second(),
             out.as_mut_ptr(),
         );
     }
@@ -138,8 +138,8 @@ impl Chain {
                 self.raw.as_ptr(),
                 kind as c_uint,
                 crank.value,
-                crank.first,
-                crank.second,
+                crank.first(),
+                crank.second(),
             )
         };
         assert!(iterations > 0, "a loop does not converge");
@@ -246,11 +246,7 @@ impl Cycle {
     pub fn inputs(&self) -> Jet {
         // SAFETY: three numbers, which nobody writes now.
         let inputs = unsafe { slice::from_raw_parts(cycle_inputs(self.raw.as_ptr()), 3) };
-        Jet {
-            value: inputs[0],
-            first: inputs[1],
-            second: inputs[2],
-        }
+        Jet::new(inputs[0], [inputs[1], inputs[2]])
     }
 
     /// Outputs of the last cycle.

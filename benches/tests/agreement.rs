@@ -44,17 +44,12 @@ fn the_closed_form_has_the_rates_of_its_own_motion() {
     // Central differences of the motion u + u̇ t + ü t²/2: an error of h²/6 times a third or fourth
     // derivative, at most 1e6 here.
     let h = 1e-5;
-    let crank = Jet {
-        value: 2.0,
-        first: 10.0,
-        second: 3.0,
-    };
+    let crank = Jet::new(2.0, [10.0, 3.0]);
     let at = |t: f64| {
-        closed_form(Jet {
-            value: crank.value + t * (crank.first + 0.5 * t * crank.second),
-            first: crank.first + t * crank.second,
-            second: crank.second,
-        })
+        closed_form(Jet::new(
+            crank.value + t * (crank.first() + 0.5 * t * crank.second()),
+            [crank.first() + t * crank.second(), crank.second()],
+        ))
     };
     let (before, now, after) = (at(-h), at(0.0), at(h));
     for order in 0..2 {
@@ -139,8 +134,8 @@ fn biela_moves_a_scissor_lift_as_its_closed_form() {
         mechanism.step(height);
         let sine = height.value / (cells as f64 * BAR);
         let phi = sine.asin();
-        let omega = height.first / (cells as f64 * BAR * phi.cos());
-        let alpha = (height.second / (cells as f64 * BAR) + sine * omega * omega) / phi.cos();
+        let omega = height.first() / (cells as f64 * BAR * phi.cos());
+        let alpha = (height.second() / (cells as f64 * BAR) + sine * omega * omega) / phi.cos();
         for cell in 0..cells {
             let [left, right] = [6 * cell + 2, 6 * cell + 5];
             let found = state(&mechanism);

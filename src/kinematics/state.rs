@@ -78,11 +78,7 @@ pub(super) const SINGULAR_HERE: Error = Error::Singular {
 };
 
 /// The rates of a single driver with respect to its own value.
-pub(super) const UNIT_RATE: [Jet; 1] = [Jet {
-    value: 0.0,
-    first: 1.0,
-    second: 0.0,
-}];
+pub(super) const UNIT_RATE: [Jet; 1] = [Jet::new(0.0, [1.0, 0.0])];
 
 impl State {
     /// Makes the storage; there is no pose yet.
@@ -304,7 +300,7 @@ impl State {
     ) -> Result<(), Error> {
         self.refresh(model)?;
         let finite = if self.has_single_driver() {
-            let Jet { first, second, .. } = driver(DriverId(0));
+            let [first, second] = driver(DriverId(0)).derivatives;
             self.tangent.run(first, second, rates)
         } else {
             for (index, jet) in self.driver_rates.iter_mut().enumerate() {
@@ -332,11 +328,9 @@ impl State {
         let mut gradient = Gradient::new();
         measure.gradient(&self.at, &mut gradient);
         let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
-        Jet {
-            value: measure.value(&self.at),
-            first: gradient.dot(q_dot),
-            second: gradient.dot(q_ddot) + measure.quadratic(&self.at, q_dot),
-        }
+        let velocity = gradient.dot(q_dot);
+        let acceleration = gradient.dot(q_ddot) + measure.quadratic(&self.at, q_dot);
+        Jet::new(measure.value(&self.at), [velocity, acceleration])
     }
 
     /// Returns point, velocity and acceleration of a marker: the x component, then the y component.
@@ -344,21 +338,15 @@ impl State {
         let marker = self.at.marker(marker);
         let velocity = point_velocity(marker, rates.velocity());
         let acceleration = point_acceleration(marker, rates.velocity(), rates.acceleration());
-        [0, 1].map(|component| Jet {
-            value: marker.point[component],
-            first: velocity[component],
-            second: acceleration[component],
-        })
+        [0, 1].map(|k| Jet::new(marker.point[k], [velocity[k], acceleration[k]]))
     }
 
     /// Returns the cause of rates that are not finite.
     #[cold]
     fn explain_rates(&self, system: &System, driver: impl Fn(DriverId) -> Jet) -> Error {
         let mut drivers = (0..self.pose.drivers.len()).map(DriverId);
-        let endless = drivers.find(|&id| {
-            let Jet { first, second, .. } = driver(id);
-            !(first.is_finite() && second.is_finite())
-        });
+        let endless =
+            drivers.find(|&id| !driver(id).derivatives.iter().all(|rate| rate.is_finite()));
         endless.map_or(SINGULAR_HERE, |id| Error::NoMotion {
             driver: system.describe_driver(id),
             quantity: "velocity or acceleration",

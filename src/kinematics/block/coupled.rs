@@ -204,7 +204,7 @@ impl SolveBlock for CoupledBlock {
         let driver = |row: usize| state.system.equations()[row].target_rates(drivers);
         let scale = |row: usize| state.system.equations()[row].row_scale(state.at);
         for (side, &row) in self.correction.iter_mut().zip(&self.equations.rows) {
-            *side = driver(row).first * scale(row);
+            *side = driver(row).first() * scale(row);
         }
         let (velocity, _) = state.tangent.both_mut();
         self.solve(state.system, state.at.size(), velocity);
@@ -213,7 +213,7 @@ impl SolveBlock for CoupledBlock {
             let quadratic = equation
                 .constraint
                 .quadratic(state.at, state.tangent.velocity());
-            *side = (driver(row).second - quadratic) * scale(row);
+            *side = (driver(row).second() - quadratic) * scale(row);
         }
         let (_, acceleration) = state.tangent.both_mut();
         self.solve(state.system, state.at.size(), acceleration);

@@ -153,8 +153,8 @@ impl SolveBlock for InterpolatedBlock {
         let (velocity, acceleration) = state.tangent.both_mut();
         for (local, &column) in self.block.columns().iter().enumerate() {
             let [_, first, second] = self.crossing.evaluate(local, value);
-            velocity[column] = first * rates.first;
-            acceleration[column] = first * rates.second + second * rates.first * rates.first;
+            velocity[column] = first * rates.first();
+            acceleration[column] = first * rates.second() + second * rates.first() * rates.first();
         }
     }
 

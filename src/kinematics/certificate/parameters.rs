@@ -3,7 +3,7 @@
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{System, Target, Targets};
-use crate::mechanism::{Expression, Interval, Jet3, MarkerId, Number};
+use crate::mechanism::{Expression, Interval, Jet3, MarkerId};
 
 /// Bounds of the difference of each number in the equations from its value at the end of a sub-step,
 /// over the whole sub-step.
@@ -64,11 +64,8 @@ impl ParameterBounds {
         let branches = path.from.iter().zip(&path.to);
         for (parameter, (&from, &to)) in self.parameters.iter_mut().zip(branches) {
             let ends = [value(start, from, to), value(end, from, to)];
-            *parameter = Jet3 {
-                value: Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1])),
-                first: Interval::point(to - from),
-                ..Jet3::constant(0.0)
-            };
+            let range = Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
+            *parameter = Jet3::linear(range, Interval::point(to - from));
         }
         mechanism.derive_parameters(&mut self.parameters);
         let parameters = &self.parameters;

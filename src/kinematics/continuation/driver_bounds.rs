@@ -4,7 +4,7 @@ use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::path::{Curve, Path, PathDrivers};
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
-use crate::mechanism::{DriverId, Interval, Jet3, Number, ParameterId};
+use crate::mechanism::{DriverId, Interval, Jet3, ParameterId};
 
 /// Largest deviation of a prescribed motion that is not smooth, in radians and characteristic
 /// lengths; a motion that jumps by more is refused where it jumps.
@@ -36,14 +36,14 @@ pub(super) fn bound_drivers(
         let deviation = match curve {
             // The second derivative is constant.
             Curve::Input { .. } => {
-                let second = drivers.ahead[index].second;
+                let second = drivers.ahead[index].second();
                 Some(0.125 * (end - start).powi(2) * second.abs())
             }
             Curve::Motion => {
                 let motion = Motion {
                     driver: DriverId(index),
                     ends,
-                    second: [drivers.here[index].second, drivers.ahead[index].second],
+                    second: [drivers.here[index].second(), drivers.ahead[index].second()],
                     moves: drivers.parameters_move,
                 };
                 motion.deviation(state, path, part, bounds)
@@ -83,11 +83,7 @@ impl Motion {
         let [begin, stop] = [path.time(start), path.time(end)];
         let duration = stop - begin;
         let range = if self.moves {
-            let t = Jet3 {
-                value: Interval::new(begin, stop),
-                first: Interval::point(path.duration),
-                ..Jet3::constant(0.0)
-            };
+            let t = Jet3::linear(Interval::new(begin, stop), Interval::point(path.duration));
             let parameters = &bounds.parameters.parameters;
             let range = motions.enclose(self.driver, t, &|p: ParameterId| parameters[p.index()]);
             if range.is_none() {
@@ -109,7 +105,7 @@ impl Motion {
             let parameter = |p: ParameterId| Jet3::constant(parameters[p.index()]);
             motions.enclose(self.driver, t, &parameter)?
         };
-        let second = range.second.magnitude();
+        let second = range.second().magnitude();
         if self.moves && second.is_finite() {
             return Some(0.125 * (end - start).powi(2) * second);
         }

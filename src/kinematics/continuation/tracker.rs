@@ -386,7 +386,7 @@ impl Run<'_> {
     /// or less.
     fn end_within(&self, driver: DriverId, most: f64, mut end: f64) -> f64 {
         let from = self.drivers.here[driver.index()];
-        let way = |h: f64| h * (from.first.abs() + 0.5 * h * from.second.abs());
+        let way = |h: f64| h * (from.first().abs() + 0.5 * h * from.second().abs());
         while way(end - self.s) > most {
             end = self.s + 0.5 * (end - self.s);
         }
@@ -487,7 +487,7 @@ impl Run<'_> {
         if let Err(error) = ahead {
             return Reason::Value(error);
         }
-        let moves = |driver: &Jet| (self.length * driver.first).abs() > LARGEST_LAST_MOVE;
+        let moves = |driver: &Jet| (self.length * driver.first()).abs() > LARGEST_LAST_MOVE;
         if self.drivers.here.iter().any(moves) {
             Reason::TooLong
         } else {
@@ -516,8 +516,8 @@ impl Run<'_> {
 fn extrapolation(drivers: &[Jet], h: f64) -> Extrapolation {
     match drivers {
         [u] => Extrapolation {
-            first: h * (u.first + 0.5 * h * u.second),
-            second: 0.5 * (h * u.first).powi(2),
+            first: h * (u.first() + 0.5 * h * u.second()),
+            second: 0.5 * (h * u.first()).powi(2),
         },
         _ => Extrapolation {
             first: h,

@@ -104,10 +104,10 @@ pub(in crate::kinematics) fn leave_crossings(
         let driver = crossing.driver.index();
         let place = crossing.place(state.pose.drivers[driver]);
         let jet = drivers[driver];
-        let direction = if jet.first == 0.0 {
-            jet.second
+        let direction = if jet.first() == 0.0 {
+            jet.second()
         } else {
-            jet.first
+            jet.first()
         };
         if place.abs() >= 1.0 - CROSSING_END && direction * place > 0.0 {
             state.remove_crossing(model, index);

@@ -130,7 +130,7 @@ fn enter_near_crossings(
             continue;
         };
         let value = state.pose.drivers[driver.index()];
-        let direction = drivers.map_or(0.0, |drivers| drivers[driver.index()].first);
+        let direction = drivers.map_or(0.0, |drivers| drivers[driver.index()].first());
         let line = Line::Driver(driver);
         let Some(mut equation) = ReducedEquation::new(model, state, block, line, value) else {
             continue;

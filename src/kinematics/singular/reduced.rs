@@ -175,7 +175,7 @@ impl<'a> ReducedEquation<'a> {
         });
         let driven = self.rows.iter().map(|&row| {
             let scale = self.system.equations()[row].row_scale(&self.at);
-            (self.driver(row).first * scale).abs()
+            (self.driver(row).first() * scale).abs()
         });
         read.chain(driven).fold(own.amax(), f64::max)
     }
@@ -292,8 +292,8 @@ impl<'a> ReducedEquation<'a> {
             )
         };
         [
-            rate(self.tangent.velocity(), |jet| jet.first),
-            rate(self.tangent.acceleration(), |jet| jet.second),
+            rate(self.tangent.velocity(), |jet| jet.first()),
+            rate(self.tangent.acceleration(), |jet| jet.second()),
         ]
     }
 

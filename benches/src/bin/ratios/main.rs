@@ -306,11 +306,7 @@ fn long_run(out: &mut String) {
     line(out, &["---", "---:", "---:"]);
     let mut moving = Moving::new(&chain(1, Ground::Straight));
     let start = moving.solver.pose().drivers[0];
-    let at_rest = |value| Jet {
-        value,
-        first: 0.0,
-        second: 0.0,
-    };
+    let at_rest = |value| Jet::new(value, [0.0, 0.0]);
     let mut worst = (0.0_f64, 0.0_f64);
     for turn in 0..TURNS {
         if turn % (TURNS / 10) == 0 {
