@@ -37,6 +37,7 @@ fn main() {
         "slider_crank.c",
         "cam.c",
         "chain.c",
+        "clock.c",
         "cycle.c",
     ] {
         build.file(format!("yardstick/{source}"));

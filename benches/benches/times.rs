@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use yardstick::comparisons::timed;
+use yardstick::comparisons::timed_cases;
 
 /// Times each case; one iteration is its whole span.
 fn times(criterion: &mut Criterion) {
-    for case in timed() {
+    for case in timed_cases() {
         let span = case.span().expect("a sweep has steps");
         let mut group = criterion.benchmark_group(&case.name);
         group.throughput(Throughput::Elements(span));

@@ -1,9 +1,10 @@
 //! What can be measured, by name; `README.md` lists the names.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::by_hand::{cam_flat, cam_knife, cam_roller, four_bar, slider_crank};
 use crate::chain::{Chain, Kind};
+use crate::clock::timed;
 use crate::cycle::{Cycle, Order};
 use crate::generated::{Ground, chain, scissor_lift};
 use crate::motion::{Moving, Stepper, Sweep, set_up};
@@ -125,11 +126,12 @@ fn repeat<const DRIVERS: usize>(
     mut sweeps: [Sweep; DRIVERS],
 ) -> Run {
     Box::new(move |steps| {
-        let start = Instant::now();
-        for _ in 0..steps {
-            stepper.step(&sweeps.each_mut().map(Sweep::step));
-        }
-        start.elapsed()
+        let run = || {
+            for _ in 0..steps {
+                stepper.step(&sweeps.each_mut().map(Sweep::step));
+            }
+        };
+        timed(run).1
     })
 }
 
@@ -140,14 +142,6 @@ fn cycles(mut cycle: Cycle) -> Run {
 
 /// Sets up a mechanism from its text to its first pose.
 fn set_ups(text: String) -> Run {
-    Box::new(move |times| {
-        let mut time = Duration::ZERO;
-        for _ in 0..times {
-            let start = Instant::now();
-            let made = set_up(&text);
-            time += start.elapsed();
-            drop(made);
-        }
-        time
-    })
+    // What is made is dropped outside of the time.
+    Box::new(move |times| (0..times).map(|_| timed(|| set_up(&text)).1).sum())
 }

@@ -16,18 +16,29 @@ pub struct Comparison {
     pub yardstick: Case,
 }
 
-/// Label, mark, case and yardstick of the mechanisms that run at each of [`sizes::SWEEPS`].
-const MECHANISMS: [(&str, &str, &str, &str); 6] = [
-    ("four-bar", "3", "four_bar", "c_four_bar"),
-    ("slider–crank", "3", "slider_crank", "c_slider_crank"),
-    ("cam, roller follower", "3", "cam_roller", "c_cam_roller"),
-    ("cam, flat follower", "3", "cam_flat", "c_cam_flat"),
-    ("cam, knife edge", "3", "cam_knife", "c_cam_knife"),
+/// Label, case, yardstick and marks at each of [`sizes::SWEEPS`]. Newton takes two corrections in
+/// coarse steps and a closed form none, so that there only fine steps have a mark.
+const MECHANISMS: [(&str, &str, &str, [&str; 3]); 6] = [
+    ("four-bar", "four_bar", "c_four_bar", ["3", "", ""]),
+    (
+        "slider–crank",
+        "slider_crank",
+        "c_slider_crank",
+        ["3", "", ""],
+    ),
+    (
+        "cam, roller follower",
+        "cam_roller",
+        "c_cam_roller",
+        ["3"; 3],
+    ),
+    ("cam, flat follower", "cam_flat", "c_cam_flat", ["3"; 3]),
+    ("cam, knife edge", "cam_knife", "c_cam_knife", ["3"; 3]),
     (
         "parallelogram / four-bar of biela",
-        "2",
         "parallelogram",
         "four_bar",
+        ["2"; 3],
     ),
 ];
 
@@ -52,8 +63,8 @@ pub fn comparisons() -> Vec<Comparison> {
             yardstick,
         });
     };
-    for (what, mark, biela, yardstick) in MECHANISMS {
-        for steps in sizes::SWEEPS {
+    for (what, biela, yardstick, marks) in MECHANISMS {
+        for (steps, mark) in sizes::SWEEPS.into_iter().zip(marks) {
             add(
                 format!("{what}, {steps} steps per turn"),
                 mark,
@@ -91,7 +102,7 @@ pub fn comparisons() -> Vec<Comparison> {
 
 /// Returns all cases that are timed, each once.
 #[must_use]
-pub fn timed() -> Vec<Case> {
+pub fn timed_cases() -> Vec<Case> {
     let compared = comparisons();
     let compared = compared.iter().flat_map(|row| [&row.biela, &row.yardstick]);
     let mut cases = Vec::new();
@@ -126,6 +137,6 @@ pub fn set_ups() -> impl Iterator<Item = Case> {
 /// Returns the cases of which instructions are counted and nothing else: mechanisms without a
 /// yardstick.
 #[must_use]
-pub fn counted() -> [Case; 3] {
+pub fn counted_cases() -> [Case; 3] {
     ["five_bar_robot", "platform_3rpr", "jansen_leg"].map(|name| Case::new(name, 1))
 }

@@ -6,6 +6,7 @@
 //! | [`by_hand`] | single mechanisms in C |
 //! | [`chain`] | chains of loops in C |
 //! | [`cycle`] | FMUs in a host in C |
+//! | [`clock`] | the time that this thread has run |
 //! | [`cases`] | what can be measured, by name |
 //! | [`comparisons`] | which case is measured by which |
 //! | [`instructions`] | instructions per step |
@@ -17,6 +18,7 @@ pub mod generated;
 pub mod by_hand;
 pub mod cases;
 pub mod chain;
+pub mod clock;
 pub mod comparisons;
 pub mod cycle;
 pub mod instructions;

@@ -7,7 +7,7 @@ use yardstick::by_hand::{
     ByHand, cam_flat, cam_knife, cam_roller, four_bar, slider_crank, slider_crank_of,
 };
 use yardstick::chain::{Chain, Kind};
-use yardstick::comparisons::{counted, timed};
+use yardstick::comparisons::{counted_cases, timed_cases};
 use yardstick::cycle::{Cycle, Order};
 use yardstick::generated::{BAR, Ground, chain, scissor_lift};
 use yardstick::motion::{Moving, Stepper, Sweep, by_order};
@@ -291,7 +291,7 @@ fn an_order_asks_for_each_output_once() {
 /// Each case that is measured runs, at the least size.
 #[test]
 fn every_case_runs() {
-    for case in timed().into_iter().chain(counted()) {
+    for case in timed_cases().into_iter().chain(counted_cases()) {
         if case.size <= 10 {
             let mut run = case.run().expect("the case exists");
             run(3);

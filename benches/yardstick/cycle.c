@@ -1,13 +1,11 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "cycle.h"
 
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "clock.h"
 #include "fmi2Functions.h"
 
 #define FUNCTIONS(X)                                                                               \
@@ -81,20 +79,13 @@ struct cycle *cycle_open(const char *library, const char *guid, const char *reso
     return cycle;
 }
 
-static long long now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return 1000000000LL * time.tv_sec + time.tv_nsec;
-}
-
 long long cycle_run(struct cycle *cycle, unsigned long long cycles)
 {
     static const fmi2ValueReference in[INPUTS] = {0, 1, 2};
     const double circle = 6.283185307179586, speed = 10.0;
     const unsigned turn = cycle->turn;
     const double angle = circle / turn, size = angle / speed;
-    long long started = now();
+    long long started = thread_time();
     for (unsigned long long end = cycle->done + cycles; cycle->done < end; cycle->done++) {
         if (++cycle->at == 2 * turn) cycle->at = 0;
         const int back = cycle->at > turn;
@@ -106,7 +97,7 @@ long long cycle_run(struct cycle *cycle, unsigned long long cycles)
             cycle->GetReal(cycle->component, cycle->order, OUTPUTS, cycle->outputs) != fmi2OK)
             return -1;
     }
-    return now() - started;
+    return thread_time() - started;
 }
 
 const double *cycle_inputs(const struct cycle *cycle) { return cycle->inputs; }

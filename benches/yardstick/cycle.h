@@ -15,8 +15,8 @@ struct cycle *cycle_open(const char *library, const char *guid, const char *reso
 void cycle_close(struct cycle *);
 
 /* Does a number of cycles: each sets the crank's angle and its rates, steps, and gets all outputs
- * by one call. The crank turns at 10 rad/s, there and back again. Returns the time from the first
- * cycle to the last [ns], or -1 if a call fails. */
+ * by one call. The crank turns at 10 rad/s, there and back again. Returns the time that all cycles
+ * take together [ns], or -1 if a call fails. */
 long long cycle_run(struct cycle *, unsigned long long cycles);
 
 /* The crank's angle of the last cycle, its velocity and acceleration. */

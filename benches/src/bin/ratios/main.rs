@@ -20,7 +20,7 @@ use times::{Time, time};
 use yardstick::by_hand::four_bar;
 use yardstick::cases::Case;
 use yardstick::chain::{Chain, Kind};
-use yardstick::comparisons::{Comparison, comparisons, counted, lifts, set_ups};
+use yardstick::comparisons::{Comparison, comparisons, counted_cases, lifts, set_ups};
 use yardstick::generated::{Ground, chain};
 use yardstick::instructions::Counter;
 use yardstick::motion::{Moving, Stepper, Sweep};
@@ -117,7 +117,7 @@ fn without_yardstick(out: &mut String, counter: Option<&Counter>) {
     table(
         out,
         ["mechanism without yardstick", "instructions per step"],
-        counted().into_iter().map(row),
+        counted_cases().into_iter().map(row),
     );
 }
 
