@@ -53,13 +53,10 @@ impl Case {
         if self.name.starts_with("set_up") {
             return Ok((100 / size).max(1));
         }
-        let steps = (10_000 / size).max(20);
-        let sweep = u64::from(self.sweep()?);
-        Ok(if size == 1 {
-            steps.next_multiple_of(sweep)
-        } else {
-            steps
-        })
+        if size == 1 {
+            return Ok(1_000_u64.next_multiple_of(self.sweep()?.into()));
+        }
+        Ok((10_000 / size).max(20))
     }
 
     /// Makes the program that does the steps.
