@@ -60,7 +60,6 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
             "at": pair(anchor),
             "side": side.map(|side| pair(100.0 * side)),
             "gap": short(label.place.gap),
-            "size": [short(label.text.width()), CAPITALS],
         })
     });
     let clock = animation.clock;
@@ -72,6 +71,7 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
         "step": clock.step,
         "stop": clock.stop,
         "attachments": stage.attachments.len(),
+        "capitals": CAPITALS,
         "labels": labels.collect::<Vec<_>>(),
         "lengths": stage.lengths.len(),
         "points": points.iter().map(|(attachment, anchor)| json!({

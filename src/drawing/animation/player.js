@@ -45,9 +45,10 @@
     }));
     const names = [...player.querySelectorAll(".names text")];
     const view = find(".stage").viewBox.baseVal;
-    // On small screens names are larger than in the film.
+    // On small screens names are larger than in the film, and each font has its own widths.
     let larger = 1;
-    // Middle and size of each.
+    let widths = [];
+    // Middle and size of each name.
     let boxes = [];
     const arrows = ["velocity", "acceleration"].map((kind) =>
       film.points.map(() => add(find(`.arrows.${kind}`), "path")),
@@ -98,7 +99,7 @@
       }
       boxes = film.labels.map((label, index) => {
         let [x, y] = outside(label.attachment, label.at);
-        const [width, height] = label.size.map((length) => larger * length);
+        const [width, height] = [widths[index], larger * film.capitals];
         if (label.side) {
           const { cos, sin } = places[label.attachment];
           const [u, v] = label.side.map((part) => part / 100);
@@ -162,6 +163,10 @@
 
     function show(box) {
       player.classList.toggle(`show-${box.value}`, box.checked);
+      // Only texts on the page have a width.
+      if (box.value === "names" && box.checked) {
+        fit();
+      }
     }
 
     const offered = SPEEDS.filter((s) => s === 1 || (duration / s >= LASTS[0] && duration / s <= LASTS[1]));
@@ -209,6 +214,8 @@
     function fit() {
       const group = find(".names");
       larger = parseFloat(getComputedStyle(group).fontSize) / Number(group.getAttribute("font-size"));
+      names.forEach((name) => (name.style.display = ""));
+      widths = names.map((name) => name.getComputedTextLength());
       draw();
       // Where they have grown, one that would be over another is left out.
       const apart = (a, b) =>
