@@ -60,11 +60,7 @@ fn swing(mechanism: &Arc<Mechanism>, count: usize) -> Vec<(Vec<f64>, [Vec<f64>; 
     let size = 0.05 * home[0].abs().max(0.2);
     let swing = |k: usize| {
         let t = 0.1 * k as f64;
-        Jet {
-            value: home[0] + size * t.sin(),
-            first: size * t.cos(),
-            second: -size * t.sin(),
-        }
+        Jet::new(home[0] + size * t.sin(), [size * t.cos(), -size * t.sin()])
     };
     let moved = matches!(path.curves[0], Curve::Input { .. });
     let step = |k| {

@@ -97,7 +97,7 @@ impl<const LENGTHS: usize, const OUT: usize> Stepper for ByHand<LENGTHS, OUT> {
 #[must_use]
 pub fn four_bar() -> ByHand<4, OUTPUTS> {
     ByHand::new(FOUR_BAR, |lengths, crank, out| {
-        four_bar_solve(lengths, crank.value, crank.first, crank.second, out);
+        four_bar_solve(lengths, crank.value, crank.first(), crank.second(), out);
     })
 }
 
@@ -111,7 +111,7 @@ pub fn slider_crank() -> ByHand<3, OUTPUTS> {
 #[must_use]
 pub fn slider_crank_of(lengths: [f64; 3]) -> ByHand<3, OUTPUTS> {
     ByHand::new(lengths, |lengths, crank, out| {
-        slider_crank_solve(lengths, crank.value, crank.first, crank.second, out);
+        slider_crank_solve(lengths, crank.value, crank.first(), crank.second(), out);
     })
 }
 
@@ -119,7 +119,7 @@ pub fn slider_crank_of(lengths: [f64; 3]) -> ByHand<3, OUTPUTS> {
 #[must_use]
 pub fn cam_roller() -> ByHand<8, CONTACT_OUTPUTS> {
     ByHand::new(CAM_ROLLER, |cam, angle, out| {
-        let iterations = cam_roller_step(cam, angle.value, angle.first, angle.second, out);
+        let iterations = cam_roller_step(cam, angle.value, angle.first(), angle.second(), out);
         assert!(iterations > 0, "Newton converges");
     })
 }
@@ -128,7 +128,7 @@ pub fn cam_roller() -> ByHand<8, CONTACT_OUTPUTS> {
 #[must_use]
 pub fn cam_flat() -> ByHand<8, CONTACT_OUTPUTS> {
     ByHand::new(CAM_FLAT, |cam, angle, out| {
-        let iterations = cam_flat_step(cam, angle.value, angle.first, angle.second, out);
+        let iterations = cam_flat_step(cam, angle.value, angle.first(), angle.second(), out);
         assert!(iterations > 0, "Newton converges");
     })
 }
@@ -137,6 +137,6 @@ pub fn cam_flat() -> ByHand<8, CONTACT_OUTPUTS> {
 #[must_use]
 pub fn cam_knife() -> ByHand<2, 18> {
     ByHand::new(CAM_KNIFE, |cam, angle, out| {
-        cam_knife_solve(cam, angle.value, angle.first, angle.second, out);
+        cam_knife_solve(cam, angle.value, angle.first(), angle.second(), out);
     })
 }

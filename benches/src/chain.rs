@@ -96,8 +96,8 @@ impl Stepper for Chain {
                 self.raw.as_ptr(),
                 self.kind as c_uint,
                 crank.value,
-                crank.first,
-                crank.second,
+                crank.first(),
+                crank.second(),
             )
         };
         assert!(iterations > 0, "each loop converges");

@@ -154,11 +154,7 @@ impl Cycle {
     pub fn inputs(&self) -> Jet {
         // SAFETY: three numbers, which nobody writes now.
         let inputs = unsafe { slice::from_raw_parts(cycle_inputs(self.raw.as_ptr()), 3) };
-        Jet {
-            value: inputs[0],
-            first: inputs[1],
-            second: inputs[2],
-        }
+        Jet::new(inputs[0], [inputs[1], inputs[2]])
     }
 
     /// Outputs of the last cycle: for each body x y phi vx vy omega ax ay alpha.

@@ -58,11 +58,10 @@ impl Sweep {
         } else {
             self.at
         };
-        Jet {
-            value: self.from + self.step * f64::from(done),
-            first: if back { -self.speed } else { self.speed },
-            second: 3.0,
-        }
+        Jet::new(
+            self.from + self.step * f64::from(done),
+            [if back { -self.speed } else { self.speed }, 3.0],
+        )
     }
 }
 

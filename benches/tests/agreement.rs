@@ -62,17 +62,12 @@ fn assert_same_motion<const L: usize, const N: usize>(
 /// times a third or fourth derivative, at most 1e6 here.
 fn assert_rates<const L: usize, const N: usize>(mut yardstick: ByHand<L, N>) {
     let h = 1e-5;
-    let driver = Jet {
-        value: 2.0,
-        first: 10.0,
-        second: 3.0,
-    };
+    let driver = Jet::new(2.0, [10.0, 3.0]);
     let mut at = |t: f64| {
-        by_order(yardstick.at(Jet {
-            value: driver.value + t * (driver.first + 0.5 * t * driver.second),
-            first: driver.first + t * driver.second,
-            second: driver.second,
-        }))
+        by_order(yardstick.at(Jet::new(
+            driver.value + t * (driver.first() + 0.5 * t * driver.second()),
+            [driver.first() + t * driver.second(), driver.second()],
+        )))
     };
     let (before, now, after) = (at(-h), at(0.0), at(h));
     for order in 0..2 {
@@ -130,8 +125,8 @@ fn the_flat_cam_moves_in_simple_harmonic_motion() {
             let (sine, cosine) = angle.value.sin_cos();
             let truth = [
                 a + e * sine,
-                e * cosine * angle.first,
-                e * (cosine * angle.second - sine * angle.first * angle.first),
+                e * cosine * angle.first(),
+                e * (cosine * angle.second() - sine * angle.first() * angle.first()),
             ];
             let outputs = cam.at(angle);
             for order in 0..3 {
@@ -171,7 +166,7 @@ fn biela_turns_the_parallelogram_through_its_change_points() {
             mechanism.step(&[crank]);
             let (sine, cosine) = crank.value.sin_cos();
             let [x, y] = [length * cosine, length * sine];
-            let (omega, alpha) = (crank.first, crank.second);
+            let (omega, alpha) = (crank.first(), crank.second());
             let truth = [
                 vec![0.0, 0.0, crank.value, x, y, 0.0, base, 0.0, crank.value],
                 vec![0.0, 0.0, omega, -y * omega, x * omega, 0.0, 0.0, 0.0, omega],
@@ -246,8 +241,8 @@ fn biela_moves_a_scissor_lift_as_its_closed_form() {
         mechanism.step(&[height]);
         let sine = height.value / (cells as f64 * BAR);
         let phi = sine.asin();
-        let omega = height.first / (cells as f64 * BAR * phi.cos());
-        let alpha = (height.second / (cells as f64 * BAR) + sine * omega * omega) / phi.cos();
+        let omega = height.first() / (cells as f64 * BAR * phi.cos());
+        let alpha = (height.second() / (cells as f64 * BAR) + sine * omega * omega) / phi.cos();
         let found = mechanism.state();
         for cell in 0..cells {
             let bar = |at: usize| found.each_ref().map(|all| vec![all[at]]);

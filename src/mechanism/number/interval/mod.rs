@@ -2,16 +2,16 @@
 
 mod functions;
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use super::scalar::Scalar;
+use super::Number;
 
 /// The real numbers from `low` to `high`, both included.
 ///
-/// The arithmetic and the functions of [`Scalar`] enclose: for any numbers in the operands the
-/// exact result lies in the resulting interval. Sums, products, quotients and square roots that
-/// are exact stay so; all else is rounded outward. Where a result is not defined for all numbers
-/// in the operands, both bounds are NaN.
+/// Arithmetic and functions enclose: for any numbers in the operands the exact result lies in the
+/// resulting interval. Sums, products, quotients and square roots that are exact stay so; all else
+/// is rounded outward. Where a result is not defined for all numbers in the operands, both bounds
+/// are NaN.
 ///
 /// ```
 /// use biela::mechanism::Interval;
@@ -28,8 +28,8 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Products and quotients nearer to zero than this may have a rounding error that is itself too
-/// small for a number: f64's smallest normal number over its relative precision, and some.
+/// The rounding error of a product or quotient below this magnitude may itself be too small for a
+/// number: f64's smallest normal number over its relative precision, and a margin.
 const UNDERFLOW: f64 = 1e-290;
 
 impl Interval {
@@ -38,7 +38,12 @@ impl Interval {
         high: f64::NAN,
     };
 
-    /// From `low` to `high`; not defined if one of them is NaN or `low` is larger.
+    const ONE: Self = Self {
+        low: 1.0,
+        high: 1.0,
+    };
+
+    /// The interval from `low` to `high`, undefined if one is NaN or `low` is larger.
     #[must_use]
     pub fn new(low: f64, high: f64) -> Self {
         if low <= high {
@@ -48,13 +53,13 @@ impl Interval {
         }
     }
 
-    /// Exactly `value`.
+    /// The interval that contains only `value`.
     #[must_use]
     pub fn point(value: f64) -> Self {
         Self::new(value, value)
     }
 
-    /// A number near the middle, in the interval.
+    /// A number in the interval, near its middle.
     #[must_use]
     pub fn midpoint(self) -> f64 {
         self.low.midpoint(self.high)
@@ -72,13 +77,7 @@ impl Interval {
         self.low <= value && value <= self.high
     }
 
-    /// Whether both bounds are finite.
-    #[must_use]
-    pub fn is_finite(self) -> bool {
-        self.low.is_finite() && self.high.is_finite()
-    }
-
-    /// What lies in both.
+    /// The numbers in both intervals.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         if self.is_undefined() || other.is_undefined() {
@@ -87,7 +86,7 @@ impl Interval {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }
 
-    /// From the least of `bounds` to the greatest; not defined if one is not.
+    /// The smallest interval that contains all of `bounds`, undefined if one of them is.
     pub(super) fn hull<const N: usize>(bounds: [Self; N]) -> Self {
         let mut hull = bounds[0];
         for bound in bounds {
@@ -100,8 +99,8 @@ impl Interval {
         hull
     }
 
-    /// The numbers that `rounded` to the nearest may stand for, from the sign of what rounding
-    /// took away; `NaN` if that is not known.
+    /// Returns the exact result of which `rounded` is the nearest number, between neighbours.
+    /// `error` is the exact result less `rounded`; only its sign matters, NaN is unknown.
     fn of_rounded(rounded: f64, error: f64) -> Self {
         // An infinite result may stand for a finite one; its neighbour bounds that.
         Self {
@@ -159,12 +158,32 @@ impl Mul for Interval {
             };
             Self::of_rounded(product, error)
         };
-        Self::hull([
-            product(self.low, other.low),
-            product(self.low, other.high),
-            product(self.high, other.low),
-            product(self.high, other.high),
-        ])
+        // Where signs are known, two of the four products of ends are the bounds.
+        let (x, y) = (self, other);
+        if y == Self::ONE {
+            return x;
+        }
+        let ends = |low: [f64; 2], high: [f64; 2]| {
+            Self::new(product(low[0], low[1]).low, product(high[0], high[1]).high)
+        };
+        if x.low >= 0.0 {
+            let lowest = if y.low >= 0.0 { x.low } else { x.high };
+            let highest = if y.high >= 0.0 { x.high } else { x.low };
+            ends([lowest, y.low], [highest, y.high])
+        } else if x.high <= 0.0 {
+            let lowest = if y.high >= 0.0 { x.low } else { x.high };
+            let highest = if y.low >= 0.0 { x.high } else { x.low };
+            ends([lowest, y.high], [highest, y.low])
+        } else if y.low >= 0.0 {
+            ends([x.low, y.high], [x.high, y.high])
+        } else if y.high <= 0.0 {
+            ends([x.high, y.low], [x.low, y.low])
+        } else {
+            Self::hull([
+                ends([x.low, y.high], [x.low, y.low]),
+                ends([x.high, y.low], [x.high, y.high]),
+            ])
+        }
     }
 }
 
@@ -211,5 +230,23 @@ impl Neg for Interval {
             low: -self.high,
             high: -self.low,
         }
+    }
+}
+
+impl AddAssign for Interval {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Interval {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign for Interval {
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
     }
 }
