@@ -1,4 +1,4 @@
-//! The motion that a picture shows: poses of a mechanism along it.
+//! Poses of a mechanism along the motion that a picture shows.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -6,15 +6,16 @@ use std::sync::Arc;
 use crate::kinematics::{Curve, Path, Solver};
 use crate::mechanism::{CoordinateKind, Motion};
 
-/// Poses along a whole motion: fine enough for curves to look smooth.
+/// Poses along a whole motion: curves look smooth.
 const STEPS: usize = 240;
-/// A mechanism that so many turns of its driver do not bring back shows one.
+/// Most turns of the driver that are tried to bring the mechanism back; otherwise one is shown.
 const MOST_TURNS: usize = 8;
-/// How near, as a part of the way that bodies went and in radians, is back.
+/// Greatest distance from the start that counts as back, as a part of the longest way of a body,
+/// and in radians.
 const BACK: f64 = 1e-6;
 
-/// The generalized coordinates along the motion that starts, or passes, where the solver stands;
-/// at least those. The solver is back there in the end.
+/// Returns the generalized coordinates along the motion that starts at, or passes through, the
+/// solver's pose; at least this pose. The solver returns to it.
 pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
     let home = solver.pose().clone();
     let mechanism = Arc::clone(solver.mechanism());
@@ -69,7 +70,7 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
     poses
 }
 
-/// Whether all bodies are in the end where they started, whatever full turns they made.
+/// Whether all bodies end where they started, but for full turns.
 fn is_back(poses: &[Vec<f64>]) -> bool {
     let (start, end) = (&poses[0], &poses[poses.len() - 1]);
     let off = |q: &[f64], k: usize| (q[k] - start[k]).abs();
@@ -89,7 +90,7 @@ fn is_back(poses: &[Vec<f64>]) -> bool {
     })
 }
 
-/// Turns a driver by an angle; false if something is in the way.
+/// Turns a driver by an angle; false if the motion is blocked before.
 fn turn(
     solver: &mut Solver,
     path: &mut Path,
@@ -110,7 +111,7 @@ fn turn(
     })
 }
 
-/// Goes along a path as far as possible; false if that is not to its end.
+/// Follows a path as far as possible; false if the motion is blocked before its end.
 fn advance(solver: &mut Solver, path: &Path, poses: &mut Vec<Vec<f64>>) -> bool {
     let followed = solver.track(path);
     poses.push(solver.pose().q.clone());

@@ -1,74 +1,137 @@
-//! Where names go: near what they name, clear of everything else.
+//! Places of names: near the thing named, clear of everything else.
 
+use std::f64::consts::{PI, TAU};
+
+use super::attachment::Attachment;
 use super::lettering;
-use super::outline::Point;
+use super::outline::{Point, contains, direction};
 use super::palette::Colour;
-use super::rider::Rider;
 use super::sheet::{Bounds, CAPITALS, Layer, Mark, Text};
 
-/// A text that looks for its place.
+/// A text that needs a place.
 pub(super) struct Label {
     pub(super) content: String,
     pub(super) colour: Colour,
-    /// What it stays with when the mechanism moves.
-    pub(super) follows: Rider,
-    /// Whether it is rather left out than written over another one.
-    pub(super) may_miss: bool,
+    /// The frame that it moves with.
+    pub(super) attachment: Attachment,
+    /// Whether it is left out where every place overlaps another label.
+    pub(super) optional: bool,
     pub(super) candidates: Vec<Candidate>,
 }
 
-/// A label that has its place.
+/// A label at its place.
 pub(super) struct Placed {
     pub(super) text: Text,
-    pub(super) follows: Rider,
+    pub(super) attachment: Attachment,
     pub(super) place: Candidate,
 }
 
 /// A place for a label.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
-    /// Where it has to be near.
+    /// The point that the label names.
     pub(super) anchor: Point,
-    /// A unit vector: the label lies on this side of the anchor, beside it; none: on it.
+    /// Unit vector towards the label, which lies beside the anchor; `None` for a label on it.
     pub(super) side: Option<Point>,
-    /// The gap between the two.
+    /// Gap between the anchor and the label.
     pub(super) gap: f64,
-    /// How much worse than the best place it is, in lengths of line covered.
+    /// Penalty against the best place, in lengths of line covered.
     pub(super) cost: f64,
 }
 
-/// What stays free around a label.
+/// A number with its penalty: a part of a line or a gap.
+pub(super) type Graded = (f64, f64);
+
+/// Free space around a label.
 const PAD: f64 = 2.0;
-/// What an overlap with another label costs, a unit of area.
+/// Cost of an overlap with another label, per unit of area.
 const ON_LABEL: f64 = 4.0;
-/// What a label on the area of another body costs.
+/// Cost of a label on the area of another body.
 const ON_AREA: f64 = 14.0;
-/// What a label on a wheel or a cam costs: they are large and pale.
+/// Cost of a label on a wheel or a cam: they are large and pale.
 pub(super) const ON_WHEEL: f64 = 3.0;
-/// A place has to be this much better: rounding decides nothing.
+/// Least difference in cost that counts: rounding decides nothing.
 const BETTER: f64 = 1e-6;
 
-/// Gives each label in turn the best of its places. Those that may be missing are, where no
-/// place is clear of the labels before them.
+impl Candidate {
+    /// Returns places beside a line: at parts of its length, on sides, at gaps.
+    pub(super) fn beside(
+        [start, end]: [Point; 2],
+        parts: &[Graded],
+        sides: &[(Point, f64)],
+        gaps: &[Graded],
+    ) -> Vec<Self> {
+        let mut places = Vec::with_capacity(parts.len() * sides.len() * gaps.len());
+        for (part, of_part) in parts {
+            for (side, of_side) in sides {
+                for (gap, of_gap) in gaps {
+                    places.push(Self {
+                        anchor: start + *part * (end - start),
+                        side: Some(*side),
+                        gap: *gap,
+                        cost: of_part + of_side + of_gap,
+                    });
+                }
+            }
+        }
+        places
+    }
+
+    /// Returns places around a circle: right and above first, as one reads.
+    pub(super) fn around(center: Point, radius: f64) -> impl Iterator<Item = Self> {
+        const SIDES: u32 = 16;
+        [(3.0, 0.0), (10.0, 4.0), (20.0, 10.0)]
+            .into_iter()
+            .flat_map(move |(gap, far)| {
+                (0..SIDES).map(move |k| {
+                    let turn = f64::from(k) / f64::from(SIDES) * TAU;
+                    let from_best = (turn - 0.25 * PI).cos();
+                    Self {
+                        anchor: center,
+                        side: Some(direction(-turn)),
+                        gap: gap + radius,
+                        cost: far + 1.0 - from_best,
+                    }
+                })
+            })
+    }
+
+    /// Returns the place with a further penalty.
+    pub(super) fn costlier(self, by: f64) -> Self {
+        Self {
+            cost: self.cost + by,
+            ..self
+        }
+    }
+
+    /// Returns the middle of a label of this size.
+    pub(super) fn center(&self, size: Point) -> Point {
+        self.side.map_or(self.anchor, |side| {
+            // The side of the text's box that faces the anchor keeps the gap.
+            let reach = 0.5 * (size.x * side.x.abs() + size.y * side.y.abs());
+            self.anchor + (self.gap + reach) * side
+        })
+    }
+}
+
+/// Gives each label in turn its best place. Optional labels without a place clear of the labels
+/// before them are left out.
 pub(super) fn place<'a>(labels: Vec<Label>, marks: impl Iterator<Item = &'a Mark>) -> Vec<Placed> {
     let obstacles: Vec<Obstacle> = marks.map(Obstacle::new).collect();
     let mut taken: Vec<Bounds> = Vec::new();
     let mut placed = Vec::new();
     for label in labels {
         let size = Point::new(lettering::width(&label.content, CAPITALS), CAPITALS);
+        let padded = size + Point::repeat(2.0 * PAD);
         let mut best: Option<(f64, Candidate)> = None;
         let clear = |candidate: &&Candidate| {
-            let center = candidate.center(size);
-            let bounds = Bounds {
-                low: center - 0.5 * size,
-                high: center + 0.5 * size,
-            };
-            !label.may_miss || taken.iter().all(|other| overlap(&bounds, other) <= 0.0)
+            let bounds = Bounds::about(candidate.center(size), size);
+            !label.optional || taken.iter().all(|other| bounds.overlap(other) <= 0.0)
         };
         for candidate in label.candidates.iter().filter(clear) {
             let center = candidate.center(size);
-            let bounds = around(center, size);
-            let on_labels: f64 = taken.iter().map(|other| overlap(&bounds, other)).sum();
+            let bounds = Bounds::about(center, padded);
+            let on_labels: f64 = taken.iter().map(|other| bounds.overlap(other)).sum();
             let on_marks: f64 = obstacles.iter().map(|o| o.cost(&bounds, center)).sum();
             let cost = candidate.cost + ON_LABEL * on_labels + on_marks;
             if best.is_none_or(|(least, _)| cost < least - BETTER) {
@@ -77,14 +140,14 @@ pub(super) fn place<'a>(labels: Vec<Label>, marks: impl Iterator<Item = &'a Mark
         }
         if let Some((_, place)) = best {
             let center = place.center(size);
-            taken.push(around(center, size));
+            taken.push(Bounds::about(center, padded));
             placed.push(Placed {
                 text: Text {
                     content: label.content,
                     start: center + Point::new(-0.5 * size.x, 0.5 * size.y),
                     colour: label.colour,
                 },
-                follows: label.follows,
+                attachment: label.attachment,
                 place,
             });
         }
@@ -92,36 +155,13 @@ pub(super) fn place<'a>(labels: Vec<Label>, marks: impl Iterator<Item = &'a Mark
     placed
 }
 
-impl Candidate {
-    /// The middle of a label of this size.
-    pub(super) fn center(&self, size: Point) -> Point {
-        self.side.map_or(self.anchor, |side| {
-            // As far out as the side of the text's box that faces the anchor.
-            let reach = 0.5 * (size.x * side.x.abs() + size.y * side.y.abs());
-            self.anchor + (self.gap + reach) * side
-        })
-    }
-}
-
-fn around(center: Point, size: Point) -> Bounds {
-    let half = 0.5 * size + Point::repeat(PAD);
-    Bounds {
-        low: center - half,
-        high: center + half,
-    }
-}
-
-fn overlap(a: &Bounds, b: &Bounds) -> f64 {
-    let common = a.high.inf(&b.high) - a.low.sup(&b.low);
-    common.x.max(0.0) * common.y.max(0.0)
-}
-
-/// A mark that labels had better not cover.
+/// A mark that labels keep clear of.
 struct Obstacle {
     pieces: Vec<[Point; 2]>,
     bounds: Bounds,
-    /// What a unit of its line costs.
+    /// Cost per unit of its line covered.
     line: f64,
+    /// Cost of a label with its middle in the area.
     area: f64,
 }
 
@@ -130,7 +170,8 @@ impl Obstacle {
         let pieces = mark.outline.flattened();
         let mut bounds = Bounds::NONE;
         for point in pieces.iter().flatten() {
-            bounds.add(*point);
+            // Lines along an axis have no area of their own.
+            bounds.join(&Bounds::about(*point, Point::repeat(2.0)));
         }
         let line = match mark.layer {
             Layer::Trace => 0.6,
@@ -154,37 +195,20 @@ impl Obstacle {
     }
 
     fn cost(&self, label: &Bounds, center: Point) -> f64 {
-        if overlap(&self.bounds_padded(), label) <= 0.0 {
+        if self.bounds.overlap(label) <= 0.0 {
             return 0.0;
         }
         let covered: f64 = self.pieces.iter().map(|piece| inside(*piece, label)).sum();
-        let area = if self.area > 0.0 && self.contains(center) {
+        let area = if self.area > 0.0 && contains(self.pieces.iter().copied(), center) {
             self.area
         } else {
             0.0
         };
         self.line * covered + area
     }
-
-    /// Lines along an axis have no area of their own.
-    fn bounds_padded(&self) -> Bounds {
-        let pad = Point::repeat(1.0);
-        Bounds {
-            low: self.bounds.low - pad,
-            high: self.bounds.high + pad,
-        }
-    }
-
-    /// Whether a point lies inside: a ray from it meets the outline an odd number of times.
-    fn contains(&self, p: Point) -> bool {
-        let crossings = self.pieces.iter().filter(|[a, b]| {
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
-        });
-        crossings.count() % 2 == 1
-    }
 }
 
-/// The length of a line that lies inside a rectangle (Liang–Barsky).
+/// Returns the length of the part of a line inside a rectangle (Liang–Barsky).
 fn inside([a, b]: [Point; 2], bounds: &Bounds) -> f64 {
     let along = b - a;
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
