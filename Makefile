@@ -11,11 +11,11 @@ export CARGO_TARGET_DIR := $(CURDIR)/target
 unexport PYTHONPATH PYTHONHOME
 
 ifeq ($(shell uname -s),Darwin)
-  BUILT_LIBRARY := libbiela.dylib
+  BUILT_LIBRARY := libbiela_runtime.dylib
   LIBRARY_DIR := darwin64
   LIBRARY := biela.dylib
 else
-  BUILT_LIBRARY := libbiela.so
+  BUILT_LIBRARY := libbiela_runtime.so
   LIBRARY_DIR := linux64
   LIBRARY := biela.so
 endif
@@ -24,11 +24,7 @@ BIN_DIR = $(DESTDIR)$(PREFIX)/bin
 LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 
-# Only by itself is the library optimised as a whole: as rlib and cdylib at once it is not.
-define BUILD
-$(CARGO) build --release --locked
-$(CARGO) rustc --release --locked --lib --crate-type cdylib
-endef
+BUILD = $(CARGO) build --release --locked
 
 # The shipped mechanisms with the tables that they name.
 MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
@@ -41,10 +37,11 @@ help: ## show this list
 	@echo
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' Makefile
 	@echo
-	@echo 'Set-up needs cargo, Python 3.10 or newer and a C compiler, and the network the first time.'
+	@echo 'build and install need cargo; the others also Python 3.10 or newer and a C compiler.'
+	@echo 'The first time they need the network.'
 	@echo 'BIELA_PYTHON=/path/to/python3 chooses the Python, CC the C compiler.'
 
-demo: build ## export, validate and run the example mechanisms
+demo: setup build ## export, validate and run the example mechanisms
 	@$(PYTHON) demo/demo.py
 
 demo test refresh: export BIELA_BIN := $(CURDIR)/target/release/biela
@@ -58,7 +55,7 @@ test: setup ## run all tests: Rust, documentation, FMPy
 	$(BUILD)
 	$(PYTHON) -m pytest tests/fmpy
 
-bench: build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
+bench: setup build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
 	$(CARGO) bench --package yardstick --locked
 	target/release/ratios $(if $(RENEW),benches/README.md)
 
@@ -81,7 +78,7 @@ lint: setup ## check formatting, lints and documentation
 	$(CARGO) clippy --workspace --locked --all-targets -- -D warnings
 	RUSTDOCFLAGS=-Dwarnings $(CARGO) doc --no-deps --locked
 
-build: setup ## build the program and the library that goes into an FMU (release)
+build: ## build the program and the library that goes into an FMU (release)
 	$(BUILD)
 
 setup: ## get what building and testing need, into this folder only
@@ -98,7 +95,7 @@ uninstall: ## remove what `make install` put under PREFIX
 	for file in $(MECHANISMS); do rm -f "$(SHARE_DIR)/$$file"; done
 	@rmdir "$(LIB_DIR)/$(LIBRARY_DIR)" "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
 
-refresh: build ## regenerate modelDescription/*.xml and the gallery from mechanisms/*.toml
+refresh: setup build ## regenerate modelDescription/*.xml and the gallery from mechanisms/*.toml
 	@set -e; for file in mechanisms/*.toml; do \
 	    name=$$(basename "$$file" .toml); \
 	    echo "modelDescription/$$name.xml"; \

@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use biela::kinematics::Solver;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use set_up::runtime_library;
 use yardstick::generated::{Ground, chain, scissor_lift};
 use yardstick::motion::{Moving, Sweep, set_up};
 use yardstick::sizes;
-use yardstick::yardstick::{Chain, Cycle, Kind, OUTPUTS, four_bar, library};
+use yardstick::yardstick::{Chain, Cycle, Kind, OUTPUTS, four_bar};
 
 const FOUR_BAR: &str = include_str!("../../mechanisms/four_bar.toml");
 /// Steps a turn of the crank: coarse, by degrees, fine.
@@ -37,7 +38,7 @@ fn fmu(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("fmu");
     let mut cycle = Cycle::yardstick();
     group.bench_function("c", |b| b.iter_custom(|cycles| cycle.run(cycles)));
-    let mut cycle = Cycle::biela(&library());
+    let mut cycle = Cycle::biela(&runtime_library());
     group.bench_function("biela", |b| b.iter_custom(|cycles| cycle.run(cycles)));
     group.finish();
 }

@@ -3,7 +3,7 @@
 #![allow(unsafe_code, reason = "calls into C")]
 
 use std::ffi::{CString, c_char, c_int, c_longlong, c_uint, c_ulonglong};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::ptr::NonNull;
 use std::slice;
 use std::time::Duration;
@@ -266,27 +266,4 @@ impl Drop for Cycle {
         // SAFETY: it lives, and is not used again.
         unsafe { cycle_close(self.raw.as_ptr()) }
     }
-}
-
-/// Biela's library in the folder of this program, or in the one above: `cargo test` and
-/// `cargo bench` leave it beside their programs, `cargo build` too.
-///
-/// # Panics
-///
-/// If it is not there.
-#[must_use]
-pub fn library() -> PathBuf {
-    let name = format!(
-        "{}biela{}",
-        std::env::consts::DLL_PREFIX,
-        std::env::consts::DLL_SUFFIX
-    );
-    let program = std::env::current_exe().expect("this program runs from a file");
-    let found = program
-        .ancestors()
-        .skip(1)
-        .take(2)
-        .map(|folder| folder.join(&name))
-        .find(|library| library.exists());
-    found.unwrap_or_else(|| panic!("{name} is built: `cargo build`"))
 }

@@ -1,9 +1,10 @@
 //! The yardsticks do what biela does.
 
 use biela::mechanism::Jet;
+use set_up::runtime_library;
 use yardstick::generated::{BAR, Ground, chain, scissor_lift};
 use yardstick::motion::{Moving, Sweep};
-use yardstick::yardstick::{Chain, Cycle, Kind, OUTPUTS, four_bar, library};
+use yardstick::yardstick::{Chain, Cycle, Kind, OUTPUTS, four_bar};
 
 const KINDS: [Kind; 3] = [Kind::Plain, Kind::Updated, Kind::Condition];
 const GROUNDS: [Ground; 2] = [Ground::Straight, Ground::Zigzag];
@@ -160,7 +161,7 @@ fn biela_moves_a_scissor_lift_as_its_closed_form() {
 
 #[test]
 fn both_fmus_give_the_closed_form() {
-    for mut cycle in [Cycle::yardstick(), Cycle::biela(&library())] {
+    for mut cycle in [Cycle::yardstick(), Cycle::biela(&runtime_library())] {
         for cycles in [1, 2, 1_000] {
             cycle.run(cycles);
             let found = by_order(cycle.outputs());

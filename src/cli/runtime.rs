@@ -90,14 +90,13 @@ fn beside(program: &Path) -> Vec<RuntimeLibrary> {
     let Some(platform) = Platform::current() else {
         return Vec::new();
     };
+    // Cargo builds the library beside the program, and for tests in `examples`.
     let name = format!(
-        "{}biela{}",
+        "{}biela_runtime{}",
         std::env::consts::DLL_PREFIX,
         std::env::consts::DLL_SUFFIX
     );
-    // Cargo builds the library in `deps`, together with the program, and copies it one folder
-    // up only when asked for it: the copy may be older.
-    [folder.join("deps").join(&name), folder.join(&name)]
+    [folder.join(&name), folder.join("examples").join(&name)]
         .into_iter()
         .find(|path| path.is_file())
         .map(|path| RuntimeLibrary { platform, path })

@@ -2,9 +2,7 @@
 
 use std::io::Read as _;
 
-use assert_cmd::Command;
-
-use crate::program::{altered, biela, stderr};
+use crate::program::{altered, biela, program, stderr};
 
 #[test]
 fn an_fmu_carries_its_picture_and_its_page() {
@@ -44,9 +42,7 @@ fn export_is_reproducible_and_dated_only_on_demand() {
     let folder = tempfile::tempdir().unwrap();
     let export = |name: &str, epoch: Option<&str>| {
         let path = folder.path().join(name);
-        let mut command = Command::new(env!("CARGO_BIN_EXE_biela"));
-        command.current_dir(env!("CARGO_MANIFEST_DIR"));
-        command.env_remove("SOURCE_DATE_EPOCH");
+        let mut command = program();
         command.envs(epoch.map(|epoch| ("SOURCE_DATE_EPOCH", epoch)));
         command
             .args(["export", "mechanisms/tlv.toml", "-o"])
@@ -59,7 +55,7 @@ fn export_is_reproducible_and_dated_only_on_demand() {
     assert!(first == export("b.fmu", Some("")));
     assert!(first != export("c.fmu", Some("1700000000")));
     assert!(export("d.fmu", Some("1700000000")) == export("e.fmu", Some("1700000000")));
-    Command::new(env!("CARGO_BIN_EXE_biela"))
+    program()
         .env("SOURCE_DATE_EPOCH", "yesterday")
         .args(["export", "mechanisms/tlv.toml"])
         .assert()

@@ -4,9 +4,10 @@
 
 use std::hint::black_box;
 
+use set_up::runtime_library;
 use yardstick::generated::{Ground, chain, scissor_lift};
 use yardstick::motion::{Moving, Sweep};
-use yardstick::yardstick::{Chain, Cycle, Kind, OUTPUTS, four_bar, library};
+use yardstick::yardstick::{Chain, Cycle, Kind, OUTPUTS, four_bar};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -32,7 +33,7 @@ fn main() {
         "c_chain_updated" => c_chain(size, Kind::Updated, steps),
         "c_chain_condition" => c_chain(size, Kind::Condition, steps),
         "c_fmu" => drop(Cycle::yardstick().run(steps)),
-        "fmu" => drop(Cycle::biela(&library()).run(steps)),
+        "fmu" => drop(Cycle::biela(&runtime_library()).run(steps)),
         other => panic!("no case `{other}`"),
     }
 }
