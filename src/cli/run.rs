@@ -99,9 +99,6 @@ impl Run {
         let times = self.times(&input.mechanism)?;
         let scenario =
             (self.conditions).scenario(&input.mechanism, times.start, self.input.as_deref())?;
-        if let Some(note) = note_of_rest(&input.mechanism, &scenario) {
-            note.show();
-        }
         let all = Column::all(&scenario.mechanism);
         let is_choice = !self.variables.is_empty();
         let [written, plotted, told] = if is_choice {
@@ -112,9 +109,11 @@ impl Run {
             [all, plotted, told]
         };
         let home_solver = input.assemble()?;
-        if let Some(note) = self.note_of_size(&times, written.len() + 1) {
-            note.show();
-        }
+        let notes = [
+            note_of_rest(&input.mechanism, &scenario),
+            self.note_of_size(&times, written.len() + 1),
+        ];
+        notes.iter().flatten().for_each(Message::show);
         let mut recorders: Vec<Box<dyn Recorder>> = Vec::new();
         if let Some(path) = &self.output {
             recorders.push(Box::new(Csv::create(path.clone(), written)?));
