@@ -8,8 +8,8 @@ use std::time::SystemTime;
 /// Returns the path of the runtime library that belongs to the running test or bench.
 ///
 /// Cargo builds the library of a debug build together with all tests, but not with a single one:
-/// then this function builds it, if there is none or only one that is older than the running
-/// program. That of a release build comes from `cargo build --release`.
+/// then this function builds it, if there is none or only one that is older than its sources. The
+/// library of a release build comes from `cargo build --release`.
 ///
 /// # Panics
 ///
@@ -33,7 +33,9 @@ pub fn runtime_library() -> PathBuf {
         return library;
     }
     let library = folder.join("examples").join(name);
-    if modified(&library) < modified(&program) {
+    let sources =
+        ["src", "runtime", "Cargo.toml", "Cargo.lock"].map(|name| newest(&root().join(name)));
+    if modified(&library) < sources.into_iter().max().flatten() {
         build(folder);
         // Cargo leaves a library that needs no change as old as it is.
         File::options()
@@ -45,6 +47,19 @@ pub fn runtime_library() -> PathBuf {
     library
 }
 
+/// Folder of the project.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Time of the last change of a file, or of any file in a folder.
+fn newest(path: &Path) -> Option<SystemTime> {
+    let Ok(entries) = path.read_dir() else {
+        return modified(path);
+    };
+    entries.flatten().map(|entry| newest(&entry.path())).max()?
+}
+
 /// Time of the last change; none if there is no file.
 fn modified(path: &Path) -> Option<SystemTime> {
     path.metadata().ok()?.modified().ok()
@@ -54,7 +69,7 @@ fn modified(path: &Path) -> Option<SystemTime> {
 fn build(folder: &Path) {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     command
-        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .current_dir(root())
         .args(["build", "--quiet", "--locked"])
         .args(["--package", "biela", "--example", "biela_runtime"]);
     let mut target = folder.parent().expect("cargo builds in `target`");

@@ -1,4 +1,4 @@
-//! The documentation inside an FMU: its picture and its page.
+//! The documentation inside an FMU: its picture, its page, and licences.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
@@ -21,6 +21,8 @@ use crate::mechanism::{
 
 const MAIN: &str = include_str!("documentation.html");
 const STYLE: &str = include_str!("documentation.css");
+/// The licences of what is inside the runtime library.
+const LICENSES: &[u8] = include_bytes!("../../runtime/licenses.txt");
 
 /// Width of the picture, which hosts show as an icon or beside the variables.
 const ICON_WIDTH: u32 = 512;
@@ -53,7 +55,7 @@ pub(super) struct Shown {
     ranges: Vec<Option<Range>>,
 }
 
-/// Returns the picture and the page of a mechanism, whose own pose `home` has.
+/// Returns the picture and the page of a mechanism, and the licences, whose own pose `home` has.
 pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, Error> {
     let refuse = |error| input.error(error);
     let mut solver = Solver::new(Arc::clone(&input.mechanism)).map_err(refuse)?;
@@ -71,6 +73,10 @@ pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, E
         Document {
             path: "documentation/index.html".to_owned(),
             content: page(&input.mechanism, &home.pose().parameters, &sheet, &shown).into_bytes(),
+        },
+        Document {
+            path: "documentation/licenses/license.txt".to_owned(),
+            content: LICENSES.to_vec(),
         },
     ])
 }

@@ -14,7 +14,7 @@ use super::message::tell;
 use super::output::write;
 use super::runtime;
 use super::stdout::is_stdout;
-use crate::fmi::{describe, write_fmu};
+use crate::fmi::{Platform, describe, write_fmu};
 use crate::kinematics::Solver;
 
 /// Export a mechanism as an FMI 2.0 FMU, for co-simulation and for model exchange.
@@ -26,7 +26,9 @@ use crate::kinematics::Solver;
 /// The FMU contains its picture (model.png) and its documentation (documentation/index.html): the
 /// mechanism in motion, its variables and parameters, the limits of its drivers.
 ///
-/// The same file gives the same bytes. Only if the environment variable SOURCE_DATE_EPOCH gives
+/// The FMU runs on the platforms that `biela platforms` lists with a library.
+///
+/// The same file and the same libraries give the same bytes. Only if the environment variable SOURCE_DATE_EPOCH gives
 /// a time (seconds since 1970) does the model description say when it was generated.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela export four_bar.toml -o four_bar.fmu")]
@@ -44,6 +46,11 @@ pub(super) struct Export {
     /// [default: those installed with this program].
     #[arg(long, value_name = "FOLDER")]
     runtime: Option<PathBuf>,
+    /// Platforms that the FMU shall run on, separated by commas [default: all of which there is a
+    /// runtime library].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = platform,
+        conflicts_with = "model_description")]
+    platforms: Vec<Platform>,
 }
 
 impl Export {
@@ -61,10 +68,14 @@ impl Export {
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", mechanism.name)));
-        let libraries = runtime::find(self.runtime.as_deref())?;
-        for library in &libraries {
-            files.add("a runtime library", &library.path);
+        let mut found = runtime::find(self.runtime.as_deref())?;
+        if !self.platforms.is_empty() {
+            found = runtime::narrow(found, &self.platforms)?;
         }
+        for library in found.iter().filter_map(|found| found.path.as_deref()) {
+            files.add("a runtime library", library);
+        }
+        let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
         let documents = documentation::documents(&input, &solver)?;
@@ -88,6 +99,14 @@ impl Export {
         tell(format_args!("wrote {name} ({})", platforms.join(", ")));
         Ok(())
     }
+}
+
+/// Reads the name of a platform.
+fn platform(name: &str) -> Result<Platform, String> {
+    Platform::named(name).ok_or_else(|| {
+        let names = Platform::ALL.map(|platform| platform.name);
+        format!("expected one of {}", names.join(", "))
+    })
 }
 
 /// Returns a solver at the file's own pose; warns of misfits there.

@@ -20,6 +20,7 @@ mod motion;
 mod new;
 mod output;
 mod picture;
+mod platforms;
 mod plot;
 mod progress;
 mod range;
@@ -60,6 +61,7 @@ enum Command {
     Draw(draw::Draw),
     Watch(watch::Watch),
     Export(export::Export),
+    Platforms(platforms::Platforms),
     Schema(schema::Schema),
     Completions(completions::Completions),
 }
@@ -82,6 +84,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Draw(command) => command.run(),
         Command::Watch(command) => command.run(),
         Command::Export(command) => command.run(),
+        Command::Platforms(command) => command.run(),
         Command::Schema(command) => command.run(),
         Command::Completions(command) => command.run(),
     };
