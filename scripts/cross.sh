@@ -91,7 +91,7 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
         ;;
     esac
     # shellcheck disable=SC2086
-    $builder --release --locked --target "$named" "${build_std[@]}" \
+    $builder ${CROSS_EXTRA:-} --release --locked --target "$named" "${build_std[@]}" \
         --config "target.$target.rustflags=[$flags]" "$@"
 )
 

@@ -13,8 +13,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
 OUT=$PWD/target/runtimes
-# Largest size of a library [bytes].
-LIMIT=2000000
+# Largest size of a library [bytes], 2 MiB.
+LIMIT=2097152
 
 # Builds the library for a target and prints its path.
 library() { # TARGET FILE
