@@ -277,15 +277,13 @@ def windows_python():
 
 
 def fmpy(fmus, command, root=""):
-    """Simulates each FMU in FMPy; columns of outputs by name."""
-    results = {}
-    for fmu in fmus:
-        out = FOLDER / f"{fmu.name}.json"
-        out.unlink(missing_ok=True)
-        # This Python wants pipes on all three.
-        run(*command, f"{root}{HERE}/simulate.py", f"{root}{fmu.archive}", f"{root}{out}", input="", env=environment())
-        results[fmu.name] = json.loads(out.read_text(encoding="utf-8"))
-    return results
+    """Simulates all FMUs in FMPy; their results by name."""
+    results = [fmu.archive.with_suffix(".json") for fmu in fmus]
+    for result in results:
+        result.unlink(missing_ok=True)
+    # Pipes on all three: Python under Wine ends without.
+    run(*command, f"{root}{HERE}/simulate.py", *(f"{root}{f.archive}" for f in fmus), input="", env=environment())
+    return {f.name: json.loads(r.read_text(encoding="utf-8")) for f, r in zip(fmus, results, strict=True)}
 
 
 def compare_fmpy(ours, reference, difference):
