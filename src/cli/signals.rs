@@ -152,10 +152,10 @@ impl Signals {
         let mut jet = self.interpolate(signal.position(), time);
         let [_, velocity, acceleration] = &signal.columns;
         if let Some(velocity) = velocity {
-            jet.first = self.interpolate(velocity, time).value;
+            jet.derivatives[0] = self.interpolate(velocity, time).value;
         }
         if let Some(acceleration) = acceleration {
-            jet.second = self.interpolate(acceleration, time).value;
+            jet.derivatives[1] = self.interpolate(acceleration, time).value;
         }
         Some(jet)
     }
@@ -183,11 +183,7 @@ impl Signals {
         let start = self.times[before];
         let slope = (values[after] - values[before]) / (end - start);
         let elapsed = if same(time, start) { 0.0 } else { time - start };
-        Jet {
-            value: values[before] + elapsed * slope,
-            first: slope,
-            second: 0.0,
-        }
+        Jet::new(values[before] + elapsed * slope, [slope, 0.0])
     }
 }
 
