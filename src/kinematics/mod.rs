@@ -20,7 +20,7 @@
 //! Redundant equations are found by rank, set aside and watched: see [`Solver::redundancies`].
 //!
 //! [`System`] has the equations and their rows, [`Solver`] a mechanism at one pose, which it can
-//! [assemble](Solver::assemble), [move along a path](Solver::follow) and give
+//! [assemble](Solver::assemble), [track along a path](Solver::track) and give
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.
 
 mod analysis;
