@@ -2,8 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use biela::kinematics::{End, RangeSettings, SingularKind};
+use biela::mechanism::DriverId;
+
 use crate::common::{assembled, parse, straight_to};
-use crate::mechanisms::{double, parallelogram};
+use crate::mechanisms::{angle_driver, body, double, file, joint, parallelogram};
 
 /// Cranks that all turn alike, their pins not in one line: regular at every angle, the flat ones
 /// included, for who may choose among the equations.
@@ -100,5 +103,73 @@ fn a_parallelogram_with_a_doubled_pin_crosses_its_change_points() {
         // The change points are known to 1e-9, as is what is said next to them.
         let off = solver.pose().q[3 * rocker.index() + 2] - angle;
         assert!(off.abs() < 1e-9, "{step}: {off:e}");
+    }
+}
+
+/// Three cranks that carry a platform on two links, a third link holding it to ground. In front of
+/// its dead points the rows in use and those that would take their place are about equally fit:
+/// rows are not changed to and fro.
+#[test]
+fn rows_are_not_changed_in_a_circle() {
+    let bodies = body(
+        "crank",
+        "O = [0.3, 0], A = [0.5, 0]",
+        "0.12678547852220975, 0.271892336110995, \"245*deg\"",
+    ) + &body(
+        "coupler",
+        "A = [0, 0], M = [0.175, 0.1], B = [0.35, 0]",
+        "-0.08452365234813984, -0.18126155740733002, 0",
+    ) + &body(
+        "rocker",
+        "D = [0.3, 0], B = [0.5, 0], Q0 = [0.08640211966479111, -0.03147478299566531], \
+         Q1 = [-0.27163850684161556, -0.13613147428623618]",
+        "0.47678547852220976, 0.271892336110995, \"245*deg\"",
+    ) + &body(
+        "third",
+        "E = [0.3, 0], M = [0.5, 0]",
+        "0.3017854785222097, 0.37189233611099504, \"245*deg\"",
+    ) + &body(
+        "P",
+        "B0 = [-0.39123830755458666, 0.3998185003560202], \
+         B1 = [0.010115980928676382, -0.2909090074482299], \
+         B2 = [0.10564864003401653, 0.3170396683778869]",
+        "-0.7666910263851403, -0.7714167666755275, -2.121229557603924",
+    );
+    let link = |name: &str, from: &str, to: &str, length: f64| {
+        joint(name, "link", from, to).replace(" }\n", &format!(", length = {length:?} }}\n"))
+    };
+    let joints = joint("O", "revolute", "ground.O", "crank.O")
+        + &joint("A", "revolute", "crank.A", "coupler.A")
+        + &joint("B", "revolute", "coupler.B", "rocker.B")
+        + &joint("D", "revolute", "ground.D", "rocker.D")
+        + &joint("E", "revolute", "ground.E", "third.E")
+        + &joint("M", "revolute", "coupler.M", "third.M")
+        + &link("L0", "rocker.Q0", "P.B0", 1.0630195453778877)
+        + &link("L1", "rocker.Q1", "P.B1", 1.9138756600487161)
+        + &link("L2", "ground.A2", "P.B2", 0.5635681005723489);
+    let ground = "O = [0, 0]\nE = [0.175, 0.1]\nD = [0.35, 0]\n\
+                  A2 = [-0.15816264158184823, -0.6239213904973742]";
+    let driver = angle_driver("u", "ground.O", "crank.O", 245.0);
+    let text = file(ground, &bodies, &joints, &driver);
+    let (mut solver, _) = assembled(&parse(&text));
+    // How fine the samples are decides where rows are changed.
+    let mut range = |samples: u32| {
+        let settings = RangeSettings {
+            samples,
+            ..RangeSettings::default()
+        };
+        let range = solver.range(DriverId(0), &settings);
+        [range.lower, range.upper].map(|end| match end {
+            End::Singular(point) => {
+                assert_eq!(point.kind, SingularKind::DeadPoint);
+                assert_eq!(point.bodies, ["body `P`"]);
+                point.drivers[0]
+            }
+            end => panic!("{end:?}"),
+        })
+    };
+    let (coarse, fine) = (range(120), range(360));
+    for (coarse, fine) in coarse.iter().zip(fine) {
+        assert!((coarse - fine).abs() < 1e-9, "{coarse} {fine}");
     }
 }

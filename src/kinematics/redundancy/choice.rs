@@ -224,7 +224,8 @@ pub(in crate::kinematics) fn is_nearly_singular(model: &Model, state: &State) ->
 }
 
 /// Returns a choice of rows that are much farther from dependence here than those in use, if
-/// these are near to it.
+/// these are near to it. At one pose rows change once at the most: the choice depends on the pose
+/// alone, and rows in use are not chosen again.
 fn fitter_rows(model: &Model, state: &State) -> Option<Choice> {
     if model.redundant.is_empty() || !state.pose.crossings.is_empty() {
         return None;
@@ -235,7 +236,11 @@ fn fitter_rows(model: &Model, state: &State) -> Option<Choice> {
         return None;
     }
     let choice = choose_here(model, state, FITTER);
-    let better = choice.set_aside.len() == now.len() && choice.weakest > WORTH * weakest;
+    if choice.set_aside.len() != now.len() || choice.set_aside == *now {
+        return None;
+    }
+    // Taken in one order, as what is left of a row depends on those before it.
+    let better = weakest_without(model, state, &choice.set_aside) > WORTH * weakest;
     better.then_some(choice)
 }
 
