@@ -362,3 +362,50 @@ fn a_thousand_turns_through_change_points() {
         }
     }
 }
+
+/// The rounding of coordinates far from the origin parts the two motions of a parallelogram, or
+/// joins them: it is never taken for the motion. All numbers but the angle are exact in binary.
+#[test]
+fn a_parallelogram_far_from_the_origin_stays_one() {
+    for far in [0.0, 65536.0, 1048576.0] {
+        let (start, half): (f64, f64) = (0.3103522496548119, 0.5390625);
+        let (sin, cos) = start.sin_cos();
+        let mechanism = parse(&format!(
+            "format = 1\nname = 'far'\n\
+             [ground.markers]\nO = [{far}, {far}]\nD = [{}, {far}]\n\
+             [bodies.crank]\nmarkers = {{ O = [-{half}, 0], A = [{half}, 0] }}\n\
+             estimate = [{}, {}, {start}]\n\
+             [bodies.coupler]\nmarkers = {{ A = [-0.234375, 0], B = [0.234375, 0] }}\n\
+             estimate = [{}, {}, 0]\n\
+             [bodies.rocker]\nmarkers = {{ D = [-{half}, 0], B = [{half}, 0] }}\n\
+             estimate = [{}, {}, {start}]\n[joints]\n\
+             O = {{ type = 'revolute', markers = ['ground.O', 'crank.O'] }}\n\
+             A = {{ type = 'revolute', markers = ['crank.A', 'coupler.A'] }}\n\
+             B = {{ type = 'revolute', markers = ['coupler.B', 'rocker.B'] }}\n\
+             D = {{ type = 'revolute', markers = ['ground.D', 'rocker.D'] }}\n[drivers]\n\
+             u = {{ coordinate = 'angle', markers = ['ground.O', 'crank.O'], start = {start} }}\n",
+            far + 0.46875,
+            far + half * cos,
+            far + half * sin,
+            far + 0.234375 + 2.0 * half * cos,
+            far + 2.0 * half * sin,
+            far + 0.46875 + half * cos,
+            far + half * sin,
+        ));
+        for steps in [1, 5, 7, 100] {
+            let (mut solver, mut path) = assembled(&mechanism);
+            for step in 1..=steps {
+                let target = start * (1.0 - 2.0 * f64::from(step) / f64::from(steps));
+                straight_to(&solver, &mut path, target);
+                if let Err(blocked) = solver.track(&path) {
+                    assert!(matches!(blocked.reason, Reason::Singular(_)), "{blocked:?}");
+                    assert!(far > 65536.0, "{far} {steps}: {blocked:?}");
+                    break;
+                }
+            }
+            // Next to the flat pose rounding is felt up to its square root.
+            let coupler = solver.pose().q[5];
+            assert!(coupler.abs() < 1e-4, "{far} {steps}: {coupler}");
+        }
+    }
+}

@@ -124,10 +124,18 @@ impl Anchor {
     /// Returns its largest deviation from the straight line between its two ends in a sub-step
     /// \[m\].
     #[inline(always)]
-    pub(super) fn deviation(&self, bounds: &StepBounds) -> f64 {
+    pub(super) fn deviation(&self, bounds: &StepBounds, frames: &[BodyPose]) -> f64 {
         self.carrier(bounds).map_or(0.0, |(bound, length)| {
-            bound.point_deviation + bound.arc_deviation(length)
+            bound.point_deviation + bound.arc_deviation(length) + self.rounding(frames)
         })
+    }
+
+    /// Returns the rounding of its body's stored origin \[m\]: half an eps of each coordinate,
+    /// twice that for a start farther off. Not for ground.
+    #[inline(always)]
+    pub(super) fn rounding(&self, frames: &[BodyPose]) -> f64 {
+        let origin = frames[self.body as usize].origin;
+        f64::EPSILON * (origin.x.abs() + origin.y.abs())
     }
 
     /// Returns P.

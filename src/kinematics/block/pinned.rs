@@ -111,7 +111,7 @@ impl SolveBlock for PinnedBody {
         if let Target::Driver(driver) = state.system.equations()[parts.rows[2]].target {
             angle_deviation += bounds.drivers[driver.index()];
         }
-        let mut point_deviation = self.anchor.deviation(bounds);
+        let mut point_deviation = self.anchor.deviation(bounds, state.at.frames());
         if let Some(parameters) = bounds.moving_parameters() {
             let angle = parameters.angle(parts.angle) + parameters.angle(parts.reference);
             angle_deviation += 2.0 * (angle + parameters.constant(parts.rows[2]));

@@ -1,6 +1,6 @@
 //! The motion through a change point, interpolated between its two sides.
 
-use super::locate::Finding;
+use super::locate::{Finding, ROUNDING};
 use super::reduced::ReducedEquation;
 use crate::kinematics::block::Crossing;
 use crate::mechanism::DriverId;
@@ -11,7 +11,7 @@ use crate::mechanism::DriverId;
 const REACH: f64 = 0.02;
 const LEAST_REACH: f64 = 0.004;
 /// Largest error of an acceleration at the change point, which is known independently, for
-/// velocities of one.
+/// velocities of one; far from the origin there is more rounding.
 const INTERPOLATED: f64 = 1e-6;
 /// Largest error of a prediction, as part of the distance between both motions.
 const OFF: f64 = 0.25;
@@ -49,7 +49,8 @@ pub(super) fn crossing_of(
                 free: free.iter().copied().collect(),
             };
             let error = error_at_center(&crossing, equation, &point.z, &velocity, speed);
-            if error <= INTERPOLATED {
+            let rounding = error_of_shape(ROUNDING * equation.extent(), reach);
+            if error <= INTERPOLATED + rounding {
                 return Some(crossing);
             }
         }
@@ -58,8 +59,14 @@ pub(super) fn crossing_of(
     None
 }
 
+/// Returns the error of an acceleration that goes with one of a position, for ends at the distance
+/// `width`: (1 − x²)³, the shape of the error, bends by 6 at its top.
+fn error_of_shape(position: f64, width: f64) -> f64 {
+    6.0 * position / (width * width)
+}
+
 /// Returns the error of the interpolated motion at the point and of its tangent there, as an error
-/// of the acceleration: (1 − x²)³, the shape of the error, bends by 6 at its top.
+/// of the acceleration.
 fn error_at_center(
     crossing: &Crossing,
     equation: &ReducedEquation<'_>,
@@ -74,7 +81,7 @@ fn error_at_center(
         let [value, first, _] = crossing.evaluate(k, crossing.center);
         let position = (value - z[k]).abs() / unit[k];
         let tangent = (first - velocity[k]).abs() / (unit[k] * speed);
-        (6.0 * position / (width * width)).max(tangent / width)
+        error_of_shape(position, width).max(tangent / width)
     });
     errors.fold(0.0, f64::max)
 }

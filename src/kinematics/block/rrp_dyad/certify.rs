@@ -83,16 +83,16 @@ impl RrpDyad {
         let second_turn = known.second.phi - before.second.phi;
         let second_deviation = self.second_deviation(state, bounds) + 2.0 * slack.second;
 
-        let own = self.anchor.deviation(bounds);
+        let own = self.anchor.deviation(bounds, frames);
         let [i, j] = self.points.map(|point| {
             let arm = match point {
                 Point::Carried(arm) => arm.norm() * (sagitta(second_turn) + second_deviation),
                 _ => 0.0,
             };
             let base = match point {
-                Point::Known(anchor) => anchor.deviation(bounds),
+                Point::Known(anchor) => anchor.deviation(bounds, frames),
                 Point::First(_) | Point::Carried(_) => own,
-                Point::Parallel(_) => self.second_point_deviation(bounds),
+                Point::Parallel(_) => self.second_point_deviation(bounds, frames),
             };
             (base, arm)
         });
@@ -171,7 +171,8 @@ impl RrpDyad {
                 let body = *body as usize;
                 let turn = frames[body].phi - before.second.phi;
                 let angle_deviation = angle_deviation + 2.0 * slack.second;
-                let point_deviation = self.second_point_deviation(bounds) + 2.0 * slack.points;
+                let point_deviation =
+                    self.second_point_deviation(bounds, frames) + 2.0 * slack.points;
                 *bounds.body_mut(body) =
                     bound(before.second, turn, angle_deviation, point_deviation);
             }
@@ -182,9 +183,9 @@ impl RrpDyad {
     }
 
     /// Returns the deviation of the revolute of a parallel b from its chord.
-    fn second_point_deviation(&self, bounds: &StepBounds) -> f64 {
+    fn second_point_deviation(&self, bounds: &StepBounds, frames: &[BodyPose]) -> f64 {
         match &self.second {
-            Second::Parallel { anchor, .. } => anchor.deviation(bounds),
+            Second::Parallel { anchor, .. } => anchor.deviation(bounds, frames),
             Second::None | Second::Carried { .. } => 0.0,
         }
     }

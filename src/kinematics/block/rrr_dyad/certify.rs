@@ -123,8 +123,9 @@ impl RrrDyad {
             let lever = bulge(levers[0], levers[1], bound.turn);
             middle += if k == 0 { lever } else { -lever };
             let swung = length * bound.angle_deviation;
-            deviations[k] += bound.point_deviation + length * sagitta(bound.turn) + swung;
-            gap += bound.point_deviation + beyond_parabola(length, bound.turn);
+            let pivot = bound.point_deviation + side.anchor.rounding(frames);
+            deviations[k] += pivot + length * sagitta(bound.turn) + swung;
+            gap += pivot + beyond_parabola(length, bound.turn);
             if swung <= NEGLIGIBLE * gap {
                 gap += swung;
                 continue;
