@@ -103,6 +103,27 @@ fn a_step_that_would_never_end_is_discarded() {
     assert!(error.to_string().contains("more sub-steps"), "{error}");
 }
 
+/// A millimetre per 1e-300 s has no finite square.
+#[test]
+fn a_step_far_too_short_is_no_singular_position() {
+    let mut instance = running("tlv");
+    for (step, length) in [0.36, 0.361].into_iter().enumerate() {
+        instance.set_real(&[0], &[length]).unwrap();
+        instance.do_step(1e-300 * step as f64, 1e-300).unwrap();
+    }
+    let variables = instance.variables();
+    let alpha = variables.iter().position(|v| v.name == "arm.alpha");
+    let alpha = alpha.expect("an output") as u32;
+    let error = instance
+        .get_real(&[alpha], &mut [0.0])
+        .expect_err("endless");
+    let message = error.to_string();
+    assert!(
+        message.contains("driver `side_length` is too fast"),
+        "{message}"
+    );
+}
+
 /// The side grows as 0.35 + 0.2 t, told with derivatives; it ends at 0.65 m, at t = 1.5 s. Each
 /// value is off by a nanometre from where the polynomial before it ended.
 #[test]

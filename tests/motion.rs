@@ -255,3 +255,31 @@ fn what_a_table_does_within_a_step_is_not_overlooked() {
         assert!((ended - (0.56 + 0.12 * 0.6866)).abs() < 1e-4, "{ended}");
     }
 }
+
+/// Two wheels, one of which has a motion with a jump.
+#[test]
+fn the_motion_that_jumps_is_named() {
+    let wheel = |name: &str| {
+        format!("pin_{name} = {{ type = 'revolute', markers = ['ground.O', '{name}.O'] }}\n")
+    };
+    let driver = |name: &str, motion: &str| {
+        format!(
+            "turn_{name} = {{ coordinate = 'angle', markers = ['ground.O', '{name}.O'], \
+             motion = '{motion}' }}\n"
+        )
+    };
+    let mechanism = parse(&format!(
+        "format = 1\nname = 'wheels'\n[ground.markers]\nO = [0, 0]\n\
+         [bodies.a]\nmarkers = {{ O = [0, 0] }}\n[bodies.b]\nmarkers = {{ O = [0, 0] }}\n\
+         [joints]\n{}{}[drivers]\n{}{}",
+        wheel("a"),
+        wheel("b"),
+        driver("a", "sin(t)"),
+        driver("b", "floor(t + 0.7)"),
+    ));
+    let (mut solver, mut path) = assembled(&mechanism);
+    path.duration = 1.0;
+    let blocked = solver.track(&path).expect_err("it jumps at 0.3 s");
+    assert_eq!(blocked.reason, Reason::Jump(DriverId(1)));
+    assert!((blocked.s - 0.3).abs() < 1e-9, "{blocked:?}");
+}

@@ -119,6 +119,10 @@ impl Motion {
             Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
             Reason::TooLong => "the motion is too fast for the steps".to_owned(),
             Reason::Singular(point) => point.to_string(),
+            Reason::Jump(driver) => {
+                let driver = &self.solver.mechanism().drivers[driver.index()];
+                format!("the motion of driver `{}` jumps", driver.name)
+            }
             _ => "no continuous motion".to_owned(),
         };
         let pose = self.solver.pose();

@@ -49,6 +49,12 @@ pub enum Error {
         /// What it has not.
         quantity: &'static str,
     },
+    /// A driver's rates are finite, but those of bodies are not.
+    #[error("{driver} is too fast: velocities or accelerations of bodies are not finite")]
+    TooFast {
+        /// The driver.
+        driver: String,
+    },
     /// A distance is to be held at a value that no distance can have.
     #[error("{what} would hold a distance at {value} m; a distance must be positive")]
     NotPositive {

@@ -187,7 +187,8 @@ impl Solver {
     /// # Errors
     ///
     /// [`Error::Singular`] where the pose is singular and no rates exist, [`Error::NoMotion`] for
-    /// rates of a driver that are not finite.
+    /// rates of a driver that are not finite, [`Error::TooFast`] where they make those of bodies
+    /// overflow.
     pub fn solve_rates(
         &mut self,
         driver: impl Fn(DriverId) -> Jet,

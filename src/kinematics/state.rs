@@ -77,6 +77,10 @@ pub(super) const SINGULAR_HERE: Error = Error::Singular {
     bodies: Vec::new(),
 };
 
+/// A driver with a larger velocity, or an acceleration above the square of it, may make rates of
+/// bodies overflow far from any singular position \[SI\].
+const TOO_FAST: f64 = 1e100;
+
 /// The rates of a single driver with respect to its own value.
 pub(super) const UNIT_RATE: [Jet; 1] = [Jet::new(0.0, [1.0, 0.0])];
 
@@ -291,7 +295,7 @@ impl State {
     /// # Errors
     ///
     /// [`Error::Singular`] where the pose is singular, [`Error::NoMotion`] for rates of a driver
-    /// that are not finite.
+    /// that are not finite, [`Error::TooFast`] where they make those of bodies overflow.
     pub(super) fn solve_rates(
         &mut self,
         model: &mut Model,
@@ -347,9 +351,17 @@ impl State {
         let mut drivers = (0..self.pose.drivers.len()).map(DriverId);
         let endless =
             drivers.find(|&id| !driver(id).derivatives.iter().all(|rate| rate.is_finite()));
-        endless.map_or(SINGULAR_HERE, |id| Error::NoMotion {
+        if let Some(id) = endless {
+            return Error::NoMotion {
+                driver: system.describe_driver(id),
+                quantity: "velocity or acceleration",
+            };
+        }
+        let is_too_fast = |jet: Jet| jet.first().abs().max(jet.second().abs().sqrt()) > TOO_FAST;
+        let mut drivers = (0..self.pose.drivers.len()).map(DriverId);
+        let too_fast = drivers.find(|&id| is_too_fast(driver(id)));
+        too_fast.map_or(SINGULAR_HERE, |id| Error::TooFast {
             driver: system.describe_driver(id),
-            quantity: "velocity or acceleration",
         })
     }
 }

@@ -257,6 +257,10 @@ impl MechanismModel {
                 "given up"
             }
             Reason::Singular(point) => &point.to_string(),
+            Reason::Jump(driver) => {
+                let driver = &self.mechanism.drivers[driver.index()];
+                &format!("the motion of driver `{}` jumps", driver.name)
+            }
             _ => "no continuous motion",
         };
         format!(

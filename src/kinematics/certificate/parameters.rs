@@ -18,6 +18,8 @@ pub(in crate::kinematics) struct ParameterBounds {
     angles: Vec<f64>,
     /// Bounds of the target of each row, zero for drivers \[m or rad\].
     constants: Vec<f64>,
+    /// The drivers' values at the start of the sub-step \[m or rad\].
+    pub(in crate::kinematics) drivers_before: Vec<f64>,
 }
 
 impl ParameterBounds {
@@ -30,6 +32,7 @@ impl ParameterBounds {
             positions: vec![0.0; markers],
             angles: vec![0.0; markers],
             constants: vec![0.0; system.equations().len()],
+            drivers_before: vec![0.0; mechanism.drivers.len()],
         }
     }
 

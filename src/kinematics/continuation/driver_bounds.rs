@@ -11,8 +11,11 @@ use crate::mechanism::{DriverId, Interval, Jet3, ParameterId};
 const LARGEST_JUMP: f64 = 0.1;
 
 /// Bounds drivers and parameters over a part of `path`, at whose end the drivers ahead and the
-/// parameters in force are. Returns false without a bound: a motion jumps, or a number is not
-/// bounded.
+/// parameters in force are.
+///
+/// # Errors
+///
+/// The driver whose motion jumps; `None` where another number is not bounded.
 pub(super) fn bound_drivers(
     system: &System,
     state: &State,
@@ -20,14 +23,16 @@ pub(super) fn bound_drivers(
     path: &Path,
     part: [f64; 2],
     bounds: &mut StepBounds,
-) -> bool {
-    bounds.parameters.moving = drivers.parameters_move;
-    if drivers.parameters_move
-        && !bounds
-            .parameters
-            .bound(system, &state.at, &state.targets, path, part)
-    {
-        return false;
+) -> Result<(), Option<DriverId>> {
+    let parameters = &mut bounds.parameters;
+    parameters.moving = drivers.parameters_move;
+    if parameters.moving {
+        parameters
+            .drivers_before
+            .copy_from_slice(&state.pose.drivers);
+        if !parameters.bound(system, &state.at, &state.targets, path, part) {
+            return Err(None);
+        }
     }
     let [start, end] = part;
     for (index, curve) in path.curves.iter().enumerate() {
@@ -49,12 +54,10 @@ pub(super) fn bound_drivers(
                 motion.deviation(state, path, part, bounds)
             }
         };
-        let Some(deviation) = deviation else {
-            return false;
-        };
+        let deviation = deviation.ok_or(Some(DriverId(index)))?;
         bounds.drivers[index] = deviation + rounding;
     }
-    true
+    Ok(())
 }
 
 /// A prescribed motion over a sub-step.

@@ -3,6 +3,7 @@
 use crate::kinematics::Error;
 use crate::kinematics::error::OpenJoint;
 use crate::kinematics::singular::SingularPoint;
+use crate::mechanism::DriverId;
 
 /// The cause of a stop before the end of a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,9 +12,11 @@ pub enum Reason {
     /// The Jacobian loses rank ahead, at a dead point or at a singular position that cannot be
     /// crossed.
     Singular(Box<SingularPoint>),
-    /// Neither a continuous motion nor a singular position was found ahead: the motion jumps, or
-    /// the block that stops is too large for a search, or parameters move it.
+    /// Neither a continuous motion nor a singular position was found ahead: the block that stops
+    /// is too large for a search, or parameters move it.
     Lost,
+    /// The prescribed motion of this driver jumps ahead.
+    Jump(DriverId),
     /// No mechanism exists for a value ahead.
     Value(Error),
     /// A constraint that was redundant so far contradicts the others ahead: the gap in it where it

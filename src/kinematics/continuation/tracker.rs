@@ -134,6 +134,8 @@ struct Goal {
 enum Failure {
     /// Newton–Raphson did not converge, or the certificate failed.
     NotCertified,
+    /// The motion of a driver jumps.
+    Jump(DriverId),
     /// No mechanism exists for a value at the end.
     Value(Error),
     /// A redundant constraint is open at the end.
@@ -277,9 +279,8 @@ impl Run<'_> {
         let Model { system, plan, .. } = &mut *self.model;
         let state = &mut *self.state;
         self.bounds.begin(may_reuse);
-        if !bound_drivers(system, state, self.drivers, self.path, part, self.bounds) {
-            return Err(Failure::NotCertified);
-        }
+        bound_drivers(system, state, self.drivers, self.path, part, self.bounds)
+            .map_err(|jumping| jumping.map_or(Failure::NotCertified, Failure::Jump))?;
         let extrapolation = extrapolation(&self.drivers.here, end - self.s);
         let unit_rates = state.has_single_driver().then_some(&UNIT_RATE[..]);
         let mut block_state = BlockState {
@@ -457,6 +458,7 @@ impl Run<'_> {
         self.length = match failure {
             // The certificate concerns the rows that are solved.
             Failure::Contradiction(_) => HALF * (end - self.s),
+            Failure::Jump(_) => HALF * (end - self.s),
             Failure::NotCertified | Failure::Value(_) => self.shortened(end - self.s),
         };
         if self.length >= smallest {
@@ -470,6 +472,10 @@ impl Run<'_> {
                 Err(Reason::Contradiction(joint))
             }
             (Failure::Value(error), _) => Err(Reason::Value(error)),
+            (Failure::Jump(driver), _) => Err(match self.reason_to_stop() {
+                Reason::Lost | Reason::TooLong => Reason::Jump(driver),
+                reason => reason,
+            }),
             _ => Err(self.reason_to_stop()),
         }
     }

@@ -39,7 +39,7 @@ impl CoupledBlock {
                 (bound.cos, bound.sin) = (frame.cos, frame.sin);
             }
         }
-        if step.bounds.moving_parameters().is_none() {
+        if !step.bounds.parameters.moving {
             self.test.slack.fill(0.0);
             return;
         }
@@ -50,14 +50,9 @@ impl CoupledBlock {
         }
         for (slack, &row) in self.test.slack.iter_mut().zip(&self.equations.rows) {
             let equation = &state.system.equations()[row];
-            let target = match equation.target {
-                Target::Constant(_) => state.system.target(row, state.targets, state.drivers),
-                // Drivers have chords of their own.
-                Target::Driver(_) => {
-                    *slack = 0.0;
-                    continue;
-                }
-            };
+            // A driver's chord begins at its value at the start.
+            let drivers = &step.bounds.parameters.drivers_before;
+            let target = state.system.target(row, state.targets, drivers);
             let open = equation.constraint.value(state.at) - target;
             *slack = 2.0 * open.abs() * equation.row_scale(state.at);
         }
