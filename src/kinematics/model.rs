@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::block::BlockPlan;
 use super::configuration::Configuration;
 use super::constraint::{Constraint, of_coordinate};
-use super::structure::Structure;
+use super::structure::{Block, Structure};
 use super::system::{System, Target, Targets};
 use crate::mechanism::{DriverId, Mechanism};
 
@@ -28,6 +28,16 @@ pub(super) struct RedundantRows {
     pub(super) first: Vec<usize>,
     /// As many, those set aside at present; ascending.
     pub(super) now: Vec<usize>,
+    /// Those of them that depend on the contour of a cam.
+    pub(super) contour_rows: Vec<ContourRow>,
+}
+
+/// A row that depends on the contour of a cam, its own or one that moves its bodies.
+#[derive(Clone, Debug)]
+pub(super) struct ContourRow {
+    pub(super) row: usize,
+    /// The unknowns in it.
+    pub(super) columns: Vec<usize>,
 }
 
 impl RedundantRows {
@@ -71,30 +81,62 @@ impl Model {
     pub(super) fn compile(&mut self, at: &Configuration, targets: &Targets) {
         let structure = Structure::new(&self.system, &self.redundant.now);
         self.structure = structure.expect("independent rows can be paired with unknowns");
+        self.redundant.contour_rows = self.contour_rows();
         self.plan = BlockPlan::new(&self.system, &self.structure);
         self.plan.set_parameters(&self.system, at, targets);
+    }
+
+    /// Returns the rows set aside that depend on the contour of a cam.
+    fn contour_rows(&self) -> Vec<ContourRow> {
+        let equations = self.system.equations();
+        let has_contour = |row: &usize| equations[*row].constraint.has_contour();
+        if !(0..equations.len()).any(|row| has_contour(&row)) {
+            return Vec::new();
+        }
+        let rows = self.redundant.now.iter().map(|&row| ContourRow {
+            row,
+            columns: self.system.incidence(row).unknowns,
+        });
+        let depends = |ContourRow { row, columns }: &ContourRow| {
+            let mut rows = self
+                .blocks_behind(columns)
+                .into_iter()
+                .flat_map(|b| &b.rows);
+            has_contour(row) || rows.any(has_contour)
+        };
+        rows.filter(depends).collect()
+    }
+
+    /// Returns the blocks that find these unknowns, and all that they read.
+    fn blocks_behind(&self, columns: &[usize]) -> Vec<&Block> {
+        let blocks = self.structure.blocks();
+        let mut seen = vec![false; blocks.len()];
+        let mut open: Vec<_> = columns
+            .iter()
+            .map(|&c| self.structure.block_of(c))
+            .collect();
+        let mut found = Vec::new();
+        while let Some(block) = open.pop() {
+            if !std::mem::replace(&mut seen[block], true) {
+                found.push(&blocks[block]);
+                open.extend(&blocks[block].reads);
+            }
+        }
+        found
     }
 
     /// Returns the one driver that moves a block and all that it reads; `None` if there are more or
     /// none.
     pub(super) fn only_driver(&self, block: usize) -> Option<DriverId> {
-        let blocks = self.structure.blocks();
-        let mut seen = vec![false; blocks.len()];
-        let columns = self.plan.blocks[block].columns().iter();
-        let mut open: Vec<_> = columns.map(|&c| self.structure.block_of(c)).collect();
         let mut only = None;
-        while let Some(block) = open.pop() {
-            if std::mem::replace(&mut seen[block], true) {
-                continue;
-            }
-            for &row in &blocks[block].rows {
+        for block in self.blocks_behind(self.plan.blocks[block].columns()) {
+            for &row in &block.rows {
                 if let Target::Driver(driver) = self.system.equations()[row].target
                     && only.replace(driver).is_some_and(|other| other != driver)
                 {
                     return None;
                 }
             }
-            open.extend(&blocks[block].reads);
         }
         only
     }

@@ -84,3 +84,49 @@ fn a_redundancy_that_ends_on_the_way_stops_the_mechanism_there() {
     // What is told is what was found to be open beyond.
     assert!(open.gap > 5e-11, "{open}");
 }
+
+/// A follower held on the round part of a cam whose lobe, 5 mm high, passes under it: whatever the
+/// steps, the mechanism stops where the lobe begins, and without a lobe it turns in one sub-step.
+#[test]
+fn a_lobe_between_two_steps_is_found() {
+    let cam = |lobe: &str| {
+        let bodies =
+            body("cam", "O = [0, 0]", "0, 0, 0") + &body("follower", "P = [0, 0]", "0, 0.05, 0");
+        let joints = joint("O", "revolute", "ground.O", "cam.O")
+            + &joint("hold", "weld", "ground.H", "follower.P")
+            + &format!(
+                "contact = {{ type = \"cam\", markers = [\"cam.O\", \"follower.P\"], \
+                 follower = \"knife\", \
+                 profile = \"0.05{lobe}\" }}\n"
+            );
+        let driver = angle_driver("u", "ground.O", "cam.O", 0.0);
+        parse(&file(
+            "O = [0, 0]\nH = [0, 0.05]",
+            &bodies,
+            &joints,
+            &driver,
+        ))
+    };
+    // The contact is at theta = 90° − u. A gap is a thousand millionth of the size, 0.05 m.
+    let open = (1e-9_f64 * 0.05 / 5.0).cbrt();
+    let begins = TAU / 4.0 - (0.9 + open).acos();
+    for steps in [1, 2, 3, 4, 100] {
+        let (mut solver, mut path) = assembled(&cam(" + 5*max(0, cos(theta) - 0.9)^3"));
+        assert_eq!(solver.redundancies()[0].element, "joint `contact`");
+        let blocked = (1..=steps).find_map(|step| {
+            straight_to(&solver, &mut path, TAU * f64::from(step) / f64::from(steps));
+            solver.track(&path).err()
+        });
+        let blocked = blocked.expect("the lobe is on the way");
+        let Reason::Contradiction(open) = &blocked.reason else {
+            panic!("{steps}: {blocked:?}");
+        };
+        assert_eq!(open.element, "joint `contact`");
+        let reached = solver.pose().drivers[0];
+        assert!((reached - begins).abs() < 1e-3, "{steps}: {reached}");
+    }
+    let (mut solver, mut path) = assembled(&cam(""));
+    straight_to(&solver, &mut path, TAU);
+    let progress = solver.track(&path).expect("it is round");
+    assert!(progress.substeps < 20, "{progress:?}");
+}

@@ -103,6 +103,11 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
         Relation::Other
     }
 
+    /// Whether c contains the contour of a cam, which may have pieces; all else is analytic.
+    fn has_contour(&self) -> bool {
+        false
+    }
+
     /// Whether c can be held at this value; a distance cannot at zero or below.
     fn admits(&self, value: f64) -> bool {
         let _ = value;

@@ -266,10 +266,12 @@ impl Run<'_> {
             reached = self.try_step_with(end, false);
         }
         let correction = reached?;
-        match redundancy::opened(self.model, self.state) {
-            Some(joint) => Err(Failure::Contradiction(joint)),
-            None => Ok(correction),
+        if let Some(joint) = redundancy::opened(self.model, self.state) {
+            return Err(Failure::Contradiction(joint));
         }
+        redundancy::watch_between(self.model, self.state, self.bounds)
+            .map_err(|Rejected| Failure::NotCertified)?;
+        Ok(correction)
     }
 
     /// Tries a sub-step with or without proofs that hold for several steps.

@@ -134,6 +134,7 @@ fn choose_rows_near(model: &mut Model, state: &mut State, estimate: &[f64]) -> R
         all,
         first,
         now: choice.set_aside,
+        contour_rows: Vec::new(),
     };
     state.compile(model);
     let Model { system, plan, .. } = &mut *model;

@@ -20,14 +20,17 @@
 //! | [`rank`] | finds degrees of freedom and redundant rows |
 //! | [`contradiction`] | explains rows that cannot be satisfied together |
 //! | [`choice`] | chooses the rows that are solved |
+//! | [`watch`] | bounds rows set aside between the ends of a sub-step |
 
 mod choice;
 mod closure;
 mod contradiction;
 mod rank;
+mod watch;
 
 pub use choice::Redundancy;
 pub(super) use choice::{
     assemble_on_all, change_rows, choose_rows, is_nearly_singular, may_cross, opened, redundancies,
     return_to_fit_rows,
 };
+pub(super) use watch::watch_between;

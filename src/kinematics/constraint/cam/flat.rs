@@ -100,6 +100,10 @@ impl Constraint for FlatContact {
         Some(bend + rate * rate)
     }
 
+    fn has_contour(&self) -> bool {
+        true
+    }
+
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
         incidence.direction(mechanism, self.contour.cam);
         incidence.direction(mechanism, self.follower);
@@ -216,6 +220,10 @@ impl Constraint for FlatFace {
         let speed = speed_bound(cam, follower, v) + arm_speed;
         let bend = centripetal_bound(cam, follower, v) + arm_bend;
         Some(bend + 2.0 * omega * speed + omega * omega * (g.norm() + moved))
+    }
+
+    fn has_contour(&self) -> bool {
+        true
     }
 
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {

@@ -151,6 +151,10 @@ impl Constraint for KnifeEdge {
         Some(speed * swing + bend + r2 * rate * rate + r1 * angular)
     }
 
+    fn has_contour(&self) -> bool {
+        true
+    }
+
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
         incidence.point(mechanism, self.cam, [true, true]);
         incidence.direction(mechanism, self.cam);

@@ -166,6 +166,10 @@ impl Constraint for Roller {
         Some(bend + 2.0 * turn * speed + (turn_rate + turn * turn) * furthest)
     }
 
+    fn has_contour(&self) -> bool {
+        true
+    }
+
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence) {
         self.contour.incidence(mechanism, [true, true], incidence);
         incidence.point(mechanism, self.follower, [true, true]);

@@ -1,0 +1,90 @@
+//! The watch over the rows set aside between the ends of a sub-step.
+//!
+//! A row that follows from the others in a stretch of the motion follows from them all the way, as
+//! all relations but those of cams are analytic. A contour may leave its circle anywhere: rows that
+//! depend on one are bounded over the sub-step, in the region of the chord and its radii.
+
+use crate::kinematics::certificate::StepBounds;
+use crate::kinematics::constraint::{Gradient, Region};
+use crate::kinematics::model::{ContourRow, Model};
+use crate::kinematics::newton::Rejected;
+use crate::kinematics::state::State;
+
+/// The most by which a row may be open between the ends of a sub-step, scaled.
+const OPEN_BETWEEN: f64 = 1e-4;
+/// The largest move of an unknown, in radians and characteristic lengths, in a sub-step in which a
+/// contour has no bounds, as pieces of its profile meet: the row is looked at from end to end.
+const NARROW: f64 = 1e-3;
+
+/// Bounds the rows set aside that depend on a contour over a sub-step, at whose end the mechanism
+/// is and whose blocks are bounded. Allocates nothing. Rows are watched at the ends alone while
+/// parameters move.
+///
+/// # Errors
+///
+/// [`Rejected`] where such a row may be open.
+pub(in crate::kinematics) fn watch_between(
+    model: &Model,
+    state: &State,
+    bounds: &mut StepBounds,
+) -> Result<(), Rejected> {
+    if bounds.parameters.moving {
+        return Ok(());
+    }
+    let mut rows = model.redundant.contour_rows.iter();
+    rows.try_for_each(|row| {
+        let step_ratio = match open_between(model, state, row, bounds) {
+            Ok(open) => open / OPEN_BETWEEN,
+            Err(largest_move) if largest_move <= NARROW => {
+                bounds.checked = true;
+                0.0
+            }
+            Err(_) => f64::INFINITY,
+        };
+        bounds.require(step_ratio)
+    })
+}
+
+/// Bounds a row over a sub-step, scaled.
+///
+/// # Errors
+///
+/// Without a bound, the largest move of its unknowns, in radians and characteristic lengths.
+fn open_between(
+    model: &Model,
+    state: &State,
+    row: &ContourRow,
+    bounds: &mut StepBounds,
+) -> Result<f64, f64> {
+    let Model { system, plan, .. } = model;
+    let at = &state.at;
+    let mut largest_move = 0.0_f64;
+    for &column in &row.columns {
+        let chord = at.coordinate(column) - state.pose.q[column];
+        bounds.chord[column] = chord;
+        // All of the chord, seen from its end.
+        bounds.region[column] = chord.abs() + bounds.deviation(column, &plan.pivots);
+        let scale = system.column_scale(column, at.size());
+        largest_move = largest_move.max(bounds.region[column] / scale);
+    }
+    let equation = &system.equations()[row.row];
+    let constraint = &equation.constraint;
+    let (mut gradient, mut change) = (Gradient::new(), Gradient::new());
+    constraint.gradient(at, &mut gradient);
+    let region = Region {
+        radii: &bounds.region,
+    };
+    let along = constraint.bend(at, &region, &bounds.chord, &mut change);
+    let steepest = gradient.entries().chain(change.entries());
+    let off_chord = steepest.map(|(column, slope)| {
+        let deviation = bounds.deviation(column, &plan.pivots);
+        slope.abs() * deviation
+    });
+    let off_chord: f64 = off_chord.sum();
+    for &column in &row.columns {
+        bounds.region[column] = 0.0;
+        bounds.chord[column] = 0.0;
+    }
+    let open = along.map(|along| (0.125 * along + off_chord) * equation.row_scale(at));
+    open.ok_or(largest_move)
+}
