@@ -83,6 +83,11 @@ impl Diagnostic {
         self
     }
 
+    /// Says what would be right.
+    pub(super) fn suggest(&mut self, help: impl Into<String>) {
+        self.help = Some(help.into());
+    }
+
     /// The problem on one line, `file:line:column: error: message; help`, for a log.
     #[must_use]
     pub fn one_line(&self, source: &Source) -> String {

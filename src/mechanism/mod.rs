@@ -1,7 +1,7 @@
 //! The mechanism as data: bodies, markers, joints, drivers, measures and parameters.
 //!
 //! A mechanism file is read in three steps: [`Source`] keeps the text and its lines, the reader
-//! (`syntax` and `lower`) turns it into a [`Mechanism`] or into every
+//! (`syntax` and `read`) turns it into a [`Mechanism`] or into every
 //! [`Diagnostic`] that stands in the way, and [`Expression`]s keep each number as a function of
 //! the parameters. Nothing here computes a pose.
 
@@ -10,11 +10,11 @@ mod encoding;
 mod expression;
 mod id;
 mod lookup;
-mod lower;
 mod motion;
 mod names;
 mod parameter;
 mod profile;
+mod read;
 mod source;
 mod spline;
 mod syntax;
@@ -26,9 +26,6 @@ pub use expression::{
     Dual, Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable,
 };
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
-pub use lower::is_identifier;
-#[cfg(feature = "cli")]
-pub use lower::schema;
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
@@ -37,6 +34,9 @@ pub(crate) use names::shown;
 pub(crate) use names::{help, quoted};
 pub use parameter::Parameter;
 pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
+pub use read::is_identifier;
+#[cfg(feature = "cli")]
+pub use read::schema;
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 #[cfg(feature = "cli")]
@@ -151,6 +151,15 @@ pub enum CoordinateKind {
 }
 
 impl CoordinateKind {
+    /// Whether the coordinate is measured on the axes of a marker.
+    #[must_use]
+    pub fn has_axes(self) -> bool {
+        match self {
+            Self::X | Self::Y => true,
+            Self::Angle | Self::Distance => false,
+        }
+    }
+
     /// A value of it for people, with its unit.
     #[must_use]
     pub fn show(self, value: f64) -> String {
@@ -166,6 +175,8 @@ impl CoordinateKind {
 pub struct Joint {
     /// Name, unique among all named things of the mechanism.
     pub name: String,
+    /// One line for people, empty if the file gives none.
+    pub description: String,
     /// Which bundle.
     pub kind: JointKind,
     /// Marker i.
@@ -277,6 +288,8 @@ pub enum RackSide {
 pub struct Constraint {
     /// Name, unique among all named things of the mechanism.
     pub name: String,
+    /// One line for people, empty if the file gives none.
+    pub description: String,
     /// The coordinate.
     pub coordinate: Coordinate,
     /// Its value \[m or rad\].

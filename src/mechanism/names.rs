@@ -45,11 +45,6 @@ pub(super) fn is_taken(name: &str) -> bool {
         || function_names().any(|function| function == name)
 }
 
-/// Whether `name` is the name of a body's own quantity.
-pub(super) fn is_body_quantity(name: &str) -> bool {
-    BODY_QUANTITIES.contains(&name)
-}
-
 /// What names stand for, with a bounded supply of suggestions for wrong ones.
 #[derive(Debug)]
 pub(super) struct NameTable<'a, T> {
@@ -72,10 +67,6 @@ impl<'a, T: Copy> NameTable<'a, T> {
             self.meanings.insert(name, meaning);
         }
         earlier
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.meanings.len()
     }
 
     pub(super) fn get(&self, name: &str) -> Option<T> {

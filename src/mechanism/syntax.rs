@@ -80,13 +80,22 @@ pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
 
 /// Where in the source the content of a string is, if the source has it literally: between plain
 /// quotes and without escapes. Then byte n of the string is byte n of that place.
-pub(super) fn content_span(source: &Source, quoted: Span, content: &str) -> Option<Span> {
+fn content_span(source: &Source, quoted: Span, content: &str) -> Option<Span> {
     let raw = source.text().get(quoted.clone())?;
     ["\"\"\"", "'''", "\"", "'"].iter().find_map(|quote| {
         let inner = raw.strip_prefix(quote)?.strip_suffix(quote)?;
         let start = quoted.start + quote.len();
         (inner == content).then(|| start..start + inner.len())
     })
+}
+
+/// Returns the place of the bytes `part` of a string's content, the whole string's if `part` is
+/// empty or the source has the string with escapes.
+pub(super) fn part_span(source: &Source, quoted: Span, content: &str, part: Span) -> Span {
+    match content_span(source, quoted.clone(), content) {
+        Some(place) if !part.is_empty() => place.start + part.start..place.start + part.end,
+        _ => quoted,
+    }
 }
 
 /// The document's content as text without comments and layout: equal for two documents exactly
