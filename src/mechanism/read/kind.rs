@@ -6,8 +6,9 @@ use std::marker::PhantomData;
 
 use crate::mechanism::Span;
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::{self, quoted};
+use crate::mechanism::names;
 use crate::mechanism::syntax::{Key, Table, Value};
+use crate::mechanism::wording::quoted;
 
 use super::context::Context;
 

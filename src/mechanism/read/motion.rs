@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::motion::not_finite;
-use crate::mechanism::names::shown;
+use crate::mechanism::wording::shown;
 use crate::mechanism::{
     CoordinateKind, Ends, Interpolation, Jet, Law, Motion, MotionInForce, MotionTable, Span,
     Variable,

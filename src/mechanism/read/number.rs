@@ -6,8 +6,8 @@ use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::Scope;
-use crate::mechanism::names::{quoted, shown};
 use crate::mechanism::syntax::{self, Value};
+use crate::mechanism::wording::{quoted, shown};
 use crate::mechanism::{Expression, Jet, Span, Unit, Variable};
 
 use super::context::Context;
@@ -206,12 +206,12 @@ impl<'a> Context<'a> {
     pub(super) fn warn_of_degrees(&mut self, angle: &Quantity) {
         let text = self.source.text().get(angle.span.clone());
         // The author of an expression has thought of the unit.
-        let is_bare = text.is_some_and(|text| !text.starts_with(['"', '\'']));
-        if let Some(value) = angle.value.filter(|value| is_bare && value.abs() > TAU) {
+        let bare = text.filter(|text| !text.starts_with(['"', '\'']));
+        if let Some((text, value)) = bare.zip(angle.value).filter(|(_, value)| value.abs() > TAU) {
             let (number, degrees) = (shown(value), value.to_degrees());
             let message = format!("an angle of {number} rad is {degrees:.1} deg");
             self.warn(code::LARGE_ANGLE, angle.span.clone(), message)
-                .suggest(format!("degrees are written `\"{number}*deg\"`"));
+                .suggest(format!("degrees are written `\"{text}*deg\"`"));
         }
     }
 }

@@ -7,8 +7,8 @@ use petgraph::graph::{DiGraph, NodeIndex};
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::CONSTANTS;
-use crate::mechanism::names::{either, quoted, shown};
 use crate::mechanism::syntax;
+use crate::mechanism::wording::{either, quoted, shown_apart};
 use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, ParameterId, Unit};
 
 use super::context::Context;
@@ -72,11 +72,12 @@ impl<'a> Kind<'a> for SiUnit {
         let si = units.find(|unit| unit.dimension == display.dimension)?.name;
         // The author of `value = 50, unit = "mm"` means millimetres.
         let value = item.fields.table.get("value");
-        let number = value.and_then(|value| syntax::number(value.get_ref()));
+        let number = value.filter(|value| syntax::number(value.get_ref()).is_some());
+        let number = number.and_then(|value| context.source.text().get(value.span()));
         let constant = name.split('/').next();
         let constant = constant.filter(|name| CONSTANTS.iter().any(|(known, _)| known == name));
         let value = match (number, constant) {
-            (Some(number), Some(constant)) => format!("value = \"{}*{constant}\", ", shown(number)),
+            (Some(number), Some(constant)) => format!("value = \"{number}*{constant}\", "),
             _ => String::new(),
         };
         let message = format!("`{name}` is not an SI unit");
@@ -267,7 +268,8 @@ impl<'a> Context<'a> {
         if let (Some(min), Some(max)) = (min, max)
             && min > max
         {
-            let message = format!("`max` = {} is below `min` = {}", shown(max), shown(min));
+            let [max, min] = shown_apart(max, min);
+            let message = format!("`max` = {max} is below `min` = {min}");
             self.error(code::OUT_OF_RANGE, max_span, message);
         } else if let Some(quantity) = value
             && let Some(value) = quantity.value
@@ -278,8 +280,8 @@ impl<'a> Context<'a> {
                 _ => None,
             };
             if let Some((violation, limit)) = violation {
-                let (name, value, limit) = (quoted(name), shown(value), shown(limit));
-                let message = format!("{name} = {value} is {violation} = {limit}");
+                let [value, limit] = shown_apart(value, limit);
+                let message = format!("{} = {value} is {violation} = {limit}", quoted(name));
                 self.error(code::OUT_OF_RANGE, quantity.span.clone(), message);
             }
         }

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::{quoted, shown};
 use crate::mechanism::table::MOST_POINTS;
+use crate::mechanism::wording::{quoted, shown, shown_apart};
 use crate::mechanism::{Expression, Span, Table, TableFile};
 
 use super::context::Context;
@@ -130,7 +130,7 @@ impl<'a> Context<'a> {
         };
         let falls = |pair: &[[f64; 2]]| pair[0][0] >= pair[1][0];
         if let Some(at) = table.values.windows(2).position(falls) {
-            let [before, x] = [at, at + 1].map(|at| shown(table.values[at][0]));
+            let [before, x] = shown_apart(table.values[at][0], table.values[at + 1][0]);
             let line = table.line(at + 1);
             let message =
                 format!("the first column of a table must rise; {line}{x} comes after {before}");
@@ -244,7 +244,7 @@ impl<'a> Context<'a> {
             table.places.pop();
             table.values.pop();
         } else if excess >= -ROUNDING {
-            let [start, end] = [start, end].map(|angle| shown(angle.to_degrees()));
+            let [start, end] = shown_apart(start.to_degrees(), end.to_degrees());
             let last = table.places.len() - 1;
             let message = format!(
                 "{}the last point, at {end} deg, is not within the turn that starts at {start} deg",

@@ -1,8 +1,8 @@
 //! References to bodies and markers by their names.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::quoted;
 use crate::mechanism::syntax;
+use crate::mechanism::wording::quoted;
 use crate::mechanism::{BodyId, MarkerId, Span};
 
 use super::context::{Context, GROUND};
@@ -59,10 +59,7 @@ impl<'a> Kind<'a> for MarkerName {
 pub(super) struct MarkerPair;
 
 impl MarkerPair {
-    const ARRAY: Array<MarkerName, 2> = Array::new(
-        "[\"body.marker\", \"body.marker\"]",
-        [MarkerName, MarkerName],
-    );
+    const ARRAY: Array<MarkerName, 2> = Array::new(MARKERS, [MarkerName, MarkerName]);
 }
 
 impl<'a> Kind<'a> for MarkerPair {

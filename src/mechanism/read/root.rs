@@ -3,8 +3,8 @@
 use std::marker::PhantomData;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::quoted;
 use crate::mechanism::syntax;
+use crate::mechanism::wording::quoted;
 
 use super::body::{BodyKeys, GroundKeys};
 use super::context::Context;

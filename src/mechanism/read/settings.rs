@@ -1,7 +1,7 @@
 //! Outputs and the default experiment.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::shown;
+use crate::mechanism::wording::shown_apart;
 use crate::mechanism::{BodyId, MarkerId, Outputs, Simulation, Unit};
 
 use super::context::Context;
@@ -75,11 +75,8 @@ impl<'a> Context<'a> {
             } else {
                 &keys.start
             };
-            let message = format!(
-                "`stop` = {} is not after `start` = {}",
-                shown(simulation.stop),
-                shown(simulation.start)
-            );
+            let [stop, start] = shown_apart(simulation.stop, simulation.start);
+            let message = format!("`stop` = {stop} is not after `start` = {start}");
             self.error(code::ILLEGAL_VALUE, later.span.clone(), message);
         }
         simulation.step = keys.step.number().unwrap_or(duration / DEFAULT_STEPS);

@@ -4,7 +4,8 @@
 //! unknown and missing keys and the JSON Schema all follow from the declaration.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::{self, quoted};
+use crate::mechanism::names;
+use crate::mechanism::wording::quoted;
 use crate::mechanism::{Expression, Span};
 
 use super::context::Context;

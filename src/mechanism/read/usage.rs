@@ -1,7 +1,7 @@
 //! Warnings of parts without effect.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::quoted;
+use crate::mechanism::wording::quoted;
 use crate::mechanism::{MarkerId, Mechanism};
 
 use super::context::Context;
