@@ -1,8 +1,7 @@
 //! Encoding of files: UTF-8, and what to report of others.
 
 use std::fmt::{self, Display, Formatter};
-
-use super::Span;
+use std::ops::Range;
 
 /// Fault of bytes that are not UTF-8; displayed as the predicate of "the file".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +19,7 @@ pub(super) enum NotUtf8 {
 
 impl NotUtf8 {
     /// Returns the place of the fault in the text of [`decode`].
-    pub(super) fn span(self) -> Span {
+    pub(super) fn span(self) -> Range<usize> {
         match self {
             Self::Byte { offset, .. } => offset..offset + char::REPLACEMENT_CHARACTER.len_utf8(),
             Self::Utf16 => 0..0,

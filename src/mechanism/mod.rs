@@ -8,7 +8,7 @@
 //! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
-//! | `names`, `lookup`, `id` | names, and what they stand for |
+//! | `names`, `reserved`, `lookup`, `id` | names, and what they stand for |
 //! | `wording` | names and numbers in messages |
 //!
 //! Nothing here computes a pose.
@@ -23,6 +23,7 @@ mod names;
 mod parameter;
 mod profile;
 mod read;
+mod reserved;
 mod source;
 mod spline;
 mod syntax;
@@ -167,6 +168,15 @@ impl CoordinateKind {
         match self {
             Self::X | Self::Y => true,
             Self::Angle | Self::Distance => false,
+        }
+    }
+
+    /// Returns the unit of its values.
+    #[must_use]
+    pub fn unit(self) -> Unit {
+        match self {
+            Self::Angle => Unit::RADIAN,
+            Self::X | Self::Y | Self::Distance => Unit::METRE,
         }
     }
 
@@ -317,6 +327,14 @@ pub struct Driver {
     pub coordinate: Coordinate,
     /// Source of its value.
     pub source: DriverSource,
+    /// Smallest value that is meant \[m or rad\], evaluated with the file's parameter values. No
+    /// wall: a value beyond it is followed.
+    pub min: Option<f64>,
+    /// Largest value that is meant \[m or rad\], likewise.
+    pub max: Option<f64>,
+    /// Whether an input gives an angle modulo one turn: each value means the turn nearest the last
+    /// value. Only for the coordinate `angle` and for inputs.
+    pub wrapped: bool,
 }
 
 impl Driver {

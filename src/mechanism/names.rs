@@ -1,17 +1,9 @@
-//! Names: legal ones, taken ones, and suggestions for wrong ones.
+//! Names: legal ones, and suggestions for wrong ones.
 
 use std::cell::Cell;
 use std::collections::HashMap;
 
-use super::expression::{CONSTANTS, function_names};
 use super::wording::{either, quoted};
-
-/// Names that the FMU or the language of the file uses, besides constants and functions.
-pub(super) const TAKEN: [&str; 6] = ["ground", "solver", "rates", "extrapolation", "time", "t"];
-
-/// Names of a body's own quantities, which no marker may have.
-pub(super) const BODY_QUANTITIES: [&str; 9] =
-    ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
 
 /// Most suggestions per table of names: a file of wrong names would take quadratic time.
 const MAX_SUGGESTIONS: u32 = 100;
@@ -23,23 +15,22 @@ const MAX_SUGGESTED_LENGTH: usize = 64;
 const MAX_LISTED: usize = 16;
 
 /// Whether `name` matches `[A-Za-z][A-Za-z0-9_]*`.
+///
+/// Names of FMI type definitions have other characters, so that they never equal a variable's
+/// (FMI 2.0.4, section 2.2.3).
 pub(super) fn is_legal(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
 }
 
-/// Returns all names for which [`is_taken`] holds.
-#[cfg(feature = "cli")]
-pub(super) fn taken() -> impl Iterator<Item = &'static str> {
-    let constants = CONSTANTS.iter().map(|(constant, _)| *constant);
-    TAKEN.into_iter().chain(constants).chain(function_names())
-}
-
-/// Whether parameters, bodies, joints and the like cannot be called `name`.
-pub(super) fn is_taken(name: &str) -> bool {
-    TAKEN.contains(&name)
-        || CONSTANTS.iter().any(|(constant, _)| *constant == name)
-        || function_names().any(|function| function == name)
+/// Whether `name` is a device of Windows, which no file there can be called: `CON`, `com1`.
+pub(super) fn is_device(name: &str) -> bool {
+    let is = |device: &&str| name.eq_ignore_ascii_case(device);
+    let is_port = |port: &&str| {
+        let (start, number) = name.split_at_checked(3).unwrap_or_default();
+        start.eq_ignore_ascii_case(port) && matches!(number.as_bytes(), [b'0'..=b'9'])
+    };
+    ["con", "prn", "aux", "nul"].iter().any(is) || ["com", "lpt"].iter().any(is_port)
 }
 
 /// Names with their meanings, and a bounded number of suggestions for wrong ones.
@@ -163,11 +154,13 @@ mod tests {
     }
 
     #[test]
-    fn taken_names_include_constants_and_functions() {
-        for name in ["ground", "t", "pi", "deg", "sin", "max", "hypot", "rates"] {
-            assert!(is_taken(name), "{name}");
+    fn devices_have_their_names_in_any_case() {
+        for name in ["CON", "nul", "Aux", "prn", "COM0", "COM1", "lpt9"] {
+            assert!(is_device(name), "{name}");
         }
-        assert!(!is_taken("crank"));
+        for name in ["", "con1", "com", "com10", "lpt", "crank", "ñul"] {
+            assert!(!is_device(name), "{name}");
+        }
     }
 
     #[test]

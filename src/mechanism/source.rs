@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::encoding::{NotUtf8, decode};
+use super::names::is_device;
 
 /// Range of the text, in bytes.
 pub type Span = Range<usize>;
@@ -153,17 +154,8 @@ impl Source {
 /// Whether every system and every zip tool accepts this as the name of a file.
 fn is_portable(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default();
-    let device = ["con", "prn", "aux", "nul"]
-        .iter()
-        .any(|device| stem.eq_ignore_ascii_case(device))
-        || (["com", "lpt"].iter().any(|device| {
-            stem.get(..3)
-                .is_some_and(|start| start.eq_ignore_ascii_case(device))
-                && stem.len() == 4
-                && stem.ends_with(|c: char| c.is_ascii_digit())
-        }));
     let legal = |c: char| c.is_alphanumeric() || " ._-+()".contains(c);
-    !device
+    !is_device(stem)
         && name.chars().all(legal)
         && !stem.trim().is_empty()
         && !name.ends_with(['.', ' '])

@@ -1,7 +1,7 @@
 //! Numbers written as expressions over the parameters: parsed once, evaluated often.
 //!
 //! The language is small: numbers (`1`, `.5`, `2.`, `1e-3`), `+ - * / ^` and parentheses, the
-//! constants `pi deg mm cm`, parameters, the functions `sin cos tan asin acos atan atan2 sinh
+//! constants `pi deg rpm mm cm inch`, parameters, the functions `sin cos tan asin acos atan atan2 sinh
 //! cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and one variable: time `t`
 //! in a motion, the polar angle `theta` in a cam's profile. Powers bind tighter than a sign and
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
@@ -33,9 +33,15 @@ pub use scalar::Scalar;
 
 use super::ParameterId;
 
-/// The constants of the language; `deg`, `mm` and `cm` bring a number to SI units.
-pub(super) const CONSTANTS: [(&str, f64); 4] =
-    [("pi", PI), ("deg", PI / 180.0), ("mm", 1e-3), ("cm", 1e-2)];
+/// Constants of the language. All but `pi` convert a number to SI units.
+pub(super) const CONSTANTS: [(&str, f64); 6] = [
+    ("pi", PI),
+    ("deg", PI / 180.0),
+    ("rpm", PI / 30.0),
+    ("mm", 1e-3),
+    ("cm", 1e-2),
+    ("inch", 0.0254),
+];
 
 /// The names of all functions.
 pub(super) fn function_names() -> impl Iterator<Item = &'static str> {

@@ -1,7 +1,8 @@
 //! Ground, the moving bodies and their markers.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::{BODY_QUANTITIES, NameTable};
+use crate::mechanism::names::NameTable;
+use crate::mechanism::reserved::BODY_QUANTITIES;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Body, BodyId, Expression, Marker, MarkerId, Unit};
 

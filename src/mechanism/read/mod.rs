@@ -20,6 +20,7 @@ mod coordinate;
 mod driver;
 mod joint;
 mod kind;
+mod limits;
 mod motion;
 mod names;
 mod number;

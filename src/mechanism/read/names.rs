@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::{is_legal, is_taken};
+use crate::mechanism::names::is_legal;
+use crate::mechanism::reserved::is_taken;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{BodyId, Diagnostic, ParameterId, Span};
 

@@ -8,7 +8,7 @@ use petgraph::graph::{DiGraph, NodeIndex};
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::CONSTANTS;
 use crate::mechanism::syntax;
-use crate::mechanism::wording::{either, quoted, shown_apart};
+use crate::mechanism::wording::{either, quoted};
 use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, ParameterId, Unit};
 
 use super::context::Context;
@@ -229,8 +229,10 @@ impl<'a> Context<'a> {
         };
         if let Some(keys) = draft.keys {
             parameter.tunable = self.tunable(&keys.tunable, &parameter);
-            (parameter.min, parameter.max) = self.range(keys.min, keys.max, &parameter.name, value);
             parameter.unit = self.unit(keys.unit, keys.display, &keys.owner.subject);
+            let name = quoted(&parameter.name);
+            [parameter.min, parameter.max] =
+                self.limits([keys.min, keys.max], (&name, value), parameter.unit);
             parameter.description = keys.description.value.unwrap_or_default();
         }
         let value = draft.value?;
@@ -248,44 +250,6 @@ impl<'a> Context<'a> {
                 .suggest("make those parameters tunable");
         }
         tunable
-    }
-
-    /// Returns the limits `min` and `max`; reports a value beyond them.
-    fn range(
-        &mut self,
-        min: Field<Quantity>,
-        max: Field<Quantity>,
-        name: &str,
-        value: Option<&Quantity>,
-    ) -> (Option<f64>, Option<f64>) {
-        let mut limit = |mut field: Field<Quantity>| {
-            let quantity = field.value.as_mut()?;
-            self.evaluate(quantity)?;
-            quantity.value
-        };
-        let max_span = max.span.clone();
-        let (min, max) = (limit(min), limit(max));
-        if let (Some(min), Some(max)) = (min, max)
-            && min > max
-        {
-            let [max, min] = shown_apart(max, min);
-            let message = format!("`max` = {max} is below `min` = {min}");
-            self.error(code::OUT_OF_RANGE, max_span, message);
-        } else if let Some(quantity) = value
-            && let Some(value) = quantity.value
-        {
-            let violation = match (min, max) {
-                (Some(min), _) if value < min => Some(("below `min`", min)),
-                (_, Some(max)) if value > max => Some(("above `max`", max)),
-                _ => None,
-            };
-            if let Some((violation, limit)) = violation {
-                let [value, limit] = shown_apart(value, limit);
-                let message = format!("{} = {value} is {violation} = {limit}", quoted(name));
-                self.error(code::OUT_OF_RANGE, quantity.span.clone(), message);
-            }
-        }
-        (min, max)
     }
 
     /// Returns the unit with the display unit, which must have its dimension.

@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 
 use crate::mechanism::diagnostic::code;
+use crate::mechanism::names::is_device;
 use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
 
@@ -86,13 +87,22 @@ const C_KEYWORDS: [&str; 34] = [
     "union", "unsigned", "void", "volatile", "while",
 ];
 
-/// Whether a mechanism may have this name: whether it is a C identifier.
+/// Whether a mechanism may have this name: a C identifier that is no device of Windows.
 #[must_use]
 pub fn is_identifier(name: &str) -> bool {
+    is_c_identifier(name) && !is_device(name)
+}
+
+fn is_c_identifier(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
         && !C_KEYWORDS.contains(&name)
 }
+
+/// Pattern of names for which [`is_device`] holds.
+#[cfg(feature = "cli")]
+const DEVICE: &str =
+    "^([Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]|([Cc][Oo][Mm]|[Ll][Pp][Tt])[0-9])$";
 
 /// Name of the mechanism.
 pub(super) struct ModelName;
@@ -102,14 +112,20 @@ impl<'a> Kind<'a> for ModelName {
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<String> {
         let name = context.text(item.value)?;
-        if !is_identifier(name) {
-            let message = format!(
-                "the mechanism's name {} is not a C identifier",
-                quoted(name)
-            );
+        let name_of = |what| format!("the mechanism's name {} is {what}", quoted(name));
+        if !is_c_identifier(name) {
+            let message = name_of("not a C identifier");
             context.error(code::ILLEGAL_NAME, item.span(), message).suggest(
                 "letters, digits and `_`, not starting with a digit, and no word of the C language",
             );
+            return None;
+        }
+        if is_device(name) {
+            let message = name_of("the name of a device on Windows");
+            let help = format!("no file there can have it; expected for example `{name}_1`");
+            context
+                .error(code::ILLEGAL_NAME, item.span(), message)
+                .suggest(help);
             return None;
         }
         Some(name.to_owned())
@@ -119,7 +135,7 @@ impl<'a> Kind<'a> for ModelName {
         {
             "type": "string",
             "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
-            "not": { "enum": C_KEYWORDS.as_slice() },
+            "not": { "anyOf": [{ "enum": C_KEYWORDS.as_slice() }, { "pattern": DEVICE }] },
         }
     }
 }
