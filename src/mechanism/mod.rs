@@ -20,6 +20,7 @@ mod id;
 mod lookup;
 mod motion;
 mod names;
+mod number;
 mod parameter;
 mod profile;
 mod read;
@@ -32,15 +33,14 @@ mod wording;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use expression::{
-    Dual, Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable,
-};
+pub use expression::{Expression, ExpressionError, Variable};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 #[cfg(feature = "cli")]
 pub(crate) use names::help;
+pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::Parameter;
 pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
 pub use read::is_identifier;

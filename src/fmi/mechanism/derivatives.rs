@@ -38,8 +38,8 @@ impl MechanismModel {
                     let driver = &mut direction.drivers[driver.index()];
                     *match order {
                         Order::Position => &mut driver.value,
-                        Order::Velocity => &mut driver.first,
-                        Order::Acceleration => &mut driver.second,
+                        Order::Velocity => &mut driver.derivatives[0],
+                        Order::Acceleration => &mut driver.derivatives[1],
                     } += change;
                 }
                 Quantity::Parameter(parameter) => {

@@ -110,11 +110,7 @@ impl MechanismModel {
                             input.rates_after(source, extrapolation, start, s * h)
                         }
                     };
-                    Jet {
-                        value: 0.0,
-                        first: velocity,
-                        second: acceleration,
-                    }
+                    Jet::new(0.0, [velocity, acceleration])
                 }
                 DriverSource::Motion(_) => solver.motion(DriverId(index), start + s * h),
             };

@@ -190,8 +190,9 @@ impl MechanismState {
         // A prescribed motion may have rates that are not finite; who asks for them is told.
         for rates in driver_rates.iter_mut().chain(committed_rates) {
             codec.real(&mut rates.value)?;
-            codec.real(&mut rates.first)?;
-            codec.real(&mut rates.second)?;
+            for rate in &mut rates.derivatives {
+                codec.real(rate)?;
+            }
         }
         for pose in [Arc::make_mut(home), committed, standing] {
             walk_pose(pose, codec)?;

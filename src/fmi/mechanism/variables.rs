@@ -129,8 +129,8 @@ impl Order {
     pub(super) fn of(self, jet: Jet) -> f64 {
         match self {
             Self::Position => jet.value,
-            Self::Velocity => jet.first,
-            Self::Acceleration => jet.second,
+            Self::Velocity => jet.first(),
+            Self::Acceleration => jet.second(),
         }
     }
 
