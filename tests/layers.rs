@@ -43,7 +43,6 @@ const KNOWN_CIRCLES: &[&[&str]] = &[
         "kinematics/constraint/rack_and_pinion.rs",
     ],
     &["fmi/error.rs", "fmi/log.rs"],
-    &["cli/error.rs", "cli/output.rs"],
 ];
 
 /// The modules of the library, the root first.

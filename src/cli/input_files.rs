@@ -1,21 +1,21 @@
-//! The files that a command reads, over which it writes nothing.
+//! The files that a command reads, which it must not overwrite.
 
 use std::path::{Path, PathBuf};
 
 use same_file::Handle;
 
 use super::error::Error;
-use super::output::{is_stdout, shown};
+use super::stdout::{is_stdout, shown};
 use crate::mechanism::Mechanism;
 
-/// What a command reads.
-pub(super) struct Originals {
-    /// Each with what it is.
+/// The files that a command reads.
+pub(super) struct InputFiles {
+    /// Each with its kind, in words.
     files: Vec<(&'static str, PathBuf)>,
 }
 
-impl Originals {
-    /// A mechanism file and the tables that it names.
+impl InputFiles {
+    /// Returns a mechanism file and the tables that it names.
     pub(super) fn new(file: &Path, mechanism: &Mechanism) -> Self {
         let tables = tables(file, mechanism).map(|path| ("a table of the mechanism", path));
         let files = std::iter::once(("the mechanism file", file.to_owned()));
@@ -24,14 +24,13 @@ impl Originals {
         }
     }
 
-    /// One more file that is read.
-    pub(super) fn with(mut self, what: &'static str, path: &Path) -> Self {
-        self.files.push((what, path.to_owned()));
-        self
+    /// Adds one more file.
+    pub(super) fn add(&mut self, kind: &'static str, path: &Path) {
+        self.files.push((kind, path.to_owned()));
     }
 
-    /// Refuses outputs of which one would be written over another, or over what is read.
-    pub(super) fn refuse_as(&self, outputs: &[Option<&Path>]) -> Result<(), Error> {
+    /// Refuses outputs of which one would overwrite another one or an input file.
+    pub(super) fn refuse_as_outputs(&self, outputs: &[Option<&Path>]) -> Result<(), Error> {
         let outputs: Vec<&Path> = outputs.iter().copied().flatten().collect();
         for (index, output) in outputs.iter().enumerate() {
             if let Some(other) = outputs[..index].iter().find(|other| same(output, other)) {
@@ -46,11 +45,11 @@ impl Originals {
                 }));
             }
             let mut files = self.files.iter();
-            if let Some((what, file)) =
+            if let Some((kind, file)) =
                 files.find(|(_, file)| !is_stdout(output) && same(output, file))
             {
                 return Err(Error::Usage(format!(
-                    "nothing is written to {}: it is {what}, `{}`",
+                    "nothing is written to {}: it is {kind}, `{}`",
                     shown(output),
                     file.display()
                 )));
@@ -60,15 +59,15 @@ impl Originals {
     }
 }
 
-/// The tables that a mechanism file names.
+/// Returns the tables that a mechanism file names.
 pub(super) fn tables(file: &Path, mechanism: &Mechanism) -> impl Iterator<Item = PathBuf> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let tables = mechanism.table_files.iter();
     tables.map(move |table| folder.join(&table.name))
 }
 
-/// Whether two paths lead to one file, whether it is there or not. What is no file, such as a
-/// terminal, is not written over.
+/// Returns whether two paths lead to one file, which need not exist. A terminal or a device is no
+/// file: writing there overwrites nothing.
 fn same(a: &Path, b: &Path) -> bool {
     if is_stdout(a) || is_stdout(b) {
         return is_stdout(a) && is_stdout(b);
@@ -76,18 +75,18 @@ fn same(a: &Path, b: &Path) -> bool {
     match (a.is_file(), b.is_file()) {
         (true, true) => {
             let links = (Handle::from_path(a).ok()).zip(Handle::from_path(b).ok());
-            links.is_some_and(|(a, b)| a == b) || at_one_place(a, b)
+            links.is_some_and(|(a, b)| a == b) || have_same_place(a, b)
         }
-        (false, false) if !a.exists() && !b.exists() => at_one_place(a, b),
+        (false, false) if !a.exists() && !b.exists() => have_same_place(a, b),
         _ => false,
     }
 }
 
-fn at_one_place(a: &Path, b: &Path) -> bool {
+fn have_same_place(a: &Path, b: &Path) -> bool {
     place(a).is_some_and(|a| place(b).is_some_and(|b| a == b))
 }
 
-/// The one path of a file, or of one that would be in a folder that is there.
+/// Returns the canonical path of a file, or of a new file in an existing folder.
 fn place(path: &Path) -> Option<PathBuf> {
     let folder = match path.parent()? {
         folder if folder.as_os_str().is_empty() => Path::new("."),

@@ -1,14 +1,14 @@
-//! A pose as estimates of a mechanism file.
+//! A pose written as estimates of a mechanism file.
 
 use std::fmt::Write as _;
 
 use crate::mechanism::Mechanism;
 
-/// Significant digits of an estimate less one: far more than assembly needs, few enough to hide
+/// Digits of an estimate after the first: far more than assembly needs, few enough to hide
 /// rounding.
 const DIGITS: usize = 11;
 
-/// The pose q as lines of a mechanism file, to be pasted.
+/// Returns the pose q as lines to paste into a mechanism file.
 pub(super) fn as_estimates(mechanism: &Mechanism, q: &[f64]) -> String {
     let mut out = String::new();
     let lengths = q.chunks_exact(3).flat_map(|q| [q[0].abs(), q[1].abs()]);
@@ -27,7 +27,7 @@ pub(super) fn as_estimates(mechanism: &Mechanism, q: &[f64]) -> String {
     out
 }
 
-/// A number without the rounding at its end.
+/// Formats a number without the rounding at its end.
 fn rounded(value: f64, scale: f64) -> String {
     let smallest = scale * 10_f64.powi(-(DIGITS as i32));
     if value.abs() <= smallest {
