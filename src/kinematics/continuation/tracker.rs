@@ -265,13 +265,7 @@ impl Run<'_> {
             self.return_to_pose();
             reached = self.try_step_with(end, false);
         }
-        let correction = reached?;
-        if let Some(joint) = redundancy::opened(self.model, self.state) {
-            return Err(Failure::Contradiction(joint));
-        }
-        redundancy::watch_between(self.model, self.state, self.bounds)
-            .map_err(|Rejected| Failure::NotCertified)?;
-        Ok(correction)
+        reached
     }
 
     /// Tries a sub-step with or without proofs that hold for several steps.
@@ -292,14 +286,21 @@ impl Run<'_> {
             at: &mut state.at,
             tangent: &mut state.tangent,
         };
-        plan.step(
-            &mut block_state,
-            extrapolation,
-            &state.pose.q,
-            self.bounds,
-            unit_rates,
-        )
-        .map_err(|Rejected| Failure::NotCertified)
+        let correction = plan
+            .step(
+                &mut block_state,
+                extrapolation,
+                &state.pose.q,
+                self.bounds,
+                unit_rates,
+            )
+            .map_err(|Rejected| Failure::NotCertified)?;
+        if let Some(joint) = redundancy::opened(self.model, self.state) {
+            return Err(Failure::Contradiction(joint));
+        }
+        redundancy::watch_between(self.model, self.state, self.bounds)
+            .map_err(|Rejected| Failure::NotCertified)?;
+        Ok(correction)
     }
 
     /// Makes the end of a sub-step the pose.
@@ -459,8 +460,7 @@ impl Run<'_> {
         }
         self.length = match failure {
             // The certificate concerns the rows that are solved.
-            Failure::Contradiction(_) => HALF * (end - self.s),
-            Failure::Jump(_) => HALF * (end - self.s),
+            Failure::Contradiction(_) | Failure::Jump(_) => HALF * (end - self.s),
             Failure::NotCertified | Failure::Value(_) => self.shortened(end - self.s),
         };
         if self.length >= smallest {
