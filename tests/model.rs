@@ -3,15 +3,17 @@
 use std::io::Cursor;
 
 use biela::fmi::{
-    Capabilities, Category, Causality, Codec, Error, Experiment, Failure, Instance, Interface,
-    Kind, Logger, Model, ModelDescription, Phase, Sink, State, StateError, Status, Unknown,
-    Unreadable, Variability, Variable, write_archive,
+    Capabilities, Category, Causality, Codec, Error, Experiment, Failure, Groups, Instance,
+    Interface, Kind, Logger, Model, ModelDescription, Phase, Sink, State, StateError, Status,
+    Unknown, Unreadable, Variability, Variable, write_archive,
 };
 
 /// y′ = gain · u, with u held; y may not leave its range.
 struct Integrator {
     interface: Interface,
     variables: Vec<Variable<Quantity>>,
+    /// By value reference.
+    reals: [f64; 4],
     state: Integrated,
 }
 
@@ -45,6 +47,7 @@ impl Integrator {
             causality,
             variability,
             kind,
+            derivative_of: None,
         };
         let continuous = Variability::Continuous;
         let gain = Kind::Real {
@@ -77,7 +80,18 @@ impl Integrator {
                     continuous,
                     Kind::real(None, None),
                 ),
+                Variable {
+                    derivative_of: Some(2),
+                    ..variable(
+                        "slope",
+                        Quantity::Slope,
+                        Causality::Output,
+                        continuous,
+                        Kind::real(None, None),
+                    )
+                },
             ],
+            reals: [0.0; 4],
             state: Integrated::START,
         }
     }
@@ -142,31 +156,27 @@ impl Model for Integrator {
         }
     }
 
-    fn make_ready(&mut self, quantity: Quantity, _: Phase, log: &Logger) -> Result<(), Failure> {
-        if quantity == Quantity::Y && self.y() > LIMIT {
+    fn groups(&self, quantity: Quantity) -> Groups {
+        Groups::from(quantity == Quantity::Y) | 2
+    }
+
+    fn refresh(&mut self, groups: Groups, _: Phase, log: &Logger) -> Result<(), Failure> {
+        if groups & 1 != 0 && self.y() > LIMIT {
             return Err(full(log));
         }
+        self.reals = [self.state.u, self.state.gain, self.y(), self.slope()];
         Ok(())
     }
 
-    fn real(&mut self, quantity: Quantity) -> f64 {
-        match quantity {
-            Quantity::U => self.state.u,
-            Quantity::Gain => self.state.gain,
-            Quantity::Y => self.y(),
-            Quantity::Slope => self.slope(),
-        }
-    }
-
-    fn time_derivative(&self, quantity: Quantity, order: u32) -> Option<Quantity> {
-        (quantity == Quantity::Y && order == 1).then_some(Quantity::Slope)
+    fn reals(&self) -> &[f64] {
+        &self.reals
     }
 
     fn commit(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         if phase == Phase::Initialization {
             self.state.from = [0.0, self.state.time];
         }
-        self.make_ready(Quantity::Y, phase, log)?;
+        self.refresh(1, phase, log)?;
         self.state.from = [self.y(), self.state.time];
         Ok(())
     }
@@ -192,7 +202,7 @@ impl Model for Integrator {
         self.state = state.clone();
     }
 
-    fn walk(state: &mut Integrated, codec: &mut impl Codec) -> Result<(), Unreadable> {
+    fn visit(state: &mut Integrated, codec: &mut impl Codec) -> Result<(), Unreadable> {
         let Integrated {
             time,
             u,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::error::Error;
 use super::motion::Motion;
 use crate::drawing::{Axis, Chart, Line, Panel};
-use crate::fmi::{Kind, Order, Quantity, variables};
+use crate::fmi::{Kind, Order, Quantity, Signal, variables};
 use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
 
 /// The lines of more bodies than this cannot be told apart.
@@ -24,7 +24,8 @@ pub(super) fn moves(values: &[f64]) -> bool {
 pub(super) struct Column {
     /// As the FMU's variable.
     pub(super) name: String,
-    pub(super) quantity: Quantity,
+    pub(super) signal: Signal,
+    pub(super) order: Order,
     pub(super) unit: Unit,
 }
 
@@ -32,32 +33,35 @@ impl Column {
     /// Value, velocity and acceleration of every driver, then all outputs of the FMU.
     pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
         let variables = variables(mechanism);
-        let of_kind = |wanted: fn(Quantity) -> Option<Quantity>| {
+        let of_kind = |wanted: fn(Quantity) -> Option<(Signal, Order)>| {
             variables.iter().filter_map(move |variable| {
                 let Kind::Real { unit, .. } = variable.kind else {
                     return None;
                 };
+                let (signal, order) = wanted(variable.quantity)?;
                 Some(Self {
                     name: variable.name.clone(),
-                    quantity: wanted(variable.quantity)?,
+                    signal,
+                    order,
                     unit: unit.unwrap_or(Unit::ONE),
                 })
             })
         };
         // An input's value counts as that of the motion which it is in a run.
         let drivers = of_kind(|quantity| match quantity {
-            Quantity::Input(driver, order) | Quantity::Motion(driver, order) => {
-                Some(Quantity::Motion(driver, order))
+            Quantity::Input(driver, order) | Quantity::Output(Signal::Motion(driver), order) => {
+                Some((Signal::Motion(driver), order))
             }
             _ => None,
         });
         let mut columns: Vec<Self> = drivers.collect();
-        columns.sort_by_key(|column| match column.quantity {
-            Quantity::Motion(driver, _) => driver.index(),
+        columns.sort_by_key(|column| match column.signal {
+            Signal::Motion(driver) => driver.index(),
             _ => 0,
         });
         columns.extend(of_kind(|quantity| match quantity {
-            Quantity::Body(..) | Quantity::Marker(..) | Quantity::Measure(..) => Some(quantity),
+            Quantity::Output(Signal::Motion(_), _) => None,
+            Quantity::Output(signal, order) => Some((signal, order)),
             _ => None,
         }));
         columns
@@ -90,17 +94,15 @@ impl Column {
     /// What a chart shows if nothing else is asked for: drivers and measures, or points of
     /// interest where there is no measure, or bodies where there is neither.
     pub(super) fn of_interest(columns: &[Self]) -> Vec<Self> {
-        let of = |wanted: fn(&Quantity) -> bool| {
-            let chosen = columns
-                .iter()
-                .filter(move |column| wanted(&column.quantity));
+        let of = |wanted: fn(&Signal) -> bool| {
+            let chosen = columns.iter().filter(move |column| wanted(&column.signal));
             chosen.cloned().collect::<Vec<_>>()
         };
-        let mut chosen = of(|quantity| matches!(quantity, Quantity::Motion(..)));
+        let mut chosen = of(|signal| matches!(signal, Signal::Motion(_)));
         for wanted in [
-            |quantity: &Quantity| matches!(quantity, Quantity::Measure(..)),
-            |quantity: &Quantity| matches!(quantity, Quantity::Marker(..)),
-            |quantity: &Quantity| matches!(quantity, Quantity::Body(..)),
+            |signal: &Signal| matches!(signal, Signal::Measure(_)),
+            |signal: &Signal| matches!(signal, Signal::Marker(..)),
+            |signal: &Signal| matches!(signal, Signal::Body(..)),
         ] {
             let more = of(wanted);
             if !more.is_empty() {
@@ -116,8 +118,13 @@ impl Column {
     }
 
     pub(super) fn read(&self, motion: &Motion) -> f64 {
-        self.quantity
-            .read(&motion.solver, &motion.rates, &motion.driver_rates)
+        let Motion {
+            solver,
+            rates,
+            driver_rates,
+            ..
+        } = motion;
+        self.order.of(self.signal.jet(solver, rates, driver_rates))
     }
 }
 
@@ -234,42 +241,41 @@ impl Record {
     /// Leaves out the coordinates of bodies that stay what they are, and of the bodies that move
     /// all but the first few. Says how many there are then, and how many move, if these are more.
     pub(super) fn leave_out(&mut self) -> Option<[usize; 2]> {
-        let mut moving: Vec<Quantity> = Vec::new();
+        let mut moving: Vec<Signal> = Vec::new();
         let mut bodies: Vec<BodyId> = Vec::new();
         for (column, values) in self.columns.iter().zip(&self.values) {
-            if let Quantity::Body(body, _, Order::Position) = column.quantity
+            if let (Signal::Body(body, _), Order::Position) = (column.signal, column.order)
                 && moves(values)
             {
-                moving.push(column.quantity);
+                moving.push(column.signal);
                 if !bodies.contains(&body) {
                     bodies.push(body);
                 }
             }
         }
         let shown = &bodies[..bodies.len().min(MOST_BODIES)];
-        let keep = |quantity: &Quantity| match quantity {
-            Quantity::Body(body, ..) if !bodies.is_empty() => {
-                shown.contains(body) && moving.contains(&quantity.position())
+        let keep = |signal: &Signal| match signal {
+            Signal::Body(body, _) if !bodies.is_empty() => {
+                shown.contains(body) && moving.contains(signal)
             }
             _ => true,
         };
         let columns = std::mem::take(&mut self.columns);
         let values = std::mem::take(&mut self.values);
         let kept = columns.into_iter().zip(values);
-        (self.columns, self.values) = kept.filter(|(column, _)| keep(&column.quantity)).unzip();
+        (self.columns, self.values) = kept.filter(|(column, _)| keep(&column.signal)).unzip();
         (shown.len() < bodies.len()).then_some([shown.len(), bodies.len()])
     }
 
     /// Positions, velocities and accelerations, lengths and angles each in a panel of their own;
     /// angles in degrees.
     pub(super) fn chart(self, mechanism: &Mechanism) -> Chart {
-        let mut looks: Vec<String> = Vec::new();
+        let mut looks: Vec<Signal> = Vec::new();
         let mut panels: Vec<(Unit, Panel)> = Vec::new();
         for (column, mut values) in self.columns.into_iter().zip(self.values) {
-            let source = format!("{:?}", column.quantity.position());
-            let look = looks.iter().position(|known| *known == source);
+            let look = looks.iter().position(|known| *known == column.signal);
             let look = look.unwrap_or_else(|| {
-                looks.push(source);
+                looks.push(column.signal);
                 looks.len() - 1
             });
             if let Some(display) = column.unit.display {

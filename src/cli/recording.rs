@@ -4,7 +4,7 @@ use super::columns::{Column, axis};
 use super::motion::Motion;
 use crate::drawing::Scene;
 use crate::drawing::animation::{Animation, Clock, Moment, Reading};
-use crate::fmi::Quantity;
+use crate::fmi::{Order, Signal};
 use crate::mechanism::Mechanism;
 
 /// A film has at most so many moments: of more rows every second, third and so on is shown.
@@ -39,8 +39,8 @@ impl Recording {
     /// measures are.
     pub(super) fn of_interest(columns: &[Column]) -> Vec<Column> {
         let columns = columns.iter().filter(|column| {
-            let of_body = matches!(column.quantity, Quantity::Body(..));
-            column.quantity == column.quantity.position() && !of_body
+            let of_body = matches!(column.signal, Signal::Body(..));
+            column.order == Order::Position && !of_body
         });
         columns.cloned().collect()
     }

@@ -1,4 +1,4 @@
-//! Messages to the host, by category.
+//! Messages to the host by category.
 
 use super::Status;
 
@@ -7,17 +7,17 @@ use super::Status;
 pub enum Category {
     /// Every message.
     All,
-    /// Messages that accompany `fmi2Warning`.
+    /// Warnings to the user.
     Warning,
-    /// Messages that accompany `fmi2Discard`.
+    /// Messages of a call that returns `fmi2Discard`.
     Discard,
-    /// Messages that accompany `fmi2Error`.
+    /// Messages of a call that returns `fmi2Error`.
     Error,
-    /// Messages that accompany `fmi2Fatal`.
+    /// Messages of a call that returns `fmi2Fatal`.
     Fatal,
-    /// What happens: initialized, reset, terminated, FMU state set.
+    /// Initialization, reset, termination, FMU states, change points.
     Events,
-    /// What the solver did in each step.
+    /// Iterations and sub-steps of each step.
     Solver,
 }
 
@@ -39,7 +39,7 @@ impl Category {
         (Self::Solver, "iterations and sub-steps of each step"),
     ];
 
-    /// Its name in the model description and in the logger callback.
+    /// Returns the name in the model description and in the logger callback.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -58,12 +58,12 @@ impl Category {
         all.find(|category| category.name() == name)
     }
 
-    /// Whether messages go to the host whatever its settings.
+    /// Returns whether the host gets messages of this category with any settings.
     fn always(self) -> bool {
         matches!(self, Self::Warning | Self::Error | Self::Fatal)
     }
 
-    /// The categories that it switches.
+    /// Returns the bits of the categories that it switches.
     fn bits(self) -> u8 {
         match self {
             Self::All => u8::MAX,
@@ -72,7 +72,7 @@ impl Category {
     }
 }
 
-/// Where messages end up: the host's logger callback.
+/// Receiver of messages: the host's logger callback.
 pub trait Sink {
     /// Takes one message.
     fn write(&self, status: Status, category: Category, message: &str);
@@ -98,24 +98,24 @@ impl Logger {
         Self { sink, enabled }
     }
 
-    /// Whether a message of this category would go out: lets callers skip making one.
+    /// Returns whether the host gets messages of this category. Callers ask before they format one.
     #[must_use]
     pub fn wants(&self, category: Category) -> bool {
         category.always() || self.enabled & category.bits() != 0
     }
 
-    /// Gives a message to the host, if it wants it.
+    /// Sends a message to the host if the category is on.
     pub fn write(&self, status: Status, category: Category, message: &str) {
         if self.wants(category) {
             self.sink.write(status, category, message);
         }
     }
 
-    /// Switches categories on or off; none named means all.
+    /// Switches the named categories on or off; an empty list switches all.
     ///
     /// # Errors
     ///
-    /// The first name that is no category; nothing is changed then.
+    /// The first name that is no category; all switches stay.
     pub(super) fn switch<'a>(&mut self, on: bool, categories: &[&'a str]) -> Result<(), &'a str> {
         let mut bits = 0;
         for name in categories {

@@ -18,8 +18,8 @@ pub struct Platform {
 }
 
 impl Platform {
-    /// The platforms that a runtime library may be built for. `aarch64-linux` has no folder in
-    /// FMI 2.0; hosts there look into one of this name.
+    /// Platforms of the runtime library. `aarch64-linux` is a name of FMI 3.0, which FMI 2.0
+    /// refers to (2.3).
     pub const ALL: [Self; 4] = [
         Self::new("linux64", "so"),
         Self::new("win64", "dll"),
@@ -31,7 +31,7 @@ impl Platform {
         Self { name, extension }
     }
 
-    /// The platform this program was built for.
+    /// Returns the platform that this program runs on.
     #[must_use]
     pub fn current() -> Option<Self> {
         let name = match (std::env::consts::OS, std::env::consts::ARCH) {
@@ -48,45 +48,45 @@ impl Platform {
 /// A runtime library: this crate built as a shared library.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RuntimeLibrary {
-    /// The platform it was built for.
+    /// Platform of the library.
     pub platform: Platform,
-    /// Where it is.
+    /// Path of the file.
     pub path: PathBuf,
 }
 
-/// An archive that could not be written.
+/// The archive could not be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PackageError {
     /// A runtime library cannot be read.
     #[error("cannot read the runtime library `{}`: {source}", path.display())]
     Library {
-        /// The library.
+        /// Path of the library.
         path: PathBuf,
-        /// Why.
+        /// Reason from the system.
         source: std::io::Error,
     },
-    /// The archive itself.
+    /// The archive cannot be written.
     #[error("cannot write the archive: {0}")]
     Archive(#[from] zip::result::ZipError),
-    /// Its content.
+    /// The archive's content cannot be written.
     #[error("cannot write the archive: {0}")]
     Write(#[from] std::io::Error),
 }
 
-/// A file for people that goes into the archive.
+/// A file in the archive that documents the FMU.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Document {
-    /// Where in the archive: `model.png`, `documentation/index.html`.
+    /// Path in the archive: `model.png`, `documentation/index.html`.
     pub path: String,
-    /// Its content.
+    /// Content of the file.
     pub content: Vec<u8>,
 }
 
-/// Writes an FMU: its model description, what documents it, the runtime libraries and its
-/// resources, each with its name in `resources/`.
+/// Writes an FMU: model description, documents, runtime libraries and resources, each resource
+/// with its name in `resources/`.
 ///
-/// The same input gives the same bytes: entries have a fixed order and a fixed time.
+/// The same input gives the same bytes: entries have a fixed order and a fixed date.
 ///
 /// # Errors
 ///

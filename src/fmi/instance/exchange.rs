@@ -1,15 +1,15 @@
-//! Model exchange, for models without continuous states and event indicators.
+//! Model exchange for models without continuous states and event indicators.
 
 use super::{Error, Instance, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
 
 impl<M: Model> Instance<M> {
-    /// `fmi2EnterEventMode`: what the model has come to is what it goes on from.
+    /// `fmi2EnterEventMode`: commits the model's present point.
     ///
     /// # Errors
     ///
-    /// The model has no values for what was set; nothing is changed then.
+    /// The model does not exist for the values set; nothing changes.
     pub fn enter_event_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterEventMode)?;
         self.commit()?;
@@ -17,11 +17,11 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi2NewDiscreteStates`: there are none, so that nothing is ever left to be done.
+    /// `fmi2NewDiscreteStates`: the model has none.
     ///
     /// # Errors
     ///
-    /// The state does not allow it.
+    /// The state forbids the call.
     pub fn new_discrete_states(&self) -> Result<(), Error> {
         self.allow(Call::NewDiscreteStates)
     }
@@ -30,19 +30,19 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     ///
-    /// The state does not allow it.
+    /// The state forbids the call.
     pub fn enter_continuous_time_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterContinuousTimeMode)?;
         self.state = State::ContinuousTimeMode;
         Ok(())
     }
 
-    /// `fmi2CompletedIntegratorStep`: what the model has come to is what it goes on from. No
-    /// event and no termination follows.
+    /// `fmi2CompletedIntegratorStep`: commits the model's present point. Neither an event nor the
+    /// end of the simulation follows.
     ///
     /// # Errors
     ///
-    /// The model has no values for what was set; nothing is changed then.
+    /// The model does not exist for the values set; nothing changes.
     pub fn completed_integrator_step(&mut self) -> Result<(), Error> {
         self.allow(Call::CompletedIntegratorStep)?;
         self.commit()
@@ -54,7 +54,7 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi2SetTime` \[s\]. A time beyond the stop time is taken: solvers look ahead.
+    /// `fmi2SetTime` \[s\]. Times beyond the stop time are legal: solvers look ahead.
     ///
     /// # Errors
     ///
@@ -66,11 +66,11 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// The functions of continuous states and event indicators: right for none of them.
+    /// A function of continuous states or event indicators, for `count` values.
     ///
     /// # Errors
     ///
-    /// `count` is not zero.
+    /// `count` is not zero: the model has none.
     pub fn continuous(&self, call: Call, count: usize) -> Result<(), Error> {
         self.allow(call)?;
         if count == 0 {

@@ -1,21 +1,21 @@
-//! Co-simulation: steps, and how they ended.
+//! Co-simulation: steps and their outcome.
 
 use super::{Error, Failure, Instance, check_finite};
 use crate::fmi::error::Status;
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
 
-/// Hosts add up step sizes: communication points may be off by this much, relative to the
-/// larger of time and step.
+/// Tolerance of communication points, relative to the larger of time and step: hosts add up step
+/// sizes.
 const TIME_ROUNDING: f64 = 1e-9;
 
 impl<M: Model> Instance<M> {
-    /// `fmi2DoStep`: goes from the last communication point over `h` seconds.
+    /// `fmi2DoStep`: steps from the last communication point over `h` seconds.
     ///
     /// # Errors
     ///
-    /// A step that the model discards: the instance is then in state `stepFailed`, at the last
-    /// time that was reached. Anything else leaves it as it was.
+    /// [`Failure::Discarded`] leaves the instance in state `stepFailed`, at the last time that the
+    /// model reached. Any other error changes nothing.
     pub fn do_step(&mut self, communication_point: f64, h: f64) -> Result<(), Error> {
         self.allow(Call::DoStep)?;
         self.check_step(communication_point, h)?;
@@ -51,7 +51,7 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// `fmi2GetStatus` of `fmi2DoStepStatus`: how the last step ended.
+    /// `fmi2GetStatus` of `fmi2DoStepStatus`: status of the last step.
     #[must_use]
     pub fn step_status(&self) -> Status {
         if self.terminated {
@@ -61,13 +61,13 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// `fmi2GetRealStatus` of `fmi2LastSuccessfulTime` \[s\].
+    /// `fmi2GetRealStatus` of `fmi2LastSuccessfulTime` \[s\]: the last time that the model reached.
     #[must_use]
     pub fn last_successful_time(&self) -> f64 {
         self.last_successful_time
     }
 
-    /// `fmi2GetBooleanStatus` of `fmi2Terminated`: whether a step was discarded for good.
+    /// `fmi2GetBooleanStatus` of `fmi2Terminated`: whether the last step was discarded.
     #[must_use]
     pub fn is_terminated(&self) -> bool {
         self.terminated

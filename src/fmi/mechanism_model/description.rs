@@ -3,20 +3,20 @@
 use std::collections::BTreeSet;
 
 use super::guid;
-use super::variables::{Order, Quantity, dependencies, variables};
+use super::variables::{Order, Quantity, variables};
 use crate::fmi::model_description::{Capabilities, Experiment, ModelDescription, Unknown};
 use crate::fmi::variable::{Causality, Variable};
 use crate::kinematics::{Dependencies, Structure};
-use crate::mechanism::{Mechanism, ParameterId};
+use crate::mechanism::Mechanism;
 
-/// What a [`MechanismModel`](super::MechanismModel) can do.
+/// Capabilities of a [`MechanismModel`](super::MechanismModel).
 const CAPABILITIES: Capabilities = Capabilities {
     interpolates_inputs: true,
     output_derivatives: 2,
     directional_derivatives: true,
 };
 
-/// The model description of a mechanism's FMU.
+/// Returns the model description of a mechanism's FMU.
 #[must_use]
 pub fn describe<'a>(
     mechanism: &'a Mechanism,
@@ -27,12 +27,12 @@ pub fn describe<'a>(
     let mut outputs = Vec::new();
     let mut initial_unknowns = Vec::new();
     for (index, variable) in (1..).zip(&variables) {
-        let order = match variable.quantity.order() {
-            Some(order) => order,
-            None if variable.causality == Causality::CalculatedParameter => Order::Position,
-            None => continue,
+        let order = match (variable.quantity, variable.causality) {
+            (Quantity::Output(_, order), _) => order,
+            (_, Causality::CalculatedParameter) => Order::Position,
+            _ => continue,
         };
-        let dependencies = dependencies(mechanism, structure, variable.quantity);
+        let dependencies = variable.quantity.dependencies(mechanism, structure);
         if variable.causality == Causality::Output {
             outputs.push(Unknown {
                 index,
@@ -66,72 +66,66 @@ pub fn describe<'a>(
     }
 }
 
-/// Finds the places of variables in the model description, counted from 1.
-struct Indices<'a> {
-    mechanism: &'a Mechanism,
-    /// Place of the first of the three inputs of each driver that is an input.
+/// Indices of variables in the model description, counted from 1.
+struct Indices {
+    /// First of the three inputs of each driver that is an input.
     inputs: Vec<Option<usize>>,
-    /// Place of each parameter.
+    /// Each parameter.
     parameters: Vec<usize>,
     rate_source: Option<usize>,
     time: usize,
 }
 
-impl<'a> Indices<'a> {
-    fn new(mechanism: &'a Mechanism, variables: &[Variable<Quantity>]) -> Self {
+impl Indices {
+    fn new(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Self {
         let mut indices = Self {
-            mechanism,
             inputs: vec![None; mechanism.drivers.len()],
             parameters: vec![0; mechanism.parameters.len()],
             rate_source: None,
             time: 0,
         };
-        for (place, variable) in (1..).zip(variables) {
+        for (index, variable) in (1..).zip(variables) {
             match variable.quantity {
                 Quantity::Input(driver, Order::Position) => {
-                    indices.inputs[driver.index()] = Some(place);
+                    indices.inputs[driver.index()] = Some(index);
                 }
-                Quantity::Parameter(parameter) => indices.parameters[parameter.index()] = place,
-                Quantity::RateSource => indices.rate_source = Some(place),
-                Quantity::Time => indices.time = place,
+                Quantity::Parameter(parameter) => indices.parameters[parameter.index()] = index,
+                Quantity::RateSource => indices.rate_source = Some(index),
+                Quantity::Time => indices.time = index,
                 _ => {}
             }
         }
         indices
     }
 
-    fn parameter(&self, parameter: ParameterId) -> usize {
-        self.parameters[parameter.index()]
-    }
-
-    /// Inputs and time that a quantity of this order depends on, over all settings of `rates`:
-    /// estimated rates come from positions.
+    /// Returns the inputs and the time that a quantity of this order depends on, over all settings
+    /// of `rates`: estimated rates depend on positions.
     fn inputs(&self, dependencies: &Dependencies, order: Order) -> BTreeSet<usize> {
-        let mut places = BTreeSet::new();
+        let mut indices = BTreeSet::new();
         for driver in &dependencies.drivers {
             match self.inputs[driver.index()] {
-                Some(first) => places.extend(first..=first + order as usize),
+                Some(first) => indices.extend(first..=first + order as usize),
                 None => {
-                    places.insert(self.time);
+                    indices.insert(self.time);
                 }
             }
         }
-        places
+        indices
     }
 
-    /// What a quantity of this order depends on at the start: parameters as well.
+    /// Returns everything that a quantity of this order depends on in initialization mode:
+    /// parameters as well.
     fn initial(&self, dependencies: &Dependencies, order: Order) -> BTreeSet<usize> {
-        let mut places = self.inputs(dependencies, order);
-        // What no driver moves has rates of zero, whatever the parameters.
+        let mut indices = self.inputs(dependencies, order);
+        // A quantity that no driver moves has rates of zero for any parameters.
         if order == Order::Position || !dependencies.drivers.is_empty() {
-            places.extend(dependencies.parameters.iter().map(|&p| self.parameter(p)));
+            let parameters = dependencies.parameters.iter();
+            indices.extend(parameters.map(|id| self.parameters[id.index()]));
         }
-        let has_input = |driver: &crate::mechanism::DriverId| {
-            self.mechanism.drivers[driver.index()].motion().is_none()
-        };
-        if order > Order::Position && dependencies.drivers.iter().any(has_input) {
-            places.extend(self.rate_source);
+        let mut drivers = dependencies.drivers.iter();
+        if order > Order::Position && drivers.any(|id| self.inputs[id.index()].is_some()) {
+            indices.extend(self.rate_source);
         }
-        places
+        indices
     }
 }

@@ -1,9 +1,9 @@
-//! What the host has said about one driver, and what follows for its path and its rates.
+//! The inputs of one driver: their path during a step, and the rates in force.
 
 use super::variables::Order;
 use crate::fmi::codec::{Codec, Unreadable};
 
-/// Where velocity and acceleration of inputs come from: the FMU's parameter `rates`.
+/// Source of the velocity and acceleration of inputs: the FMU's parameter `rates`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RateSource {
     Auto = 1,
@@ -15,7 +15,7 @@ impl RateSource {
     pub(super) const ALL: [Self; 3] = [Self::Auto, Self::Inputs, Self::Estimated];
 }
 
-/// How inputs without input derivatives go on during a step: the parameter `extrapolation`.
+/// Extrapolation of inputs without input derivatives: the FMU's parameter `extrapolation`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extrapolation {
     Hold = 1,
@@ -33,7 +33,7 @@ pub(super) struct DriverRates {
     pub(super) acceleration: f64,
 }
 
-/// A value and the communication point at which the host had set it.
+/// A position and velocity, and the communication point at which the host set them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sample {
     time: f64,
@@ -48,19 +48,19 @@ struct History([Option<Sample>; 3]);
 /// The three FMI inputs of one driver.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DriverInput {
-    /// Position, velocity and acceleration as set.
+    /// Position, velocity and acceleration.
     values: [f64; 3],
-    /// First and second derivative of each for the next step.
+    /// First and second derivative of each value for the next step.
     derivatives: [[f64; 2]; 3],
-    /// Whether the host has given a derivative of each since the last step.
+    /// Whether the host has set a derivative of each value since the last step.
     derivative_given: [bool; 3],
-    /// Whether each was ever set to anything but zero; that of the position is not used.
+    /// Whether the host has ever set each value to other than zero; unused for the position.
     ever_nonzero: [bool; 3],
     history: History,
 }
 
 impl DriverInput {
-    /// An input at its start value, with rates of zero.
+    /// Returns the inputs at their start values: rates of zero.
     pub(super) fn new(start: f64) -> Self {
         Self {
             values: [start, 0.0, 0.0],
@@ -80,13 +80,13 @@ impl DriverInput {
         self.ever_nonzero[order as usize] |= value != 0.0;
     }
 
-    /// Takes the derivative of order 1 or 2 of one of the three inputs for the next step.
+    /// Sets the derivative of order 1 or 2 of one of the three inputs for the next step.
     pub(super) fn set_derivative(&mut self, order: Order, derivative: usize, value: f64) {
         self.derivatives[order as usize][derivative - 1] = value;
         self.derivative_given[order as usize] = true;
     }
 
-    /// The rate inputs as they stand.
+    /// Returns the rate inputs.
     pub(super) fn given_rates(&self) -> DriverRates {
         DriverRates {
             velocity: self.values[1],
@@ -94,7 +94,7 @@ impl DriverInput {
         }
     }
 
-    /// Velocity and acceleration that carry the position along during a step from `time`.
+    /// Returns the velocity and acceleration that extrapolate the position in a step from `time`.
     pub(super) fn path_rates(
         &self,
         source: RateSource,
@@ -114,8 +114,8 @@ impl DriverInput {
         }
     }
 
-    /// The rates in force at the end of a step of size `h` from `time`; with `h = 0` those at
-    /// `time` itself.
+    /// Returns the rates in force at the end of a step of size `h` from `time`; with `h = 0` those
+    /// at `time` itself.
     pub(super) fn rates_after(
         &self,
         source: RateSource,
@@ -138,7 +138,7 @@ impl DriverInput {
         }
     }
 
-    /// The rates by the rules of `rates`: input derivatives, rate inputs, or an estimate.
+    /// Returns the rates by the rules of `rates`: input derivatives, rate inputs, or an estimate.
     fn rates(&self, source: RateSource, time: f64, h: f64) -> DriverRates {
         let given = self.ever_nonzero[1] || self.ever_nonzero[2];
         match source {
@@ -165,13 +165,13 @@ impl DriverInput {
         }
     }
 
-    /// An input as its own derivatives carry it along.
+    /// Returns an input, extrapolated over `h` by its own derivatives.
     fn carried(&self, order: Order, h: f64) -> f64 {
         let [first, second] = self.derivatives[order as usize];
         self.values[order as usize] + h * (first + 0.5 * h * second)
     }
 
-    /// Backward difference of the velocity input.
+    /// Returns the backward difference of the velocity input.
     fn velocity_difference(&self, time: f64) -> f64 {
         match self.with_sample(time).0 {
             [Some(newest), Some(before), _] => {
@@ -181,7 +181,7 @@ impl DriverInput {
         }
     }
 
-    /// The history with the present values as its newest sample.
+    /// Returns the history with the present values as its newest sample.
     fn with_sample(&self, time: f64) -> History {
         let sample = Some(Sample {
             time,
@@ -189,22 +189,21 @@ impl DriverInput {
             velocity: self.values[1],
         });
         match self.history.0 {
-            // A communication point that was sampled before: the present values replace it.
+            // The present values replace a sample of the same communication point.
             [Some(newest), b, c] if newest.time >= time => History([sample, b, c]),
             [a, b, _] => History([sample, a, b]),
         }
     }
 
-    /// Ends a step that started at `time`: the values become a sample, the derivatives are used
-    /// up.
+    /// Ends a step that started at `time`: records a sample and clears the derivatives.
     pub(super) fn complete_step(&mut self, time: f64) {
         self.history = self.with_sample(time);
         self.derivatives = [[0.0; 2]; 3];
         self.derivative_given = [false; 3];
     }
 
-    /// Takes a codec through all fields.
-    pub(super) fn walk(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
+    /// Visits all fields.
+    pub(super) fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
         let Self {
             values,
             derivatives,
@@ -230,7 +229,7 @@ impl DriverInput {
 }
 
 impl History {
-    /// Derivatives at the newest sample of the polynomial through all of them.
+    /// Returns the derivatives of the polynomial through all samples at the newest one.
     fn estimate(&self) -> DriverRates {
         let slope = |a: Sample, b: Sample| (a.position - b.position) / (a.time - b.time);
         match self.0 {
@@ -258,7 +257,7 @@ mod tests {
     const HOLD: Extrapolation = Extrapolation::Hold;
     const TAYLOR: Extrapolation = Extrapolation::Taylor;
 
-    /// An input that a host set to `position(t)` before steps at these times.
+    /// Returns an input that a host set to `position(t)` before steps at these times.
     fn after_steps(times: &[f64], position: impl Fn(f64) -> f64) -> DriverInput {
         let mut input = DriverInput::new(0.0);
         for &time in times {

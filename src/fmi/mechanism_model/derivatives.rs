@@ -1,7 +1,7 @@
-//! How outputs change with inputs and parameters.
+//! Directional derivatives of outputs and calculated parameters.
 
 use super::variables::Order;
-use super::{MechanismModel, Quantity, failed};
+use super::{MechanismModel, Quantity, Signal, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
@@ -9,14 +9,14 @@ use crate::kinematics::{Direction, Sensitivity};
 use crate::mechanism::Jet;
 
 impl MechanismModel {
-    /// The derivatives of outputs and calculated parameters along a direction.
+    /// Returns the derivatives of outputs and calculated parameters along a direction.
     ///
-    /// Value, velocity and acceleration of a driver count as independent of each other, wherever
-    /// the velocity and acceleration in force come from: an estimate is not differentiated.
+    /// Value, velocity and acceleration of a driver count as independent of each other: an
+    /// estimated rate is not differentiated.
     ///
     /// # Errors
     ///
-    /// The pose is singular, or there is none for the values set.
+    /// The pose is singular, or does not exist for the values set.
     pub(super) fn derivatives_along(
         &mut self,
         unknowns: &[Quantity],
@@ -45,32 +45,30 @@ impl MechanismModel {
                 Quantity::Parameter(parameter) => {
                     direction.parameters[parameter.index()] += change;
                 }
-                _ => unreachable!("inputs and parameters are all that is known"),
+                _ => unreachable!("knowns are inputs and parameters"),
             }
         }
         let sensitivity = self
             .solver
             .sensitivity(&self.rates, &self.driver_rates, &direction)
             .map_err(failed)?;
-        let change = |&unknown: &Quantity| unknown.change(&sensitivity);
+        let change = |&unknown: &Quantity| match unknown {
+            Quantity::Output(signal, order) => order.of(signal.change(&sensitivity)),
+            Quantity::Parameter(parameter) => sensitivity.parameter(parameter),
+            _ => unreachable!("unknowns are outputs and parameters"),
+        };
         Ok(unknowns.iter().map(change).collect())
     }
 }
 
-impl Quantity {
-    /// The change of an output or a parameter.
-    fn change(self, sensitivity: &Sensitivity<'_>) -> f64 {
+impl Signal {
+    /// Returns the changes of value, velocity and acceleration.
+    fn change(self, sensitivity: &Sensitivity<'_>) -> Jet {
         match self {
-            Self::Body(body, component, order) => {
-                order.of(sensitivity.coordinate(3 * body.index() + component))
-            }
-            Self::Marker(marker, component, order) => {
-                order.of(sensitivity.marker(marker)[component])
-            }
-            Self::Measure(measure, order) => order.of(sensitivity.measure(measure)),
-            Self::Motion(driver, order) => order.of(sensitivity.driver(driver)),
-            Self::Parameter(parameter) => sensitivity.parameter(parameter),
-            _ => unreachable!("outputs and parameters are all that is unknown"),
+            Self::Body(body, component) => sensitivity.coordinate(3 * body.index() + component),
+            Self::Marker(marker, component) => sensitivity.marker(marker)[component],
+            Self::Measure(measure) => sensitivity.measure(measure),
+            Self::Motion(driver) => sensitivity.driver(driver),
         }
     }
 }

@@ -1,17 +1,27 @@
-//! Mechanisms as FMUs: a [`Model`] of a [`Mechanism`] and its [`Solver`].
+//! A mechanism as the model of an FMU: the [`Model`] made of a [`Mechanism`] and its [`Solver`].
 //!
-//! This is the only part of `fmi` that knows of mechanisms.
+//! | file | subject |
+//! |---|---|
+//! | `variables` | the table of variables |
+//! | `description`, `guid`, `resource` | the FMU's files |
+//! | `input` | one driver's inputs: their path during a step and their rates |
+//! | `pose` | initialization, steps, and the pose and rates of the values set |
+//! | `messages` | messages about poses and steps |
+//! | `outputs` | values by value reference |
+//! | `derivatives` | directional derivatives |
+//! | `state` | the saved state |
 
 mod derivatives;
 mod description;
 mod guid;
-mod inputs;
-mod motion;
+mod input;
+mod messages;
+mod outputs;
+mod pose;
 mod resource;
 mod state;
 mod variables;
 
-use std::ops::Range;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
@@ -19,36 +29,18 @@ pub use description::describe;
 pub use guid::guid;
 pub use resource::{RESOURCE, write_fmu};
 pub use state::MechanismState;
-pub use variables::{Order, Quantity, TABLE_VERSION, variables};
+pub use variables::{Order, Quantity, Signal, TABLE_VERSION, variables};
 
 use super::codec::{Codec, Unreadable};
 use super::error::Failure;
 use super::log::Logger;
-use super::model::Model;
+use super::model::{Groups, Model};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Path, Pose, Progress, Rates, Solver};
 use crate::mechanism::{DriverSource, Jet, Mechanism};
-use inputs::{DriverInput, Extrapolation, RateSource};
-
-/// What the host has set, apart from the drivers' inputs.
-#[derive(Clone, Debug, PartialEq)]
-struct Settings {
-    parameters: Vec<f64>,
-    rates: RateSource,
-    extrapolation: Extrapolation,
-}
-
-/// What the solver's pose and rates are worth, from nothing to all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Freshness {
-    /// Values were set since: the pose has to be found anew.
-    Stale,
-    /// The pose belongs to the values set; the rates of q have to be found.
-    Pose,
-    /// Pose and rates belong to the values set.
-    Rates,
-}
+use input::{DriverInput, Extrapolation, RateSource};
+use outputs::Reals;
 
 /// A mechanism at the values that a host has set.
 #[derive(Debug)]
@@ -58,76 +50,101 @@ pub struct MechanismModel {
     interface: Interface,
     variables: Vec<Variable<Quantity>>,
     solver: Solver,
-    /// The file's own pose at its own values.
-    own_home: Arc<Pose>,
-    /// From where initialization starts: the own home, or that of an FMU state, which the same
-    /// library built for another machine may have found with other rounding.
-    home: Arc<Pose>,
+    /// Pose of the file's own values.
+    file_pose: Arc<Pose>,
+    /// Pose from which initialization starts: `file_pose`, or that of a restored state, which
+    /// another machine may have computed with other rounding.
+    start_pose: Arc<Pose>,
     settings: Settings,
-    /// One a driver; that of a prescribed motion is without use.
+    /// Inputs per driver; those of prescribed motions have no meaning.
     inputs: Vec<DriverInput>,
-    /// The pose that is gone on from: in co-simulation that of the last communication point.
+    /// Pose from which the mechanism goes on; in co-simulation that of the last communication
+    /// point.
     committed: Pose,
-    /// Whether the solver stands at the committed pose.
+    /// Whether the solver is at the committed pose.
     at_committed: bool,
-    /// Rates of all drivers that the outputs belong to; `value` is without use.
+    /// Rates of all drivers at the solver's pose; `value` has no meaning.
     driver_rates: Vec<Jet>,
-    /// Those of the committed pose.
+    /// Rates of all drivers at the committed pose.
     committed_rates: Vec<Jet>,
-    rates: Rates,
-    /// The value references of what the bodies among the outputs have, nine variables each.
-    row: Range<u32>,
-    /// Their values where rates are fresh: position, velocity and acceleration of each.
-    coordinates: Vec<f64>,
     freshness: Freshness,
+    /// Rates of q at the solver's pose.
+    rates: Rates,
+    reals: Reals,
     path: Path,
     progress: Progress,
     time: f64,
-    /// Whether the host has been warned of the singular position that the mechanism is near.
+    /// Whether the host has been warned of the singular position nearby.
     near_singular: bool,
 }
 
+/// Values set by the host, apart from inputs.
+#[derive(Clone, Debug, PartialEq)]
+struct Settings {
+    parameters: Vec<f64>,
+    rates: RateSource,
+    extrapolation: Extrapolation,
+}
+
+/// Validity of the solver's pose and rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Freshness {
+    /// Neither belongs to the values set.
+    Stale,
+    /// The pose belongs to the values set.
+    Pose,
+    /// Pose and rates belong to the values set.
+    Rates,
+}
+
 impl MechanismModel {
-    /// The model of a mechanism, assembled from its own estimates and values.
+    /// Assembles a mechanism at its own estimates and values.
     ///
     /// # Errors
     ///
-    /// It does not assemble.
+    /// The mechanism does not assemble.
     pub fn new(mechanism: Arc<Mechanism>, interface: Interface) -> Result<Self, kinematics::Error> {
         let path = Path::new(&mechanism);
         let mut solver = Solver::new(Arc::clone(&mechanism))?;
         solver.assemble(&path)?;
-        let home = Arc::new(solver.pose().clone());
+        let file_pose = Arc::new(solver.pose().clone());
         let variables = variables(&mechanism);
         Ok(Self {
             guid: guid(&mechanism),
             interface,
-            row: row(&variables),
+            reals: Reals::new(&variables),
             variables,
             settings: Settings::new(&mechanism),
             inputs: start_inputs(&mechanism),
-            committed: Pose::clone(&home),
+            committed: Pose::clone(&file_pose),
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
-            rates: Rates::new(home.q.len()),
-            coordinates: vec![0.0; 9 * mechanism.outputs.bodies.len()],
+            rates: Rates::new(file_pose.q.len()),
             freshness: Freshness::Stale,
             path,
             progress: Progress::default(),
-            time: home.time,
+            time: file_pose.time,
             near_singular: false,
-            own_home: Arc::clone(&home),
-            home,
+            start_pose: Arc::clone(&file_pose),
+            file_pose,
             solver,
             mechanism,
         })
     }
 
-    /// The mechanism.
+    /// Returns the mechanism.
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {
         &self.mechanism
+    }
+
+    /// Records the validity of the solver's pose after a change, which makes all output values out
+    /// of date.
+    #[inline]
+    fn set_freshness(&mut self, freshness: Freshness) {
+        self.freshness = freshness;
+        self.reals.invalidate();
     }
 }
 
@@ -158,21 +175,21 @@ impl Model for MechanismModel {
 
     fn set_time(&mut self, time: f64) {
         self.time = time;
-        self.freshness = Freshness::Stale;
+        self.set_freshness(Freshness::Stale);
     }
 
     fn reset(&mut self) {
-        self.home = Arc::clone(&self.own_home);
+        self.start_pose = Arc::clone(&self.file_pose);
         self.settings = Settings::new(&self.mechanism);
         self.inputs = start_inputs(&self.mechanism);
-        self.committed.clone_from(&self.home);
-        self.solver.restore(&self.home);
+        self.committed.clone_from(&self.start_pose);
+        self.solver.restore(&self.start_pose);
         self.at_committed = true;
         self.driver_rates.fill(Jet::constant(0.0));
         self.committed_rates.fill(Jet::constant(0.0));
-        self.freshness = Freshness::Stale;
+        self.set_freshness(Freshness::Stale);
         self.progress = Progress::default();
-        self.time = self.home.time;
+        self.time = self.start_pose.time;
         self.near_singular = false;
     }
 
@@ -185,9 +202,9 @@ impl Model for MechanismModel {
                     self.settings.parameters[parameter.index()] = value;
                     parameters_changed = true;
                 }
-                _ => unreachable!("inputs and parameters are all that can be set"),
+                _ => unreachable!("only inputs and parameters are settable"),
             }
-            self.freshness = Freshness::Stale;
+            self.set_freshness(Freshness::Stale);
         }
         if parameters_changed {
             self.mechanism
@@ -201,9 +218,9 @@ impl Model for MechanismModel {
             match quantity {
                 Quantity::RateSource => self.settings.rates = RateSource::ALL[item],
                 Quantity::Extrapolation => self.settings.extrapolation = Extrapolation::ALL[item],
-                _ => unreachable!("the two choices are all that can be set"),
+                _ => unreachable!("only the two Enumerations are settable"),
             }
-            self.freshness = Freshness::Stale;
+            self.set_freshness(Freshness::Stale);
         }
     }
 
@@ -212,65 +229,25 @@ impl Model for MechanismModel {
             if let Quantity::Input(driver, input) = quantity {
                 self.inputs[driver.index()].set_derivative(input, order, value);
             }
-            self.freshness = Freshness::Stale;
+            self.set_freshness(Freshness::Stale);
         }
     }
 
-    /// Coordinates of bodies and their rates are what most hosts ask for.
-    fn row(&self) -> Range<u32> {
-        self.row.clone()
+    fn groups(&self, quantity: Quantity) -> Groups {
+        outputs::group(quantity)
     }
 
     #[inline]
-    fn row_values(
-        &mut self,
-        places: Range<usize>,
-        phase: Phase,
-        log: &Logger,
-    ) -> Result<&[f64], Failure> {
-        // What is longer has rates in it.
-        if places.len() <= 3 && places.clone().all(|place| place % 9 < 3) {
-            self.refresh_pose(phase, log)?;
-            for place in places.clone() {
-                let body = self.mechanism.outputs.bodies[place / 9].index();
-                self.coordinates[place] = self.solver.pose().q[3 * body + place % 9];
-            }
-        } else {
-            self.refresh_rates(phase, log)?;
-        }
-        Ok(&self.coordinates[places])
-    }
-
-    fn make_ready(
-        &mut self,
-        quantity: Quantity,
-        phase: Phase,
-        log: &Logger,
-    ) -> Result<(), Failure> {
-        match (quantity, quantity.order()) {
-            (_, Some(Order::Velocity | Order::Acceleration)) => self.refresh_rates(phase, log),
-            (_, Some(Order::Position))
-            | (
-                Quantity::Residual | Quantity::Rcond | Quantity::Iterations | Quantity::Substeps,
-                None,
-            ) => self.refresh_pose(phase, log),
-            _ => Ok(()),
-        }
+    fn refresh(&mut self, groups: Groups, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        self.refresh_groups(groups, phase, log)
     }
 
     #[inline]
-    fn real(&mut self, quantity: Quantity) -> f64 {
-        match quantity {
-            Quantity::Input(driver, order) => self.inputs[driver.index()].get(order),
-            Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
-            Quantity::Time => self.time,
-            Quantity::Residual => self.solver.residual(),
-            Quantity::Rcond => self.solver.rcond(),
-            output => output.read(&self.solver, &self.rates, &self.driver_rates),
-        }
+    fn reals(&self) -> &[f64] {
+        self.reals.values()
     }
 
-    fn integer(&mut self, quantity: Quantity) -> i32 {
+    fn integer(&self, quantity: Quantity) -> i32 {
         let count = match quantity {
             Quantity::RateSource => return self.settings.rates as i32,
             Quantity::Extrapolation => return self.settings.extrapolation as i32,
@@ -279,10 +256,6 @@ impl Model for MechanismModel {
             _ => unreachable!("all other variables are Reals"),
         };
         i32::try_from(count).unwrap_or(i32::MAX)
-    }
-
-    fn time_derivative(&self, quantity: Quantity, order: u32) -> Option<Quantity> {
-        quantity.derivative(order as usize)
     }
 
     fn directional_derivatives(
@@ -304,15 +277,15 @@ impl Model for MechanismModel {
     }
 
     fn save(&mut self) -> MechanismState {
-        self.saved()
+        self.save_state()
     }
 
     fn restore(&mut self, state: &MechanismState) {
-        self.go_back_to(state);
+        self.restore_state(state);
     }
 
-    fn walk(state: &mut MechanismState, codec: &mut impl Codec) -> Result<(), Unreadable> {
-        state.walk(codec)
+    fn visit(state: &mut MechanismState, codec: &mut impl Codec) -> Result<(), Unreadable> {
+        state.visit(codec)
     }
 
     fn check(&mut self, state: &mut MechanismState) -> Result<(), String> {
@@ -328,39 +301,20 @@ impl Settings {
             extrapolation: Extrapolation::Hold,
         }
     }
-
-    /// The value of a quantity that is a parameter of the mechanism.
-    fn parameter(&self, quantity: Quantity) -> Option<f64> {
-        match quantity {
-            Quantity::Parameter(parameter) => Some(self.parameters[parameter.index()]),
-            _ => None,
-        }
-    }
-}
-
-/// The value references of what the bodies among the outputs have, which stand together.
-fn row(variables: &[Variable<Quantity>]) -> Range<u32> {
-    let of_body = |variable: &Variable<_>| matches!(variable.quantity, Quantity::Body(..));
-    let first = variables.iter().position(of_body).unwrap_or(0);
-    let count = variables
-        .iter()
-        .filter(|variable| of_body(variable))
-        .count();
-    first as u32..(first + count) as u32
 }
 
 fn start_inputs(mechanism: &Mechanism) -> Vec<DriverInput> {
-    mechanism
-        .drivers
-        .iter()
-        .map(|driver| match driver.source {
-            DriverSource::Input { start } => DriverInput::new(start),
-            DriverSource::Motion(_) => DriverInput::new(0.0),
-        })
+    let drivers = mechanism.drivers.iter();
+    let start = |source: &DriverSource| match source {
+        DriverSource::Input { start } => *start,
+        DriverSource::Motion(_) => 0.0,
+    };
+    drivers
+        .map(|driver| DriverInput::new(start(&driver.source)))
         .collect()
 }
 
-/// What the kinematics cannot do is an error.
+/// Converts an error of the kinematics.
 fn failed(error: kinematics::Error) -> Failure {
     Failure::Failed(error.to_string())
 }
