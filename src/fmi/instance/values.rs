@@ -1,5 +1,8 @@
 //! Setting and getting variables and their derivatives.
 
+use std::ops::Range;
+use std::slice::Iter;
+
 use super::{Error, Instance, check_finite};
 use crate::fmi::error::check_limits;
 use crate::fmi::model::{Groups, Model};
@@ -157,16 +160,23 @@ impl<M: Model> Instance<M> {
         value_references: &'a [u32],
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
-        let mut groups = 0;
-        for &vr in value_references {
-            groups |= self.groups.get(vr as usize).map_or(NO_REAL, |group| *group);
-        }
+        let run = consecutive(value_references);
+        let groups = match run.clone().and_then(|run| self.groups.get(run)) {
+            Some(groups) => groups.iter().fold(0, |all, group| all | group),
+            None => value_references.iter().fold(0, |all, &vr| {
+                let group = self.groups.get(vr as usize);
+                all | group.map_or(NO_REAL, |group| *group)
+            }),
+        };
         if groups & NO_REAL != 0 {
             return Err(self.why_not_real(value_references));
         }
         self.refresh(groups)?;
         let values = self.model.reals();
-        Ok(value_references.iter().map(|&vr| values[vr as usize]))
+        Ok(match run {
+            Some(run) => Reals::Consecutive(values[run].iter()),
+            None => Reals::Scattered(value_references.iter(), values),
+        })
     }
 
     /// Returns the error for the first reference that is no Real.
@@ -367,6 +377,47 @@ impl<M: Model> Instance<M> {
             name: variable.name.clone(),
             why,
         })
+    }
+}
+
+/// Returns the range of value references that are consecutive, as nearly all hosts ask for them.
+#[inline]
+fn consecutive(value_references: &[u32]) -> Option<Range<usize>> {
+    let first = *value_references.first()?;
+    let last = first.checked_add(u32::try_from(value_references.len()).ok()? - 1)?;
+    // No branch per reference: compilers use vector instructions.
+    let differences = (first..=last).zip(value_references);
+    let differ = differences.fold(0, |differ, (expected, given)| differ | (expected ^ given));
+    (differ == 0).then_some(first as usize..last as usize + 1)
+}
+
+/// Values of Real variables in the order of their references.
+enum Reals<'a> {
+    Consecutive(Iter<'a, f64>),
+    /// References and the values of all variables.
+    Scattered(Iter<'a, u32>, &'a [f64]),
+}
+
+impl Iterator for Reals<'_> {
+    type Item = f64;
+
+    #[inline]
+    fn next(&mut self) -> Option<f64> {
+        match self {
+            Self::Consecutive(values) => values.next().copied(),
+            Self::Scattered(references, values) => Some(values[*references.next()? as usize]),
+        }
+    }
+
+    /// Chooses the variant once, not per value.
+    #[inline]
+    fn fold<B, F: FnMut(B, f64) -> B>(self, start: B, f: F) -> B {
+        match self {
+            Self::Consecutive(values) => values.copied().fold(start, f),
+            Self::Scattered(references, values) => {
+                references.map(|&vr| values[vr as usize]).fold(start, f)
+            }
+        }
     }
 }
 

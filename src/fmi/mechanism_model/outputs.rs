@@ -12,10 +12,15 @@ use crate::fmi::variable::{Variable, derivatives};
 const SETTINGS: Groups = 1;
 /// Residual and condition at the pose.
 const SOLVER: Groups = 1 << 1;
-/// Groups of values of each kind of signal; the group of its rates is one bit higher.
-const KINDS: [Groups; 3] = [1 << 2, 1 << 4, 1 << 6];
-const VALUES: Groups = KINDS[0] | KINDS[1] | KINDS[2];
-const RATES: Groups = VALUES << 1;
+/// Coordinates of bodies. Here and below, the group of the rates is one bit higher.
+const BODIES: Groups = 1 << 2;
+/// Points of markers.
+const MARKERS: Groups = 1 << 4;
+/// Measures and prescribed motions.
+const COORDINATES: Groups = 1 << 6;
+
+const POSES: Groups = BODIES | MARKERS | COORDINATES;
+const RATES: Groups = POSES << 1;
 
 /// Values of all variables by value reference.
 #[derive(Debug)]
@@ -23,10 +28,21 @@ pub(super) struct Reals {
     values: Box<[f64]>,
     /// Groups whose values are up to date.
     current: Groups,
-    /// Signals of each kind.
-    signals: [Box<[SignalPlace]>; 3],
+    bodies: Box<[BodyPlace]>,
+    /// All signals but those of bodies.
+    signals: Box<[SignalPlace]>,
     /// Value references of all other Reals.
     others: Box<[(u32, Quantity)]>,
+}
+
+/// A body among the outputs. Its nine values have consecutive references: x, y, phi, then their
+/// velocities, then their accelerations.
+#[derive(Clone, Copy, Debug)]
+struct BodyPlace {
+    /// Column of its x in q.
+    column: usize,
+    /// Value reference of its x.
+    reference: usize,
 }
 
 /// A signal and its value references by order.
@@ -37,12 +53,12 @@ struct SignalPlace {
 }
 
 impl Signal {
-    /// Returns the index of the signal's kind.
-    fn kind(self) -> usize {
+    /// Returns the group of the signal's value.
+    fn group(self) -> Groups {
         match self {
-            Self::Body(..) => 0,
-            Self::Marker(..) => 1,
-            Self::Measure(_) | Self::Motion(_) => 2,
+            Self::Body(..) => BODIES,
+            Self::Marker(..) => MARKERS,
+            Self::Measure(_) | Self::Motion(_) => COORDINATES,
         }
     }
 }
@@ -52,8 +68,8 @@ pub(super) fn group(quantity: Quantity) -> Groups {
     match quantity {
         Quantity::Input(..) | Quantity::Parameter(_) | Quantity::Time => SETTINGS,
         Quantity::Residual | Quantity::Rcond => SOLVER,
-        Quantity::Output(signal, Order::Position) => KINDS[signal.kind()],
-        Quantity::Output(signal, _) => KINDS[signal.kind()] << 1,
+        Quantity::Output(signal, Order::Position) => signal.group(),
+        Quantity::Output(signal, _) => signal.group() << 1,
         Quantity::RateSource
         | Quantity::Extrapolation
         | Quantity::Iterations
@@ -64,14 +80,22 @@ pub(super) fn group(quantity: Quantity) -> Groups {
 impl Reals {
     pub(super) fn new(variables: &[Variable<Quantity>]) -> Self {
         let derivatives = derivatives(variables);
-        let mut signals = [Vec::new(), Vec::new(), Vec::new()];
+        let mut bodies = Vec::new();
+        let mut signals = Vec::new();
         let mut others = Vec::new();
         for (vr, variable) in (0_u32..).zip(variables) {
             match variable.quantity {
+                Quantity::Output(Signal::Body(body, 0), Order::Position) => {
+                    bodies.push(BodyPlace {
+                        column: 3 * body.index(),
+                        reference: vr as usize,
+                    });
+                }
+                Quantity::Output(Signal::Body(..), _) => {}
                 Quantity::Output(signal, Order::Position) => {
                     let derivative = |of: u32| derivatives[of as usize].expect("signals have two");
                     let references = [vr, derivative(vr), derivative(derivative(vr))];
-                    signals[signal.kind()].push(SignalPlace { signal, references });
+                    signals.push(SignalPlace { signal, references });
                 }
                 quantity if group(quantity) & (SETTINGS | SOLVER) != 0 => {
                     others.push((vr, quantity));
@@ -82,7 +106,8 @@ impl Reals {
         Self {
             values: vec![0.0; variables.len()].into(),
             current: 0,
-            signals: signals.map(Vec::into_boxed_slice),
+            bodies: bodies.into(),
+            signals: signals.into(),
             others: others.into(),
         }
     }
@@ -114,35 +139,58 @@ impl MechanismModel {
         log: &Logger,
     ) -> Result<(), Failure> {
         let missing = groups & !self.reals.current;
+        if missing == 0 {
+            return Ok(());
+        }
         if missing & RATES != 0 {
             self.refresh_rates(phase, log)?;
-        } else if missing & (VALUES | SOLVER) != 0 {
+        } else if missing & (POSES | SOLVER) != 0 {
             self.refresh_pose(phase, log)?;
         }
-        if missing != 0 {
-            self.fill(missing);
+        if missing & (BODIES | BODIES << 1) != 0 {
+            self.fill_bodies(missing);
         }
+        if missing & !(BODIES | BODIES << 1) != 0 {
+            self.fill_others(missing);
+        }
+        self.reals.current |= missing;
         Ok(())
     }
 
-    fn fill(&mut self, groups: Groups) {
+    /// Fills in the values of bodies. Most hosts read these at every step: no match per value.
+    fn fill_bodies(&mut self, groups: Groups) {
+        let Reals { values, bodies, .. } = &mut self.reals;
+        let q = &self.solver.pose().q;
+        let rates = [self.rates.velocity(), self.rates.acceleration()];
+        for &BodyPlace { column, reference } in bodies.iter() {
+            let to = &mut values[reference..reference + 9];
+            let own = column..column + 3;
+            if groups & BODIES != 0 {
+                to[..3].copy_from_slice(&q[own.clone()]);
+            }
+            if groups & BODIES << 1 != 0 {
+                to[3..6].copy_from_slice(&rates[0][own.clone()]);
+                to[6..].copy_from_slice(&rates[1][own]);
+            }
+        }
+    }
+
+    /// Fills in all values but those of bodies.
+    fn fill_others(&mut self, groups: Groups) {
         let Reals {
             values,
-            current,
             signals,
             others,
+            ..
         } = &mut self.reals;
-        *current |= groups;
-        for (value_group, places) in KINDS.into_iter().zip(&*signals) {
-            let rate_group = value_group << 1;
-            if groups & (value_group | rate_group) == 0 {
-                continue;
-            }
-            *current |= value_group;
-            for SignalPlace { signal, references } in places {
+        for SignalPlace { signal, references } in signals.iter() {
+            let [pose, rates] = [signal.group(), signal.group() << 1].map(|g| groups & g != 0);
+            if pose || rates {
                 let jet = signal.jet(&self.solver, &self.rates, &self.driver_rates);
-                values[references[0] as usize] = jet.value;
-                if groups & rate_group != 0 {
+                if pose {
+                    values[references[0] as usize] = jet.value;
+                }
+                if rates {
                     values[references[1] as usize] = jet.first;
                     values[references[2] as usize] = jet.second;
                 }
