@@ -23,52 +23,45 @@
 //! [assemble](Solver::assemble), [move along a path](Solver::follow) and give
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.
 
+mod analysis;
 mod assembly;
+mod block;
 mod certificate;
 mod configuration;
 pub mod constraint;
+mod continuation;
 mod element;
 mod error;
-mod factor;
-mod fit;
-mod joint;
-mod minimise;
-mod modes;
-mod motions;
+mod initial_pose;
+mod linear;
 mod newton;
 mod path;
-mod plan;
-mod range;
-mod rates;
 mod redundancy;
 #[cfg(test)]
 mod reference;
-mod sensitivity;
 mod singular;
 mod solver;
-mod stepping;
 mod structure;
-mod substep;
 mod system;
 pub mod variation;
 
-pub use assembly::{Assembly, Move, Start};
+pub use analysis::{
+    ChangePoint, Direction, End, Misfit, MisfitKind, Mode, Modes, Range, RangeSettings, Sample,
+    Sensitivity,
+};
+pub use block::Crossing;
 pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
+pub use continuation::{Blocked, Progress, Reason};
 pub use element::Element;
 #[cfg(feature = "cli")]
 pub(crate) use error::in_line;
 pub use error::{Error, OpenJoint, Proof, Verdict};
-pub use fit::{Misfit, MisfitKind};
-pub use modes::{Mode, Modes};
-pub use path::{Curve, Path};
-pub use range::{ChangePoint, End, Range, RangeSettings, Sample};
-pub use rates::Rates;
+pub use initial_pose::{Assembly, Move, Start};
+pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;
-pub use sensitivity::{Direction, Sensitivity};
-pub use singular::{Approach, Crossing, LARGEST_BLOCK, SingularKind, SingularPoint};
+pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::{Pose, Solver};
-pub use stepping::{Blocked, Progress, Reason};
 pub use structure::{Dependencies, Structure};
 pub use system::{Equation, System, Target, Targets};

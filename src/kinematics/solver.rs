@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
+use super::block::{Crossing, Plan, Work};
 use super::certificate::Tubes;
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration, point_velocity};
-use super::motions::Motions;
 use super::newton::Rejected;
-use super::plan::{Plan, Work};
-use super::rates::Rates;
+use super::path::Motions;
+use super::path::Rates;
 use super::redundancy::SetAside;
-use super::singular::Crossing;
 use super::structure::Structure;
 use super::system::{System, Targets};
 use super::{Error, Path};

@@ -6,9 +6,9 @@
 
 use std::collections::BTreeSet;
 
-use super::ways::{Effort, Ways};
+use super::branches::{Effort, Ways};
+use crate::kinematics::block::Kernel;
 use crate::kinematics::constraint::Incidence;
-use crate::kinematics::plan::Kernel;
 use crate::kinematics::{Solver, System};
 
 /// Behind a kernel whose reciprocal condition is less, rounding is no longer small enough for a
@@ -103,7 +103,7 @@ impl Solver {
                 }
                 if let Some(correction) = corrected {
                     level.iterations = correction.iterations;
-                    let closed_form = matches!(kernel, Kernel::Dyad(_) | Kernel::Slide(_));
+                    let closed_form = matches!(kernel, Kernel::RrrDyad(_) | Kernel::RrpDyad(_));
                     level.in_doubt |= closed_form && kernel.rcond() < WELL_CONDITIONED;
                     break;
                 }
@@ -152,7 +152,9 @@ impl Solver {
 /// What one start of a kernel costs, in units of a closed form.
 fn cost(kernel: &Kernel) -> f64 {
     match kernel {
-        Kernel::Pinned(_) | Kernel::Dyad(_) | Kernel::Slide(_) | Kernel::Bridged(_) => 1.0,
+        Kernel::Pinned(_) | Kernel::RrrDyad(_) | Kernel::RrpDyad(_) | Kernel::Interpolated(_) => {
+            1.0
+        }
         Kernel::Coupled(kernel) => (kernel.columns().len() as f64 / UNIT_OF_WORK)
             .powi(3)
             .max(1.0),

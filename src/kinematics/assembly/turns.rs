@@ -7,7 +7,7 @@ use crate::kinematics::constraint::{Incidence, TurnEffect};
 
 impl Solver {
     /// Fixes the whole turns of the angle rows: the ones nearest the present configuration.
-    pub(super) fn fix_turns(&mut self) {
+    pub(in crate::kinematics) fn fix_turns(&mut self) {
         self.system.fix_turns(&self.at, &mut self.targets);
         self.pose.turns.copy_from_slice(&self.targets.turns);
     }

@@ -24,13 +24,13 @@
 //! norm of an inverse that is too large to be written down, or how parameters on their way move
 //! the equations of a part that no straight code solves.
 
-mod course;
+mod parameters;
 #[cfg(test)]
 mod tests;
 
 use nalgebra::Vector2;
 
-pub(super) use course::Slips;
+pub(super) use parameters::ParameterBounds;
 
 use super::newton::Rejected;
 use super::system::System;
@@ -63,7 +63,7 @@ pub(super) struct Tubes {
     joint_unknowns: Vec<f64>,
     /// How far each driver's value may be off its chord \[m or rad\].
     pub(super) drivers: Vec<f64>,
-    slips: Slips,
+    pub(super) slips: ParameterBounds,
     /// The largest load of a kernel, see [`bear`](Self::bear).
     load: f64,
     /// Whether some bound was an estimate.
@@ -92,7 +92,7 @@ impl Tubes {
             origins: vec![None; bodies],
             joint_unknowns: vec![0.0; unknowns - 3 * bodies],
             drivers: vec![0.0; drivers],
-            slips: Slips::new(system),
+            slips: ParameterBounds::new(system),
             load: 0.0,
             checked: false,
             boxes: false,
@@ -111,7 +111,7 @@ impl Tubes {
     }
 
     /// What moving parameters add; `None` while they rest.
-    pub(super) fn slips(&self) -> Option<&Slips> {
+    pub(super) fn slips(&self) -> Option<&ParameterBounds> {
         self.slips.of_moving()
     }
 

@@ -1,12 +1,10 @@
 //! Closing a mechanism on rows that may be more than enough, or too few.
 
+use crate::kinematics::block::Work;
 use crate::kinematics::constraint::Incidence;
-use crate::kinematics::factor::{Factors, SparseLu, nan_or_larger};
+use crate::kinematics::linear::{Factors, Row, SparseLu, nan_or_larger};
 use crate::kinematics::newton::{AT_ROUNDING, STALLED};
-use crate::kinematics::plan::Work;
 use crate::kinematics::system::{RowValue, System};
-
-use super::echelon::Row;
 
 /// A scaled residual of more than this, beyond its rounding, is a gap: five digits above what
 /// Newton leaves of rows that are well conditioned, and less than anyone could measure.

@@ -1,10 +1,10 @@
 //! What is wrong with a mechanism that does not close on all its rows.
 
 use super::closing::Closing;
-use super::echelon::Echelon;
-use super::{DEPENDENT, Solver};
-use crate::kinematics::minimise::STARTS;
-use crate::kinematics::{Element, Error, OpenJoint, Verdict};
+use super::rank::DEPENDENT;
+use crate::kinematics::assembly::least_squares::STARTS;
+use crate::kinematics::linear::Echelon;
+use crate::kinematics::{Element, Error, OpenJoint, Solver, Verdict};
 
 /// An element with less than this part of the largest residual has no part in the gap.
 const TAKES_PART: f64 = 1e-3;

@@ -3,7 +3,7 @@
 //! Where the Jacobian of a block of equations loses rank, Newton–Raphson neither converges nor
 //! knows where the motion goes on. [`reduced`] makes of the block's equations one function of two
 //! numbers that is smooth there, [`locate`] finds in it the singular position to rounding and
-//! tells its kind, [`crossing`] carries the motion through where two motions cross: on the smooth
+//! tells its kind, [`interpolate`] carries the motion through where two motions cross: on the smooth
 //! continuation, so that what was parallel stays parallel.
 //!
 //! A crossing belongs to the pose: while the driver's value is within its ends, the block's
@@ -12,7 +12,7 @@
 //! where redundant rows are set aside.
 
 mod approach;
-mod crossing;
+mod interpolate;
 mod locate;
 mod reduced;
 
@@ -22,16 +22,15 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 pub use approach::Approach;
-pub use crossing::Crossing;
 pub use locate::SingularKind;
 
+use super::block::{Crossing, Interpolated, Kernel, SEAM};
 use super::error::in_line;
 use super::newton::MAX_ITERATIONS;
 use super::path::Path;
-use super::plan::{Bridged, Kernel};
 use super::solver::{Pose, Solver};
 use crate::mechanism::DriverId;
-use crossing::replace;
+use interpolate::{crossing_of, replace};
 use locate::{Finding, ROUNDING, find};
 use reduced::{Ground, Line, Reduced};
 
@@ -48,8 +47,6 @@ const REACH_TO_END: f64 = 0.5;
 const STOPPED: f64 = 0.02;
 /// Entries of a null vector above this part of its largest are what is free to move.
 const FREE: f64 = 1e-3;
-/// How far beyond its ends a crossing is still good: what rounding does to a driver's value.
-pub(super) const SEAM: f64 = 1.0 + 1e-9;
 /// A singular position so little before the place on the path where the mechanism stands is the
 /// one that it has come to.
 const JUST_BEYOND: f64 = 1e-9;
@@ -258,7 +255,7 @@ impl Solver {
                 };
                 ahead = ahead.or(Some((kernel, careful)));
             }
-            if let Some(crossing) = Crossing::new(&mut block, finding, kernel, driver)
+            if let Some(crossing) = crossing_of(&mut block, finding, kernel, driver)
                 && crossing.place(value).abs() < 1.0 - END
             {
                 self.enter(Arc::new(crossing));
@@ -312,13 +309,13 @@ impl Solver {
 
     fn bridge(&mut self, crossing: Arc<Crossing>) {
         replace(&mut self.plan.kernels, crossing.kernel, |kernel| {
-            Kernel::Bridged(Box::new(Bridged::new(kernel, Arc::clone(&crossing))))
+            Kernel::Interpolated(Box::new(Interpolated::new(kernel, Arc::clone(&crossing))))
         });
     }
 
     fn release(&mut self, kernel: usize) {
         replace(&mut self.plan.kernels, kernel, |kernel| match kernel {
-            Kernel::Bridged(bridged) => bridged.kernel,
+            Kernel::Interpolated(bridged) => bridged.kernel,
             kernel => kernel,
         });
     }

@@ -15,12 +15,12 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
+use crate::kinematics::block::{Kernel, Work};
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::Gradient;
-use crate::kinematics::motions::Motions;
 use crate::kinematics::newton::MAX_ITERATIONS;
-use crate::kinematics::plan::{Kernel, Work};
-use crate::kinematics::rates::Rates;
+use crate::kinematics::path::Motions;
+use crate::kinematics::path::Rates;
 use crate::kinematics::system::{System, Target, Targets};
 use crate::kinematics::{Path, Pose};
 use crate::mechanism::{DriverId, Jet};
@@ -469,7 +469,7 @@ impl<'a> Reduced<'a> {
     /// Whether something that the block reads comes from a crossing.
     pub(super) fn reads_crossings(&self) -> bool {
         let mut kernels = self.before.iter();
-        kernels.any(|kernel| matches!(kernel, Kernel::Bridged(_)))
+        kernels.any(|kernel| matches!(kernel, Kernel::Interpolated(_)))
     }
 
     /// The largest distance from the origin of a coordinate of the block, scaled, and of what its

@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 
 use super::form::{Angle, Closure, Form};
 use super::{Loops, MARGIN};
+use crate::kinematics::block::Work;
 use crate::kinematics::constraint::{Axis, Projection, Relation};
-use crate::kinematics::plan::Work;
 use crate::mechanism::{Interval, MarkerId, Scalar};
 
 /// How far off, scaled, what was found before may be.

@@ -16,7 +16,7 @@ use eliminate::Builder;
 use form::Closure;
 use nalgebra::DMatrix;
 
-use crate::kinematics::plan::Work;
+use crate::kinematics::block::Work;
 use crate::mechanism::Interval;
 
 /// A block of more unknowns has too many angles for boxes.

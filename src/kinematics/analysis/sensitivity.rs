@@ -1,0 +1,174 @@
+//! How a motion changes with its drivers and its parameters.
+//!
+//! With Phi(q, t, p) = 0 along a direction in the space of u, u̇, ü and p, the changes of q, q̇ and
+//! q̈ solve three systems with the same matrix, by the implicit function theorem:
+//!
+//! | | |
+//! |---|---|
+//! | Phi_q δq = δu − Phi_p δp | from Phi = 0 |
+//! | Phi_q δq̇ = δu̇ − what Φ̇ changes by with δq and δp, were δq̇ zero | from Ec. 3.6.10 |
+//! | Phi_q δq̈ = δü − what Φ̈ changes by with δq, δq̇ and δp, were δq̈ zero | from Ec. 3.6.11 |
+//!
+//! Each Φ, Φ̇ and Φ̈ comes with its change from the relations on [`Varied`] numbers.
+
+use crate::kinematics::block::{General, Work};
+use crate::kinematics::constraint::Constraint;
+use crate::kinematics::newton::Rejected;
+use crate::kinematics::solver::SINGULAR_HERE;
+use crate::kinematics::system::Target;
+use crate::kinematics::variation::{Varied, VariedConfiguration, VariedVector, evaluate};
+use crate::kinematics::{Error, Rates, Solver};
+use crate::mechanism::{DriverId, Dual, Jet, MarkerId, MotionInForce, Number, ParameterId, Scalar};
+
+/// A direction: how fast drivers and parameters change along it.
+#[derive(Clone, Debug)]
+pub struct Direction {
+    /// Changes of value, velocity and acceleration of each driver that is an input
+    /// (`value`, `first`, `second`).
+    pub drivers: Vec<Jet>,
+    /// Changes of all parameters; those of derived ones are not read.
+    pub parameters: Vec<f64>,
+}
+
+/// How a motion changes along a direction.
+#[derive(Debug)]
+pub struct Sensitivity<'a> {
+    at: VariedConfiguration,
+    drivers: Vec<Varied>,
+    parameters: Vec<Varied>,
+    measures: &'a [Box<dyn Constraint>],
+}
+
+impl Sensitivity<'_> {
+    /// The changes of q\[column\], of its rate and of its second derivative.
+    #[must_use]
+    pub fn coordinate(&self, column: usize) -> Jet {
+        along(self.at.coordinate(column))
+    }
+
+    /// Those of a marker's point: x, then y.
+    #[must_use]
+    pub fn marker(&self, marker: MarkerId) -> [Jet; 2] {
+        let point: VariedVector = self.at.marker(marker).point;
+        point.map(along)
+    }
+
+    /// Those of a measure.
+    #[must_use]
+    pub fn measure(&self, index: usize) -> Jet {
+        along(self.measures[index].along(&self.at))
+    }
+
+    /// Those of a driver.
+    #[must_use]
+    pub fn driver(&self, driver: DriverId) -> Jet {
+        along(self.drivers[driver.index()])
+    }
+
+    /// The change of a parameter, which for a derived one follows from those of others.
+    #[must_use]
+    pub fn parameter(&self, parameter: ParameterId) -> f64 {
+        self.parameters[parameter.index()].value.along
+    }
+}
+
+fn along(varied: Varied) -> Jet {
+    Jet {
+        value: varied.value.along,
+        first: varied.first.along,
+        second: varied.second.along,
+    }
+}
+
+impl Solver {
+    /// How the motion at the present pose, with these rates of q and of the drivers, changes
+    /// along a direction. The rates are those that [`solve_rates`](Self::solve_rates) gives for
+    /// these drivers. Exact to rounding; work proportional to the size of the mechanism.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where the pose is singular.
+    pub fn sensitivity(
+        &mut self,
+        rates: &Rates,
+        driver_rates: &[Jet],
+        direction: &Direction,
+    ) -> Result<Sensitivity<'_>, Error> {
+        let system = &self.system;
+        let mechanism = system.mechanism();
+        let changes = self.pose.parameters.iter().zip(&direction.parameters);
+        let mut parameters: Vec<_> = changes
+            .map(|(&value, &along)| Varied::fixed(Dual { value, along }))
+            .collect();
+        mechanism.derive_parameters(&mut parameters);
+        let parameter = |p: ParameterId| parameters[p.index()];
+
+        let time = Varied::variable(Dual::constant(self.pose.time));
+        let drivers = mechanism.drivers.iter().enumerate();
+        let drivers: Vec<_> = drivers
+            .map(|(index, driver)| match driver.motion() {
+                Some(motion) => {
+                    let mut motion = MotionInForce::new(motion, parameters.len());
+                    motion.set_parameters(parameter);
+                    motion.evaluate(time)
+                }
+                None => {
+                    let (is, change) = (driver_rates[index], direction.drivers[index]);
+                    let dual = |value, along| Dual { value, along };
+                    Varied {
+                        value: dual(self.pose.drivers[index], change.value),
+                        first: dual(is.first, change.first),
+                        second: dual(is.second, change.second),
+                        third: Dual::default(),
+                    }
+                }
+            })
+            .collect();
+
+        let motion = self.pose.q.iter().zip(rates.velocity());
+        let motion = motion
+            .zip(rates.acceleration())
+            .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
+        let mut at = system.varied(parameter, motion, self.at.profiles());
+
+        let mut jacobian = General::new(system, &self.structure);
+        let work = Work {
+            system,
+            targets: &self.targets,
+            drivers: &self.pose.drivers,
+            at: &mut self.at,
+            flow: &mut self.flow,
+        };
+        jacobian
+            .factorise(&work)
+            .map_err(|Rejected| SINGULAR_HERE)?;
+        let targets: Vec<_> = system
+            .equations()
+            .iter()
+            .map(|equation| match &equation.target {
+                Target::Constant(value) => evaluate(value, &parameter),
+                Target::Driver(driver) => drivers[driver.index()],
+            })
+            .collect();
+        let mut side = vec![0.0; targets.len()];
+        let mut change = vec![0.0; system.unknowns()];
+        for order in 0..3 {
+            let rows = system.equations().iter().zip(&targets);
+            for (side, (equation, target)) in side.iter_mut().zip(rows) {
+                let error = *target - equation.constraint.along(&at);
+                *side = [error.value, error.first, error.second][order].along;
+            }
+            jacobian.solve(system, &self.at, &side, &mut change);
+            at.change(order, &change);
+        }
+        if !change.iter().all(|change| change.is_finite()) {
+            return Err(SINGULAR_HERE);
+        }
+        Ok(Sensitivity {
+            at,
+            drivers,
+            parameters,
+            measures: &self.measures,
+        })
+    }
+}

@@ -1,0 +1,507 @@
+//! From equations and blocks to kernels.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+use petgraph::algo::kosaraju_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+
+use super::coupled::{Coupled, Place};
+use super::elimination;
+use super::pinned::{self, Pinned};
+use super::rrp_dyad::{self, RrpDyad, SecondParts};
+use super::rrr_dyad::{self, RrrDyad, SideParts};
+use super::{Kernel, Plan};
+use crate::kinematics::constraint::{Axis, Relation};
+use crate::kinematics::structure::Structure;
+use crate::kinematics::system::{System, Target};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// Blocks that one kernel solves.
+struct Group {
+    /// Ascending.
+    blocks: Vec<usize>,
+    recipe: Recipe,
+}
+
+/// Which kernel, and what it is made of.
+enum Recipe {
+    Pinned(pinned::Parts),
+    RrrDyad(rrr_dyad::Parts),
+    RrpDyad(rrp_dyad::Parts),
+    Coupled,
+}
+
+/// The two rows of a revolute: its points coincide.
+#[derive(Clone, Copy)]
+struct Revolute {
+    rows: [usize; 2],
+    from: MarkerId,
+    to: MarkerId,
+}
+
+/// What the search for kernels looks at.
+struct Search<'a> {
+    system: &'a System,
+    structure: &'a Structure,
+    mechanism: &'a Mechanism,
+    /// The revolute that each row is part of.
+    revolutes: Vec<Option<Revolute>>,
+    /// The group that has taken each block.
+    group_of: Vec<Option<usize>>,
+    groups: Vec<Group>,
+}
+
+impl Plan {
+    /// Compiles the plan. Each block of the structure that a special kernel knows how to solve,
+    /// alone or with others of the same bodies, goes to it; the rest is left to [`Coupled`].
+    pub(in crate::kinematics) fn new(system: &System, structure: &Structure) -> Self {
+        let mut search = Search {
+            system,
+            structure,
+            mechanism: system.mechanism(),
+            revolutes: revolutes(system),
+            group_of: vec![None; structure.blocks().len()],
+            groups: Vec::new(),
+        };
+        search.find();
+        let order = search.order();
+        Self {
+            kernels: search.kernels(&order),
+        }
+    }
+}
+
+/// Whether each group is part of a knot: it reads what reads it, directly or through others.
+fn knots(reads: &[Vec<usize>]) -> Vec<bool> {
+    let mut graph = DiGraph::<(), (), usize>::with_capacity(reads.len(), reads.len());
+    for _ in reads {
+        graph.add_node(());
+    }
+    for (group, reads) in reads.iter().enumerate() {
+        for &read in reads {
+            graph.add_edge(NodeIndex::new(group), NodeIndex::new(read), ());
+        }
+    }
+    let mut knots = vec![false; reads.len()];
+    for component in kosaraju_scc(&graph) {
+        for group in component.iter().filter(|_| component.len() > 1) {
+            knots[group.index()] = true;
+        }
+    }
+    knots
+}
+
+/// Pairs the rows that hold two points together.
+fn revolutes(system: &System) -> Vec<Option<Revolute>> {
+    let equations = system.equations();
+    let point = |row: usize| {
+        let equation = equations.get(row)?;
+        let at_zero =
+            matches!(&equation.target, Target::Constant(value) if value.literal() == Some(0.0));
+        match equation.constraint.relation() {
+            Relation::Coincidence(c) if at_zero => Some(c),
+            _ => None,
+        }
+    };
+    let mut revolutes = vec![None; equations.len()];
+    for row in 0..equations.len() {
+        if let (Some(x), Some(y)) = (point(row), point(row + 1))
+            && (x.axis, y.axis) == (Axis::X, Axis::Y)
+            && (x.from, x.to) == (y.from, y.to)
+        {
+            let revolute = Revolute {
+                rows: [row, row + 1],
+                from: x.from,
+                to: x.to,
+            };
+            revolutes[row] = Some(revolute);
+            revolutes[row + 1] = Some(revolute);
+        }
+    }
+    revolutes
+}
+
+impl Search<'_> {
+    /// Groups blocks for the special kernels, then leaves each other block to itself.
+    fn find(&mut self) {
+        for block in 0..self.structure.blocks().len() {
+            if self.group_of[block].is_some() {
+                continue;
+            }
+            let bodies = self.turning(block);
+            let group = match bodies[..] {
+                [body] => self.pinned(body).or_else(|| self.slide_from(block, body)),
+                [a, b] => self
+                    .dyad(a, b)
+                    .or_else(|| self.slide(a, Some(b)))
+                    .or_else(|| self.slide(b, Some(a))),
+                _ => None,
+            };
+            if let Some(group) = group {
+                for &block in &group.blocks {
+                    self.group_of[block] = Some(self.groups.len());
+                }
+                self.groups.push(group);
+            }
+        }
+        self.leave_rest();
+    }
+
+    fn leave_rest(&mut self) {
+        for block in 0..self.group_of.len() {
+            if self.group_of[block].is_none() {
+                self.group_of[block] = Some(self.groups.len());
+                self.groups.push(Group {
+                    blocks: vec![block],
+                    recipe: Recipe::Coupled,
+                });
+            }
+        }
+    }
+
+    /// The bodies whose angles a block determines.
+    fn turning(&self, block: usize) -> Vec<usize> {
+        let bodies = self.mechanism.bodies.len();
+        let columns = self.structure.blocks()[block].columns.iter();
+        let angles = columns.filter(|&&column| column % 3 == 2 && column < 3 * bodies);
+        angles.map(|column| column / 3).collect()
+    }
+
+    /// The blocks that determine these bodies and nothing else, and their rows.
+    fn determining(&self, bodies: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
+        let columns = || {
+            bodies
+                .iter()
+                .flat_map(|body| (0..3).map(move |k| 3 * body + k))
+        };
+        let mut blocks: Vec<_> = columns()
+            .map(|column| self.structure.block_of(column))
+            .collect();
+        blocks.sort_unstable();
+        blocks.dedup();
+        let own = blocks.iter().all(|&block| {
+            let columns = &self.structure.blocks()[block].columns;
+            self.group_of[block].is_none()
+                && columns.iter().all(|column| bodies.contains(&(column / 3)))
+        });
+        let rows = |block: &usize| self.structure.blocks()[*block].rows.clone();
+        own.then(|| {
+            let mut rows: Vec<_> = blocks.iter().flat_map(rows).collect();
+            rows.sort_unstable();
+            (blocks, rows)
+        })
+    }
+
+    fn body_of(&self, marker: MarkerId) -> Option<usize> {
+        let body = self.mechanism.markers[marker.index()].body;
+        body.map(|body| body.index())
+    }
+
+    /// A body with a revolute to a point found before, its angle held or driven.
+    fn pinned(&self, body: usize) -> Option<Group> {
+        let (blocks, rows) = self.determining(&[body])?;
+        let [first, second, third] = rows[..] else {
+            return None;
+        };
+        let (revolute, angle) = match (self.revolutes[first], self.revolutes[second]) {
+            (Some(revolute), _) if revolute.rows == [first, second] => (revolute, third),
+            (_, Some(revolute)) if revolute.rows == [second, third] => (revolute, first),
+            _ => return None,
+        };
+        let Relation::Angle(measured) = self.system.equations()[angle].constraint.relation() else {
+            return None;
+        };
+        let mine = |marker| self.body_of(marker) == Some(body);
+        let (pin, anchor) = self.own_first(revolute, body)?;
+        let (angle_marker, reference, sense) = match (mine(measured.from), mine(measured.to)) {
+            (false, true) => (measured.to, measured.from, 1.0),
+            (true, false) => (measured.from, measured.to, -1.0),
+            _ => return None,
+        };
+        Some(Group {
+            blocks,
+            recipe: Recipe::Pinned(pinned::Parts {
+                rows: [revolute.rows[0], revolute.rows[1], angle],
+                body,
+                pin,
+                anchor,
+                angle: angle_marker,
+                reference,
+                sense,
+            }),
+        })
+    }
+
+    /// The marker of a revolute that is on `body`, then the other, which is not.
+    fn own_first(&self, revolute: Revolute, body: usize) -> Option<(MarkerId, MarkerId)> {
+        let mine = |marker| self.body_of(marker) == Some(body);
+        match (mine(revolute.from), mine(revolute.to)) {
+            (true, false) => Some((revolute.from, revolute.to)),
+            (false, true) => Some((revolute.to, revolute.from)),
+            _ => None,
+        }
+    }
+
+    /// Two bodies with a revolute between them and one each to points found before.
+    fn dyad(&self, a: usize, b: usize) -> Option<Group> {
+        let (blocks, rows) = self.determining(&[a, b])?;
+        let mut revolutes = Vec::with_capacity(3);
+        for pair in rows.chunks(2) {
+            let revolute = self.revolutes[pair[0]]?;
+            if revolute.rows[..] != *pair {
+                return None;
+            }
+            revolutes.push(revolute);
+        }
+        let bodies = |revolute: &Revolute| [revolute.from, revolute.to].map(|m| self.body_of(m));
+        let joins = |revolute: &&Revolute, x: usize| bodies(revolute).contains(&Some(x));
+        let inner = revolutes.iter().find(|r| joins(r, a) && joins(r, b))?;
+        let (inner_a, inner_b) = self.own_first(*inner, a)?;
+        let side = |body: usize, other: usize, inner: MarkerId| {
+            let outer = revolutes
+                .iter()
+                .find(|r| joins(r, body) && !joins(r, other))?;
+            let (own, anchor) = self.own_first(*outer, body)?;
+            Some((
+                outer.rows,
+                SideParts {
+                    body,
+                    outer: own,
+                    anchor,
+                    inner,
+                },
+            ))
+        };
+        let (rows_a, side_a) = side(a, b, inner_a)?;
+        let (rows_b, side_b) = side(b, a, inner_b)?;
+        let [r0, r1] = rows_a;
+        let [r2, r3] = rows_b;
+        let [r4, r5] = inner.rows;
+        Some(Group {
+            blocks,
+            recipe: Recipe::RrrDyad(rrr_dyad::Parts {
+                rows: [r0, r1, r2, r3, r4, r5],
+                columns: [3 * a, 3 * a + 1, 3 * a + 2, 3 * b, 3 * b + 1, 3 * b + 2],
+                sides: [side_a, side_b],
+            }),
+        })
+    }
+
+    /// A slide whose angle is that of body `a`, in `block`: with a body that meets it in the
+    /// block, or alone.
+    fn slide_from(&self, block: usize, a: usize) -> Option<Group> {
+        let rows = &self.structure.blocks()[block].rows;
+        let met = rows.iter().flat_map(|&row| {
+            let markers = match self.system.equations()[row].constraint.relation() {
+                Relation::Coincidence(c) => [Some(c.from), Some(c.to), None],
+                Relation::Projection(p) => [Some(p.from), Some(p.to), Some(p.axes)],
+                Relation::Angle(_) | Relation::Distance(_) | Relation::Other => [None; 3],
+            };
+            markers.into_iter().flatten()
+        });
+        met.filter_map(|marker| self.body_of(marker))
+            .filter(|&b| b != a)
+            .find_map(|b| self.slide(a, Some(b)))
+            .or_else(|| self.slide(a, None))
+    }
+
+    /// Body `a` with a revolute to a point found before, and a point on a line; `b`, if any,
+    /// slides along with it.
+    fn slide(&self, a: usize, b: Option<usize>) -> Option<Group> {
+        let bodies: Vec<_> = std::iter::once(a).chain(b).collect();
+        let (blocks, rows) = self.determining(&bodies)?;
+        let mut revolutes: Vec<Revolute> = Vec::new();
+        let (mut angle, mut projection) = (None, None);
+        for &row in &rows {
+            match (
+                self.revolutes[row],
+                self.system.equations()[row].constraint.relation(),
+            ) {
+                (Some(revolute), _)
+                    if rows.contains(&revolute.rows[1]) && revolute.rows[0] == row =>
+                {
+                    revolutes.push(revolute);
+                }
+                (Some(revolute), _) => {
+                    revolutes.last().filter(|r| r.rows == revolute.rows)?;
+                }
+                (None, Relation::Angle(measured)) if angle.is_none() => {
+                    angle = Some((row, measured));
+                }
+                (None, Relation::Projection(measured)) if projection.is_none() => {
+                    projection = Some((row, measured));
+                }
+                _ => return None,
+            }
+        }
+        if revolutes.len() != bodies.len() || angle.is_some() != b.is_some() {
+            return None;
+        }
+        let own = |marker| self.body_of(marker).filter(|body| bodies.contains(body));
+        let outer = revolutes.iter().find(|r| {
+            let ends = [own(r.from), own(r.to)];
+            ends == [Some(a), None] || ends == [None, Some(a)]
+        })?;
+        let (pin, anchor) = self.own_first(*outer, a)?;
+        let second = match b {
+            None => None,
+            Some(b) => {
+                let other = revolutes.iter().find(|r| r.rows != outer.rows)?;
+                let (pin, partner) = self.own_first(*other, b)?;
+                let (row, measured) = angle?;
+                let (marker, reference, sense) = match (own(measured.from), own(measured.to)) {
+                    (from, Some(to)) if to == b && from != Some(b) => {
+                        (measured.to, measured.from, 1.0)
+                    }
+                    (Some(from), to) if from == b && to != Some(b) => {
+                        (measured.from, measured.to, -1.0)
+                    }
+                    _ => return None,
+                };
+                let carried = own(partner) == Some(a);
+                let held = matches!(self.system.equations()[row].target, Target::Constant(_));
+                let fits = if carried {
+                    own(reference).is_none()
+                } else {
+                    own(partner).is_none() && own(reference) == Some(a) && held
+                };
+                if !fits {
+                    return None;
+                }
+                Some(SecondParts {
+                    body: b,
+                    carried,
+                    pin,
+                    partner,
+                    row,
+                    angle: marker,
+                    reference,
+                    sense,
+                })
+            }
+        };
+        let (row, projection) = projection?;
+        Some(Group {
+            recipe: Recipe::RrpDyad(rrp_dyad::Parts {
+                columns: bodies
+                    .iter()
+                    .flat_map(|body| (0..3).map(move |k| 3 * body + k))
+                    .collect(),
+                rows,
+                body: a,
+                pin,
+                anchor,
+                second,
+                row,
+                projection,
+            }),
+            blocks,
+        })
+    }
+
+    /// An order of the groups in which each comes after those it reads, as close to that of the
+    /// blocks as can be. Grouping may have tied a knot, where two groups read parts of each
+    /// other; such groups are taken apart again.
+    fn order(&mut self) -> Vec<usize> {
+        loop {
+            let reads = self.reads();
+            let knots = knots(&reads);
+            if knots.iter().all(|knot| !knot) {
+                return self.sorted(&reads);
+            }
+            let groups = std::mem::take(&mut self.groups).into_iter().zip(knots);
+            self.groups = groups
+                .filter_map(|(group, knot)| (!knot).then_some(group))
+                .collect();
+            self.group_of.fill(None);
+            for (index, group) in self.groups.iter().enumerate() {
+                for &block in &group.blocks {
+                    self.group_of[block] = Some(index);
+                }
+            }
+            self.leave_rest();
+        }
+    }
+
+    /// The groups that each group reads.
+    fn reads(&self) -> Vec<Vec<usize>> {
+        let groups = self.groups.iter().enumerate();
+        groups
+            .map(|(index, group)| {
+                let blocks = group.blocks.iter();
+                let reads = blocks.flat_map(|&block| &self.structure.blocks()[block].reads);
+                let groups = reads.filter_map(|&block| self.group_of[block]);
+                groups.filter(|&read| read != index).collect()
+            })
+            .collect()
+    }
+
+    fn sorted(&self, reads: &[Vec<usize>]) -> Vec<usize> {
+        let mut waits_for: Vec<_> = reads.iter().map(Vec::len).collect();
+        let mut read_by = vec![Vec::new(); reads.len()];
+        for (index, reads) in reads.iter().enumerate() {
+            for &read in reads {
+                read_by[read].push(index);
+            }
+        }
+        let last = |group: usize| self.groups[group].blocks.last().copied();
+        let free = (0..reads.len()).filter(|&group| waits_for[group] == 0);
+        let mut ready: BinaryHeap<_> = free.map(|group| Reverse((last(group), group))).collect();
+        let mut order = Vec::with_capacity(reads.len());
+        while let Some(Reverse((_, group))) = ready.pop() {
+            order.push(group);
+            for &reader in &read_by[group] {
+                waits_for[reader] -= 1;
+                if waits_for[reader] == 0 {
+                    ready.push(Reverse((last(reader), reader)));
+                }
+            }
+        }
+        order
+    }
+
+    /// Makes the kernels in this order of their groups.
+    fn kernels(self, order: &[usize]) -> Vec<Kernel> {
+        let none = Place {
+            kernel: usize::MAX,
+            local: 0,
+        };
+        let mut places = vec![none; self.system.unknowns()];
+        let mut orders = Vec::new();
+        for (kernel, &group) in order.iter().enumerate() {
+            let group = &self.groups[group];
+            if let Recipe::Coupled = group.recipe {
+                let block = &self.structure.blocks()[group.blocks[0]];
+                let order = elimination::Order::new(self.system, block);
+                for (local, &column) in order.columns.iter().enumerate() {
+                    places[column] = Place { kernel, local };
+                }
+                orders.push(order);
+            }
+        }
+        let mut orders = orders.into_iter();
+        let places: Arc<[Place]> = places.into();
+        let mut groups: Vec<_> = self.groups.into_iter().map(Some).collect();
+        let in_order = order.iter().map(|&group| groups[group].take());
+        in_order
+            .flatten()
+            .enumerate()
+            .map(|(index, group)| match group.recipe {
+                Recipe::Pinned(parts) => {
+                    Kernel::Pinned(Box::new(Pinned::new(self.mechanism, parts)))
+                }
+                Recipe::RrrDyad(parts) => Kernel::RrrDyad(RrrDyad::new(self.mechanism, parts)),
+                Recipe::RrpDyad(parts) => {
+                    Kernel::RrpDyad(Box::new(RrpDyad::new(self.mechanism, parts)))
+                }
+                Recipe::Coupled => {
+                    let order = orders.next().expect("each group of this kind has one");
+                    let places = Arc::clone(&places);
+                    Kernel::Coupled(Box::new(Coupled::new(index, order, self.system, places)))
+                }
+            })
+            .collect()
+    }
+}

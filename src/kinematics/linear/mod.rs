@@ -1,0 +1,21 @@
+//! Linear algebra of the solver: square matrices, factorised and solved in place.
+//!
+//! This is the other side of the seam to the equations: it knows numbers only. Storage is made
+//! once; nothing here allocates afterwards, unless a sparse matrix has changed so much that its
+//! pivots have to be chosen again.
+
+mod condition;
+mod dense;
+mod echelon;
+mod factors;
+mod lu;
+mod norm;
+mod sparse;
+
+pub(super) use condition::Condition;
+pub(super) use dense::DenseLu;
+pub(super) use echelon::{Echelon, Reduced, Row};
+pub(super) use factors::Factors;
+pub(super) use lu::Lu;
+pub(super) use norm::nan_or_larger;
+pub(super) use sparse::SparseLu;

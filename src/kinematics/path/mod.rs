@@ -1,0 +1,146 @@
+//! The path over one step of everything that moves a mechanism from outside.
+
+mod motions;
+mod rates;
+
+use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
+
+pub(super) use motions::Motions;
+pub use rates::Rates;
+
+/// How time, parameters and drivers go from one communication point to the next, as functions
+/// of s, which runs from 0 to 1.
+///
+/// Time and parameters run straight. A driver runs along its [`Curve`].
+#[derive(Clone, Debug)]
+pub struct Path {
+    /// Time at s = 0 \[s\].
+    pub start: f64,
+    /// Time from s = 0 to s = 1 \[s\]; zero where only values change.
+    pub duration: f64,
+    /// Parameters at s = 0 \[SI\].
+    pub from: Vec<f64>,
+    /// Parameters at s = 1 \[SI\]. On the way the derived ones follow the others.
+    pub to: Vec<f64>,
+    /// One a driver.
+    pub curves: Vec<Curve>,
+}
+
+/// How one driver runs along a [`Path`]. Lengths in metres, angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Curve {
+    /// position + velocity τ + acceleration τ²/2 with τ = s · duration, plus what is left of a
+    /// jump at the start: (1 − s) · jump. Held inputs have neither velocity nor acceleration.
+    Input {
+        /// Value of the polynomial at s = 0.
+        position: f64,
+        /// Its first derivative in time at s = 0.
+        velocity: f64,
+        /// Its second derivative in time.
+        acceleration: f64,
+        /// The value that the mechanism has at s = 0 minus `position`.
+        jump: f64,
+    },
+    /// The driver's prescribed motion.
+    Motion,
+}
+
+impl Path {
+    /// A path on which nothing moves yet.
+    #[must_use]
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let parameters = mechanism.default_parameters();
+        let curves = mechanism
+            .drivers
+            .iter()
+            .map(|driver| match driver.source {
+                DriverSource::Input { start } => Curve::Input {
+                    position: start,
+                    velocity: 0.0,
+                    acceleration: 0.0,
+                    jump: 0.0,
+                },
+                DriverSource::Motion(_) => Curve::Motion,
+            })
+            .collect();
+        Self {
+            start: mechanism.simulation.start,
+            duration: 0.0,
+            from: parameters.clone(),
+            to: parameters,
+            curves,
+        }
+    }
+
+    /// Whether the parameters differ between the two ends.
+    #[must_use]
+    pub fn moves_parameters(&self) -> bool {
+        self.from != self.to
+    }
+
+    /// Whether any driver runs along a prescribed motion.
+    #[must_use]
+    pub fn has_motions(&self) -> bool {
+        self.curves.contains(&Curve::Motion)
+    }
+
+    /// Time at s.
+    #[must_use]
+    pub fn time(&self, s: f64) -> f64 {
+        self.start + s * self.duration
+    }
+
+    /// The first s after `s` at which a motion begins another piece, or the end of the path.
+    pub(in crate::kinematics) fn next_point(&self, s: f64, motions: &Motions) -> f64 {
+        if self.duration <= 0.0 {
+            return 1.0;
+        }
+        // A point so near has been reached up to rounding.
+        let after = self.time(s + 1e-9);
+        ((motions.next_point(after) - self.start) / self.duration).min(1.0)
+    }
+
+    /// Writes the parameters at s with their derivatives with respect to s.
+    pub(in crate::kinematics) fn parameters(&self, mechanism: &Mechanism, s: f64, out: &mut [Jet]) {
+        for ((out, from), to) in out.iter_mut().zip(&self.from).zip(&self.to) {
+            *out = Jet {
+                // Exact at both ends.
+                value: if s < 1.0 { from + s * (to - from) } else { *to },
+                first: to - from,
+                second: 0.0,
+            };
+        }
+        mechanism.derive_parameters(out);
+    }
+
+    /// Writes the drivers' values at s with their derivatives with respect to s; `motions` are
+    /// those for the parameters at s.
+    pub(in crate::kinematics) fn drivers(&self, s: f64, motions: &Motions, out: &mut [Jet]) {
+        let h = self.duration;
+        let t = Jet {
+            value: self.time(s),
+            first: h,
+            second: 0.0,
+        };
+        for ((driver, curve), out) in self.curves.iter().enumerate().zip(out) {
+            *out = match *curve {
+                Curve::Motion => motions.evaluate(DriverId(driver), t),
+                Curve::Input {
+                    position,
+                    velocity,
+                    acceleration,
+                    jump,
+                } => {
+                    let tau = s * h;
+                    Jet {
+                        value: position
+                            + tau * (velocity + 0.5 * tau * acceleration)
+                            + (1.0 - s) * jump,
+                        first: h * (velocity + tau * acceleration) - jump,
+                        second: h * h * acceleration,
+                    }
+                }
+            };
+        }
+    }
+}

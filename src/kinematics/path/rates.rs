@@ -1,0 +1,56 @@
+//! First and second derivatives of the generalized coordinates.
+
+/// First and second derivative of q: with respect to time, or along a path.
+#[derive(Clone, Debug)]
+pub struct Rates {
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+}
+
+impl Rates {
+    /// Rates of zero for `unknowns` generalized coordinates.
+    #[must_use]
+    pub fn new(unknowns: usize) -> Self {
+        Self {
+            velocity: vec![0.0; unknowns],
+            acceleration: vec![0.0; unknowns],
+        }
+    }
+
+    /// q̇: \[m/s, m/s, rad/s\] for each body.
+    #[must_use]
+    pub fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
+    /// q̈: \[m/s², m/s², rad/s²\] for each body.
+    #[must_use]
+    pub fn acceleration(&self) -> &[f64] {
+        &self.acceleration
+    }
+
+    /// Velocity and acceleration, to be written.
+    pub(in crate::kinematics) fn both_mut(&mut self) -> (&mut [f64], &mut [f64]) {
+        (&mut self.velocity, &mut self.acceleration)
+    }
+
+    /// The rates of a motion along which a parameter u runs with u̇ and ü, these being those
+    /// with respect to u: q̇ = q_u u̇ and q̈ = q_uu u̇² + q_u ü. Returns whether all are finite.
+    pub(in crate::kinematics) fn run(&self, first: f64, second: f64, rates: &mut Self) -> bool {
+        // Not finite as soon as one of them is not, and free to be summed in any order.
+        let mut sum = 0.0;
+        let derivatives = self.velocity.iter().zip(&self.acceleration);
+        let rates = rates.velocity.iter_mut().zip(&mut rates.acceleration);
+        for ((v, a), (velocity, acceleration)) in derivatives.zip(rates) {
+            *velocity = v * first;
+            *acceleration = a * (first * first) + v * second;
+            sum += 0.0 * (*velocity + *acceleration);
+        }
+        sum == 0.0
+    }
+
+    pub(in crate::kinematics) fn is_finite(&self) -> bool {
+        let all = self.velocity.iter().chain(&self.acceleration);
+        all.fold(0.0, |sum, rate| sum + 0.0 * rate) == 0.0
+    }
+}

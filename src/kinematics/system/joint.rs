@@ -1,0 +1,194 @@
+//! The equations that each kind of joint stands for.
+
+use crate::kinematics::Element;
+use crate::kinematics::configuration::{
+    CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId,
+};
+use crate::kinematics::constraint::{
+    Axis, Coincidence, Constraint, Contour, Coupling, FlatContact, FlatFace, JointUnknown,
+    KnifeEdge, RackAndPinion, Roller, RollerContact, of_coordinate,
+};
+use crate::mechanism::{
+    BodyId, CamFollower, Coordinate, CoordinateKind, Expression, Joint, JointKind, Mechanism,
+    ParameterId, Profile, ProfileInForce, WheelSizes,
+};
+
+/// What joints bring with them besides their equations.
+#[derive(Debug, Default)]
+pub(super) struct JointParts {
+    pub(super) coefficients: Vec<Coefficient>,
+    pub(super) profiles: Vec<CamProfile>,
+    /// The unknowns behind those of the bodies, each with its joint.
+    pub(super) unknowns: Vec<(Element, Box<dyn JointUnknown>)>,
+    /// The parameters used by the joint that is being written down.
+    pub(super) parameters: Vec<ParameterId>,
+}
+
+impl JointParts {
+    /// Registers a number that depends on parameters.
+    pub(super) fn coefficient(
+        &mut self,
+        expression: &Expression,
+        what: impl Into<String>,
+    ) -> CoefficientId {
+        self.parameters.extend(expression.parameters());
+        self.coefficients.push(Coefficient {
+            expression: expression.clone(),
+            what: what.into(),
+        });
+        CoefficientId(self.coefficients.len() - 1)
+    }
+
+    /// Registers a cam's profile.
+    pub(super) fn profile(
+        &mut self,
+        profile: &Profile,
+        mechanism: &Mechanism,
+        what: impl Into<String>,
+    ) -> ProfileId {
+        self.parameters.extend(profile.parameters());
+        self.profiles.push(CamProfile {
+            in_force: ProfileInForce::new(profile, mechanism.parameters.len()),
+            what: what.into(),
+        });
+        ProfileId(self.profiles.len() - 1)
+    }
+
+    /// The id that the next unknown will have.
+    pub(super) fn next_unknown(&self) -> JointUnknownId {
+        JointUnknownId(self.unknowns.len())
+    }
+
+    /// Registers an unknown of a joint's own.
+    pub(super) fn unknown(&mut self, element: Element, unknown: Box<dyn JointUnknown>) {
+        self.unknowns.push((element, unknown));
+    }
+}
+
+/// The relations of a joint, and what each is held at.
+#[must_use]
+pub(super) fn relations(
+    mechanism: &Mechanism,
+    element: Element,
+    joint: &Joint,
+    parts: &mut JointParts,
+) -> Vec<(Box<dyn Constraint>, Expression)> {
+    let (from, to) = (joint.from, joint.to);
+    let zero = || Expression::constant(0.0);
+    let along = |kind| {
+        of_coordinate(&Coordinate {
+            kind,
+            from,
+            to,
+            axes: from,
+        })
+    };
+    let coincide = |axis| -> (Box<dyn Constraint>, Expression) {
+        (Box::new(Coincidence { from, to, axis }), zero())
+    };
+    match &joint.kind {
+        JointKind::Revolute => vec![coincide(Axis::X), coincide(Axis::Y)],
+        JointKind::Translational => vec![
+            (along(CoordinateKind::Y), zero()),
+            (along(CoordinateKind::Angle), zero()),
+        ],
+        JointKind::Slot => vec![(along(CoordinateKind::Y), zero())],
+        JointKind::Link { length } => vec![(along(CoordinateKind::Distance), length.clone())],
+        JointKind::RevoluteTranslational { offset } => {
+            vec![(along(CoordinateKind::Y), offset.clone())]
+        }
+        JointKind::Weld => vec![
+            coincide(Axis::X),
+            coincide(Axis::Y),
+            (along(CoordinateKind::Angle), zero()),
+        ],
+        JointKind::Gear {
+            sizes,
+            internal,
+            carrier,
+        } => vec![couple(joint, sizes, !internal, *carrier, parts)],
+        JointKind::Belt {
+            sizes,
+            crossed,
+            carrier,
+        } => vec![couple(joint, sizes, *crossed, *carrier, parts)],
+        JointKind::RackAndPinion { radius, side } => {
+            let rolling = RackAndPinion {
+                pinion: from,
+                rack: to,
+                radius: parts.coefficient(radius, format!("the radius of joint `{}`", joint.name)),
+                side: *side,
+            };
+            vec![(Box::new(rolling), zero())]
+        }
+        JointKind::Cam { follower, profile } => {
+            let profile = parts.profile(profile, mechanism, element.describe(mechanism));
+            let contour = Contour {
+                cam: from,
+                profile,
+                contact: parts.next_unknown(),
+            };
+            match follower {
+                CamFollower::Knife => {
+                    let edge = KnifeEdge {
+                        cam: from,
+                        follower: to,
+                        profile,
+                    };
+                    vec![(Box::new(edge), zero())]
+                }
+                CamFollower::Roller { radius } => {
+                    let contact = RollerContact {
+                        contour,
+                        follower: to,
+                    };
+                    parts.unknown(element, Box::new(contact));
+                    let along = |axis| Roller {
+                        contour,
+                        follower: to,
+                        axis,
+                    };
+                    vec![
+                        (Box::new(along(Axis::X)), zero()),
+                        (Box::new(along(Axis::Y)), radius.clone()),
+                    ]
+                }
+                CamFollower::Flat => {
+                    let contact = FlatContact {
+                        contour,
+                        follower: to,
+                    };
+                    parts.unknown(element, Box::new(contact));
+                    let face = FlatFace {
+                        contour,
+                        follower: to,
+                    };
+                    vec![(Box::new(contact), zero()), (Box::new(face), zero())]
+                }
+            }
+        }
+    }
+}
+
+/// Two wheels that turn in a fixed ratio.
+fn couple(
+    joint: &Joint,
+    sizes: &WheelSizes,
+    opposite: bool,
+    carrier: Option<BodyId>,
+    parts: &mut JointParts,
+) -> (Box<dyn Constraint>, Expression) {
+    let what = format!("a wheel's size in joint `{}`", joint.name);
+    let [first, second] = sizes.expressions();
+    let coupling = Coupling {
+        from: joint.from,
+        to: joint.to,
+        carrier,
+        sizes: [
+            parts.coefficient(first, what.clone()),
+            parts.coefficient(second, what),
+        ],
+        opposite,
+    };
+    (Box::new(coupling), Expression::constant(0.0))
+}
