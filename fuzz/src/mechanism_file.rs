@@ -76,7 +76,8 @@ fn run_instance(mechanism: &Arc<Mechanism>, interface: Interface) {
             Interface::CoSimulation => instance.do_step(time, 0.1),
             Interface::ModelExchange => instance
                 .set_time(time + 0.1)
-                .and_then(|()| instance.completed_integrator_step()),
+                .and_then(|()| instance.completed_integrator_step())
+                .map(drop),
         };
         let read = instance.reals(&reals).map(Iterator::collect::<Vec<_>>);
         if let Ok(values) = read {

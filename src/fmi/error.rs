@@ -23,8 +23,7 @@ pub enum Status {
 /// A model's request failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Failure {
-    /// Not possible from here; the host may continue another way. The model has logged the reason
-    /// as a warning, which hosts with default settings show.
+    /// Not possible from here; the host may continue another way.
     #[error("{0}")]
     Discarded(String),
     /// Not possible at all.
@@ -124,21 +123,15 @@ pub enum Error {
         /// The variable.
         name: String,
     },
-    /// Output derivatives start with order 1.
-    #[error("`{name}`: an output derivative cannot be of order {order}; expected 1 or more")]
+    /// Output derivatives have orders from 1 to `maxOutputDerivativeOrder`.
+    #[error("`{name}`: an output derivative cannot be of order {order}; expected 1 to {highest}")]
     OutputDerivativeOrder {
         /// The output.
         name: String,
         /// The order.
         order: i32,
-    },
-    /// The output has no derivative of this order.
-    #[error("`{name}` has no derivative of order {order}")]
-    NoOutputDerivative {
-        /// The output.
-        name: String,
-        /// The order.
-        order: i32,
+        /// The highest order.
+        highest: i32,
     },
     /// The variable is no unknown or known of directional derivatives in this state.
     #[error(
@@ -205,7 +198,8 @@ impl Error {
     pub fn status(&self) -> Status {
         match self {
             Self::Model(Failure::Discarded(_))
-            | Self::NoOutputDerivative { .. }
+            | Self::Range { .. }
+            | Self::Item { .. }
             | Self::StatusKind { .. } => Status::Discard,
             _ => Status::Error,
         }

@@ -7,7 +7,7 @@ use super::Status;
 pub enum Category {
     /// Every message.
     All,
-    /// Warnings to the user.
+    /// Advice, and reasons of discarded calls.
     Warning,
     /// Messages of a call that returns `fmi2Discard`.
     Discard,
@@ -25,16 +25,13 @@ impl Category {
     /// All categories with their descriptions, in the order of the model description.
     pub const ALL: [(Self, &'static str); 7] = [
         (Self::All, "every message"),
-        (Self::Warning, "what calls for attention; always logged"),
-        (Self::Discard, "steps that could not be taken"),
-        (
-            Self::Error,
-            "calls that were refused or failed; always logged",
-        ),
+        (Self::Warning, "advice, and reasons of discarded calls"),
+        (Self::Discard, "discarded calls"),
+        (Self::Error, "refused and failed calls; always logged"),
         (Self::Fatal, "defects of biela; always logged"),
         (
             Self::Events,
-            "initialization, reset, termination and FMU states set",
+            "initialization, reset, termination, FMU states, change points, sources of rates",
         ),
         (Self::Solver, "iterations and sub-steps of each step"),
     ];
@@ -49,7 +46,7 @@ impl Category {
             Self::Error => "logStatusError",
             Self::Fatal => "logStatusFatal",
             Self::Events => "logEvents",
-            Self::Solver => "logSolver",
+            Self::Solver => "logNonlinearSystems",
         }
     }
 
@@ -60,7 +57,7 @@ impl Category {
 
     /// Returns whether the host gets messages of this category with any settings.
     fn always(self) -> bool {
-        matches!(self, Self::Warning | Self::Error | Self::Fatal)
+        matches!(self, Self::Error | Self::Fatal)
     }
 
     /// Returns the bits of the categories that it switches.
@@ -102,6 +99,19 @@ impl Logger {
     #[must_use]
     pub fn wants(&self, category: Category) -> bool {
         category.always() || self.enabled & category.bits() != 0
+    }
+
+    /// Sends advice to the host if the category of warnings is on. Its status is `fmi2OK`: several
+    /// hosts end a simulation when a call returns `fmi2Warning`, so that no call does.
+    pub fn advise(&self, message: impl FnOnce() -> String) {
+        if self.wants(Category::Warning) {
+            self.sink.write(Status::Ok, Category::Warning, &message());
+        }
+    }
+
+    /// Sends the reason of a discarded call to the host, with any settings.
+    pub(super) fn warn_of_discard(&self, message: &str) {
+        self.sink.write(Status::Warning, Category::Warning, message);
     }
 
     /// Sends a message to the host if the category is on.
@@ -147,13 +157,15 @@ mod tests {
     fn one_category_goes_off_while_the_others_stay_on() {
         let mut logger = Logger::new(Box::new(Nowhere), true);
         assert!(logger.wants(Category::Solver) && logger.wants(Category::Events));
-        logger.switch(false, &["logSolver"]).unwrap();
+        logger.switch(false, &["logNonlinearSystems"]).unwrap();
         assert!(!logger.wants(Category::Solver) && logger.wants(Category::Events));
         logger.switch(false, &["logAll"]).unwrap();
-        assert!(!logger.wants(Category::Events) && logger.wants(Category::Warning));
+        assert!(!logger.wants(Category::Events) && !logger.wants(Category::Warning));
+        assert!(logger.wants(Category::Error) && logger.wants(Category::Fatal));
         logger.switch(true, &["logEvents"]).unwrap();
         assert!(!logger.wants(Category::Solver) && logger.wants(Category::Events));
-        assert_eq!(logger.switch(true, &["logSolver", "logX"]), Err("logX"));
+        let switched = logger.switch(true, &["logNonlinearSystems", "logX"]);
+        assert_eq!(switched, Err("logX"));
         assert!(!logger.wants(Category::Solver));
     }
 }

@@ -38,7 +38,7 @@ pub use mechanism_model::{
     guid, variables, write_fmu,
 };
 pub use model::{Groups, Model};
-pub use model_description::{Capabilities, Experiment, ModelDescription, Unknown};
+pub use model_description::{Capabilities, DependencyKind, Experiment, ModelDescription, Unknown};
 pub use package::{Document, PackageError, Platform, RuntimeLibrary, write as write_archive};
 pub use state::{Call, Interface, Phase, State};
 pub use uri::{UriError, resource_path};

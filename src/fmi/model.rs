@@ -134,6 +134,9 @@ pub trait Model: Sized {
     /// The model's own name for a variable.
     type Quantity: Copy + Debug + PartialEq;
 
+    /// Highest order of output derivatives.
+    const OUTPUT_DERIVATIVES: i32 = 0;
+
     /// Everything that decides how the model goes on, time included.
     type State: Clone + Debug + PartialEq;
 
@@ -226,6 +229,10 @@ pub trait Model: Sized {
     ///
     /// No such point exists; the committed one stays.
     fn commit(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure>;
+
+    /// Brings discrete values up to date: at the end of initialization, and in model exchange at an
+    /// event.
+    fn update_discrete(&mut self) {}
 
     /// Takes a step of `size` \[s\] from the committed point, and commits its end, at time `end`
     /// \[s\].

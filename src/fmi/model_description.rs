@@ -1,6 +1,6 @@
 //! `modelDescription.xml` (FMI 2.0, 2.2, 3.3.1 and 4.3.1).
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use quick_xml::events::{BytesDecl, Event};
@@ -70,8 +70,27 @@ pub struct Capabilities {
 pub struct Unknown {
     /// Index of the variable.
     pub index: usize,
-    /// Indices of the variables that it depends on.
-    pub dependencies: BTreeSet<usize>,
+    /// Indices of the variables that it depends on, and the kind of each dependency.
+    pub dependencies: BTreeMap<usize, DependencyKind>,
+}
+
+/// Kind of a dependency (FMI 2.0, 2.2.8).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DependencyKind {
+    /// Without a particular structure.
+    Dependent,
+    /// With a constant factor.
+    Constant,
+}
+
+impl DependencyKind {
+    /// Returns the kind's name in the model description.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Dependent => "dependent",
+            Self::Constant => "constant",
+        }
+    }
 }
 
 impl<Q> ModelDescription<'_, Q> {
@@ -266,13 +285,14 @@ fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
 
 /// Returns the simple type of variables with this unit.
 fn type_of(unit: Unit) -> Option<&'static str> {
+    // No variable has such a name (2.2.3): a name of two parts ends with a lower-case word.
     let types = [
-        (Unit::METRE, "Length"),
-        (Unit::METRE_PER_SECOND, "Velocity"),
-        (Unit::METRE_PER_SECOND_SQUARED, "Acceleration"),
-        (Unit::RADIAN, "Angle"),
-        (Unit::RADIAN_PER_SECOND, "AngularVelocity"),
-        (Unit::RADIAN_PER_SECOND_SQUARED, "AngularAcceleration"),
+        (Unit::METRE, "biela.Length"),
+        (Unit::METRE_PER_SECOND, "biela.Velocity"),
+        (Unit::METRE_PER_SECOND_SQUARED, "biela.Acceleration"),
+        (Unit::RADIAN, "biela.Angle"),
+        (Unit::RADIAN_PER_SECOND, "biela.AngularVelocity"),
+        (Unit::RADIAN_PER_SECOND_SQUARED, "biela.AngularAcceleration"),
     ];
     let mut types = types.into_iter();
     types
@@ -294,8 +314,9 @@ fn write_types<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
                         if let Some(name) = type_of(usual).filter(|name| written.insert(*name)) {
                             write_type(xml, name, |xml| {
                                 let display = usual.display.map(|display| display.name);
+                                let quantity = name.trim_start_matches("biela.");
                                 xml.create_element("Real")
-                                    .with_attributes([("quantity", name), ("unit", usual.name)])
+                                    .with_attributes([("quantity", quantity), ("unit", usual.name)])
                                     .with_optional(&[("displayUnit", display)])
                                     .write_empty()?;
                                 Ok(())
@@ -405,9 +426,12 @@ fn write_variable_type<Q>(xml: &mut Xml, variable: &Variable<Q>) -> io::Result<(
             start,
             min,
             max,
+            nominal,
         } => {
             let display = unit.and_then(|unit| unit.display);
-            let [min, max, start] = [min, max, start].map(|value| value.map(number));
+            let [min, max, nominal, start] =
+                [min, max, nominal, start].map(|value| value.map(number));
+            let derivative = variable.derivative_of.map(|of| (of + 1).to_string());
             xml.create_element("Real")
                 .with_optional(&[
                     ("declaredType", unit.and_then(type_of)),
@@ -415,7 +439,9 @@ fn write_variable_type<Q>(xml: &mut Xml, variable: &Variable<Q>) -> io::Result<(
                     ("displayUnit", display.map(|display| display.name)),
                     ("min", min.as_deref()),
                     ("max", max.as_deref()),
+                    ("nominal", nominal.as_deref()),
                     ("start", start.as_deref()),
+                    ("derivative", derivative.as_deref()),
                 ])
                 .write_empty()?;
         }
@@ -447,13 +473,17 @@ fn write_unknowns(xml: &mut Xml, name: &str, unknowns: &[Unknown]) -> io::Result
     }
     xml.create_element(name).write_inner_content(|xml| {
         for unknown in unknowns {
-            let dependencies = unknown.dependencies.iter();
-            let dependencies: Vec<_> = dependencies.map(usize::to_string).collect();
+            let indices = unknown.dependencies.keys().map(usize::to_string);
+            let kinds = unknown.dependencies.values().map(|kind| kind.name());
+            let indices = indices.collect::<Vec<_>>().join(" ");
+            let kinds = kinds.collect::<Vec<_>>().join(" ");
             xml.create_element("Unknown")
                 .with_attributes([
                     ("index", unknown.index.to_string().as_str()),
-                    ("dependencies", &dependencies.join(" ")),
+                    ("dependencies", &indices),
                 ])
+                // The schema forbids an empty list of kinds.
+                .with_optional(&[("dependenciesKind", non_empty(&kinds))])
                 .write_empty()?;
         }
         Ok(())

@@ -268,7 +268,7 @@ calls! {
         [ContinuousTimeMode]
         [];
     GetDerivatives:
-        [EventMode ContinuousTimeMode Terminated Error]
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
     GetEventIndicators:
         [InitializationMode EventMode ContinuousTimeMode Terminated Error]
@@ -277,7 +277,7 @@ calls! {
         [InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
     GetNominalsOfContinuousStates:
-        [Instantiated EventMode ContinuousTimeMode Terminated Error]
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
     SetRealInputDerivatives:
         []
@@ -306,6 +306,28 @@ calls! {
     GetStringStatus:
         []
         [StepComplete StepInProgress StepFailed Terminated];
+}
+
+impl Call {
+    /// Returns whether the call may end with `fmi2Discard` (FMI 2.0, 2.1.3).
+    #[must_use]
+    pub fn may_discard(self, interface: Interface) -> bool {
+        match self {
+            Self::SetReal | Self::SetInteger | Self::SetBoolean | Self::SetString => true,
+            Self::GetReal
+            | Self::SetContinuousStates
+            | Self::GetContinuousStates
+            | Self::GetDerivatives
+            | Self::GetEventIndicators => interface == Interface::ModelExchange,
+            Self::DoStep
+            | Self::GetStatus
+            | Self::GetRealStatus
+            | Self::GetIntegerStatus
+            | Self::GetBooleanStatus
+            | Self::GetStringStatus => interface == Interface::CoSimulation,
+            _ => false,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -17,6 +17,14 @@ pub enum UriError {
         /// The URI.
         uri: String,
     },
+    /// The URI has a drive in place of a machine.
+    #[error("the resource location `{uri}` names the host `{drive}`; a drive follows `file:///`")]
+    Drive {
+        /// The URI.
+        uri: String,
+        /// The drive.
+        drive: String,
+    },
     /// The URI names another machine.
     #[error("the resource location `{uri}` is on another host, `{host}`")]
     Host {
@@ -55,6 +63,12 @@ pub fn resource_path(uri: &str) -> Result<PathBuf, UriError> {
         None => rest,
         Some(after) => {
             let (host, path) = after.split_at(after.find('/').unwrap_or(after.len()));
+            if host.ends_with(':') {
+                return Err(UriError::Drive {
+                    uri: uri.to_owned(),
+                    drive: host.to_owned(),
+                });
+            }
             if !(host.is_empty() || host.eq_ignore_ascii_case("localhost")) {
                 return Err(UriError::Host {
                     uri: uri.to_owned(),
@@ -136,6 +150,11 @@ mod tests {
                 "{uri}"
             );
         }
+        // RFC 3986, 3.2: what follows two slashes is a host.
+        assert!(matches!(
+            resource_path("file://C:/resources"),
+            Err(UriError::Drive { drive, .. }) if drive == "C:"
+        ));
         assert!(matches!(
             resource_path("file://server/share/x"),
             Err(UriError::Host { host, .. }) if host == "server"

@@ -64,6 +64,8 @@ pub enum Kind {
         min: Option<f64>,
         /// Largest permitted value.
         max: Option<f64>,
+        /// Usual magnitude of the values, if it is known.
+        nominal: Option<f64>,
     },
     /// A whole number.
     Integer,
@@ -100,6 +102,7 @@ impl Kind {
             start,
             min: None,
             max: None,
+            nominal: None,
         }
     }
 

@@ -20,6 +20,7 @@ pub struct FmuState<S> {
     state: State,
     stop_time: Option<f64>,
     last_successful_time: f64,
+    discarded: bool,
     terminated: bool,
     model: S,
 }
@@ -37,7 +38,7 @@ impl<M: Model> Instance<M> {
             quantities: _,
             groups: _,
             derivatives: _,
-            unlimited_inputs: _,
+            continuous_inputs: _,
             logger: _,
             guid,
             model,
@@ -45,14 +46,18 @@ impl<M: Model> Instance<M> {
             state,
             stop_time,
             last_successful_time,
+            discarded,
             terminated,
+            state_held,
         } = self;
+        *state_held = true;
         Ok(FmuState {
             guid: Arc::clone(guid),
             interface: *interface,
             state: *state,
             stop_time: *stop_time,
             last_successful_time: *last_successful_time,
+            discarded: *discarded,
             terminated: *terminated,
             model: model.save(),
         })
@@ -70,7 +75,9 @@ impl<M: Model> Instance<M> {
         self.state = state.state;
         self.stop_time = state.stop_time;
         self.last_successful_time = state.last_successful_time;
+        self.discarded = state.discarded;
         self.terminated = state.terminated;
+        self.state_held = true;
         self.log_event(|model| format!("FMU state set: {} at t = {} s", state.state, model.time()));
         Ok(())
     }
@@ -155,6 +162,7 @@ impl<M: Model> Instance<M> {
             state,
             stop_time,
             last_successful_time,
+            discarded,
             terminated,
             model,
         } = state;
@@ -162,6 +170,7 @@ impl<M: Model> Instance<M> {
         codec.one_of(state, &State::ALL)?;
         codec.option(stop_time, 0.0, |codec, time| codec.finite(time))?;
         codec.finite(last_successful_time)?;
+        codec.flag(discarded)?;
         codec.flag(terminated)?;
         M::visit(model, codec)
     }

@@ -20,7 +20,7 @@ use super::model::{Groups, Model};
 use super::resource_path;
 use super::state::{Call, Interface, State};
 use super::variable::{Variable, derivatives};
-use values::{groups_of, is_unlimited_input};
+use values::{groups_of, is_continuous_input};
 
 /// An instance of an FMU: a model inside the standard's state machine.
 #[derive(Debug)]
@@ -33,15 +33,19 @@ pub struct Instance<M: Model> {
     groups: Box<[Groups]>,
     /// Value reference of each variable's time derivative.
     derivatives: Box<[Option<u32>]>,
-    /// Whether each variable accepts any finite value at any time.
-    unlimited_inputs: Box<[bool]>,
+    /// Whether each variable is an input that accepts any finite value at any time.
+    continuous_inputs: Box<[bool]>,
     interface: Interface,
     logger: Logger,
     state: State,
     stop_time: Option<f64>,
     last_successful_time: f64,
     /// Whether the last step was discarded.
+    discarded: bool,
+    /// Whether the simulation must end, or go on from another state.
     terminated: bool,
+    /// Whether the host holds an FMU state of the last communication point.
+    state_held: bool,
 }
 
 impl<M: Model> Instance<M> {
@@ -85,14 +89,16 @@ impl<M: Model> Instance<M> {
 
             quantities: variables.iter().map(|v| v.quantity).collect(),
             groups: variables.iter().map(|v| groups_of(&model, v)).collect(),
-            unlimited_inputs: variables.iter().map(is_unlimited_input).collect(),
+            continuous_inputs: variables.iter().map(is_continuous_input).collect(),
             guid: model.guid().into(),
             interface: model.interface(),
             logger: Logger::new(sink, logging_on),
             state: State::Instantiated,
             stop_time: None,
             last_successful_time: model.time(),
+            discarded: false,
             terminated: false,
+            state_held: false,
             model,
         }
     }
@@ -124,19 +130,38 @@ impl<M: Model> Instance<M> {
     /// Logs an error and returns the call's status.
     pub fn report(&self, call: &str, error: &Error) -> Status {
         let status = error.status();
-        let category = match status {
-            Status::Discard => Category::Discard,
-            _ => Category::Error,
-        };
-        if self.logger.wants(category) {
-            let message = match error {
-                // A warning has given the reason.
-                Error::Model(Failure::Discarded(_)) => format!("{call}: discarded"),
-                _ => format!("{call}: {error}"),
-            };
-            self.logger.write(status, category, &message);
+        match error {
+            // A warning has given the reason.
+            Error::Model(Failure::Discarded(_)) => {
+                let message = format!("{call}: discarded");
+                self.logger.write(status, Category::Discard, &message);
+            }
+            Error::StatusKind { .. } => {
+                let message = format!("{call}: {error}");
+                self.logger.write(status, Category::Discard, &message);
+            }
+            Error::Range { .. } | Error::Item { .. } => {
+                self.logger.warn_of_discard(&format!("{call}: {error}"));
+            }
+            _ => {
+                let message = format!("{call}: {error}");
+                self.logger.write(status, Category::Error, &message);
+            }
         }
         status
+    }
+
+    /// Returns the error of a call in which the model failed. Logs the reason of a discarded call;
+    /// where the standard permits no discard, the call fails.
+    #[cold]
+    fn failed(&self, call: Call, failure: Failure) -> Error {
+        match failure {
+            Failure::Discarded(reason) if call.may_discard(self.interface) => {
+                self.logger.warn_of_discard(&reason);
+                Failure::Discarded(reason).into()
+            }
+            Failure::Discarded(reason) | Failure::Failed(reason) => Failure::Failed(reason).into(),
+        }
     }
 
     /// Logs that an argument is unusable, and returns the call's status.
@@ -229,8 +254,9 @@ impl<M: Model> Instance<M> {
         self.allow(Call::ExitInitializationMode)?;
         if let Err(failure) = self.model.commit(self.state.phase(), &self.logger) {
             self.state = State::Error;
-            return Err(failure.into());
+            return Err(self.failed(Call::ExitInitializationMode, failure));
         }
+        self.model.update_discrete();
         self.state = match self.interface {
             Interface::ModelExchange => State::EventMode,
             Interface::CoSimulation => State::StepComplete,
@@ -263,7 +289,9 @@ impl<M: Model> Instance<M> {
         self.state = State::Instantiated;
         self.last_successful_time = self.model.time();
         self.stop_time = None;
+        self.discarded = false;
         self.terminated = false;
+        self.state_held = false;
         self.log_event(|_| "reset".to_owned());
         Ok(())
     }

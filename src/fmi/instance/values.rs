@@ -21,19 +21,10 @@ pub(super) fn groups_of<M: Model>(model: &M, variable: &Variable<M::Quantity>) -
     }
 }
 
-/// Returns whether a variable is an input that accepts any finite value at any time.
-pub(super) fn is_unlimited_input<Q>(variable: &Variable<Q>) -> bool {
-    let unlimited = matches!(
-        variable.kind,
-        Kind::Real {
-            min: None,
-            max: None,
-            ..
-        }
-    );
-    unlimited
-        && variable.causality == Causality::Input
-        && variable.variability == Variability::Continuous
+/// Returns whether a variable is an input that accepts any finite value at any time. The limits of
+/// an input are information for the host (FMI 2.0, 2.2.3); the model decides what follows.
+pub(super) fn is_continuous_input<Q>(variable: &Variable<Q>) -> bool {
+    variable.causality == Causality::Input && variable.variability == Variability::Continuous
 }
 
 impl<M: Model> Instance<M> {
@@ -41,13 +32,13 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     ///
-    /// A variable is unknown, no Real, or not settable in this state; a value is not finite or
-    /// outside `min` and `max`.
+    /// A variable is unknown, no Real, or not settable in this state; a value is not finite, or
+    /// that of a parameter is outside `min` and `max`.
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
         for (&value_reference, &value) in value_references.iter().zip(values) {
-            let unlimited = self.unlimited_inputs.get(value_reference as usize);
-            if !(unlimited == Some(&true) && value.is_finite()) {
+            let is_input = self.continuous_inputs.get(value_reference as usize);
+            if !(is_input == Some(&true) && value.is_finite()) {
                 let variable = self.settable(value_reference, "Real")?;
                 check_value(variable, value)?;
             }
@@ -171,7 +162,7 @@ impl<M: Model> Instance<M> {
         if groups & NO_REAL != 0 {
             return Err(self.why_not_real(value_references));
         }
-        self.refresh(groups)?;
+        self.refresh(Call::GetReal, groups)?;
         let values = self.model.reals();
         Ok(match run {
             Some(run) => Reals::Consecutive(values[run].iter()),
@@ -228,12 +219,12 @@ impl<M: Model> Instance<M> {
     }
 
     /// `fmi2GetRealOutputDerivatives`: returns time derivatives of outputs in the order of their
-    /// references.
+    /// references, 0 for a derivative that the model does not know (4.2.1).
     ///
     /// # Errors
     ///
-    /// [`Error::NoOutputDerivative`] for a derivative that does not exist; a variable is no output,
-    /// an order is below 1; or the output has no value for the values set.
+    /// A variable is no output, an order is below 1 or above [`Model::OUTPUT_DERIVATIVES`]; or the
+    /// output has no value for the values set.
     pub fn output_derivatives<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -248,20 +239,22 @@ impl<M: Model> Instance<M> {
             if variable.causality != Causality::Output {
                 return Err(Error::NotOutput { name: name() });
             }
-            if order < 1 {
-                let name = name();
-                return Err(Error::OutputDerivativeOrder { name, order });
+            let highest = M::OUTPUT_DERIVATIVES;
+            if !(1..=highest).contains(&order) {
+                return Err(Error::OutputDerivativeOrder {
+                    name: name(),
+                    order,
+                    highest,
+                });
             }
-            let Some(derivative) = self.derivative(value_reference, order) else {
-                let name = name();
-                return Err(Error::NoOutputDerivative { name, order });
-            };
-            groups |= self.groups[derivative as usize];
+            if let Some(derivative) = self.derivative(value_reference, order) {
+                groups |= self.groups[derivative as usize];
+            }
         }
-        self.refresh(groups)?;
+        self.refresh(Call::GetRealOutputDerivatives, groups)?;
         Ok(entries.map(|(&value_reference, &order)| {
             let derivative = self.derivative(value_reference, order);
-            self.model.reals()[derivative.expect("checked above") as usize]
+            derivative.map_or(0.0, |vr| self.model.reals()[vr as usize])
         }))
     }
 
@@ -270,8 +263,8 @@ impl<M: Model> Instance<M> {
         (0..order).try_fold(value_reference, |vr, _| self.derivatives[vr as usize])
     }
 
-    /// `fmi2GetDirectionalDerivative`: returns the directional derivatives of outputs by inputs; in
-    /// initialization mode also of calculated parameters and by parameters.
+    /// `fmi2GetDirectionalDerivative`: returns the directional derivatives of outputs by inputs and
+    /// time; in initialization mode also of calculated parameters and by parameters.
     ///
     /// # Errors
     ///
@@ -295,12 +288,12 @@ impl<M: Model> Instance<M> {
         for (&value_reference, &change) in knowns.iter().zip(changes) {
             let variable = self.variable(value_reference)?;
             let known = match variable.causality {
-                Causality::Input => true,
+                Causality::Input | Causality::Independent => true,
                 Causality::Parameter => initializing && variable.kind.is_real(),
                 _ => false,
             };
             if !known {
-                return refuse(variable, "derivatives are taken by inputs");
+                return refuse(variable, "derivatives are taken by inputs and time");
             }
             check_finite(&variable.name, change)?;
             directions.push((variable.quantity, change));
@@ -320,15 +313,17 @@ impl<M: Model> Instance<M> {
         }
         let phase = self.state.phase();
         let logger = &self.logger;
-        Ok(self
-            .model
-            .directional_derivatives(&wanted, &directions, phase, logger)?)
+        self.model
+            .directional_derivatives(&wanted, &directions, phase, logger)
+            .map_err(|failure| self.failed(Call::GetDirectionalDerivative, failure))
     }
 
     #[inline]
-    fn refresh(&mut self, groups: Groups) -> Result<(), Error> {
+    fn refresh(&mut self, call: Call, groups: Groups) -> Result<(), Error> {
         let phase = self.state.phase();
-        Ok(self.model.refresh(groups, phase, &self.logger)?)
+        self.model
+            .refresh(groups, phase, &self.logger)
+            .map_err(|failure| self.failed(call, failure))
     }
 
     fn variable(&self, value_reference: u32) -> Result<&Variable<M::Quantity>, Error> {
@@ -421,7 +416,7 @@ impl Iterator for Reals<'_> {
     }
 }
 
-/// Checks a value of a Real variable.
+/// Checks a value of a Real parameter.
 pub(in crate::fmi) fn check_value<Q>(variable: &Variable<Q>, value: f64) -> Result<(), Error> {
     let limits = match variable.kind {
         Kind::Real { min, max, .. } => [min, max],

@@ -6,13 +6,14 @@ use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
 use crate::kinematics::{Direction, Sensitivity};
-use crate::mechanism::Jet;
+use crate::mechanism::{DriverId, Jet};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.
     ///
     /// Value, velocity and acceleration of a driver count as independent of each other: an
-    /// estimated rate is not differentiated.
+    /// estimated rate is not differentiated. Where the rates have extrapolated the value in the
+    /// last step, it depends on them.
     ///
     /// # Errors
     ///
@@ -31,21 +32,31 @@ impl MechanismModel {
         let mut direction = Direction {
             drivers: vec![Jet::constant(0.0); self.inputs.len()],
             parameters: vec![0.0; self.settings.parameters.len()],
+            time: 0.0,
         };
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
+                    let h = self.extrapolated_over(driver);
                     let driver = &mut direction.drivers[driver.index()];
-                    *match order {
-                        Order::Position => &mut driver.value,
-                        Order::Velocity => &mut driver.first,
-                        Order::Acceleration => &mut driver.second,
-                    } += change;
+                    match order {
+                        Order::Position => driver.value += change,
+                        Order::Velocity => {
+                            driver.value += h * change;
+                            driver.first += change;
+                        }
+                        Order::Acceleration => {
+                            driver.value += 0.5 * h * h * change;
+                            driver.first += h * change;
+                            driver.second += change;
+                        }
+                    }
                 }
                 Quantity::Parameter(parameter) => {
                     direction.parameters[parameter.index()] += change;
                 }
-                _ => unreachable!("knowns are inputs and parameters"),
+                Quantity::Time => direction.time += change,
+                _ => unreachable!("knowns are inputs, parameters and time"),
             }
         }
         let sensitivity = self
@@ -58,6 +69,15 @@ impl MechanismModel {
             _ => unreachable!("unknowns are outputs and parameters"),
         };
         Ok(unknowns.iter().map(change).collect())
+    }
+
+    /// Returns the time \[s\] over which the rates have extrapolated a driver's value.
+    fn extrapolated_over(&self, driver: DriverId) -> f64 {
+        if self.at_committed {
+            self.inputs[driver.index()].extrapolated_over()
+        } else {
+            0.0
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 //! | `variables` | the table of variables |
 //! | `description`, `guid`, `resource` | the FMU's files |
 //! | `input` | one driver's inputs: their path during a step and their rates |
+//! | `monitor` | one driver's observations: contradictions, falls, limits |
 //! | `pose` | initialization, steps, and the pose and rates of the values set |
 //! | `messages` | messages about poses and steps |
 //! | `outputs` | values by value reference |
@@ -16,6 +17,7 @@ mod description;
 mod guid;
 mod input;
 mod messages;
+mod monitor;
 mod outputs;
 mod pose;
 mod resource;
@@ -39,7 +41,8 @@ use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Path, Pose, Progress, Rates, Solver};
 use crate::mechanism::{DriverSource, Jet, Mechanism};
-use input::{DriverInput, Extrapolation, RateSource};
+use input::{DriverInput, Extrapolation, RateSource, Rule, Source};
+use monitor::Monitor;
 use outputs::Reals;
 
 /// A mechanism at the values that a host has set.
@@ -58,6 +61,10 @@ pub struct MechanismModel {
     settings: Settings,
     /// Inputs per driver; those of prescribed motions have no meaning.
     inputs: Vec<DriverInput>,
+    /// Observations per driver.
+    monitors: Vec<Monitor>,
+    /// Sources of the rates per driver at the solver's pose.
+    sources: Vec<[Source; 2]>,
     /// Pose from which the mechanism goes on; in co-simulation that of the last communication
     /// point.
     committed: Pose,
@@ -72,6 +79,9 @@ pub struct MechanismModel {
     rates: Rates,
     reals: Reals,
     path: Path,
+    /// Effort of the last path.
+    path_progress: Progress,
+    /// Effort of the last step or, in model exchange, up to the last event.
     progress: Progress,
     time: f64,
     /// Whether the host has been warned of the singular position nearby.
@@ -82,8 +92,7 @@ pub struct MechanismModel {
 #[derive(Clone, Debug, PartialEq)]
 struct Settings {
     parameters: Vec<f64>,
-    rates: RateSource,
-    extrapolation: Extrapolation,
+    rule: Rule,
 }
 
 /// Validity of the solver's pose and rates.
@@ -116,6 +125,8 @@ impl MechanismModel {
             variables,
             settings: Settings::new(&mechanism),
             inputs: start_inputs(&mechanism),
+            monitors: vec![Monitor::default(); mechanism.drivers.len()],
+            sources: vec![[Source::default(); 2]; mechanism.drivers.len()],
             committed: Pose::clone(&file_pose),
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
@@ -123,6 +134,7 @@ impl MechanismModel {
             rates: Rates::new(file_pose.q.len()),
             freshness: Freshness::Stale,
             path,
+            path_progress: Progress::default(),
             progress: Progress::default(),
             time: file_pose.time,
             near_singular: false,
@@ -151,6 +163,8 @@ impl MechanismModel {
 impl Model for MechanismModel {
     type Quantity = Quantity;
     type State = MechanismState;
+
+    const OUTPUT_DERIVATIVES: i32 = 2;
 
     fn load(resources: &FilePath, interface: Interface) -> Result<Self, Failure> {
         let mechanism = Arc::new(resource::read(resources)?);
@@ -182,12 +196,14 @@ impl Model for MechanismModel {
         self.start_pose = Arc::clone(&self.file_pose);
         self.settings = Settings::new(&self.mechanism);
         self.inputs = start_inputs(&self.mechanism);
+        self.monitors.fill(Monitor::default());
         self.committed.clone_from(&self.start_pose);
         self.solver.restore(&self.start_pose);
         self.at_committed = true;
         self.driver_rates.fill(Jet::constant(0.0));
         self.committed_rates.fill(Jet::constant(0.0));
         self.set_freshness(Freshness::Stale);
+        self.path_progress = Progress::default();
         self.progress = Progress::default();
         self.time = self.start_pose.time;
         self.near_singular = false;
@@ -216,8 +232,10 @@ impl Model for MechanismModel {
         for (quantity, value) in values {
             let item = value as usize - 1;
             match quantity {
-                Quantity::RateSource => self.settings.rates = RateSource::ALL[item],
-                Quantity::Extrapolation => self.settings.extrapolation = Extrapolation::ALL[item],
+                Quantity::RateSource => self.settings.rule.rates = RateSource::ALL[item],
+                Quantity::Extrapolation => {
+                    self.settings.rule.extrapolation = Extrapolation::ALL[item];
+                }
                 _ => unreachable!("only the two Enumerations are settable"),
             }
             self.set_freshness(Freshness::Stale);
@@ -249,10 +267,11 @@ impl Model for MechanismModel {
 
     fn integer(&self, quantity: Quantity) -> i32 {
         let count = match quantity {
-            Quantity::RateSource => return self.settings.rates as i32,
-            Quantity::Extrapolation => return self.settings.extrapolation as i32,
+            Quantity::RateSource => return self.settings.rule.rates as i32,
+            Quantity::Extrapolation => return self.settings.rule.extrapolation as i32,
             Quantity::Iterations => self.progress.iterations,
             Quantity::Substeps => self.progress.substeps,
+            Quantity::Proved => u32::from(self.progress.checked == 0),
             _ => unreachable!("all other variables are Reals"),
         };
         i32::try_from(count).unwrap_or(i32::MAX)
@@ -270,6 +289,10 @@ impl Model for MechanismModel {
 
     fn commit(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         self.commit_values(phase, log)
+    }
+
+    fn update_discrete(&mut self) {
+        self.progress = self.path_progress;
     }
 
     fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
@@ -297,8 +320,10 @@ impl Settings {
     fn new(mechanism: &Mechanism) -> Self {
         Self {
             parameters: mechanism.default_parameters(),
-            rates: RateSource::Auto,
-            extrapolation: Extrapolation::Hold,
+            rule: Rule {
+                rates: RateSource::Auto,
+                extrapolation: Extrapolation::Hold,
+            },
         }
     }
 }

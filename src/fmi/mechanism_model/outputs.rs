@@ -73,7 +73,8 @@ pub(super) fn group(quantity: Quantity) -> Groups {
         Quantity::RateSource
         | Quantity::Extrapolation
         | Quantity::Iterations
-        | Quantity::Substeps => 0,
+        | Quantity::Substeps
+        | Quantity::Proved => 0,
     }
 }
 

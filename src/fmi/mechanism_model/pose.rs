@@ -1,8 +1,6 @@
 //! Initialization, steps, and the pose and rates of the values set.
 
 use super::input::DriverRates;
-use super::messages::{discard, warn};
-use super::variables::Order;
 use super::{Freshness, MechanismModel, RateSource, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
@@ -16,7 +14,7 @@ const SEAM: f64 = 0.01;
 
 impl MechanismModel {
     /// Takes a step of size `h` \[s\] from the last communication point. Allocates nothing if it
-    /// succeeds.
+    /// succeeds and has nothing to report.
     ///
     /// # Errors
     ///
@@ -29,17 +27,15 @@ impl MechanismModel {
             self.at_committed = true;
         }
         self.set_path(start, h);
+        self.report_falls(log);
         match self.solver.follow(&self.path) {
             Ok(progress) => {
+                self.path_progress = progress;
                 self.progress = progress;
                 self.set_driver_rates(start, h, 1.0);
-                for input in &mut self.inputs {
-                    input.complete_step(start);
-                }
                 self.time = end;
-                self.warn_of_approach(log);
                 self.commit_pose();
-                self.log_step(log);
+                self.complete_step(start, h, log);
                 Ok(())
             }
             Err(blocked) => Err(self.fail_step(blocked, start, h, log)),
@@ -73,11 +69,9 @@ impl MechanismModel {
                 let rates = match interface {
                     // The host integrates and sets each input at each time.
                     Interface::ModelExchange => DriverRates::default(),
-                    Interface::CoSimulation => {
-                        input.path_rates(settings.rates, settings.extrapolation, start)
-                    }
+                    Interface::CoSimulation => input.path(settings.rule, start, h),
                 };
-                *position = input.get(Order::Position);
+                *position = input.position();
                 *velocity = rates.velocity;
                 *acceleration = rates.acceleration;
                 *jump = committed - *position;
@@ -89,6 +83,7 @@ impl MechanismModel {
     fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
         let Self {
             driver_rates,
+            sources,
             mechanism,
             inputs,
             settings,
@@ -96,18 +91,20 @@ impl MechanismModel {
             interface,
             ..
         } = self;
-        let drivers = mechanism.drivers.iter().enumerate();
-        for ((rates, (index, driver)), input) in driver_rates.iter_mut().zip(drivers).zip(inputs) {
-            *rates = match &driver.source {
+        for (index, driver) in mechanism.drivers.iter().enumerate() {
+            driver_rates[index] = match &driver.source {
                 DriverSource::Input { .. } => {
+                    let input = &inputs[index];
                     let DriverRates {
                         velocity,
                         acceleration,
                     } = match interface {
                         Interface::ModelExchange => input.given_rates(),
                         Interface::CoSimulation => {
-                            let (source, extrapolation) = (settings.rates, settings.extrapolation);
-                            input.rates_after(source, extrapolation, start, s * h)
+                            let (rates, sources_now) =
+                                input.rates_after(settings.rule, start, s * h);
+                            sources[index] = sources_now;
+                            rates
                         }
                     };
                     Jet {
@@ -128,19 +125,24 @@ impl MechanismModel {
     /// The pose does not exist; the committed one stays.
     pub(super) fn commit_values(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         let starting = phase == Phase::Initialization;
-        let estimated = self.settings.rates == RateSource::Estimated;
+        let estimated = self.settings.rule.rates == RateSource::Estimated;
         if starting && estimated && self.interface == Interface::ModelExchange {
             let why = "`rates` is `estimated`, which needs communication points; in model exchange \
                        the velocity and acceleration inputs have to be given";
             return Err(Failure::Failed(why.to_owned()));
         }
         self.refresh_pose(phase, log)?;
+        if !starting {
+            self.report_falls(log);
+        }
         self.commit_pose();
         if starting {
-            self.warn_of_mechanism(log);
+            for input in &mut self.inputs {
+                input.start();
+            }
+            self.report_mechanism(log);
         } else {
-            self.log_crossings(log);
-            self.warn_of_approach(log);
+            self.complete_step(self.time, 0.0, log);
         }
         Ok(())
     }
@@ -163,6 +165,7 @@ impl MechanismModel {
     /// Commits the last pose before a dead point at the part `blocked.s` of a step.
     fn fail_step(&mut self, blocked: Blocked, start: f64, h: f64, log: &Logger) -> Failure {
         let message = self.describe_dead_point(&blocked, start, h);
+        self.path_progress = blocked.progress;
         self.progress = blocked.progress;
         self.log_crossings(log);
         // Held inputs and parameters reach their values at the end of the step only. Inputs on a
@@ -184,7 +187,7 @@ impl MechanismModel {
             self.set_driver_rates(start, h, blocked.s);
         }
         self.commit_pose();
-        discard(message, log)
+        Failure::Discarded(message)
     }
 
     /// Brings the solver to the pose of the values set.
@@ -198,7 +201,7 @@ impl MechanismModel {
         }
         match phase {
             Phase::Initialization => self.initialize(log)?,
-            Phase::Running => self.evaluate(log)?,
+            Phase::Running => self.evaluate()?,
             Phase::Halted => self.restore_committed(),
         }
         self.set_freshness(Freshness::Pose);
@@ -245,22 +248,22 @@ impl MechanismModel {
         let start = self.solver.start(&self.start_pose, &self.path);
         match start.map_err(failed)? {
             Start::Continuous(progress) => {
-                self.progress = progress;
+                self.path_progress = progress;
                 self.log_crossings(log);
             }
             Start::Reassembled(assembly) => {
-                self.progress = Progress {
+                self.path_progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
                     crossings: 0,
                     checked: 0,
                 };
-                warn(
+                log.advise(|| {
                     "no continuous motion leads from the mechanism file's own pose to the start \
                      values: assembled at the start values from the estimates instead, possibly \
-                     in another assembly mode",
-                    log,
-                );
+                     in another assembly mode"
+                        .to_owned()
+                });
             }
         }
         self.set_driver_rates(self.time, 0.0, 0.0);
@@ -273,7 +276,7 @@ impl MechanismModel {
     /// # Errors
     ///
     /// [`Failure::Discarded`] if no continuous motion leads there.
-    fn evaluate(&mut self, log: &Logger) -> Result<(), Failure> {
+    fn evaluate(&mut self) -> Result<(), Failure> {
         self.solver.restore(&self.committed);
         let (start, h) = match self.interface {
             Interface::ModelExchange => (self.committed.time, self.time - self.committed.time),
@@ -285,12 +288,13 @@ impl MechanismModel {
         self.set_driver_rates(start, h, 1.0);
         match followed {
             Ok(progress) => {
-                if self.interface == Interface::ModelExchange {
-                    self.progress = progress;
-                }
+                self.path_progress = progress;
                 Ok(())
             }
-            Err(blocked) => Err(discard(self.describe_dead_point(&blocked, start, h), log)),
+            Err(blocked) => {
+                let message = self.describe_dead_point(&blocked, start, h);
+                Err(Failure::Discarded(message))
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::input::{DriverInput, Extrapolation, RateSource};
+use super::monitor::Monitor;
 use super::{Freshness, MechanismModel, Quantity, Settings};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
@@ -20,6 +21,7 @@ pub struct MechanismState {
     start_pose: Arc<Pose>,
     settings: Settings,
     inputs: Vec<DriverInput>,
+    monitors: Vec<Monitor>,
     committed: Pose,
     /// The solver's pose: the committed one, or that of values set since.
     present: Pose,
@@ -28,6 +30,7 @@ pub struct MechanismState {
     committed_rates: Vec<Jet>,
     /// [`Freshness::Stale`] or [`Freshness::Pose`]: rates follow from the pose.
     freshness: Freshness,
+    path_progress: Progress,
     progress: Progress,
     time: f64,
     near_singular: bool,
@@ -52,18 +55,22 @@ impl MechanismModel {
             file_pose: _,
             // Set for each step.
             path: _,
+            // Computed with the rates of the drivers.
+            sources: _,
             // Computed from the pose.
             rates: _,
             reals: _,
             start_pose,
             settings,
             inputs,
+            monitors,
             solver,
             committed,
             at_committed,
             driver_rates,
             committed_rates,
             freshness,
+            path_progress,
             progress,
             time,
             near_singular,
@@ -72,6 +79,7 @@ impl MechanismModel {
             start_pose: Arc::clone(start_pose),
             settings: settings.clone(),
             inputs: inputs.clone(),
+            monitors: monitors.clone(),
             committed: committed.clone(),
             present: if *at_committed {
                 committed.clone()
@@ -82,6 +90,7 @@ impl MechanismModel {
             driver_rates: driver_rates.clone(),
             committed_rates: committed_rates.clone(),
             freshness: *freshness,
+            path_progress: *path_progress,
             progress: *progress,
             time: *time,
             near_singular: *near_singular,
@@ -92,6 +101,7 @@ impl MechanismModel {
         self.start_pose = Arc::clone(&state.start_pose);
         self.settings.clone_from(&state.settings);
         self.inputs.clone_from(&state.inputs);
+        self.monitors.clone_from(&state.monitors);
         self.committed.clone_from(&state.committed);
         self.solver.restore(&state.present);
         self.solver.forget_way();
@@ -99,6 +109,7 @@ impl MechanismModel {
         self.driver_rates.clone_from(&state.driver_rates);
         self.committed_rates.clone_from(&state.committed_rates);
         self.set_freshness(state.freshness);
+        self.path_progress = state.path_progress;
         self.progress = state.progress;
         self.time = state.time;
         self.near_singular = state.near_singular;
@@ -162,12 +173,14 @@ impl MechanismState {
             start_pose,
             settings,
             inputs,
+            monitors,
             committed,
             present,
             at_committed,
             driver_rates,
             committed_rates,
             freshness,
+            path_progress,
             progress,
             time,
             near_singular,
@@ -176,18 +189,26 @@ impl MechanismState {
         codec.flag(at_committed)?;
         codec.flag(near_singular)?;
         codec.finite(time)?;
-        codec.count(&mut progress.iterations)?;
-        codec.count(&mut progress.substeps)?;
-        codec.count(&mut progress.crossings)?;
-        codec.count(&mut progress.checked)?;
+        for Progress {
+            iterations,
+            substeps,
+            crossings,
+            checked,
+        } in [path_progress, progress]
+        {
+            for count in [iterations, substeps, crossings, checked] {
+                codec.count(count)?;
+            }
+        }
         // Derived parameters may have any value: `check_state` derives them again.
         for value in &mut settings.parameters {
             codec.real(value)?;
         }
-        codec.one_of(&mut settings.rates, &RateSource::ALL)?;
-        codec.one_of(&mut settings.extrapolation, &Extrapolation::ALL)?;
-        for input in inputs {
+        codec.one_of(&mut settings.rule.rates, &RateSource::ALL)?;
+        codec.one_of(&mut settings.rule.extrapolation, &Extrapolation::ALL)?;
+        for (input, monitor) in inputs.iter_mut().zip(monitors) {
             input.visit(codec)?;
+            monitor.visit(codec)?;
         }
         // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {

@@ -9,7 +9,7 @@ use crate::mechanism::{
 };
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
-pub const TABLE_VERSION: u32 = 1;
+pub const TABLE_VERSION: u32 = 2;
 
 /// A variable's meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +32,8 @@ pub enum Quantity {
     Iterations,
     /// Sub-steps of the last step.
     Substeps,
+    /// Whether the last step was proved throughout.
+    Proved,
     /// Time.
     Time,
 }
@@ -122,27 +124,30 @@ const ANGLES: [Unit; 3] = [
 
 /// Choices of the source of the drivers' rates.
 pub static RATE_SOURCES: Enumeration = Enumeration {
-    name: "Rates",
+    name: "biela.Rates",
     items: &[
         (
             "auto",
-            "input derivatives if given, else the rate inputs once one was set to other than \
-             zero, else estimated",
+            "each rate input once it was set to other than zero after initialization, otherwise \
+             input derivatives, otherwise an estimate",
         ),
-        ("inputs", "input derivatives if given, else the rate inputs"),
+        ("inputs", "the rate inputs, always"),
         (
             "estimated",
-            "from the last three values of the position input",
+            "input derivatives, otherwise an estimate from the last three positions",
         ),
     ],
 };
 
 /// Choices of the extrapolation of inputs during a step.
 pub static EXTRAPOLATIONS: Enumeration = Enumeration {
-    name: "Extrapolation",
+    name: "biela.Extrapolation",
     items: &[
-        ("hold", "held: outputs lag the inputs by one step"),
-        ("taylor", "carried along by velocity and acceleration"),
+        (
+            "hold",
+            "held over a step: outputs lag the inputs by one step",
+        ),
+        ("taylor", "extrapolated by velocity and acceleration"),
     ],
 };
 
@@ -258,6 +263,7 @@ impl Table {
                     start: (!parameter.derived).then_some(parameter.default),
                     min: parameter.min,
                     max: parameter.max,
+                    nominal: None,
                 },
             );
         }
@@ -266,14 +272,14 @@ impl Table {
     fn add_settings(&mut self) {
         self.add(
             "rates",
-            "where velocity and acceleration of the inputs come from",
+            "source of the velocity and acceleration of the inputs",
             Quantity::RateSource,
             (Causality::Parameter, Variability::Fixed),
             Kind::Enumeration(&RATE_SOURCES),
         );
         self.add(
             "extrapolation",
-            "how inputs without input derivatives go on during a step",
+            "path of inputs without input derivatives during a step",
             Quantity::Extrapolation,
             (Causality::Parameter, Variability::Fixed),
             Kind::Enumeration(&EXTRAPOLATIONS),
@@ -393,6 +399,13 @@ impl Table {
             Variability::Discrete,
             Kind::Integer,
         );
+        add(
+            "solver.proved",
+            "1 if the last step was proved throughout to stay on its branch, 0 if parts were checked",
+            Quantity::Proved,
+            Variability::Discrete,
+            Kind::Integer,
+        );
     }
 }
 
@@ -435,6 +448,7 @@ impl Quantity {
             | Self::Rcond
             | Self::Iterations
             | Self::Substeps
+            | Self::Proved
             | Self::Time => {}
         }
         dependencies
@@ -448,8 +462,13 @@ fn derived_from_tunable(mechanism: &Mechanism, parameter: ParameterId) -> bool {
     roots.any(|root| mechanism.parameters[root.index()].tunable)
 }
 
+/// Returns whether a coordinate is an angle.
+pub(super) fn is_angle(coordinate: &Coordinate) -> bool {
+    units(coordinate)[0].dimension == Unit::RADIAN.dimension
+}
+
 /// Returns the units of a coordinate by order.
-fn units(coordinate: &Coordinate) -> [Unit; 3] {
+pub(super) fn units(coordinate: &Coordinate) -> [Unit; 3] {
     match coordinate.kind {
         CoordinateKind::Angle => ANGLES,
         CoordinateKind::X | CoordinateKind::Y | CoordinateKind::Distance => LENGTHS,

@@ -18,7 +18,7 @@ use crate::kinematics::solver::SINGULAR_HERE;
 use crate::kinematics::system::Target;
 use crate::kinematics::variation::{Varied, VariedConfiguration, VariedVector, evaluate};
 use crate::kinematics::{Error, Rates, Solver};
-use crate::mechanism::{DriverId, Dual, Jet, MarkerId, MotionInForce, Number, ParameterId, Scalar};
+use crate::mechanism::{DriverId, Dual, Jet, MarkerId, MotionInForce, Number, ParameterId};
 
 /// A direction: how fast drivers and parameters change along it.
 #[derive(Clone, Debug)]
@@ -28,6 +28,8 @@ pub struct Direction {
     pub drivers: Vec<Jet>,
     /// Changes of all parameters; those of derived ones are not read.
     pub parameters: Vec<f64>,
+    /// Change of the time, for prescribed motions.
+    pub time: f64,
 }
 
 /// How a motion changes along a direction.
@@ -103,7 +105,10 @@ impl Solver {
         mechanism.derive_parameters(&mut parameters);
         let parameter = |p: ParameterId| parameters[p.index()];
 
-        let time = Varied::variable(Dual::constant(self.pose.time));
+        let time = Varied::variable(Dual {
+            value: self.pose.time,
+            along: direction.time,
+        });
         let drivers = mechanism.drivers.iter().enumerate();
         let drivers: Vec<_> = drivers
             .map(|(index, driver)| match driver.motion() {
