@@ -32,7 +32,14 @@ fn main() {
         Err(error) => println!("cargo::error=cannot run the C compiler: {error}"),
     }
 
-    for source in ["four_bar.c", "chain.c", "cycle.c"] {
+    for source in [
+        "four_bar.c",
+        "slider_crank.c",
+        "cam.c",
+        "chain.c",
+        "clock.c",
+        "cycle.c",
+    ] {
         build.file(format!("yardstick/{source}"));
     }
     build.compile("yardstick");

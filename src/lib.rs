@@ -40,7 +40,7 @@
 //!
 //! // Rates for a driver that moves at 1 rad/s.
 //! let mut rates = Rates::new(3);
-//! solver.solve_rates(|_driver| Jet { value: 0.2, first: 1.0, second: 0.0 }, &mut rates)?;
+//! solver.solve_rates(|_driver| Jet::new(0.2, [1.0, 0.0]), &mut rates)?;
 //!
 //! // The rod's middle is 0.25 m below the pivot along the rod.
 //! let [x, vx, ax] = [solver.pose().q[0], rates.velocity()[0], rates.acceleration()[0]];

@@ -178,20 +178,16 @@ fn a_step_of_the_solver_allocates_nothing() {
             for step in 1..=50 {
                 straight_to(&solver, &mut path, home + 1e-4 * f64::from(step));
                 solver.follow(&path).expect("nothing is in the way");
-                let driver = Jet {
-                    value: 0.0,
-                    first: 1.0,
-                    second: 0.5,
-                };
+                let driver = Jet::new(0.0, [1.0, 0.5]);
                 solver
                     .solve_rates(|_| driver, &mut rates)
                     .expect("the pose is regular");
                 let mut sum = solver.residual() + solver.rcond();
                 for marker in 0..mechanism.markers.len() {
-                    sum += solver.marker(MarkerId(marker), &rates)[0].second;
+                    sum += solver.marker(MarkerId(marker), &rates)[0].second();
                 }
                 for measure in 0..mechanism.measures.len() {
-                    sum += solver.measure(measure, &rates).second;
+                    sum += solver.measure(measure, &rates).second();
                 }
                 assert!(sum.is_finite());
                 if step % 10 == 0 {

@@ -60,11 +60,7 @@ fn swing(mechanism: &Arc<Mechanism>, count: usize) -> Vec<(Vec<f64>, [Vec<f64>; 
     let size = 0.05 * home[0].abs().max(0.2);
     let swing = |k: usize| {
         let t = 0.1 * k as f64;
-        Jet {
-            value: home[0] + size * t.sin(),
-            first: size * t.cos(),
-            second: -size * t.sin(),
-        }
+        Jet::new(home[0] + size * t.sin(), [size * t.cos(), -size * t.sin()])
     };
     let moved = matches!(path.curves[0], Curve::Input { .. });
     let step = |k| {
@@ -126,29 +122,29 @@ fn what_moves_is_where_the_mechanism_is() {
         let page = page(&animation);
         let film = Film::of(&page);
         let home = &animation.moments[0].q;
-        // Each body has a frame among the riders that goes along with it: its place is the
+        // Each body has a frame among the attachments that moves with it: its place is the
         // body's origin in one scale, its angle the body's.
-        let riders = film.count("riders");
+        let attachments = film.count("attachments");
         let mut found = 0;
         for body in 0..mechanism.bodies.len() {
-            let follows = |rider: usize, scale: f64| {
+            let follows = |attachment: usize, scale: f64| {
                 animation.moments.iter().enumerate().all(|(k, moment)| {
                     let near = |part: usize, expected: f64| {
-                        let (value, tolerance) = film.value(3 * rider + part, k);
+                        let (value, tolerance) = film.value(3 * attachment + part, k);
                         // The bar, 44 to 110 units long, is drawn to hundredths.
                         (value - expected).abs() <= tolerance + 0.01 / 44.0 * value.abs()
                     };
                     let [x, y, phi] = [0, 1, 2].map(|c| moment.q[3 * body + c]);
                     let degrees = (180.0 - phi.to_degrees()).rem_euclid(360.0) - 180.0;
-                    let (angle, tolerance) = film.value(3 * rider + 2, k);
+                    let (angle, tolerance) = film.value(3 * attachment + 2, k);
                     let off = (angle - degrees + 180.0).rem_euclid(360.0) - 180.0;
                     near(0, scale * x) && near(1, -scale * y) && off.abs() <= tolerance + 1e-9
                 })
             };
             let scale = scale_of(&page);
-            let rider = (0..riders).find(|rider| follows(*rider, scale));
+            let attachment = (0..attachments).find(|attachment| follows(*attachment, scale));
             assert!(
-                rider.is_some(),
+                attachment.is_some(),
                 "{name}: {} (scale {scale}, {home:?})",
                 mechanism.bodies[body].name
             );
@@ -197,7 +193,7 @@ fn arrows_are_velocities_and_accelerations() {
     let animation = animation(&mechanism, 40);
     let film = Film::of(&page(&animation));
     let points = film.json["points"].as_array().expect("there are points");
-    let at = 3 * film.count("riders") + 2 * film.count("lengths");
+    let at = 3 * film.count("attachments") + film.count("lengths");
     assert!(!points.is_empty());
     let ratio = |point: usize, moment: usize| {
         let arrow = |kind: usize| {

@@ -118,11 +118,7 @@ fn a_round_cam_moves_nothing() {
             assert!((q - before).abs() < 4e-15, "{name}");
         }
         let mut rates = Rates::new(solver.pose().q.len());
-        let turning = Jet {
-            value: 4.0,
-            first: 10.0,
-            second: 5.0,
-        };
+        let turning = Jet::new(4.0, [10.0, 5.0]);
         solver
             .solve_rates(|_| turning, &mut rates)
             .expect("regular");

@@ -41,11 +41,10 @@ fn the_four_systems_move_as_their_closed_forms_say() {
             };
             let progress = solver.follow(&path).expect("nothing is in the way");
             assert_eq!(progress.substeps, 1, "{}: an ordinary step", exact.file);
-            let driver = Jet {
-                value: solver.pose().drivers[0],
-                first: acceleration * (t + h),
-                second: acceleration,
-            };
+            let driver = Jet::new(
+                solver.pose().drivers[0],
+                [acceleration * (t + h), acceleration],
+            );
             solver
                 .solve_rates(|_| driver, &mut rates)
                 .expect("the pose is regular");
@@ -78,11 +77,7 @@ fn a_long_chain_moves_as_its_first_loop() {
             straight_to(&solver, &mut path, now + 0.05);
             let progress = solver.follow(&path).expect("the crank turns fully");
             assert_eq!(progress.substeps, 1);
-            let driver = Jet {
-                value: 0.0,
-                first: 10.0,
-                second: 3.0,
-            };
+            let driver = Jet::new(0.0, [10.0, 3.0]);
             solver
                 .solve_rates(|_| driver, &mut rates)
                 .expect("the pose is regular");

@@ -50,14 +50,6 @@ const KNOWN_CIRCLES: &[&[&str]] = &[
         "kinematics/constraint/rack_and_pinion.rs",
     ],
     &["fmi/error.rs", "fmi/log.rs"],
-    &["drawing/compose.rs", "drawing/scene.rs"],
-    &[
-        "drawing/labels.rs",
-        "drawing/sheet.rs",
-        "drawing/symbols.rs",
-        "drawing/symbols/drivers.rs",
-        "drawing/symbols/names.rs",
-    ],
     &["cli/error.rs", "cli/output.rs"],
 ];
 

@@ -56,9 +56,9 @@ fn rates_are_the_derivatives_of_the_value() {
             ] {
                 let jet = at(&solver, time);
                 let first = difference(&|h| at(&solver, time + h).value);
-                let second = difference(&|h| at(&solver, time + h).first);
-                assert!((jet.first - first).abs() < 1e-7, "{law} {ends} {time}");
-                assert!((jet.second - second).abs() < 1e-6, "{law} {ends} {time}");
+                let second = difference(&|h| at(&solver, time + h).first());
+                assert!((jet.first() - first).abs() < 1e-7, "{law} {ends} {time}");
+                assert!((jet.second() - second).abs() < 1e-6, "{law} {ends} {time}");
             }
         }
     }
@@ -82,7 +82,7 @@ fn ends_are_as_asked_for() {
     for time in [-10.0, 1.5, 20.0] {
         let jet = at(&natural, time);
         assert!((jet.value - 2.0 * time).abs() < 1e-14);
-        assert!((jet.first - 2.0).abs() < 1e-15 && jet.second == 0.0);
+        assert!((jet.first() - 2.0).abs() < 1e-15 && jet.second() == 0.0);
     }
 }
 
@@ -125,7 +125,7 @@ fn a_table_follows_its_parameters() {
     assert!((solver.pose().q[3 * gripper.index() + 1] - (0.3 - value)).abs() < 1e-15);
     let motion = solver.motion(reach, 0.3);
     assert!((motion.value - value).abs() < 1e-15);
-    assert!((motion.first - rate).abs() < 1e-14);
+    assert!((motion.first() - rate).abs() < 1e-14);
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn a_file_beside_gives_the_same_motion() {
     for step in 0..50 {
         let time = 0.05 * f64::from(step);
         let (a, b) = (at(&from_file, time), at(&inline, time));
-        assert!((a.value - b.value).abs() < 1e-15 && (a.second - b.second).abs() < 1e-12);
+        assert!((a.value - b.value).abs() < 1e-15 && (a.second() - b.second()).abs() < 1e-12);
     }
 }
 

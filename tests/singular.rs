@@ -80,11 +80,7 @@ fn turn(
             .follow(&path)
             .unwrap_or_else(|blocked| panic!("{} at {angle}: {blocked:?}", exact.file));
         crossings += progress.crossings;
-        let driver = Jet {
-            value: angle,
-            first: u,
-            second: v,
-        };
+        let driver = Jet::new(angle, [u, v]);
         solver
             .solve_rates(|_| driver, &mut rates)
             .expect("rates exist on the smooth motion");
@@ -94,7 +90,7 @@ fn turn(
                 rates.velocity()[k],
                 rates.acceleration()[k],
             ];
-            let truth = [truth.value, truth.first, truth.second];
+            let truth = [truth.value, truth.first(), truth.second()];
             for order in 0..3 {
                 worst[order] = f64::max(worst[order], (found[order] - truth[order]).abs());
             }
@@ -137,11 +133,7 @@ fn outputs_next_to_a_change_point_are_those_of_the_motion() {
         for target in targets {
             straight_to(&solver, &mut path, target);
             solver.follow(&path).expect("the crank turns fully");
-            let driver = Jet {
-                value: target,
-                first: 1.0,
-                second: -0.7,
-            };
+            let driver = Jet::new(target, [1.0, -0.7]);
             let pose = solver.pose().clone();
             for restored in [false, true] {
                 if restored {
@@ -176,11 +168,7 @@ fn a_mechanism_starts_next_to_a_change_point_but_not_on_it() {
     for off in [1.0, 1e-1, 1e-2] {
         let (mut solver, mechanism) = at(180.0 - off).expect("it closes");
         let mut rates = Rates::new(solver.pose().q.len());
-        let driver = Jet {
-            value: solver.pose().drivers[0],
-            first: 1.0,
-            second: -0.7,
-        };
+        let driver = Jet::new(solver.pose().drivers[0], [1.0, -0.7]);
         solver
             .solve_rates(|_| driver, &mut rates)
             .expect("it moves");

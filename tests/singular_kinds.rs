@@ -64,11 +64,7 @@ fn row(cranks: usize) -> String {
 fn blocks_that_depend_on_each_other_cross_together() {
     let (mut solver, _) = assembled(&parse(&row(6)));
     let mut rates = Rates::new(solver.pose().q.len());
-    let driver = Jet {
-        value: 0.0,
-        first: 1.0,
-        second: 0.4,
-    };
+    let driver = Jet::new(0.0, [1.0, 0.4]);
     for target in [3.13, PI, 3.15, 4.0, PI + 4e-4, 2.0, 2.0 + 3.0 * TAU] {
         go(&mut solver, target).unwrap_or_else(|blocked| panic!("{target}: {blocked:?}"));
         solver

@@ -8,7 +8,7 @@ use biela::mechanism::{Jet, Mechanism, Source};
 
 use crate::generated::{BAR, BAR_ANGLE};
 
-/// There and back again, for ever, in equal steps.
+/// A driver that goes there and back again, for ever, in equal steps.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     from: f64,
@@ -19,32 +19,32 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// A turn of a crank from 60° on at 10 rad/s.
+    /// Sweeps from one value to another in a number of steps, at a speed without sign.
+    #[must_use]
+    pub fn between(from: f64, to: f64, steps: u32, speed: f64) -> Self {
+        Self {
+            from,
+            step: (to - from) / f64::from(steps),
+            steps,
+            speed: speed.copysign(to - from),
+            at: 0,
+        }
+    }
+
+    /// Turns a crank once from 60° on at 10 rad/s.
     #[must_use]
     pub fn turn(steps: u32) -> Self {
-        Self {
-            from: FRAC_PI_3,
-            step: TAU / f64::from(steps),
-            steps,
-            speed: 10.0,
-            at: 0,
-        }
+        Self::between(FRAC_PI_3, FRAC_PI_3 + TAU, steps, 10.0)
     }
 
-    /// A scissor lift from 30° to 60° in 10,000 steps, at 1 m/s.
+    /// Raises a scissor lift from 30° to 60° at 1 m/s.
     #[must_use]
-    pub fn lift(cells: usize) -> Self {
+    pub fn lift(cells: usize, steps: u32) -> Self {
         let height = |angle: f64| cells as f64 * BAR * angle.sin();
-        Self {
-            from: height(BAR_ANGLE),
-            step: (height(2.0 * BAR_ANGLE) - height(BAR_ANGLE)) / 10_000.0,
-            steps: 10_000,
-            speed: 1.0,
-            at: 0,
-        }
+        Self::between(height(BAR_ANGLE), height(2.0 * BAR_ANGLE), steps, 1.0)
     }
 
-    /// The driver's next value and its rates.
+    /// Returns the driver's next value and its rates.
     #[must_use]
     pub fn step(&mut self) -> Jet {
         // Little work: the yardsticks pay for it, too.
@@ -58,15 +58,38 @@ impl Sweep {
         } else {
             self.at
         };
-        Jet {
-            value: self.from + self.step * f64::from(done),
-            first: if back { -self.speed } else { self.speed },
-            second: 3.0,
-        }
+        Jet::new(
+            self.from + self.step * f64::from(done),
+            [if back { -self.speed } else { self.speed }, 3.0],
+        )
     }
 }
 
-/// A mechanism from its text.
+/// A mechanism that moves in steps.
+pub trait Stepper {
+    /// Moves the drivers to their values and computes pose, velocity and acceleration of all
+    /// bodies for the drivers' rates.
+    fn step(&mut self, drivers: &[Jet]);
+
+    /// Coordinates of the last step, their first and their second rates: x, y, phi of all bodies,
+    /// then the contacts of cams.
+    fn state(&self) -> [Vec<f64>; 3];
+}
+
+/// Sorts outputs by order: positions, velocities, accelerations. `outputs` holds nine numbers per
+/// body, then three for a contact.
+#[must_use]
+pub fn by_order(outputs: &[f64]) -> [Vec<f64>; 3] {
+    [0, 1, 2].map(|order| {
+        let part = |each: &[f64]| {
+            let size = each.len() / 3;
+            each[size * order..][..size].to_vec()
+        };
+        outputs.chunks(9).flat_map(part).collect()
+    })
+}
+
+/// Reads a mechanism.
 ///
 /// # Panics
 ///
@@ -79,7 +102,7 @@ pub fn parse(text: &str) -> Arc<Mechanism> {
     }
 }
 
-/// A solver at its first pose, and a path on which nothing moves from there.
+/// Returns a solver at its first pose, and a path on which nothing moves from there.
 ///
 /// # Panics
 ///
@@ -88,18 +111,17 @@ pub fn parse(text: &str) -> Arc<Mechanism> {
 pub fn set_up(text: &str) -> (Solver, Path) {
     let mechanism = parse(text);
     let path = Path::new(&mechanism);
-    let mut solver = Solver::new(mechanism).expect("the driver matches");
+    let mut solver = Solver::new(mechanism).expect("the drivers match");
     solver.assemble(&path).expect("the mechanism closes");
     (solver, path)
 }
 
-/// A mechanism with one driver that biela moves.
+/// A mechanism that biela moves.
 #[derive(Debug)]
 pub struct Moving {
-    /// Stands at the last pose.
+    /// The solver at the last pose.
     pub solver: Solver,
-    /// The rates there.
-    pub rates: Rates,
+    rates: Rates,
     path: Path,
 }
 
@@ -114,27 +136,33 @@ impl Moving {
             path,
         }
     }
+}
 
-    /// Moves the driver to a value and gives all bodies the rates that go with its own. Returns
-    /// the Newton iterations.
-    ///
-    /// # Panics
-    ///
-    /// If something is in the way.
-    pub fn step(&mut self, driver: Jet) -> usize {
-        self.path.curves[0] = Curve::Input {
-            position: driver.value,
-            velocity: 0.0,
-            acceleration: 0.0,
-            jump: self.solver.pose().drivers[0] - driver.value,
-        };
-        let progress = self
-            .solver
+impl Stepper for Moving {
+    fn step(&mut self, drivers: &[Jet]) {
+        let now = &self.solver.pose().drivers;
+        for ((curve, driver), now) in self.path.curves.iter_mut().zip(drivers).zip(now) {
+            *curve = Curve::Input {
+                position: driver.value,
+                velocity: 0.0,
+                acceleration: 0.0,
+                jump: now - driver.value,
+            };
+        }
+        self.solver
             .follow(&self.path)
             .expect("nothing is in the way");
         self.solver
-            .solve_rates(|_| driver, &mut self.rates)
+            .solve_rates(|driver| drivers[driver.index()], &mut self.rates)
             .expect("the pose is regular");
-        progress.iterations as usize
+    }
+
+    fn state(&self) -> [Vec<f64>; 3] {
+        [
+            &self.solver.pose().q,
+            self.rates.velocity(),
+            self.rates.acceleration(),
+        ]
+        .map(<[f64]>::to_vec)
     }
 }

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "four_bar.h"
+#include "closed_form.h"
 
 /* One loop: a u(p) + b u(c) - l u(r) = d, where u(p) = (cos p, sin p) and p is the angle of the
  * body that drives it. */

@@ -1,26 +1,26 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "cycle.h"
 
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "clock.h"
 #include "fmi2Functions.h"
 
 #define FUNCTIONS(X)                                                                               \
     X(Instantiate) X(FreeInstance) X(SetupExperiment) X(EnterInitializationMode)                   \
     X(ExitInitializationMode) X(SetReal) X(DoStep) X(GetReal)
 
-enum { INPUTS = 3, FIRST_OUTPUT = 9, A_TURN = 10000 };
+enum { INPUTS = 3, FIRST_OUTPUT = 9 };
 
 struct cycle {
     void *library;
     fmi2Component component;
     fmi2CallbackFunctions callbacks;
+    unsigned turn, at; /* steps per turn; steps done of a turn there and back again */
     unsigned long long done;
+    fmi2ValueReference order[OUTPUTS];
     fmi2Real inputs[INPUTS], outputs[OUTPUTS];
 #define X(name) fmi2##name##TYPE *name;
     FUNCTIONS(X)
@@ -48,10 +48,13 @@ static struct cycle *fail(struct cycle *cycle, const char *what)
     return NULL;
 }
 
-struct cycle *cycle_open(const char *library, const char *guid, const char *resources)
+struct cycle *cycle_open(const char *library, const char *guid, const char *resources,
+                         unsigned turn, const unsigned order[OUTPUTS])
 {
     struct cycle *cycle = calloc(1, sizeof *cycle);
     if (!cycle) return NULL;
+    cycle->turn = turn;
+    for (unsigned k = 0; k < OUTPUTS; k++) cycle->order[k] = FIRST_OUTPUT + order[k];
     cycle->library = dlopen(library, RTLD_NOW | RTLD_LOCAL);
     if (!cycle->library) return fail(cycle, dlerror());
 #define X(name)                                                                                    \
@@ -76,34 +79,25 @@ struct cycle *cycle_open(const char *library, const char *guid, const char *reso
     return cycle;
 }
 
-static long long now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return 1000000000LL * time.tv_sec + time.tv_nsec;
-}
-
 long long cycle_run(struct cycle *cycle, unsigned long long cycles)
 {
     static const fmi2ValueReference in[INPUTS] = {0, 1, 2};
-    fmi2ValueReference out[OUTPUTS];
-    for (unsigned k = 0; k < OUTPUTS; k++) out[k] = FIRST_OUTPUT + k;
-
-    const double turn = 6.283185307179586, speed = 10.0;
-    const double angle = turn / A_TURN, size = angle / speed;
-    long long started = now();
+    const double circle = 6.283185307179586, speed = 10.0;
+    const unsigned turn = cycle->turn;
+    const double angle = circle / turn, size = angle / speed;
+    long long started = thread_time();
     for (unsigned long long end = cycle->done + cycles; cycle->done < end; cycle->done++) {
-        unsigned at = (unsigned)(cycle->done % (2 * A_TURN));
-        int back = at >= A_TURN;
-        cycle->inputs[0] = turn / 6.0 + angle * (back ? 2 * A_TURN - at : at);
+        if (++cycle->at == 2 * turn) cycle->at = 0;
+        const int back = cycle->at > turn;
+        cycle->inputs[0] = circle / 6.0 + angle * (back ? 2 * turn - cycle->at : cycle->at);
         cycle->inputs[1] = back ? -speed : speed;
         cycle->inputs[2] = 3.0;
         if (cycle->SetReal(cycle->component, in, INPUTS, cycle->inputs) != fmi2OK ||
             cycle->DoStep(cycle->component, size * (double)cycle->done, size, fmi2True) != fmi2OK ||
-            cycle->GetReal(cycle->component, out, OUTPUTS, cycle->outputs) != fmi2OK)
+            cycle->GetReal(cycle->component, cycle->order, OUTPUTS, cycle->outputs) != fmi2OK)
             return -1;
     }
-    return now() - started;
+    return thread_time() - started;
 }
 
 const double *cycle_inputs(const struct cycle *cycle) { return cycle->inputs; }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "fmi2Functions.h"
-#include "four_bar.h"
+#include "closed_form.h"
 
 enum { ANGLE, VELOCITY, ACCELERATION, CRANK, COUPLER, ROCKER, BASE, FIRST_OUTPUT = 9 };
 enum { REALS = FIRST_OUTPUT + OUTPUTS };

@@ -1,8 +1,10 @@
 #define _GNU_SOURCE /* sincos */
 
-#include "four_bar.h"
+#include "closed_form.h"
 
 #include <math.h>
+
+const struct four_bar FOUR_BAR = {.crank = 0.10, .coupler = 0.25, .rocker = 0.30, .base = 0.40};
 
 void four_bar_solve(const struct four_bar *lengths, double angle, double velocity,
                     double acceleration, double out[OUTPUTS])

@@ -96,7 +96,7 @@ impl Motion {
             };
             *curve = Curve::Input {
                 position: signal.value,
-                velocity: signal.first,
+                velocity: signal.first(),
                 acceleration: 0.0,
                 jump: value - signal.value,
             };

@@ -176,11 +176,10 @@ impl Signals {
         let mut jet = self.interpolate(signal.position(), time);
         let [_, velocity, acceleration] = &signal.columns;
         if let Some(column) = velocity {
-            let velocity = self.interpolate(column, time);
-            jet.first = velocity.value;
+            jet.derivatives[0] = self.interpolate(column, time).value;
         }
         if let Some(column) = acceleration {
-            jet.second = self.interpolate(column, time).value;
+            jet.derivatives[1] = self.interpolate(column, time).value;
         }
         Some(jet)
     }
@@ -209,11 +208,7 @@ impl Signals {
         } else {
             time - self.times[before]
         };
-        Jet {
-            value: values[before] + elapsed * slope,
-            first: slope,
-            second: 0.0,
-        }
+        Jet::new(values[before] + elapsed * slope, [slope, 0.0])
     }
 }
 

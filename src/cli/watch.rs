@@ -17,7 +17,8 @@ use super::message::{Message, tell};
 use super::originals::tables;
 use super::output::print;
 use super::render::render;
-use crate::drawing::animation::{escape, fill, page_with, player};
+use crate::drawing::animation::{fill, page_with, player};
+use crate::drawing::svg::escape;
 use crate::mechanism::{Mechanism, Source};
 use server::{Answer, Server};
 

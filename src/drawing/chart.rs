@@ -214,12 +214,7 @@ impl Plot<'_> {
     }
 
     fn line(&mut self, layer: Layer, outline: Outline, stroke: Stroke) {
-        self.marks.push(Mark {
-            layer,
-            outline,
-            fill: None,
-            stroke: Some(stroke),
-        });
+        self.marks.push(Mark::line(layer, outline, stroke));
     }
 
     /// What the panel has and its lines' names, wrapped; returns where the panel begins.
@@ -256,10 +251,14 @@ impl Plot<'_> {
             let x = self.on_x(value);
             grid.add_line(&[Point::new(x, top), Point::new(x, bottom)]);
         }
-        self.line(Layer::Grid, grid, solid(Colour::GROUND.tint(0.25), FRAME));
+        self.line(
+            Layer::Grid,
+            grid,
+            Stroke::solid(Colour::GROUND.tint(0.25), FRAME),
+        );
         if low < 0.0 && high > 0.0 {
             let zero = [Point::new(left, on_y(0.0)), Point::new(right, on_y(0.0))];
-            let stroke = solid(Colour::GROUND.tint(0.7), FRAME);
+            let stroke = Stroke::solid(Colour::GROUND.tint(0.7), FRAME);
             self.line(Layer::Grid, Outline::line(&zero), stroke);
         }
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
@@ -276,7 +275,7 @@ impl Plot<'_> {
             }
             self.line(Layer::Curve, outline, look(line.look));
         }
-        self.line(Layer::Scale, frame, solid(Colour::GROUND, FRAME));
+        self.line(Layer::Scale, frame, Stroke::solid(Colour::GROUND, FRAME));
     }
 
     fn x_ticks(&self) -> Ticks {
@@ -301,14 +300,6 @@ impl Plot<'_> {
 
 fn width(text: &str) -> f64 {
     lettering::width(text, CAPITALS)
-}
-
-fn solid(colour: Colour, width: f64) -> Stroke {
-    Stroke {
-        colour,
-        width,
-        dashes: &[],
-    }
 }
 
 fn look(number: usize) -> Stroke {

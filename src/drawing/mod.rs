@@ -1,10 +1,18 @@
 //! Drawings of mechanisms: kinematic diagrams as engineers draw them.
 //!
-//! A [`Scene`] says what there is to draw, in the frames of the bodies: links, joints, drivers,
-//! ground. It is the same for every pose. A [`Sheet`] has it on paper at one pose, with lines and
-//! letters as large as the reader needs them whatever the mechanism's size. [`svg`] and [`png`]
+//! A [`Scene`] holds the symbols of a mechanism in the frames of its bodies: links, joints,
+//! drivers, ground. It is the same for every pose. A [`Sheet`] has the scene on paper at one pose,
+//! with lines and letters of a readable size whatever the mechanism's size. [`svg`] and [`png`]
 //! write a sheet. A [`Chart`] is drawn on a sheet as well; an [`animation`] is a page on which the
 //! mechanism moves.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `outline` | lines and curves in the plane |
+//! | `anchor`, `attachment` | frames on bodies, and frames that marks move with |
+//! | `sheet`, `label` | marks and texts on paper, and places of names |
+//! | [`symbol`] | one file per symbol: its joint, its shape, its motion |
+//! | `sweep`, `scene`, `layout` | the motion shown, all symbols, and their fit on a sheet |
 //!
 //! ```
 //! use biela::drawing::{Scene, Sheet, svg};
@@ -23,23 +31,26 @@
 //! assert!(picture.contains("coupler"));
 //! ```
 
+mod anchor;
 pub mod animation;
+mod attachment;
 mod chart;
-mod compose;
-mod labels;
+mod label;
+mod layout;
 mod lettering;
-mod motion;
 mod outline;
 mod palette;
 pub mod png;
-mod rider;
 mod scene;
 mod sheet;
 pub mod svg;
-mod symbols;
+mod sweep;
+pub mod symbol;
 mod ticks;
 
+pub use anchor::{Anchor, Frame};
 pub use chart::{Axis, Chart, Line, Panel};
 pub use palette::Colour;
-pub use scene::{Anchor, Frame, Held, Scene, Symbol, WaySide};
+pub use scene::Scene;
 pub use sheet::Sheet;
+pub use symbol::Symbol;

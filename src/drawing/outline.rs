@@ -8,13 +8,13 @@ pub(super) type Point = Vector2<f64>;
 /// A piece of an [`Outline`]; each starts where the one before ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Segment {
-    /// Starts anew without drawing.
+    /// The start of another line.
     Move(Point),
     /// A straight line.
     Line(Point),
     /// A cubic Bézier curve: two control points and the end.
     Curve([Point; 3]),
-    /// Back to where the piece started.
+    /// A straight line back to the start.
     Close,
 }
 
@@ -23,28 +23,28 @@ pub(super) enum Segment {
 pub(super) struct Outline(pub(super) Vec<Segment>);
 
 impl Outline {
-    /// A polyline.
+    /// Returns a polyline.
     pub(super) fn line(points: &[Point]) -> Self {
         let mut outline = Self::default();
         outline.add_line(points);
         outline
     }
 
-    /// A closed polygon.
+    /// Returns a closed polygon.
     pub(super) fn polygon(points: &[Point]) -> Self {
         let mut outline = Self::line(points);
         outline.0.push(Segment::Close);
         outline
     }
 
-    /// A circle.
+    /// Returns a circle.
     pub(super) fn circle(center: Point, radius: f64) -> Self {
         let mut outline = Self::arc(center, radius, 0.0, std::f64::consts::TAU);
         outline.0.push(Segment::Close);
         outline
     }
 
-    /// An arc from one direction, by an angle that may be negative.
+    /// Returns an arc from one direction by an angle, which may be negative.
     pub(super) fn arc(center: Point, radius: f64, from: f64, by: f64) -> Self {
         let mut outline = Self::default();
         outline
@@ -54,7 +54,7 @@ impl Outline {
         outline
     }
 
-    /// A rectangle about a point, its length along a direction.
+    /// Returns a rectangle about a point, its length along a direction.
     pub(super) fn block(center: Point, along: Point, [length, height]: [f64; 2]) -> Self {
         let half = 0.5 * length * along;
         let up = 0.5 * height * across(along);
@@ -66,8 +66,8 @@ impl Outline {
         ])
     }
 
-    /// The outline at a distance around the convex hull of points: a disc, a rounded bar or a
-    /// rounded polygon.
+    /// Returns the outline at a distance around the convex hull of points: a disc, a rounded bar
+    /// or a rounded polygon.
     pub(super) fn around(points: &[Point], distance: f64) -> Self {
         let hull = convex_hull(points);
         if let [center] = hull[..] {
@@ -92,6 +92,7 @@ impl Outline {
         outline
     }
 
+    /// Adds a polyline.
     pub(super) fn add_line(&mut self, points: &[Point]) {
         for (index, point) in points.iter().enumerate() {
             self.0.push(if index == 0 {
@@ -102,7 +103,7 @@ impl Outline {
         }
     }
 
-    /// Goes on from the arc's first point.
+    /// Continues along an arc from its first point.
     fn add_arc(&mut self, center: Point, radius: f64, from: f64, by: f64) {
         // Up to a quarter turn a cubic is within 3e-4 of the radius.
         let pieces = (by.abs() / std::f64::consts::FRAC_PI_2 - 1e-9)
@@ -124,7 +125,8 @@ impl Outline {
         }
     }
 
-    /// The straight pieces that stand for it, fine enough to measure distances on a sheet.
+    /// Returns straight pieces in place of the outline, fine enough to measure distances on a
+    /// sheet.
     pub(super) fn flattened(&self) -> Vec<[Point; 2]> {
         const PIECES: usize = 6;
         let mut pieces = Vec::new();
@@ -159,7 +161,7 @@ impl Outline {
         pieces
     }
 
-    /// Applies a map of the plane that keeps straight lines straight.
+    /// Returns the outline under a map of the plane that keeps straight lines straight.
     pub(super) fn map(&self, map: impl Fn(Point) -> Point) -> Self {
         let segments = self.0.iter().map(|segment| match *segment {
             Segment::Move(to) => Segment::Move(map(to)),
@@ -171,30 +173,38 @@ impl Outline {
     }
 }
 
-/// The unit vector of an angle.
+/// Returns the unit vector of an angle.
 pub(super) fn direction(angle: f64) -> Point {
     Point::new(angle.cos(), angle.sin())
 }
 
-/// The angle of a vector.
+/// Returns the angle of a vector.
 pub(super) fn angle(v: Point) -> f64 {
     v.y.atan2(v.x)
 }
 
-/// A vector turned by a quarter turn, counter-clockwise.
+/// Returns a vector turned by a quarter turn, counter-clockwise.
 pub(super) fn across(v: Point) -> Point {
     Point::new(-v.y, v.x)
 }
 
-/// A unit vector along `v`, or along the x-axis if `v` has no length.
+/// Returns the unit vector along `v`, or along the x-axis if `v` has no length.
 pub(super) fn unit(v: Point) -> Point {
     v.try_normalize(1e-12).unwrap_or_else(Point::x)
 }
 
-/// The corners of the convex hull, counter-clockwise from the leftmost, without points that lie
+/// Whether a point lies inside closed lines: a ray from it meets them an odd number of times.
+pub(super) fn contains(pieces: impl Iterator<Item = [Point; 2]>, p: Point) -> bool {
+    let crossed = pieces.filter(|[a, b]| {
+        (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
+    });
+    crossed.count() % 2 == 1
+}
+
+/// Returns the corners of the convex hull, counter-clockwise from the leftmost, without points
 /// on its edges to within rounding (Jarvis's march).
 pub(super) fn convex_hull(points: &[Point]) -> Vec<Point> {
-    // What is farthest from a point is a corner.
+    // The farthest point from any point is a corner.
     let far = |from: &Point| {
         let distance = |p: &&Point| (*p - from).norm();
         let nearer = |a: &&Point, b: &&Point| distance(a).total_cmp(&distance(b));
@@ -233,17 +243,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_hull_leaves_out_what_lies_inside_or_on_an_edge() {
+    fn hull_leaves_out_points_inside_and_on_edges() {
         let points = [[0, 0], [2, 0], [1, 0], [1, 1], [2, 2], [0, 2], [0, 0]]
             .map(|[x, y]| Point::new(f64::from(x), f64::from(y)));
         let hull = convex_hull(&points);
         let expected = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
         assert_eq!(hull, expected.map(|[x, y]| Point::new(x, y)));
-        // Points on a line span their two ends only, wherever the line leads.
+        // Points on a line have its two ends as their hull, in any direction.
         let line: Vec<_> = (0..5).map(|k| f64::from(k) * direction(0.3)).collect();
         assert_eq!(convex_hull(&line), [line[0], line[4]]);
         assert_eq!(convex_hull(&points[..1]), points[..1]);
-        // Rounding puts neither the points of a vertical edge nor equal ones in an order.
+        // Rounding orders neither the points of a vertical edge nor equal points.
         let e = 1e-16;
         let upright =
             [(0.0, 0.0), (e, 0.5), (-e, 1.0), (2.0 * e, 0.0)].map(|(x, y)| Point::new(x, y));
@@ -255,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_around_points_keeps_its_distance() {
+    fn outline_around_points_keeps_its_distance() {
         let points = [Point::zeros(), Point::new(10.0, 0.0), Point::new(3.0, 4.0)];
         for count in 1..=3 {
             let corners = &points[..count];

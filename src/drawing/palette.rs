@@ -1,4 +1,4 @@
-//! Colours that people with any colour vision tell apart, on white.
+//! Colours on white that people with any colour vision can tell apart.
 
 /// An opaque colour: red, green, blue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,15 +7,15 @@ pub struct Colour(pub [u8; 3]);
 impl Colour {
     /// Dark lines: joints, labels of points.
     pub const INK: Self = Self([0x22, 0x22, 0x22]);
-    /// Ground and its hatching.
+    /// Ground, with its hatching.
     pub const GROUND: Self = Self([0x55, 0x55, 0x55]);
     /// Paper.
     pub const WHITE: Self = Self([0xff, 0xff, 0xff]);
-    /// Drivers: vermillion of the palette of Okabe and Ito, which no body has.
+    /// Drivers: the vermillion of the palette of Okabe and Ito, which no body has.
     pub const DRIVER: Self = Self([0xd5, 0x5e, 0x00]);
 
-    /// The colour of a body, by its place in the mechanism: the palette of Okabe and Ito (2008)
-    /// without vermillion and black, its yellow darkened for white paper, and a slate.
+    /// Returns the colour of a body by its index in the mechanism: the palette of Okabe and Ito
+    /// (2008) without vermillion and black, its yellow darkened for white paper, and a slate.
     #[must_use]
     pub fn of_body(index: usize) -> Self {
         const BODIES: [Colour; 7] = [
@@ -30,13 +30,13 @@ impl Colour {
         BODIES[index % BODIES.len()]
     }
 
-    /// Mixed with white: the whole colour for 1, white for 0.
+    /// Returns the colour mixed with white: the whole colour for 1, white for 0.
     #[must_use]
     pub fn tint(self, part: f64) -> Self {
         self.mix(Self::WHITE, part)
     }
 
-    /// Mixed with black: the whole colour for 1, black for 0.
+    /// Returns the colour mixed with black: the whole colour for 1, black for 0.
     #[must_use]
     pub fn shade(self, part: f64) -> Self {
         self.mix(Self([0; 3]), part)
@@ -51,7 +51,7 @@ impl Colour {
         Self(mixed)
     }
 
-    /// As `#rrggbb`.
+    /// Returns the colour as `#rrggbb`.
     #[must_use]
     pub fn hex(self) -> String {
         let [red, green, blue] = self.0;

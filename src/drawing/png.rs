@@ -16,11 +16,11 @@ use super::sheet::{CAPITALS, Sheet};
 /// Width of the strokes of letters.
 const LETTER_STROKE: f64 = 1.15;
 
-/// The largest picture, in pixels along a side.
+/// Most pixels along a side of a picture.
 pub const MOST_PIXELS: u32 = 16_384;
 
-/// The drawing as a PNG file `width` pixels wide, on white or on nothing; `None` for a picture
-/// without pixels or with more than [`MOST_PIXELS`] along a side.
+/// Returns the drawing as a PNG file `width` pixels wide, on white or transparent; `None` for a
+/// picture without pixels or with more than [`MOST_PIXELS`] along a side.
 ///
 /// Letters are made of strokes: no font is needed.
 #[must_use]
@@ -36,7 +36,7 @@ pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
     }
     let transform = Transform::from_scale(scale as f32, scale as f32);
     for mark in &sheet.marks {
-        // An outline without extent has nothing to fill or to draw.
+        // An outline without extent has no path.
         let Some(path) = path(&mark.outline) else {
             continue;
         };
@@ -81,8 +81,8 @@ pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
     Some(encode(&pixels))
 }
 
-/// The pixels as a PNG file: 8 bits a channel with opacity, each row as its difference from the
-/// one above, which compresses lines and empty paper well.
+/// Returns the pixels as a PNG file: 8 bits per channel with opacity, each row as its difference
+/// from the row above, which compresses lines and empty paper well.
 fn encode(pixels: &Pixmap) -> Vec<u8> {
     const UP: u8 = 2;
     let row_length = 4 * pixels.width() as usize;
@@ -107,7 +107,7 @@ fn encode(pixels: &Pixmap) -> Vec<u8> {
     let mut header = Vec::new();
     header.extend(pixels.width().to_be_bytes());
     header.extend(pixels.height().to_be_bytes());
-    // Bits a channel; red, green, blue, opacity; the only compression, filters, no interlacing.
+    // Bits per channel; red, green, blue, opacity; the only compression, filters, no interlacing.
     header.extend([8, 6, 0, 0, 0]);
     let mut file = b"\x89PNG\r\n\x1a\n".to_vec();
     for (kind, content) in [(b"IHDR", &header), (b"IDAT", &data), (b"IEND", &Vec::new())] {

@@ -1,141 +1,100 @@
 //! A sheet as SVG 1.1.
 
 use std::fmt::Write as _;
-use std::io;
-
-use quick_xml::events::{BytesDecl, BytesText, Event};
-use quick_xml::writer::Writer;
 
 use super::outline::{Outline, Point, Segment};
 use super::palette::Colour;
 use super::sheet::{CAPITALS, Layer, Mark, Sheet, Text};
 
-pub(super) type Xml = Writer<Vec<u8>>;
-
 /// Fonts that browsers have or replace by one of theirs.
 pub(super) const FONTS: &str = "Helvetica, Arial, sans-serif";
 /// Size of a font over the height of its capitals.
 pub(super) const FONT_SIZE: f64 = 1.39;
+/// Ends and corners of lines.
+pub(super) const ROUND: &str = r#"stroke-linecap="round" stroke-linejoin="round""#;
 
-/// The drawing as an SVG document `width` pixels wide, on white or on nothing.
+/// Returns the drawing as an SVG document `width` pixels wide, on white or transparent.
 ///
-/// The same drawing gives the same bytes. Texts are texts, as wide as the drawing has left room
-/// for, whatever the font is.
+/// The same drawing gives the same bytes. Texts are texts, as wide as the space that the drawing
+/// has left for them, whatever the font is.
 #[must_use]
 pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> String {
-    let mut xml = Writer::new_with_indent(Vec::new(), b' ', 1);
-    let written = write_document(&mut xml, sheet, width, transparent);
-    written.expect("writing to memory does not fail");
-    let mut bytes = xml.into_inner();
-    bytes.push(b'\n');
-    String::from_utf8(bytes).expect("all that is written is text")
-}
-
-fn write_document(xml: &mut Xml, sheet: &Sheet, width: u32, transparent: bool) -> io::Result<()> {
-    xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     let height = number(f64::from(width) * sheet.height / sheet.width);
-    let view_box = format!("0 0 {} {}", number(sheet.width), number(sheet.height));
-    let width = width.to_string();
-    xml.create_element("svg")
-        .with_attributes([
-            ("xmlns", "http://www.w3.org/2000/svg"),
-            ("version", "1.1"),
-            ("width", &width),
-            ("height", &height),
-            ("viewBox", &view_box),
-            ("role", "img"),
-        ])
-        .write_inner_content(|xml| {
-            for (element, text) in [("title", &sheet.title), ("desc", &sheet.description)] {
-                if !text.is_empty() {
-                    xml.create_element(element)
-                        .write_text_content(BytesText::new(text))?;
-                }
-            }
-            if !transparent {
-                xml.create_element("rect")
-                    .with_attributes([
-                        ("width", number(sheet.width).as_str()),
-                        ("height", &number(sheet.height)),
-                        ("fill", &Colour::WHITE.hex()),
-                    ])
-                    .write_empty()?;
-            }
-            for layer in Layer::ALL {
-                write_layer(xml, layer, &sheet.marks)?;
-            }
-            write_texts(xml, &sheet.texts)
-        })?;
-    Ok(())
-}
-
-fn write_layer(xml: &mut Xml, layer: Layer, marks: &[Mark]) -> io::Result<()> {
-    let mut marks = marks.iter().filter(|mark| mark.layer == layer).peekable();
-    if marks.peek().is_none() {
-        return Ok(());
-    }
-    xml.create_element("g")
-        .with_attributes([
-            ("class", layer.name()),
-            ("stroke-linecap", "round"),
-            ("stroke-linejoin", "round"),
-        ])
-        .write_inner_content(|xml| marks.try_for_each(|mark| write_mark(xml, mark)))?;
-    Ok(())
-}
-
-pub(super) fn write_mark(xml: &mut Xml, mark: &Mark) -> io::Result<()> {
-    let mut element = xml
-        .create_element("path")
-        .with_attribute(("d", path_data(&mark.outline).as_str()));
-    element = match mark.fill {
-        None => element.with_attribute(("fill", "none")),
-        Some((colour, opacity)) => {
-            element = element.with_attribute(("fill", colour.hex().as_str()));
-            if opacity < 1.0 {
-                element = element.with_attribute(("fill-opacity", number(opacity).as_str()));
-            }
-            element
+    let [w, h] = [sheet.width, sheet.height].map(number);
+    let mut svg = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{width}\" \
+         height=\"{height}\" viewBox=\"0 0 {w} {h}\" role=\"img\">\n"
+    );
+    for (element, text) in [("title", &sheet.title), ("desc", &sheet.description)] {
+        if !text.is_empty() {
+            svg += &format!(" <{element}>{}</{element}>\n", escape(text));
         }
-    };
+    }
+    if !transparent {
+        let white = Colour::WHITE.hex();
+        svg += &format!(" <rect width=\"{w}\" height=\"{h}\" fill=\"{white}\"/>\n");
+    }
+    for (layer, name) in Layer::ALL {
+        let marks: Vec<&Mark> = (sheet.marks.iter()).filter(|m| m.layer == layer).collect();
+        if marks.is_empty() {
+            continue;
+        }
+        svg += &format!(" <g class=\"{name}\" {ROUND}>\n");
+        for mark in marks {
+            svg += &format!("  {}\n", path(mark, ""));
+        }
+        svg += " </g>\n";
+    }
+    let size = number(CAPITALS * FONT_SIZE);
+    svg += &format!(" <g class=\"labels\" font-family=\"{FONTS}\" font-size=\"{size}\">\n");
+    for text in &sheet.texts {
+        let place = format!(
+            "textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"",
+            number(text.width())
+        );
+        svg += &format!("  {}\n", text_element(text, text.start.x, &place));
+    }
+    svg + " </g>\n</svg>\n"
+}
+
+/// Returns the element of a line or an area, with further attributes.
+pub(super) fn path(mark: &Mark, attributes: &str) -> String {
+    let mut path = format!("<path d=\"{}\"{attributes}", path_data(&mark.outline));
+    match mark.fill {
+        None => path += " fill=\"none\"",
+        Some((colour, opacity)) => {
+            path += &format!(" fill=\"{}\"", colour.hex());
+            if opacity < 1.0 {
+                path += &format!(" fill-opacity=\"{}\"", number(opacity));
+            }
+        }
+    }
     if let Some(stroke) = mark.stroke {
-        element = element
-            .with_attribute(("stroke", stroke.colour.hex().as_str()))
-            .with_attribute(("stroke-width", number(stroke.width).as_str()));
+        let (colour, width) = (stroke.colour.hex(), number(stroke.width));
+        path += &format!(" stroke=\"{colour}\" stroke-width=\"{width}\"");
         if !stroke.dashes.is_empty() {
             let dashes: Vec<_> = stroke.dashes.iter().copied().map(number).collect();
-            element = element
-                .with_attribute(("stroke-dasharray", dashes.join(" ").as_str()))
-                .with_attribute(("stroke-linecap", "butt"));
+            let dashes = dashes.join(" ");
+            path += &format!(" stroke-dasharray=\"{dashes}\" stroke-linecap=\"butt\"");
         }
     }
-    element.write_empty()?;
-    Ok(())
+    path + "/>"
 }
 
-fn write_texts(xml: &mut Xml, texts: &[Text]) -> io::Result<()> {
-    let size = number(CAPITALS * FONT_SIZE);
-    xml.create_element("g")
-        .with_attributes([
-            ("class", "labels"),
-            ("font-family", FONTS),
-            ("font-size", &size),
-        ])
-        .write_inner_content(|xml| {
-            texts.iter().try_for_each(|text| {
-                xml.create_element("text")
-                    .with_attributes([
-                        ("x", number(text.start.x).as_str()),
-                        ("y", &number(text.start.y)),
-                        ("textLength", &number(text.width())),
-                        ("lengthAdjust", "spacingAndGlyphs"),
-                        ("fill", &text.colour.hex()),
-                    ])
-                    .write_text_content(BytesText::new(&text.content))
-                    .map(|_| ())
-            })
-        })?;
-    Ok(())
+/// Returns the element of a text at a place along x, with further attributes.
+pub(super) fn text_element(text: &Text, x: f64, attributes: &str) -> String {
+    let [x, y] = [x, text.start.y].map(number);
+    let gap = if attributes.is_empty() { "" } else { " " };
+    let colour = text.colour.hex();
+    let content = escape(&text.content);
+    format!("<text x=\"{x}\" y=\"{y}\"{gap}{attributes} fill=\"{colour}\">{content}</text>")
+}
+
+/// Returns a text as text or as the value of an attribute in XML and HTML.
+#[must_use]
+pub fn escape(text: &str) -> String {
+    quick_xml::escape::escape(text).into_owned()
 }
 
 fn path_data(outline: &Outline) -> String {
@@ -158,10 +117,9 @@ fn path_data(outline: &Outline) -> String {
     data
 }
 
-/// A number with at most two decimals, and the same for numbers that rounding tells apart.
+/// Returns a number with at most two decimals; numbers that differ by rounding look the same.
 pub(super) fn number(value: f64) -> String {
-    // Half way between two hundredths lies what is meant to be there: rounding to millionths
-    // first brings back what computing has moved by less.
+    // Rounding to millionths first restores a number half way between two hundredths.
     let millionths = (value * 1e6).round() / 1e6;
     let hundredths = (millionths * 1e2).round() / 1e2;
     // Adding zero makes a negative zero positive.

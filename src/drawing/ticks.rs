@@ -3,30 +3,30 @@
 /// An axis between two round numbers, with ticks at round numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ticks {
-    /// From the first multiple of the step to the last.
+    /// The multiples of the step from the first to the last.
     pub(super) values: Vec<f64>,
-    /// Decimals that tell neighbours apart.
+    /// Decimals at which neighbours differ.
     decimals: usize,
 }
 
 /// Steps within a decade.
 const DECIMAL: [f64; 3] = [1.0, 2.0, 5.0];
-/// Steps of angles from ten degrees on, that divide the turn.
+/// Steps of angles from ten degrees up that divide the turn.
 const DEGREES: [f64; 9] = [10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0, 360.0];
 
 impl Ticks {
-    /// Ticks that enclose `low` to `high`, at most about `most` of them; `degrees` prefers parts
-    /// of the turn. What differs by rounding only counts as one number.
+    /// Returns ticks that enclose `low` to `high`, at most about `most` of them; `degrees` prefers
+    /// parts of the turn. Numbers that differ by rounding count as one number.
     pub(super) fn around([low, high]: [f64; 2], most: f64, degrees: bool) -> Self {
         let [low, high] = widened([low, high]);
         let step = step((high - low) / most, degrees);
-        // Rounding does not make room for one more.
+        // Rounding adds no tick.
         let first = (low / step + 1e-9).floor();
         let last = (high / step - 1e-9).ceil().max(first + 1.0);
         Self::from_multiples(first, last, step)
     }
 
-    /// Ticks inside `low` to `high`, at most about `most` of them.
+    /// Returns ticks inside `low` to `high`, at most about `most` of them.
     pub(super) fn within([low, high]: [f64; 2], most: f64, degrees: bool) -> Self {
         let [low, high] = widened([low, high]);
         let step = step((high - low) / most, degrees);
@@ -48,21 +48,21 @@ impl Ticks {
         }
     }
 
-    /// The first and the last.
+    /// Returns the first and the last tick.
     pub(super) fn range(&self) -> [f64; 2] {
         let end = |value: Option<&f64>| value.copied().unwrap_or(0.0);
         [end(self.values.first()), end(self.values.last())]
     }
 
-    /// A tick as it is written.
+    /// Returns a tick as text.
     pub(super) fn text(&self, value: f64) -> String {
         format!("{value:.*}", self.decimals)
     }
 }
 
-/// A range with some length.
+/// Returns a range with some length.
 fn widened([low, high]: [f64; 2]) -> [f64; 2] {
-    /// What is smaller than this, in SI units or degrees, is rounding.
+    /// Largest number in SI units or degrees that counts as rounding.
     const NOTHING: f64 = 1e-9;
     let size = low.abs().max(high.abs());
     if high - low > NOTHING.max(1e-9 * size) {
@@ -74,7 +74,7 @@ fn widened([low, high]: [f64; 2]) -> [f64; 2] {
     [middle - half, middle + half]
 }
 
-/// The smallest round number that is not less.
+/// Returns the smallest round number that is not less.
 fn step(least: f64, degrees: bool) -> f64 {
     let enough = |step: &f64| *step >= least * (1.0 - 1e-9);
     if degrees && least > 5.0 {

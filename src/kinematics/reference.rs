@@ -61,7 +61,7 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
         Target::Driver(driver) => drivers[driver.index()],
     };
     let order = equations.len();
-    let nu = DVector::from_fn(order, |row, _| driver(row).first);
+    let nu = DVector::from_fn(order, |row, _| driver(row).first());
     let velocity = DVector::from_column_slice(rates.velocity());
     let off = (solve(&nu) - &velocity).amax();
     let size = largest(rates.velocity());
@@ -71,7 +71,7 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
         let quadratic = equations[row]
             .constraint
             .quadratic(&solver.at, rates.velocity());
-        driver(row).second - quadratic
+        driver(row).second() - quadratic
     });
     let acceleration = DVector::from_column_slice(rates.acceleration());
     let off = (solve(&gamma) - &acceleration).amax();
@@ -121,11 +121,7 @@ fn every_shipped_mechanism_agrees() {
         let source = Source::open(name.clone(), &file).expect("it can be read");
         let (mut solver, mut path) = assembled(&source);
         let drivers: Vec<_> = (0..solver.pose.drivers.len())
-            .map(|k| Jet {
-                value: 0.0,
-                first: 1.0 + 0.5 * k as f64,
-                second: 0.3 - k as f64,
-            })
+            .map(|k| Jet::new(0.0, [1.0 + 0.5 * k as f64, 0.3 - k as f64]))
             .collect();
         for _ in 0..10 {
             let rcond = check(&mut solver, &drivers, &name);
@@ -151,11 +147,7 @@ fn generated_mechanisms_agree() {
     for (index, text) in texts.iter().enumerate() {
         let name = format!("mechanism {index}");
         let (mut solver, mut path) = assembled(&Source::new(name.clone(), text));
-        let driver = Jet {
-            value: 0.0,
-            first: 1.3,
-            second: -0.7,
-        };
+        let driver = Jet::new(0.0, [1.3, -0.7]);
         for _ in 0..10 {
             check(&mut solver, &[driver], &name);
             move_on(&mut solver, &mut path, 0.05);
@@ -272,7 +264,7 @@ proptest! {
         let mut solver = Solver::new(Arc::new(mechanism)).expect("the drivers match");
         // Not each of them closes.
         prop_assume!(solver.assemble(&path).is_ok());
-        let driver = Jet { value: 0.0, first: 1.3, second: -0.7 };
+        let driver = Jet::new(0.0, [1.3, -0.7]);
         for _ in 0..5 {
             // Where a position is all but singular both sides are as uncertain as each other, and
             // next to a change point the solver is the more accurate one.

@@ -122,11 +122,7 @@ pub(super) const SINGULAR_HERE: Error = Error::Singular {
 };
 
 /// The rates of a single driver with respect to its own value.
-pub(super) const UNIT: [Jet; 1] = [Jet {
-    value: 0.0,
-    first: 1.0,
-    second: 0.0,
-}];
+pub(super) const UNIT: [Jet; 1] = [Jet::new(0.0, [1.0, 0.0])];
 
 impl Solver {
     /// Writes down the equations, analyses their structure and makes all storage.
@@ -285,7 +281,7 @@ impl Solver {
     ) -> Result<(), Error> {
         self.refresh()?;
         let finite = if self.has_unit() {
-            let Jet { first, second, .. } = driver(DriverId(0));
+            let [first, second] = driver(DriverId(0)).derivatives;
             self.flow.run(first, second, rates)
         } else {
             for (index, jet) in self.host_drivers.iter_mut().enumerate() {
@@ -312,10 +308,8 @@ impl Solver {
     #[cold]
     fn why_no_rates(&self, driver: impl Fn(DriverId) -> Jet) -> Error {
         let mut drivers = (0..self.pose.drivers.len()).map(DriverId);
-        let endless = drivers.find(|&id| {
-            let Jet { first, second, .. } = driver(id);
-            !(first.is_finite() && second.is_finite())
-        });
+        let endless =
+            drivers.find(|&id| !driver(id).derivatives.iter().all(|rate| rate.is_finite()));
         endless.map_or(SINGULAR_HERE, |id| Error::NoMotion {
             driver: self.system.describe_driver(id),
             quantity: "velocity or acceleration",
@@ -330,11 +324,8 @@ impl Solver {
         let mut gradient = Gradient::new();
         measure.gradient(&self.at, &mut gradient);
         let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
-        Jet {
-            value: measure.value(&self.at),
-            first: gradient.dot(q_dot),
-            second: gradient.dot(q_ddot) + measure.quadratic(&self.at, q_dot),
-        }
+        let acceleration = gradient.dot(q_ddot) + measure.quadratic(&self.at, q_dot);
+        Jet::new(measure.value(&self.at), [gradient.dot(q_dot), acceleration])
     }
 
     /// Point, velocity and acceleration of a marker: the x component, then the y component.
@@ -343,10 +334,9 @@ impl Solver {
         let marker = self.at.marker(marker);
         let velocity = point_velocity(marker, rates.velocity());
         let acceleration = point_acceleration(marker, rates.velocity(), rates.acceleration());
-        [0, 1].map(|component| Jet {
-            value: marker.point[component],
-            first: velocity[component],
-            second: acceleration[component],
+        [0, 1].map(|component| {
+            let rates = [velocity[component], acceleration[component]];
+            Jet::new(marker.point[component], rates)
         })
     }
 

@@ -6,12 +6,11 @@
 
 use super::configuration::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
 use crate::mechanism::{
-    BodyId, Dual, Expression, Jet3, MarkerId, Mechanism, Number, ParameterId, ProfileAlong, Scalar,
+    BodyId, Dual, Expression, MarkerId, Mechanism, Number, ParameterId, ProfileAlong, Taylor,
 };
 
 /// A quantity with its first two derivatives in time, each with its change along the direction.
-/// The third derivative is of no account.
-pub type Varied = Jet3<Dual>;
+pub type Varied = Taylor<Dual, 2>;
 
 /// A vector in the plane.
 pub type VariedVector = [Varied; 2];
@@ -65,14 +64,9 @@ impl VariedConfiguration {
         });
         let q = motion.map(|motion| {
             let [value, first, second] = motion.map(Dual::constant);
-            Varied {
-                value,
-                first,
-                second,
-                third: Dual::default(),
-            }
+            Varied::new(value, [first, second])
         });
-        let change = |p| parameter(p).value.along;
+        let change = |p| parameter(p).value.first();
         Self {
             frames: frames.collect(),
             coefficients: coefficients.iter().map(|c| value(&c.expression)).collect(),
@@ -91,12 +85,11 @@ impl VariedConfiguration {
     /// Gives the changes of q, q̇ (order 1) or q̈ (order 2).
     pub(super) fn change(&mut self, order: usize, changes: &[f64]) {
         for (q, change) in self.q.iter_mut().zip(changes) {
-            let derivative = match order {
+            let coefficient = match order {
                 0 => &mut q.value,
-                1 => &mut q.first,
-                _ => &mut q.second,
+                _ => &mut q.derivatives[order - 1],
             };
-            derivative.along = *change;
+            coefficient.derivatives = [*change];
         }
     }
 
@@ -147,16 +140,10 @@ impl VariedConfiguration {
     #[must_use]
     pub fn radius(&self, profile: ProfileId, theta: Varied) -> [Varied; 2] {
         let radius = self.profiles[profile.0].radius(theta.value);
-        let (omega, alpha) = (theta.first, theta.second);
-        let run = |value, first: Dual, second: Dual| Varied {
-            value,
-            first: first * omega,
-            second: second * omega * omega + first * alpha,
-            third: Dual::default(),
-        };
+        let [r_1, r_2, r_3] = radius.derivatives;
         [
-            run(radius.value, radius.first, radius.second),
-            run(radius.first, radius.second, radius.third),
+            theta.chain(radius.value, |_| [r_1, r_2, r_3]),
+            theta.chain(r_1, |_| [r_2, r_3, Dual::unknown()]),
         ]
     }
 }
@@ -172,10 +159,7 @@ pub(super) fn evaluate(
 /// The unit vector in a direction \[rad\].
 #[must_use]
 pub fn direction(theta: Varied) -> VariedVector {
-    [
-        theta.chain(Scalar::cos, |x| [-x.sin(), -x.cos(), x.sin()]),
-        theta.chain(Scalar::sin, |x| [x.cos(), -x.sin(), -x.cos()]),
-    ]
+    [theta.cos(), theta.sin()]
 }
 
 /// A vector turned by an angle.

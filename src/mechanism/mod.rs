@@ -13,6 +13,7 @@ mod lookup;
 mod lower;
 mod motion;
 mod names;
+mod number;
 mod parameter;
 mod profile;
 mod source;
@@ -22,9 +23,7 @@ mod table;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use expression::{
-    Dual, Expression, ExpressionError, Interval, Jet, Jet3, Number, Scalar, Variable,
-};
+pub use expression::{Expression, ExpressionError, Variable};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub use lower::is_identifier;
 #[cfg(feature = "cli")]
@@ -35,6 +34,7 @@ pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 pub(crate) use names::shown;
 #[cfg(feature = "cli")]
 pub(crate) use names::{help, quoted};
+pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::Parameter;
 pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
 pub use source::{Position, Source, Span};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Dual, Ends, Expression, Interval, Jet3, Number, ParameterId, Spline, Table};
+use super::{Dual, Ends, Expression, Interval, Jet3, ParameterId, Spline, Table};
 
 /// A closed contour R(θ), θ counter-clockwise from the cam marker's x-axis \[rad, m\].
 #[derive(Clone, Debug)]
@@ -166,7 +166,7 @@ impl ProfileInForce {
     fn check(&self) -> Result<(), ProfileError> {
         for theta in Self::sample_angles() {
             let radius = self.radius(theta);
-            if !(radius.value + radius.first + radius.second).is_finite() {
+            if !(radius.value + radius.first() + radius.second()).is_finite() {
                 return Err(ProfileError::NotFinite { theta });
             }
             if radius.value <= 0.0 {
@@ -182,8 +182,8 @@ impl ProfileInForce {
         let [start, end] = [0.0, TAU].map(|theta| self.evaluate(expression, theta));
         let pairs = [
             ("radius", start.value, end.value),
-            ("slope", start.first, end.first),
-            ("second derivative", start.second, end.second),
+            ("slope", start.first(), end.first()),
+            ("second derivative", start.second(), end.second()),
         ];
         let meet =
             |(_, start, end): &(_, f64, f64)| (start - end).abs() <= SEAM * self.radius(0.0).value;
@@ -222,7 +222,7 @@ impl ProfileInForce {
         let (before, after) = (self.radius(low), self.radius(high));
         let jump = CORNER_JUMP * before.value;
         let smooth = (before.value - after.value).abs() <= jump
-            && (before.first - after.first).abs() <= jump;
+            && (before.first() - after.first()).abs() <= jump;
         if smooth {
             Ok(())
         } else {
@@ -308,12 +308,8 @@ impl ProfileInForce {
     /// The profile with the parameters in force, for these changes of theirs.
     #[must_use]
     pub fn along(&self, change: impl Fn(ParameterId) -> f64) -> ProfileAlong {
-        let parameter = |p: ParameterId| {
-            Jet3::fixed(Dual {
-                value: self.parameters[p.index()],
-                along: change(p),
-            })
-        };
+        let parameter =
+            |p: ParameterId| Jet3::fixed(Dual::new(self.parameters[p.index()], [change(p)]));
         ProfileAlong(match &self.curve {
             Curve::Expression(expression) => CurveAlong::Expression {
                 expression: expression.clone(),
@@ -340,9 +336,11 @@ impl ProfileAlong {
     /// change along the direction.
     #[must_use]
     pub fn radius(&self, theta: Dual) -> Jet3<Dual> {
-        let from = |start: f64| Dual {
-            value: start + (theta.value - start).rem_euclid(TAU),
-            along: theta.along,
+        let from = |start: f64| {
+            Dual::new(
+                start + (theta.value - start).rem_euclid(TAU),
+                theta.derivatives,
+            )
         };
         match &self.0 {
             CurveAlong::Expression {
@@ -369,12 +367,10 @@ fn first_turn(spline: &Spline<f64>, theta: f64) -> f64 {
 /// Value and derivatives of one segment.
 fn cubic(spline: &Spline<f64>, segment: usize, theta: f64) -> Jet3 {
     let [second, third] = spline.curvature_on_segment(segment, theta);
-    Jet3 {
-        value: spline.on_segment(segment, theta),
-        first: spline.slope_on_segment(segment, theta),
-        second,
-        third,
-    }
+    Jet3::new(
+        spline.on_segment(segment, theta),
+        [spline.slope_on_segment(segment, theta), second, third],
+    )
 }
 
 fn spline_bounds(spline: &Spline<f64>, theta: f64, reach: f64) -> Jet3<Interval> {
@@ -408,15 +404,10 @@ fn segment_bounds(spline: &Spline<f64>, segment: usize, from: f64, to: f64) -> J
         let off = half * slope.magnitude();
         Interval::new(value - off, value + off)
     };
-    let third = Interval::point(middle.third);
-    let second = around(middle.second, third);
-    let first = around(middle.first, second);
-    Jet3 {
-        value: around(middle.value, first),
-        first,
-        second,
-        third,
-    }
+    let third = Interval::point(middle.third());
+    let second = around(middle.second(), third);
+    let first = around(middle.first(), second);
+    Jet3::new(around(middle.value, first), [first, second, third])
 }
 
 #[cfg(test)]
@@ -455,9 +446,9 @@ mod tests {
                 let values = profile.radius(theta + part * reach);
                 let pairs = [
                     (bounds.value, values.value),
-                    (bounds.first, values.first),
-                    (bounds.second, values.second),
-                    (bounds.third, values.third),
+                    (bounds.first(), values.first()),
+                    (bounds.second(), values.second()),
+                    (bounds.third(), values.third()),
                 ];
                 for (bound, value) in pairs {
                     prop_assert!(
@@ -479,8 +470,8 @@ mod tests {
             // Across 2e-9 rad at third derivatives up to some 100 m/rad³.
             let (before, after) = (profile.radius(-1e-9), profile.radius(1e-9));
             prop_assert!((before.value - after.value).abs() < 1e-6);
-            prop_assert!((before.first - after.first).abs() < 1e-6);
-            prop_assert!((before.second - after.second).abs() < 1e-6);
+            prop_assert!((before.first() - after.first()).abs() < 1e-6);
+            prop_assert!((before.second() - after.second()).abs() < 1e-6);
             prop_assert!((profile.radius(TAU).value - radii[0]).abs() < 1e-12);
         }
     }

@@ -1,6 +1,6 @@
 //! Cubic splines through given points: twice continuously differentiable.
 
-use super::{Number, Scalar};
+use super::Number;
 
 /// What a spline, and the motion that it stands for, does at its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,10 +66,9 @@ impl<N: Number> Spline<N> {
     /// Whether each abscissa is larger than the one before, and every number finite.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        let rises = |pair: &[N]| pair[0].value().number() < pair[1].value().number();
+        let rises = |pair: &[N]| pair[0].real() < pair[1].real();
         self.knots.windows(2).all(rises)
-            && (self.knots.iter().chain(&self.values))
-                .all(|number| number.value().number().is_finite())
+            && (self.knots.iter().chain(&self.values)).all(|number| number.real().is_finite())
     }
 
     /// Finds the second derivatives for which the first is continuous.
@@ -145,22 +144,22 @@ impl<N: Number> Spline<N> {
             let mut corner = if row == 0 { self.width(last) } else { zero };
             let mut upper = self.width(row);
             if row + 1 == last {
-                corner = corner + upper;
+                corner += upper;
                 upper = zero;
-                last_entry = last_entry + left(self, last);
+                last_entry += left(self, last);
             }
             let mut pivot = diagonal(self, row);
             let mut side = side(self, row);
             if row > 0 {
-                pivot = pivot - lower * self.upper[row - 1];
-                corner = corner - lower * self.corner[row - 1];
-                side = side - lower * self.moments[row - 1];
+                pivot -= lower * self.upper[row - 1];
+                corner -= lower * self.corner[row - 1];
+                side -= lower * self.moments[row - 1];
             }
             self.upper[row] = upper / pivot;
             self.corner[row] = corner / pivot;
             self.moments[row] = side / pivot;
-            last_diagonal = last_diagonal - last_entry * self.corner[row];
-            last_side = last_side - last_entry * self.moments[row];
+            last_diagonal -= last_entry * self.corner[row];
+            last_side -= last_entry * self.moments[row];
             last_entry = zero - last_entry * self.upper[row];
         }
         // A single segment repeats as a straight line.
@@ -181,7 +180,7 @@ impl<N: Number> Spline<N> {
     #[must_use]
     pub fn segment(&self, x: f64) -> usize {
         let inner = &self.knots[1..self.knots.len() - 1];
-        inner.partition_point(|knot| knot.value().number() <= x)
+        inner.partition_point(|knot| knot.real() <= x)
     }
 
     /// The value at `x`, by the cubic of a segment.

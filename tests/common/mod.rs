@@ -252,7 +252,7 @@ impl Errors {
         assert_eq!(q.len(), exact.len());
         for (k, exact) in exact.iter().enumerate() {
             let found = [q[k], rates.velocity()[k], rates.acceleration()[k]];
-            let truth = [exact.value, exact.first, exact.second];
+            let truth = [exact.value, exact.first(), exact.second()];
             for order in 0..3 {
                 self.error[order] = self.error[order].max((found[order] - truth[order]).abs());
                 self.magnitude[order] = self.magnitude[order].max(truth[order].abs());

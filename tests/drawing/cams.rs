@@ -1,49 +1,46 @@
 //! Cams and what touches them.
 
-use biela::drawing::{Anchor, Held, Scene, Symbol, WaySide};
+use biela::drawing::symbol::{GuideContact, SlideWay, WaySide};
+use biela::drawing::{Scene, Symbol};
 use biela::mechanism::BodyId;
 
 use crate::common::folder;
 use crate::scenes::{link, near, scene, scene_of};
 
-/// The cam's contour.
+/// Returns the cam's contour.
 fn contour(scene: &Scene) -> Vec<[f64; 2]> {
     let cam = scene.symbols.iter().find_map(|s| match s {
-        Symbol::Cam { contour, .. } => Some(contour.clone()),
+        Symbol::Cam(cam) => Some(cam.contour.clone()),
         _ => None,
     });
     cam.expect("the cam is drawn")
 }
 
-/// The guide of a follower's stem.
+/// Returns the guide of a follower's stem.
 fn stem_guide(scene: &Scene) -> [f64; 2] {
     let guide = scene.symbols.iter().find_map(|s| match s {
-        Symbol::SlideWay {
+        Symbol::SlideWay(SlideWay {
             range,
             side: WaySide::Both,
-            holds: Held::Bar,
+            contact: GuideContact::Bar,
             ..
-        } => Some(*range),
+        }) => Some(*range),
         _ => None,
     });
     guide.expect("the stem is guided")
 }
 
 #[test]
-fn a_cam_is_its_contour_and_a_knife_touches_it() {
+fn cam_is_its_contour_and_knife_touches_it() {
     let scene = scene("cam_knife");
     // R = 30 mm + 10 mm (1 - cos theta).
     for [x, y] in contour(&scene) {
         let radius = 0.03 + 0.01 * (1.0 - f64::atan2(y, x).cos());
         assert!(near(f64::hypot(x, y), radius));
     }
-    assert_eq!(
-        link(&scene, 0),
-        None,
-        "the contour is all there is of the cam"
-    );
+    assert_eq!(link(&scene, 0), None, "the contour shows all of the cam");
     let knife = scene.symbols.iter().find_map(|s| match s {
-        Symbol::Knife { at } => Some(*at),
+        Symbol::Knife(knife) => Some(knife.at),
         _ => None,
     });
     let knife = knife.expect("it is drawn");
@@ -58,17 +55,12 @@ fn a_cam_is_its_contour_and_a_knife_touches_it() {
 }
 
 #[test]
-fn a_roller_has_its_radius_and_its_guide_is_clear_of_it() {
+fn roller_has_its_radius_and_its_guide_keeps_clear() {
     let scene = scene("cam_roller");
     assert!(scene.symbols.iter().any(|s| matches!(
         s,
-        Symbol::Roller {
-            at: Anchor {
-                body: Some(BodyId(1)),
-                ..
-            },
-            radius
-        } if near(*radius, 0.01)
+        Symbol::Roller(roller)
+            if roller.at.body == Some(BodyId(1)) && near(roller.radius, 0.01)
     )));
     // A slider-crank with crank 15 mm, rod 50 mm and offset 8 mm: the roller's centre gets up to
     // sqrt(65^2 - 8^2) mm, its top 10 mm higher.
@@ -77,10 +69,10 @@ fn a_roller_has_its_radius_and_its_guide_is_clear_of_it() {
 }
 
 #[test]
-fn a_face_is_where_contact_is() {
+fn face_spans_the_contact() {
     let faces = |scene: &Scene| -> Vec<([f64; 2], bool)> {
         let face = |s: &Symbol| match s {
-            Symbol::Face { range, above, .. } => Some((*range, *above)),
+            Symbol::Face(face) => Some((face.range, face.above)),
             _ => None,
         };
         scene.symbols.iter().filter_map(face).collect()
@@ -119,11 +111,11 @@ fn a_face_is_where_contact_is() {
 }
 
 #[test]
-fn a_lever_with_a_face_keeps_its_pivot() {
+fn lever_with_face_keeps_its_pivot() {
     let scene = scene("cam_flat_arm");
     assert_eq!(link(&scene, 1), Some(vec![[0.0; 2]]));
     let face = scene.symbols.iter().find_map(|s| match s {
-        Symbol::Face { range, above, .. } => Some((*range, *above)),
+        Symbol::Face(face) => Some((face.range, face.above)),
         _ => None,
     });
     // The lever points to the left: what is below it is on its y-axis' side.

@@ -1,12 +1,13 @@
 //! Bars, pins, pivots and blocks.
 
-use biela::drawing::{Anchor, Scene, Symbol};
+use biela::drawing::{Scene, Symbol};
 use biela::mechanism::BodyId;
 
 use crate::common::{assembled, shipped};
+use crate::scenes::link;
 
 #[test]
-fn a_four_bar_has_its_bars_pins_and_pivots() {
+fn four_bar_has_bars_pins_and_pivots() {
     let (mut solver, _) = assembled(&shipped("four_bar"));
     let home = solver.pose().clone();
     let scene = Scene::new(&mut solver, true);
@@ -16,48 +17,35 @@ fn a_four_bar_has_its_bars_pins_and_pivots() {
     let count =
         |wanted: &dyn Fn(&Symbol) -> bool| scene.symbols.iter().filter(|s| wanted(s)).count();
     for (body, corners) in [(0, 2), (1, 3), (2, 2)] {
-        let link = |symbol: &Symbol| matches!(symbol, Symbol::Link { body: of, points } if *of == BodyId(body) && points.len() == corners);
+        let link = |symbol: &Symbol| matches!(symbol, Symbol::Link(link) if link.body == BodyId(body) && link.points.len() == corners);
         assert_eq!(count(&link), 1, "body {body}");
     }
-    assert_eq!(count(&|s| matches!(s, Symbol::Pin { .. })), 4);
-    assert_eq!(count(&|s| matches!(s, Symbol::Fixture { .. })), 2);
+    assert_eq!(count(&|s| matches!(s, Symbol::Pin(_))), 4);
+    assert_eq!(count(&|s| matches!(s, Symbol::Fixture(_))), 2);
     assert_eq!(
-        count(&|s| matches!(s, Symbol::AngleDriver { name, .. } if name == "crank_angle")),
+        count(&|s| matches!(s, Symbol::AngleDriver(driver) if driver.name == "crank_angle")),
         1
     );
     assert_eq!(
-        count(&|s| matches!(s, Symbol::Point { name, .. } if name == "P")),
+        count(&|s| matches!(s, Symbol::InterestPoint(point) if point.name == "P")),
         1
     );
-    assert_eq!(count(&|s| matches!(s, Symbol::Trace { .. })), 1);
+    assert_eq!(count(&|s| matches!(s, Symbol::Trace(_))), 1);
     assert_eq!(scene.symbols.len(), 3 + 4 + 2 + 1 + 1 + 1);
 }
 
 #[test]
-fn a_block_on_a_moving_body_stretches_it() {
+fn block_stretches_the_body_that_it_slides_on() {
     // The arm's end is between 0.15 m and 0.65 m from the barrel's pivot.
     let (mut solver, _) = assembled(&shipped("tlv_crank"));
     let scene = Scene::new(&mut solver, true);
-    let barrel = scene.symbols.iter().find_map(|s| match s {
-        Symbol::Link {
-            body: BodyId(1),
-            points,
-        } => Some(points.clone()),
-        _ => None,
-    });
-    let longest = barrel
+    let longest = link(&scene, 1)
         .expect("it is drawn")
         .iter()
         .fold(0.0, |x: f64, p| x.max(p[0]));
     assert!((longest - 0.65).abs() < 1e-4);
     assert!(scene.symbols.iter().any(|s| matches!(
         s,
-        Symbol::Block {
-            at: Anchor {
-                body: Some(BodyId(2)),
-                ..
-            },
-            on: Some(BodyId(1))
-        }
+        Symbol::Block(block) if block.at.body == Some(BodyId(2)) && block.on == Some(BodyId(1))
     )));
 }

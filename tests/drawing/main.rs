@@ -1,4 +1,4 @@
-//! Drawings of mechanisms: what is in the scene, and that the pictures are whole.
+//! Drawings of mechanisms: the symbols of the scene, and whole pictures.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! Pictures of mechanisms, and what can be read in them.
+//! Pictures of mechanisms, and their texts.
 
 use biela::drawing::{Scene, Sheet, svg};
 use quick_xml::Reader;
@@ -14,14 +14,14 @@ pub(crate) fn picture(name: &str) -> String {
     svg::write(&Sheet::new(&scene, &solver.pose().q), WIDTH, false)
 }
 
-/// A text on the sheet: where its box begins and ends.
+/// A text on the sheet with its box.
 pub(crate) struct Label {
     pub(crate) text: String,
     pub(crate) x: [f64; 2],
     pub(crate) y: [f64; 2],
 }
 
-/// Reads a picture; fails unless it is well-formed and everything is on the sheet.
+/// Returns the texts of a picture. Fails unless it is well-formed and everything is on the sheet.
 pub(crate) fn check_picture(name: &str, svg: &str) -> Vec<Label> {
     let mut reader = Reader::from_str(svg);
     let (mut size, mut labels, mut open): ([f64; 2], Vec<Label>, bool) =

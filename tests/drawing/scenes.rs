@@ -1,22 +1,23 @@
-//! Scenes of mechanisms, and what is looked for in them.
+//! Scenes of mechanisms, and queries of their symbols.
 
 use biela::drawing::{Scene, Symbol};
 
 use crate::common::{assembled, parse, shipped};
 
+/// Returns the scene of a mechanism file's text.
 pub(crate) fn scene_of(text: &str) -> Scene {
     Scene::new(&mut assembled(&parse(text)).0, true)
 }
 
-/// The scene of a shipped mechanism.
+/// Returns the scene of a shipped mechanism.
 pub(crate) fn scene(name: &str) -> Scene {
     Scene::new(&mut assembled(&shipped(name)).0, true)
 }
 
-/// The points of a body's link, if it has one.
+/// Returns the points of a body's link, if it has one.
 pub(crate) fn link(scene: &Scene, body: usize) -> Option<Vec<[f64; 2]>> {
     scene.symbols.iter().find_map(|s| match s {
-        Symbol::Link { body: of, points } if of.index() == body => Some(points.clone()),
+        Symbol::Link(link) if link.body.index() == body => Some(link.points.clone()),
         _ => None,
     })
 }

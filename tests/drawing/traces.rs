@@ -7,17 +7,14 @@ use crate::common::{assembled, shipped};
 use crate::scenes::{near, scene};
 
 #[test]
-fn a_trace_is_the_path_of_the_point() {
+fn trace_is_the_path_of_its_point() {
     let (mut solver, _) = assembled(&shipped("four_bar"));
     let scene = Scene::new(&mut solver, true);
     let traces: Vec<_> = scene
         .symbols
         .iter()
         .filter_map(|s| match s {
-            Symbol::Trace {
-                body: Some(BodyId(1)),
-                points,
-            } => Some(points),
+            Symbol::Trace(trace) if trace.body == Some(BodyId(1)) => Some(&trace.points),
             _ => None,
         })
         .collect();
@@ -39,7 +36,7 @@ fn a_trace_is_the_path_of_the_point() {
 }
 
 #[test]
-fn a_rocking_point_draws_its_arc_once() {
+fn rocking_point_draws_its_arc_once() {
     // The left rocker's end moves on a circle about O2, forth and back.
     let (mut solver, _) = assembled(&shipped("chebyshev"));
     let length = |points: &[[f64; 2]]| -> f64 {
@@ -52,10 +49,7 @@ fn a_rocking_point_draws_its_arc_once() {
         .symbols
         .iter()
         .map(|s| match s {
-            Symbol::Trace {
-                body: Some(BodyId(0)),
-                points,
-            } => length(points),
+            Symbol::Trace(trace) if trace.body == Some(BodyId(0)) => length(&trace.points),
             _ => 0.0,
         })
         .sum();
@@ -67,10 +61,10 @@ fn a_rocking_point_draws_its_arc_once() {
 }
 
 #[test]
-fn a_trace_goes_on_until_the_mechanism_is_back() {
+fn trace_continues_until_the_mechanism_is_back() {
     let pieces = |name: &str| -> Vec<Vec<[f64; 2]>> {
         let trace = |s: &Symbol| match s {
-            Symbol::Trace { points, .. } => Some(points.clone()),
+            Symbol::Trace(trace) => Some(trace.points.clone()),
             _ => None,
         };
         scene(name).symbols.iter().filter_map(trace).collect()
@@ -81,7 +75,7 @@ fn a_trace_goes_on_until_the_mechanism_is_back() {
     let (first, last) = (curve[0][0], curve[0][curve[0].len() - 1]);
     assert!((0..2).all(|k| (first[k] - last[k]).abs() < 1e-9));
     // Planet and arm are back after four turns of the sun: a hypocycloid with three cusps, of
-    // length 16 r. What is so near to a cusp that both sides look like one is left out.
+    // length 16 r. Near a cusp, where both sides look like one line, one side is left out.
     let length = |points: &Vec<[f64; 2]>| -> f64 {
         let steps = points.windows(2);
         let step = |p: &[[f64; 2]]| f64::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]);

@@ -1,6 +1,7 @@
-//! The ways of what slides.
+//! The ways of sliding bodies.
 
-use biela::drawing::{Scene, Symbol, WaySide};
+use biela::drawing::symbol::WaySide;
+use biela::drawing::{Scene, Symbol};
 
 use crate::common::{assembled, shipped};
 use crate::scenes::{near, scene_of};
@@ -11,7 +12,7 @@ fn ways_are_as_long_as_the_motion() {
     let (mut solver, _) = assembled(&shipped("slider_crank"));
     let scene = Scene::new(&mut solver, true);
     let way = scene.symbols.iter().find_map(|s| match s {
-        Symbol::SlideWay { range, side, .. } => Some((*range, *side)),
+        Symbol::SlideWay(way) => Some((way.range, way.side)),
         _ => None,
     });
     let ([low, high], side) = way.expect("the slider is guided");
@@ -41,7 +42,7 @@ fn prescribed_motions_are_followed_until_the_stop_time() {
     "#;
     let scene = scene_of(text);
     let way = scene.symbols.iter().find_map(|s| match s {
-        Symbol::SlideWay { range, .. } => Some(*range),
+        Symbol::SlideWay(way) => Some(way.range),
         _ => None,
     });
     let [low, high] = way.expect("the cart is guided");

@@ -1,6 +1,7 @@
 //! Wheels, belts and racks.
 
-use biela::drawing::{Anchor, Held, Scene, Sheet, Symbol, WaySide, svg};
+use biela::drawing::symbol::{GuideContact, SlideWay, WaySide, Wheel};
+use biela::drawing::{Scene, Sheet, Symbol, svg};
 use biela::mechanism::BodyId;
 
 use crate::common::{assembled, parse};
@@ -46,11 +47,11 @@ fn wheels_have_their_pitch_circles() {
         .symbols
         .iter()
         .filter_map(|s| match s {
-            Symbol::Wheel {
+            Symbol::Wheel(Wheel {
                 at,
                 radius,
                 ring: false,
-            } => Some((at.body.map(BodyId::index), *radius)),
+            }) => Some((at.body.map(BodyId::index), *radius)),
             _ => None,
         })
         .collect();
@@ -65,18 +66,11 @@ fn wheels_have_their_pitch_circles() {
             "{wheels:?}"
         );
     }
-    // A wheel or a rack is all there is of its body.
-    assert!(
-        !scene
-            .symbols
-            .iter()
-            .any(|s| matches!(s, Symbol::Link { .. }))
-    );
+    // A wheel or a rack shows all of its body.
+    assert!(!scene.symbols.iter().any(|s| matches!(s, Symbol::Link(_))));
     // One turn moves the pinion's centre by 2 pi r along the rack.
     let rack = scene.symbols.iter().find_map(|s| match s {
-        Symbol::Rack {
-            range, above: true, ..
-        } => Some(range[1] - range[0]),
+        Symbol::Rack(rack) if rack.above => Some(rack.range[1] - rack.range[0]),
         _ => None,
     });
     assert!(rack.expect("it is drawn") > std::f64::consts::TAU * 0.03);
@@ -89,24 +83,20 @@ fn wheels_have_their_pitch_circles() {
 }
 
 #[test]
-fn a_rack_is_guided_along_its_back() {
+fn rack_is_guided_along_its_back() {
     let scene = scene("rack_drive");
     let rack = scene.symbols.iter().find_map(|s| match s {
-        Symbol::Rack {
-            along: Anchor { body: Some(_), .. },
-            range,
-            ..
-        } => Some(*range),
+        Symbol::Rack(rack) if rack.along.body.is_some() => Some(rack.range),
         _ => None,
     });
     let [low, high] = rack.expect("it is drawn");
     let guide = scene.symbols.iter().find_map(|s| match s {
-        Symbol::SlideWay {
+        Symbol::SlideWay(SlideWay {
             range,
             side: WaySide::Above,
-            holds: Held::Rack,
+            contact: GuideContact::Rack,
             ..
-        } => Some(*range),
+        }) => Some(*range),
         _ => None,
     });
     // The rack goes twice as far as the carriage, from 140 mm to 260 mm: it always is between its

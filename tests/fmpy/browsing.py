@@ -42,7 +42,7 @@ const until = async (test) => {
   throw new Error(`it never came to ${test}`);
 };
 const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
-const places = () => all("[data-rider]").map((part) => part.getAttribute("transform"));
+const places = () => all("[data-attachment]").map((part) => part.getAttribute("transform"));
 const seek = (moment) => {
   find(".time").value = moment;
   find(".time").dispatchEvent(new Event("input", { bubbles: true }));

@@ -38,7 +38,7 @@ def test_it_moves_by_itself(animated, tmp_path):
     assert playing
     assert len(first) > 5
     assert first != second
-    # What is on ground is no rider: all that has a place has one.
+    # Marks on ground have no attachment: each attachment has a place.
     assert all(re.fullmatch(r"translate\(\S+ \S+\) rotate\(\S+\)", place) for place in second)
 
 
@@ -201,7 +201,7 @@ def test_a_watched_file_is_seen_anew(tmp_path):
             """
             const inner = (selector) => find("iframe").contentDocument.querySelector(selector);
             const titled = (name) => until(() => inner("h1")?.textContent === name);
-            const poses = () => [...inner(".stage").querySelectorAll("[data-rider]")]
+            const poses = () => [...inner(".stage").querySelectorAll("[data-attachment]")]
               .map((part) => part.getAttribute("transform")).join();
             const moves = async () => {
               const before = poses();
@@ -214,7 +214,7 @@ def test_a_watched_file_is_seen_anew(tmp_path):
             await moves();
             inner(".show[value=velocity]").click();
             seen.atFirst = inner(".error");
-            const parts = () => inner(".stage").querySelectorAll("[data-rider]").length;
+            const parts = () => inner(".stage").querySelectorAll("[data-attachment]").length;
             seen.parts = [parts()];
 
             await has("another");

@@ -15,11 +15,7 @@ use crate::mechanisms::{
 /// q and its rates of the bodies of `twin`, as `solver` has them: body by body, by name.
 fn motion_of(solver: &mut Solver, twin: &Mechanism) -> [Vec<f64>; 3] {
     let mut rates = Rates::new(solver.pose().q.len());
-    let unit = |_| Jet {
-        value: 0.0,
-        first: 1.0,
-        second: 0.5,
-    };
+    let unit = |_| Jet::new(0.0, [1.0, 0.5]);
     solver
         .solve_rates(unit, &mut rates)
         .expect("the pose is regular");

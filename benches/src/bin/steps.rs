@@ -1,59 +1,32 @@
-//! Does so many steps of one case and nothing else, for a tool that counts instructions.
+//! Does a number of steps of one case and nothing else, for a tool that counts instructions; or
+//! counts them itself.
 //!
 //!     steps CASE SIZE STEPS
+//!     steps CASE SIZE
 
-use std::hint::black_box;
+#![allow(clippy::print_stdout, reason = "prints a count")]
 
-use yardstick::generated::{Ground, chain, scissor_lift};
-use yardstick::motion::{Moving, Sweep};
-use yardstick::yardstick::{Chain, Cycle, Kind, OUTPUTS, four_bar, library};
+use std::env;
 
-fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [case, size, steps] = &arguments[..] else {
-        panic!("usage: steps CASE SIZE STEPS")
+use yardstick::cases::Case;
+use yardstick::instructions::Counter;
+
+fn main() -> Result<(), String> {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let number = |text: &String| {
+        let number = text.parse::<u32>();
+        number.map_err(|_| format!("`{text}` is no number"))
     };
-    let size: usize = size.parse().expect("a number");
-    let steps: u64 = steps.parse().expect("a number");
-    match case.as_str() {
-        "closed_form" => {
-            let mut out = [0.0; OUTPUTS];
-            let mut sweep = Sweep::turn(10_000);
-            repeat(steps, || four_bar(sweep.step(), black_box(&mut out)));
+    match &arguments[..] {
+        [case, size] => {
+            let counter = Counter::find().ok_or("there is no valgrind here")?;
+            let count = counter.count(&Case::new(case, number(size)? as usize))?;
+            println!("{count:.0} instructions per step");
         }
-        "four_bar" => moving(
-            include_str!("../../../mechanisms/four_bar.toml"),
-            Sweep::turn(10_000),
-            steps,
-        ),
-        "chain" => moving(&chain(size, Ground::Straight), Sweep::turn(10_000), steps),
-        "lift" => moving(&scissor_lift(size), Sweep::lift(size), steps),
-        "c_chain" => c_chain(size, Kind::Plain, steps),
-        "c_chain_updated" => c_chain(size, Kind::Updated, steps),
-        "c_chain_condition" => c_chain(size, Kind::Condition, steps),
-        "c_fmu" => drop(Cycle::yardstick().run(steps)),
-        "fmu" => drop(Cycle::biela(&library()).run(steps)),
-        other => panic!("no case `{other}`"),
+        [case, size, steps] => {
+            Case::new(case, number(size)? as usize).run()?(number(steps)?.into());
+        }
+        _ => return Err("usage: steps CASE SIZE [STEPS]".to_owned()),
     }
-}
-
-fn repeat(steps: u64, mut step: impl FnMut()) {
-    for _ in 0..steps {
-        step();
-    }
-}
-
-fn moving(text: &str, mut sweep: Sweep, steps: u64) {
-    let mut mechanism = Moving::new(text);
-    repeat(steps, || {
-        black_box(mechanism.step(sweep.step()));
-    });
-}
-
-fn c_chain(loops: usize, kind: Kind, steps: u64) {
-    let mut chain = Chain::new(loops, Ground::Straight);
-    let mut sweep = Sweep::turn(10_000);
-    repeat(steps, || {
-        black_box(chain.step(kind, sweep.step()));
-    });
+    Ok(())
 }

@@ -1,32 +1,31 @@
-//! The numbers of an animation: for each moment where the frames are and what is told beside.
+//! The numbers of an animation: for each moment the places of the frames and the readings.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::{Rotation2, Vector2};
 use serde_json::{Value, json};
 
-use super::stage::{LengthDriver, Placement, Stage};
+use super::stage::Stage;
 use super::{Animation, Moment};
+use crate::drawing::anchor::Anchor;
+use crate::drawing::attachment::Placement;
 use crate::drawing::outline::across;
-use crate::drawing::rider::along;
-use crate::drawing::scene::Anchor;
 use crate::drawing::sheet::CAPITALS;
 
-/// Everything that the player needs.
+/// Returns everything that the player needs.
 ///
-/// `data` has one channel after the other, each a whole number of two bytes, the low one first,
-/// for every moment; `scales` says between which two values they run. For each rider there are
-/// three: x and y on the sheet and the angle in degrees. For each length driver there are two:
-/// the length, and where its first point is beside the line. For each point with arrows four:
-/// velocity and acceleration, as parts of the greatest there is, which `most` tells \[m/s, m/s²\].
-/// For each reading one.
+/// `data` has one channel after the other; a channel is a whole number of two bytes, the low one
+/// first, per moment; `scales` gives the values of 0 and of 65535. Each attachment has three
+/// channels: x and y on the sheet and the angle in degrees. Each length has one. Each point with
+/// arrows has four: velocity and acceleration as parts of the greatest of their kind, which
+/// `most` gives \[m/s, m/s²\]. Each reading has one.
 pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
     let moments = &animation.moments;
     let mut channels: Vec<Channel> = Vec::new();
     let placements: Vec<Vec<Placement>> = moments.iter().map(|m| stage.placements(&m.q)).collect();
-    for rider in 0..stage.riders.len() {
+    for attachment in 0..stage.attachments.len() {
         let of = |value: fn(&Placement) -> f64| {
-            Channel::new(placements.iter().map(|p| value(&p[rider])).collect())
+            Channel::new(placements.iter().map(|p| value(&p[attachment])).collect())
         };
         channels.extend([of(|p| p.origin.x), of(|p| p.origin.y)]);
         channels.push(Channel {
@@ -34,12 +33,9 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
             ..of(|p| p.angle.to_degrees())
         });
     }
-    for driver in &stage.lengths {
-        let values: Vec<[f64; 2]> = moments.iter().map(|m| length(driver, &m.q)).collect();
-        for part in 0..2 {
-            let of_part = values.iter().map(|value| stage.scale * value[part]);
-            channels.push(Channel::new(of_part.collect()));
-        }
+    for length in &stage.lengths {
+        let values = moments.iter().map(|m| length.value(&m.q, stage.scale));
+        channels.push(Channel::new(values.collect()));
     }
     let has_rates = moments
         .iter()
@@ -53,15 +49,17 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
     }
 
     let home = placements.first().map_or(&[][..], Vec::as_slice);
-    let labels = stage.labels.iter().map(|(rider, label)| {
-        let anchor = home[*rider].inside(label.place.anchor);
-        let side = label.place.side.map(|side| home[*rider].turned_back(side));
+    let labels = stage.labels.iter().map(|(attachment, label)| {
+        let anchor = home[*attachment].inside(label.place.anchor);
+        let side = label
+            .place
+            .side
+            .map(|side| home[*attachment].turned_back(side));
         json!({
-            "rider": rider,
+            "attachment": attachment,
             "at": pair(anchor),
             "side": side.map(|side| pair(100.0 * side)),
             "gap": short(label.place.gap),
-            "size": [short(label.text.width()), CAPITALS],
         })
     });
     let clock = animation.clock;
@@ -72,14 +70,12 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
         "start": clock.start,
         "step": clock.step,
         "stop": clock.stop,
-        "riders": stage.riders.len(),
+        "attachments": stage.attachments.len(),
+        "capitals": CAPITALS,
         "labels": labels.collect::<Vec<_>>(),
-        "lengths": stage.lengths.iter().map(|l| json!({
-            "rider": l.rider,
-            "offset": short(l.offset),
-        })).collect::<Vec<_>>(),
-        "points": points.iter().map(|(rider, anchor)| json!({
-            "rider": rider,
+        "lengths": stage.lengths.len(),
+        "points": points.iter().map(|(attachment, anchor)| json!({
+            "attachment": attachment,
             "at": [short(stage.scale * anchor.position[0]), short(-stage.scale * anchor.position[1])],
         })).collect::<Vec<_>>(),
         "most": most.map(significant),
@@ -92,18 +88,8 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
     })
 }
 
-/// The length that a driver drives, and how far its first point is beside the line \[m\], to the
-/// right as seen along it: down on the sheet.
-fn length(driver: &LengthDriver, q: &[f64]) -> [f64; 2] {
-    let [from, to] = driver.markers.map(|marker| marker.placed(q).point);
-    let along = along(driver.axis, to - from, q);
-    let length = (to - from).dot(&along);
-    let foot = to - length * along;
-    [length, -(from - foot).dot(&across(along))]
-}
-
-/// Velocity and acceleration of points on the sheet, each as a part of the greatest there is, and
-/// those two \[m/s, m/s²\].
+/// Returns velocity and acceleration of points on the sheet, each as a part of the greatest of its
+/// kind, and these two \[m/s, m/s²\].
 fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> (Vec<Channel>, [f64; 2]) {
     let mut all: [Vec<Vec<Vector2<f64>>>; 2] = Default::default();
     let mut most = [0.0_f64; 2];
@@ -122,7 +108,7 @@ fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> (Vec<Channel>, [f64
     let mut channels = Vec::new();
     for point in 0..points.len() {
         for (all, most) in all.iter().zip(most) {
-            // Where nothing moves there is nothing to see.
+            // Without motion there are no arrows.
             let factor = if most > 0.0 { 1.0 / most } else { 0.0 };
             for (component, sign) in [(0, 1.0), (1, -1.0)] {
                 let values = all[point].iter().map(|v| sign * factor * v[component]);
@@ -136,7 +122,7 @@ fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> (Vec<Channel>, [f64
     (channels, most)
 }
 
-/// Velocity and acceleration of a point of a rigid body.
+/// Returns velocity and acceleration of a point of a rigid body.
 fn rates(anchor: Anchor, moment: &Moment) -> [Vector2<f64>; 2] {
     let Some(body) = anchor.body else {
         return [Vector2::zeros(); 2];
@@ -152,7 +138,7 @@ fn rates(anchor: Anchor, moment: &Moment) -> [Vector2<f64>; 2] {
     ]
 }
 
-/// One number for each moment.
+/// One number per moment.
 struct Channel {
     values: Vec<f64>,
     range: [f64; 2],
@@ -171,7 +157,7 @@ impl Channel {
         Self { values, range }
     }
 
-    /// The values as 16-bit numbers from the range's one end to its other.
+    /// Returns the values as 16-bit numbers from one end of the range to the other.
     fn bytes(&self) -> impl Iterator<Item = u8> {
         let [low, high] = self.range.map(significant);
         let step = (high - low) / f64::from(u16::MAX);
@@ -187,7 +173,7 @@ impl Channel {
     }
 }
 
-/// Seven digits: far more than 16 bits tell apart.
+/// Rounds to seven digits: far more than 16 bits tell apart.
 fn significant(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }

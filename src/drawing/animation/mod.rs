@@ -1,30 +1,31 @@
 //! Mechanisms that move: a page that plays a motion.
 //!
-//! What rides on a body is drawn once, in the body's frame; for each moment there is only where
-//! the frames are. The page needs nothing from elsewhere.
+//! Marks are drawn once, in the frames that they move with; each moment adds the places of these
+//! frames. The page is one file that needs no other.
 
 mod film;
 mod page;
+mod picture;
 mod stage;
 
-pub use page::{escape, fill, page, page_with, player};
+pub use page::{fill, page, page_with, player};
 
 use super::scene::Scene;
 
-/// A motion to be shown.
+/// A motion to show.
 #[derive(Clone, Debug)]
 pub struct Animation {
-    /// What there is to draw, the same at every moment.
+    /// The symbols, the same at every moment.
     pub scene: Scene,
-    /// When the moments are.
+    /// Times of the moments.
     pub clock: Clock,
-    /// What is told in numbers beside the picture.
+    /// Quantities that stand in numbers beside the picture.
     pub readings: Vec<Reading>,
-    /// The motion; at least one moment.
+    /// The poses of the motion; at least one.
     pub moments: Vec<Moment>,
 }
 
-/// The time of moments: `start`, `start + step`, and so on; the last one is at `stop` \[s\].
+/// Times of the moments: `start`, `start + step`, and so on; the last one is `stop` \[s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     /// Time of the first moment.
@@ -35,22 +36,22 @@ pub struct Clock {
     pub stop: f64,
 }
 
-/// A quantity that is told in numbers.
+/// A quantity that stands in numbers beside the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
     /// Its name.
     pub name: String,
-    /// The unit in which it is told.
+    /// Its unit.
     pub unit: String,
 }
 
 /// A mechanism at one moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
-    /// The generalized coordinates, \[m, m, rad\] for each body.
+    /// The generalized coordinates, \[m, m, rad\] per body.
     pub q: Vec<f64>,
-    /// Their first and second derivatives; empty where the motion has no rates.
+    /// Their first and second time derivatives; empty for a motion without rates.
     pub rates: [Vec<f64>; 2],
-    /// One for each reading, in its unit.
+    /// One value per reading, in its unit.
     pub readings: Vec<f64>,
 }

@@ -5,11 +5,8 @@
   // Length of the longest arrow, and of its tip, in units of the picture.
   const LONGEST = 90;
   const TIP = 7;
-  // A driven length shorter than this is drawn this long, to both sides.
-  const SHORT = 18;
   // Height of a line of letters over that of capitals.
   const LINE = 1.4;
-  const INSET = 5.2;
   const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
   // How long a film lasts at the speeds that are offered, and at the first one, in seconds.
   const LASTS = [0.5, 120];
@@ -35,22 +32,24 @@
     };
     const time = () => (moment === last ? film.stop : film.start + moment * film.step);
 
-    // The channels: riders, lengths, points, readings.
-    const lengthsAt = 3 * film.riders;
-    const pointsAt = lengthsAt + 2 * film.lengths.length;
+    // The channels: attachments, lengths, points, readings.
+    const lengthsAt = 3 * film.attachments;
+    const pointsAt = lengthsAt + film.lengths;
     const readingsAt = pointsAt + 4 * film.points.length;
 
-    const riding = [...player.querySelectorAll("[data-rider]")];
+    const moving = [...player.querySelectorAll("[data-attachment]")];
+    const elastic = [...player.querySelectorAll("[data-length]")].map((path) => ({
+      path,
+      length: Number(path.dataset.length),
+      points: path.dataset.points.split(" ").map(Number),
+    }));
     const names = [...player.querySelectorAll(".names text")];
     const view = find(".stage").viewBox.baseVal;
-    // On small screens names are larger than in the film.
+    // On small screens names are larger than in the film, and each font has its own widths.
     let larger = 1;
-    // Middle and size of each.
+    let widths = [];
+    // Middle and size of each name.
     let boxes = [];
-    const lengths = [...player.querySelectorAll(".length")].map((group) => [
-      add(group, "path"),
-      add(group, "path", "tips"),
-    ]);
     const arrows = ["velocity", "acceleration"].map((kind) =>
       film.points.map(() => add(find(`.arrows.${kind}`), "path")),
     );
@@ -73,32 +72,36 @@
     });
     const digits = Math.max(0, Math.min(6, Math.ceil(-Math.log10(film.step || 1)) + 1));
 
-    function place(rider) {
-      const [x, y, degrees] = [0, 1, 2].map((part) => value(3 * rider + part));
+    function place(attachment) {
+      const [x, y, degrees] = [0, 1, 2].map((part) => value(3 * attachment + part));
       const angle = (degrees * Math.PI) / 180;
       return { x, y, degrees, cos: Math.cos(angle), sin: Math.sin(angle) };
     }
 
     function draw() {
-      const places = Array.from({ length: film.riders }, (_, rider) => place(rider));
-      const outside = (rider, [x, y]) => {
-        const { x: left, y: top, cos, sin } = places[rider];
+      const places = Array.from({ length: film.attachments }, (_, attachment) => place(attachment));
+      const outside = (attachment, [x, y]) => {
+        const { x: left, y: top, cos, sin } = places[attachment];
         return [left + cos * x - sin * y, top + sin * x + cos * y];
       };
-      for (const element of riding) {
-        const { x, y, degrees } = places[element.dataset.rider];
+      for (const element of moving) {
+        const { x, y, degrees } = places[element.dataset.attachment];
         element.setAttribute("transform", `translate(${fix(x)} ${fix(y)}) rotate(${fix(degrees)})`);
       }
-      film.lengths.forEach(({ offset }, index) => {
-        const [line, tips] = lengthPaths(value(lengthsAt + 2 * index), value(lengthsAt + 2 * index + 1), offset);
-        lengths[index][0].setAttribute("d", line);
-        lengths[index][1].setAttribute("d", tips);
-      });
+      for (const { path, length, points } of elastic) {
+        const now = value(lengthsAt + length);
+        let line = "";
+        for (let at = 0; at < points.length; at += 4) {
+          const [x, y, alongX, alongY] = points.slice(at, at + 4);
+          line += `${at ? "L" : "M"}${fix(x + now * alongX)} ${fix(y + now * alongY)}`;
+        }
+        path.setAttribute("d", line);
+      }
       boxes = film.labels.map((label, index) => {
-        let [x, y] = outside(label.rider, label.at);
-        const [width, height] = label.size.map((length) => larger * length);
+        let [x, y] = outside(label.attachment, label.at);
+        const [width, height] = [widths[index], larger * film.capitals];
         if (label.side) {
-          const { cos, sin } = places[label.rider];
+          const { cos, sin } = places[label.attachment];
           const [u, v] = label.side.map((part) => part / 100);
           const side = [cos * u - sin * v, sin * u + cos * v];
           // As far out as the side of the name's box that faces its place.
@@ -113,7 +116,7 @@
         return { x, y, width, height };
       });
       film.points.forEach((point, index) => {
-        const from = outside(point.rider, point.at);
+        const from = outside(point.attachment, point.at);
         arrows.forEach((paths, kind) => {
           const channel = pointsAt + 4 * index + 2 * kind;
           paths[index].setAttribute("d", arrow(from, value(channel), value(channel + 1)));
@@ -160,6 +163,10 @@
 
     function show(box) {
       player.classList.toggle(`show-${box.value}`, box.checked);
+      // Only texts on the page have a width.
+      if (box.value === "names" && box.checked) {
+        fit();
+      }
     }
 
     const offered = SPEEDS.filter((s) => s === 1 || (duration / s >= LASTS[0] && duration / s <= LASTS[1]));
@@ -207,6 +214,8 @@
     function fit() {
       const group = find(".names");
       larger = parseFloat(getComputedStyle(group).fontSize) / Number(group.getAttribute("font-size"));
+      names.forEach((name) => (name.style.display = ""));
+      widths = names.map((name) => name.getComputedTextLength());
       draw();
       // Where they have grown, one that would be over another is left out.
       const apart = (a, b) =>
@@ -235,12 +244,8 @@
     return levels;
   }
 
-  function add(parent, name, className = "") {
-    const element = parent.appendChild(document.createElementNS(SVG, name));
-    if (className) {
-      element.setAttribute("class", className);
-    }
-    return element;
+  function add(parent, name) {
+    return parent.appendChild(document.createElementNS(SVG, name));
   }
 
   function fix(number) {
@@ -263,22 +268,6 @@
     const [along, aside] = [1 - tip, 0.45 * tip];
     const to = (a, b) => `${fix(x + a * u - b * v)} ${fix(y + a * v + b * u)}`;
     return `M${to(0, 0)}L${to(1, 0)}M${to(along, aside)}L${to(1, 0)}L${to(along, -aside)}`;
-  }
-
-  // A dimension line along x from 0 to a length, beside what it measures, and its two tips.
-  function lengthPaths(length, first, offset) {
-    const forth = length < 0 ? -1 : 1;
-    const short = Math.abs(length) < SHORT;
-    const inset = offset === 0 ? INSET : 0;
-    const start = (short ? length - forth * SHORT : 0) + forth * inset;
-    const end = length + forth * ((short ? SHORT : 0) - inset);
-    let line = `M${fix(start + 6 * forth)} ${offset}L${fix(end - 6 * forth)} ${offset}`;
-    if (offset !== 0 && !short) {
-      const out = offset + 4 * Math.sign(offset);
-      line += `M0 ${fix(first)}L0 ${out}M${fix(length)} 0L${fix(length)} ${out}`;
-    }
-    const tip = (at, sign) => `M${fix(at)} ${offset}l${-8 * sign} 2.9v-5.8z`;
-    return [line, tip(end, forth) + tip(start, -forth)];
   }
 
   const elements = [...document.querySelectorAll(".player")];

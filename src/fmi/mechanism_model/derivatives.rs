@@ -43,12 +43,12 @@ impl MechanismModel {
                         Order::Position => driver.value += change,
                         Order::Velocity => {
                             driver.value += h * change;
-                            driver.first += change;
+                            driver.derivatives[0] += change;
                         }
                         Order::Acceleration => {
                             driver.value += 0.5 * h * h * change;
-                            driver.first += h * change;
-                            driver.second += change;
+                            driver.derivatives[0] += h * change;
+                            driver.derivatives[1] += change;
                         }
                     }
                 }

@@ -192,8 +192,8 @@ impl MechanismModel {
                     values[references[0] as usize] = jet.value;
                 }
                 if rates {
-                    values[references[1] as usize] = jet.first;
-                    values[references[2] as usize] = jet.second;
+                    values[references[1] as usize] = jet.first();
+                    values[references[2] as usize] = jet.second();
                 }
             }
         }

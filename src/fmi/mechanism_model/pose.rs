@@ -107,11 +107,7 @@ impl MechanismModel {
                             rates
                         }
                     };
-                    Jet {
-                        value: 0.0,
-                        first: velocity,
-                        second: acceleration,
-                    }
+                    Jet::new(0.0, [velocity, acceleration])
                 }
                 DriverSource::Motion(_) => solver.motion(DriverId(index), start + s * h),
             };

@@ -213,8 +213,9 @@ impl MechanismState {
         // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {
             codec.real(&mut rates.value)?;
-            codec.real(&mut rates.first)?;
-            codec.real(&mut rates.second)?;
+            for rate in &mut rates.derivatives {
+                codec.real(rate)?;
+            }
         }
         for pose in [Arc::make_mut(start_pose), committed, present] {
             visit_pose(pose, codec)?;

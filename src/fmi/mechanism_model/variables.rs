@@ -60,11 +60,8 @@ impl Signal {
         match self {
             Self::Body(body, component) => {
                 let column = 3 * body.index() + component;
-                Jet {
-                    value: solver.pose().q[column],
-                    first: rates.velocity()[column],
-                    second: rates.acceleration()[column],
-                }
+                let derivatives = [rates.velocity()[column], rates.acceleration()[column]];
+                Jet::new(solver.pose().q[column], derivatives)
             }
             Self::Marker(marker, component) => solver.marker(marker, rates)[component],
             Self::Measure(measure) => solver.measure(measure, rates),
@@ -97,8 +94,8 @@ impl Order {
     pub fn of(self, jet: Jet) -> f64 {
         match self {
             Self::Position => jet.value,
-            Self::Velocity => jet.first,
-            Self::Acceleration => jet.second,
+            Self::Velocity => jet.first(),
+            Self::Acceleration => jet.second(),
         }
     }
 

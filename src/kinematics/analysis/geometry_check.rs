@@ -267,9 +267,9 @@ fn bending(radius: Jet3<Interval>) -> (Interval, Interval) {
         let crosses = x.low < 0.0 && x.high > 0.0;
         Interval::new(if crosses { 0.0 } else { low * low }, high * high)
     };
-    let (r, slope) = (square(radius.value), square(radius.first));
+    let (r, slope) = (square(radius.value), square(radius.first()));
     let sum = r + slope;
-    (sum, sum + slope - radius.value * radius.second)
+    (sum, sum + slope - radius.value * radius.second())
 }
 
 /// The curvature of a contour, positive where it is convex \[1/m\].

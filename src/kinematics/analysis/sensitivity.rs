@@ -18,7 +18,7 @@ use crate::kinematics::solver::SINGULAR_HERE;
 use crate::kinematics::system::Target;
 use crate::kinematics::variation::{Varied, VariedConfiguration, VariedVector, evaluate};
 use crate::kinematics::{Error, Rates, Solver};
-use crate::mechanism::{DriverId, Dual, Jet, MarkerId, MotionInForce, Number, ParameterId};
+use crate::mechanism::{DriverId, Dual, Jet, MarkerId, MotionInForce, ParameterId};
 
 /// A direction: how fast drivers and parameters change along it.
 #[derive(Clone, Debug)]
@@ -70,16 +70,15 @@ impl Sensitivity<'_> {
     /// The change of a parameter, which for a derived one follows from those of others.
     #[must_use]
     pub fn parameter(&self, parameter: ParameterId) -> f64 {
-        self.parameters[parameter.index()].value.along
+        self.parameters[parameter.index()].value.first()
     }
 }
 
 fn along(varied: Varied) -> Jet {
-    Jet {
-        value: varied.value.along,
-        first: varied.first.along,
-        second: varied.second.along,
-    }
+    Jet::new(
+        varied.value.first(),
+        varied.derivatives.map(|derivative| derivative.first()),
+    )
 }
 
 impl Solver {
@@ -100,15 +99,12 @@ impl Solver {
         let mechanism = system.mechanism();
         let changes = self.pose.parameters.iter().zip(&direction.parameters);
         let mut parameters: Vec<_> = changes
-            .map(|(&value, &along)| Varied::fixed(Dual { value, along }))
+            .map(|(&value, &along)| Varied::fixed(Dual::new(value, [along])))
             .collect();
         mechanism.derive_parameters(&mut parameters);
         let parameter = |p: ParameterId| parameters[p.index()];
 
-        let time = Varied::variable(Dual {
-            value: self.pose.time,
-            along: direction.time,
-        });
+        let time = Varied::variable(Dual::new(self.pose.time, [direction.time]));
         let drivers = mechanism.drivers.iter().enumerate();
         let drivers: Vec<_> = drivers
             .map(|(index, driver)| match driver.motion() {
@@ -119,13 +115,14 @@ impl Solver {
                 }
                 None => {
                     let (is, change) = (driver_rates[index], direction.drivers[index]);
-                    let dual = |value, along| Dual { value, along };
-                    Varied {
-                        value: dual(self.pose.drivers[index], change.value),
-                        first: dual(is.first, change.first),
-                        second: dual(is.second, change.second),
-                        third: Dual::default(),
-                    }
+                    let dual = |value, along| Dual::new(value, [along]);
+                    Varied::new(
+                        dual(self.pose.drivers[index], change.value),
+                        [
+                            dual(is.first(), change.first()),
+                            dual(is.second(), change.second()),
+                        ],
+                    )
                 }
             })
             .collect();
@@ -161,7 +158,7 @@ impl Solver {
             let rows = system.equations().iter().zip(&targets);
             for (side, (equation, target)) in side.iter_mut().zip(rows) {
                 let error = *target - equation.constraint.along(&at);
-                *side = [error.value, error.first, error.second][order].along;
+                *side = [error.value, error.first(), error.second()][order].first();
             }
             jacobian.solve(system, &self.at, &side, &mut change);
             at.change(order, &change);

@@ -203,14 +203,14 @@ impl Coupled {
         };
         let scale = |row: usize| work.system.equations()[row].row_scale(work.at);
         for (side, &row) in self.correction.iter_mut().zip(&self.block.rows) {
-            *side = driver(row).first * scale(row);
+            *side = driver(row).first() * scale(row);
         }
         let (velocity, _) = work.flow.both_mut();
         self.solve(work.system, work.at.size(), velocity);
         for (side, &row) in self.correction.iter_mut().zip(&self.block.rows) {
             let equation = &work.system.equations()[row];
             let quadratic = equation.constraint.quadratic(work.at, work.flow.velocity());
-            *side = (driver(row).second - quadratic) * scale(row);
+            *side = (driver(row).second() - quadratic) * scale(row);
         }
         let (_, acceleration) = work.flow.both_mut();
         self.solve(work.system, work.at.size(), acceleration);

@@ -134,8 +134,8 @@ impl Interpolated {
         let (velocity, acceleration) = work.flow.both_mut();
         for (local, &column) in self.kernel.columns().iter().enumerate() {
             let [_, first, second] = self.crossing.evaluate(local, value);
-            velocity[column] = first * rates.first;
-            acceleration[column] = first * rates.second + second * rates.first * rates.first;
+            velocity[column] = first * rates.first();
+            acceleration[column] = first * rates.second() + second * rates.first() * rates.first();
         }
     }
 }

@@ -135,8 +135,8 @@ impl Pinned {
         });
         if let Target::Driver(driver) = work.system.equations()[parts.rows[2]].target {
             let driver = drivers[driver.index()];
-            omega += parts.sense * driver.first;
-            alpha += parts.sense * driver.second;
+            omega += parts.sense * driver.first();
+            alpha += parts.sense * driver.second();
         }
         let point = self.anchor.rates(frames, velocity, acceleration);
         let arm = frames[parts.body].rotate(self.s);

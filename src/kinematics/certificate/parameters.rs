@@ -3,7 +3,7 @@
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{System, Target, Targets};
-use crate::mechanism::{Expression, Interval, Jet3, MarkerId, Number};
+use crate::mechanism::{Expression, Interval, Jet3, MarkerId};
 
 /// While parameters move, equations are written down with their values at the end of a sub-step.
 /// This is how far each number in them may differ from that on the way.
@@ -66,11 +66,8 @@ impl ParameterBounds {
         let ways = path.from.iter().zip(&path.to);
         for (parameter, (&from, &to)) in self.parameters.iter_mut().zip(ways) {
             let ends = [value(start, from, to), value(end, from, to)];
-            *parameter = Jet3 {
-                value: Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1])),
-                first: Interval::point(to - from),
-                ..Jet3::constant(0.0)
-            };
+            let range = Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
+            *parameter = Jet3::linear(range, Interval::point(to - from));
         }
         mechanism.derive_parameters(&mut self.parameters);
         let parameters = &self.parameters;

@@ -229,7 +229,7 @@ proptest! {
             let along = constraint.along(&varied);
             let here = motion(0.0);
             let motion = std::cell::RefCell::new(motion);
-            for (order, along) in [along.value, along.first, along.second].iter().enumerate() {
+            for (order, along) in [along.value, along.first(), along.second()].iter().enumerate() {
                 // Sums of some products of lengths up to 7 m, angles and rates up to 1.
                 prop_assert!(
                     (along.value - here[order]).abs() < 1e-12,
@@ -237,8 +237,8 @@ proptest! {
                 );
                 let difference = derivative(|s| motion.borrow_mut()(s)[order]);
                 prop_assert!(
-                    (along.along - difference).abs() < 1e3 * DIFFERENCE,
-                    "{constraint:?} {order}: {} {difference}", along.along
+                    (along.first() - difference).abs() < 1e3 * DIFFERENCE,
+                    "{constraint:?} {order}: {} {difference}", along.first()
                 );
             }
         }

@@ -3,7 +3,7 @@
 use crate::kinematics::Error;
 use crate::kinematics::path::{Curve, Path};
 use crate::kinematics::solver::Solver;
-use crate::mechanism::{DriverId, Interval, Jet3, Number, ParameterId};
+use crate::mechanism::{DriverId, Interval, Jet3, ParameterId};
 
 /// How far a prescribed motion that is not smooth may leave its chord, in radians and
 /// characteristic lengths: one that jumps by more is refused where it jumps.
@@ -34,7 +34,7 @@ impl Solver {
             let strays = match curve {
                 // Of second order: its second derivative is the same everywhere.
                 Curve::Input { .. } => {
-                    let second = self.path_drivers[index].second;
+                    let second = self.path_drivers[index].second();
                     Some(0.125 * (end - start).powi(2) * second.abs())
                 }
                 Curve::Motion => self.motion_strays(path, part, DriverId(index), [from, to]),
@@ -60,11 +60,8 @@ impl Solver {
         let [begin, stop] = [path.time(start), path.time(end)];
         let duration = stop - begin;
         let bounds = if self.parameters_move {
-            let t = Jet3 {
-                value: Interval::new(begin, stop),
-                first: Interval::point(path.duration),
-                ..Jet3::constant(0.0)
-            };
+            let duration = Interval::point(path.duration);
+            let t = Jet3::linear(Interval::new(begin, stop), duration);
             let parameters = &self.tubes.slips.parameters;
             let bounds = self
                 .motions
@@ -72,8 +69,8 @@ impl Solver {
             if bounds.is_none() {
                 // A table whose points move: at both ends its second derivative is at hand.
                 self.tubes.checked = true;
-                let second = self.path_drivers[driver.index()].second;
-                let before = self.origin_drivers[driver.index()].second;
+                let second = self.path_drivers[driver.index()].second();
+                let before = self.origin_drivers[driver.index()].second();
                 let most = 2.0 * second.abs().max(before.abs());
                 return Some(0.125 * (end - start).powi(2) * most);
             }
@@ -90,7 +87,7 @@ impl Solver {
             let parameter = |p: ParameterId| Jet3::constant(parameters[p.index()]);
             self.motions.enclose(driver, t, &parameter)?
         };
-        let second = bounds.second.magnitude();
+        let second = bounds.second().magnitude();
         if self.parameters_move && second.is_finite() {
             return Some(0.125 * (end - start).powi(2) * second);
         }

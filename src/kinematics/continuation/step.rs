@@ -37,8 +37,8 @@ impl Solver {
     fn advance_of(&self, h: f64) -> Advance {
         match self.origin_drivers[..] {
             [u] => Advance {
-                first: h * (u.first + 0.5 * h * u.second),
-                second: 0.5 * (h * u.first).powi(2),
+                first: h * (u.first() + 0.5 * h * u.second()),
+                second: 0.5 * (h * u.first()).powi(2),
             },
             _ => Advance {
                 first: h,

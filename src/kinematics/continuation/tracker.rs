@@ -271,7 +271,7 @@ impl Walk<'_> {
             return Reason::Value(error);
         }
         // However small a part of the path it is.
-        let far = |driver: &Jet| (self.substep * driver.first).abs() > TELLS_NOTHING;
+        let far = |driver: &Jet| (self.substep * driver.first()).abs() > TELLS_NOTHING;
         if solver.origin_drivers.iter().any(far) {
             Reason::TooLong
         } else {

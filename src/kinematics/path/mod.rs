@@ -103,12 +103,9 @@ impl Path {
     /// Writes the parameters at s with their derivatives with respect to s.
     pub(in crate::kinematics) fn parameters(&self, mechanism: &Mechanism, s: f64, out: &mut [Jet]) {
         for ((out, from), to) in out.iter_mut().zip(&self.from).zip(&self.to) {
-            *out = Jet {
-                // Exact at both ends.
-                value: if s < 1.0 { from + s * (to - from) } else { *to },
-                first: to - from,
-                second: 0.0,
-            };
+            // Exact at both ends.
+            let value = if s < 1.0 { from + s * (to - from) } else { *to };
+            *out = Jet::linear(value, to - from);
         }
         mechanism.derive_parameters(out);
     }
@@ -117,11 +114,7 @@ impl Path {
     /// those for the parameters at s.
     pub(in crate::kinematics) fn drivers(&self, s: f64, motions: &Motions, out: &mut [Jet]) {
         let h = self.duration;
-        let t = Jet {
-            value: self.time(s),
-            first: h,
-            second: 0.0,
-        };
+        let t = Jet::linear(self.time(s), h);
         for ((driver, curve), out) in self.curves.iter().enumerate().zip(out) {
             *out = match *curve {
                 Curve::Motion => motions.evaluate(DriverId(driver), t),
@@ -132,13 +125,10 @@ impl Path {
                     jump,
                 } => {
                     let tau = s * h;
-                    Jet {
-                        value: position
-                            + tau * (velocity + 0.5 * tau * acceleration)
-                            + (1.0 - s) * jump,
-                        first: h * (velocity + tau * acceleration) - jump,
-                        second: h * h * acceleration,
-                    }
+                    let travel = tau * (velocity + 0.5 * tau * acceleration);
+                    let rate = h * (velocity + tau * acceleration) - jump;
+                    let value = position + travel + (1.0 - s) * jump;
+                    Jet::new(value, [rate, h * h * acceleration])
                 }
             };
         }

@@ -237,7 +237,7 @@ impl Solver {
                 continue;
             };
             let value = self.pose.drivers[driver.index()];
-            let direction = self.path_drivers[driver.index()].first;
+            let direction = self.path_drivers[driver.index()].first();
             let Some(mut block) = self.reduced(kernel, Line::Driver(driver), value) else {
                 continue;
             };
@@ -344,10 +344,10 @@ impl Solver {
             let driver = crossing.driver.index();
             let place = crossing.place(self.pose.drivers[driver]);
             let jet = self.path_drivers[driver];
-            let direction = if jet.first == 0.0 {
-                jet.second
+            let direction = if jet.first() == 0.0 {
+                jet.second()
             } else {
-                jet.first
+                jet.first()
             };
             if place.abs() >= 1.0 - END && direction * place > 0.0 {
                 let crossing = self.pose.crossings.remove(index);
@@ -370,7 +370,7 @@ impl Solver {
     /// `end` so near to `start` that a driver goes no further than `most` in between.
     fn held_back(&self, driver: DriverId, most: f64, start: f64, mut end: f64) -> f64 {
         let from = self.origin_drivers[driver.index()];
-        let way = |h: f64| h * (from.first.abs() + 0.5 * h * from.second.abs());
+        let way = |h: f64| h * (from.first().abs() + 0.5 * h * from.second().abs());
         while way(end - start) > most {
             end = start + 0.5 * (end - start);
         }

@@ -178,7 +178,7 @@ impl<'a> Reduced<'a> {
         });
         let driven = self.rows.iter().map(|&row| {
             let scale = self.system.equations()[row].row_scale(&self.at);
-            (self.driver(row).first * scale).abs()
+            (self.driver(row).first() * scale).abs()
         });
         read.chain(driven).fold(own.amax(), f64::max)
     }
@@ -296,8 +296,8 @@ impl<'a> Reduced<'a> {
             )
         };
         [
-            rate(self.flow.velocity(), |jet| jet.first),
-            rate(self.flow.acceleration(), |jet| jet.second),
+            rate(self.flow.velocity(), |jet| jet.first()),
+            rate(self.flow.acceleration(), |jet| jet.second()),
         ]
     }
 

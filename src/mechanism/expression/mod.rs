@@ -7,52 +7,22 @@
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod display;
-mod dual;
 mod function;
-mod interval;
-mod jet3;
-mod number;
 mod parse;
-mod scalar;
 mod token;
 
 #[cfg(test)]
 mod tests;
 
-use std::f64::consts::PI;
-
-use function::{Binary, Unary};
-
-pub use dual::Dual;
-pub use interval::Interval;
-pub use jet3::Jet3;
-pub use number::{Jet, Number};
+use function::Binary;
+pub(super) use function::{CONSTANTS, function_names};
 pub use parse::ExpressionError;
 pub(super) use parse::Scope;
-pub use scalar::Scalar;
 
 use super::ParameterId;
+use super::number::{self, Interval, Jet3, Number, Unary};
 
-/// The constants of the language; `deg`, `mm` and `cm` bring a number to SI units.
-pub(super) const CONSTANTS: [(&str, f64); 4] =
-    [("pi", PI), ("deg", PI / 180.0), ("mm", 1e-3), ("cm", 1e-2)];
-
-/// The names of all functions.
-pub(super) fn function_names() -> impl Iterator<Item = &'static str> {
-    function::FUNCTIONS.iter().map(|(name, _)| *name)
-}
-
-/// The sine, on any kind of number.
-pub(super) fn sin<N: Number>(x: N) -> N {
-    Unary::Sin.apply(x)
-}
-
-/// The cosine, on any kind of number.
-pub(super) fn cos<N: Number>(x: N) -> N {
-    Unary::Cos.apply(x)
-}
-
-/// What an expression may be a function of besides the parameters.
+/// The variable of an expression, besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variable {
     /// Time \[s\], `t` in a motion.
@@ -62,7 +32,7 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// Its name in the language.
+    /// The name in the language.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -72,17 +42,17 @@ impl Variable {
     }
 }
 
-/// Operands that may wait for their operator at one time: what evaluation keeps on the stack.
-/// Far more than anyone writes by hand.
+/// Capacity of the stack of operands that wait for their operator: far more than anyone writes by
+/// hand.
 const MAX_STACK: usize = 32;
 
 /// A number as a function of the parameters, and in a motion or a profile of one [`Variable`].
 ///
-/// Kept as a flat postfix program with constant parts computed, so that evaluation neither
-/// allocates nor recurs.
+/// A flat postfix program whose constant parts are computed, so that evaluation neither allocates
+/// nor recurs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    /// Leaves one operand; never more than [`MAX_STACK`] wait, which the parser has checked.
+    /// Leaves one operand; the parser has checked that never more than [`MAX_STACK`] wait.
     program: Box<[Operation]>,
     /// The parameters used, ascending, each once.
     parameters: Box<[ParameterId]>,
@@ -105,7 +75,7 @@ enum Operation {
 }
 
 impl Operation {
-    /// How many operands it takes.
+    /// The number of operands.
     fn arity(self) -> usize {
         match self {
             Self::Number(_) | Self::Parameter(_) | Self::Variable(_) => 0,
@@ -119,7 +89,7 @@ impl Operation {
         }
     }
 
-    /// Takes its operands from the top of `stack` and leaves the result there.
+    /// Takes the operands from the top of `stack` and leaves the result there.
     fn apply<N: Number>(
         self,
         stack: &mut [N; MAX_STACK],
@@ -137,8 +107,8 @@ impl Operation {
             Self::Subtract => stack[first] - stack[first + 1],
             Self::Multiply => stack[first] * stack[first + 1],
             Self::Divide => stack[first] / stack[first + 1],
-            Self::Power => stack[first].power(stack[first + 1]),
-            Self::Unary(function) => function.apply(stack[first]),
+            Self::Power => stack[first].powf(stack[first + 1]),
+            Self::Unary(function) => stack[first].apply(function),
             Self::Binary(function) => function.apply(stack[first], stack[first + 1]),
         };
         stack[first] = result;
@@ -169,8 +139,7 @@ impl Expression {
         }
     }
 
-    /// The value for the given parameters and variable, on plain numbers, on [`Jet`]s or on
-    /// [`Jet3`]s.
+    /// Evaluates the expression for the given parameters and variable.
     ///
     /// Outside the domain of a function the result is not finite. Allocates nothing.
     pub fn evaluate<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, variable: N) -> N {
@@ -185,40 +154,18 @@ impl Expression {
     /// Encloses the value and its first three derivatives over a range of the variable, for the
     /// given parameters.
     ///
-    /// The expression is taken as a function of real numbers, of which the parameters are exact;
-    /// the enclosures hold in every point of the range, rounding included. `None` where the
-    /// function cannot be shown to be three times differentiable with finite derivatives in the
-    /// whole range: it leaves its domain, or has a kink or a jump within. A part that does not
-    /// vary needs a value only. The narrower the range, the nearer are the bounds to the true
-    /// ones: their excess is of first order in its width for the third derivative, of higher
-    /// order for the others. Allocates nothing.
+    /// The expression is a function of real numbers, its parameters are exact; the enclosures hold
+    /// in every point of the range, rounding included. `None` where the function cannot be shown
+    /// to be three times differentiable with finite derivatives in the whole range: it leaves its
+    /// domain, or has a kink or a jump there. A part that does not vary needs a value only.
+    /// Allocates nothing.
     pub fn enclose(
         &self,
         parameter: &impl Fn(ParameterId) -> f64,
         variable: Interval,
     ) -> Option<Jet3<Interval>> {
-        let evaluate = |variable| {
-            let parameter = |id| Jet3::constant(parameter(id));
-            Some(self.evaluate(&parameter, Jet3::variable(variable)))
-                .filter(|jet: &Jet3<Interval>| jet.is_finite())
-        };
-        // Only the whole range shows a kink between two parts.
-        evaluate(variable)?;
-        let middle = variable.midpoint();
-        let ends = [
-            variable.low,
-            variable.low.midpoint(middle),
-            middle,
-            middle.midpoint(variable.high),
-            variable.high,
-        ];
-        let mut parts = evaluate(Interval::new(ends[0], ends[1]))?;
-        for pair in ends[1..].windows(2) {
-            parts = parts.hull(evaluate(Interval::new(pair[0], pair[1]))?);
-        }
-        let middle = Interval::point(middle);
-        let narrowed = parts.narrowed(evaluate(middle)?, variable - middle);
-        Some(narrowed).filter(|jet| jet.is_finite())
+        let parameter = |id| Jet3::constant(parameter(id));
+        number::enclose(|variable| self.evaluate(&parameter, variable), variable)
     }
 
     /// The parameters that it uses, ascending, each once.
@@ -235,7 +182,7 @@ impl Expression {
         })
     }
 
-    /// Its value if it uses neither parameters nor a variable.
+    /// The value if it uses neither parameters nor a variable.
     #[must_use]
     pub fn literal(&self) -> Option<f64> {
         match *self.program {

@@ -1,8 +1,8 @@
 //! From text to expression: a Pratt parser that says where an error is.
 
-use super::function::{FUNCTIONS, Function};
+use super::function::{CONSTANTS, FUNCTIONS, Function};
 use super::token::{Token, TokenKind, scan};
-use super::{CONSTANTS, Expression, MAX_STACK, Operation, Variable, run};
+use super::{Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::{self, NameTable, quoted};
 use crate::mechanism::{ParameterId, Span};
 
@@ -268,7 +268,7 @@ impl<'a> Parser<'a> {
             return Err(self.nested_too_deeply());
         }
         if arity > 0 && constant {
-            let value = run(&self.program[operands..], &|_| f64::NAN, f64::NAN);
+            let value: f64 = run(&self.program[operands..], &|_| f64::NAN, f64::NAN);
             if !value.is_finite() {
                 let text = quoted(&self.text[span.clone()]);
                 return Err(ExpressionError::new(
@@ -287,7 +287,7 @@ impl<'a> Parser<'a> {
             TokenKind::End => Ok(()),
             TokenKind::Symbol(b')') => Err(ExpressionError::new(
                 self.token.span(),
-                "this parenthesis closes none",
+                "no `(` belongs to this `)`",
             )),
             _ => Err(self.missing_operator()),
         }
@@ -298,7 +298,7 @@ impl<'a> Parser<'a> {
             TokenKind::Symbol(b')') => self.advance(),
             TokenKind::End => Err(ExpressionError::new(
                 open.span(),
-                "this parenthesis is not closed",
+                "no `)` belongs to this `(`",
             )),
             _ => Err(self.missing_operator()),
         }

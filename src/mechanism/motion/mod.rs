@@ -4,7 +4,7 @@ mod law;
 
 pub use law::Law;
 
-use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Scalar, Spline, Table};
+use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, Table};
 
 /// A prescribed motion u(t, parameters) \[m or rad\].
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub enum Motion {
 
 /// The number on which it depends which piece of a motion is in force.
 fn number<N: Number>(x: N) -> f64 {
-    x.value().number()
+    x.real()
 }
 
 /// A motion through given points.
@@ -136,12 +136,12 @@ impl MotionInForce {
                 let parameter = |p: ParameterId| self.parameters[p.index()].value;
                 let t = Interval::new(from, to);
                 let constant = |p: ParameterId| Jet3::constant(parameter(p));
-                let rough = expression.evaluate(&constant, Jet3::variable(t)).second;
+                let rough = expression.evaluate(&constant, Jet3::variable(t)).second();
                 // The more exact bound takes six times as long.
                 if rough.magnitude() * (to - from) * (to - from) <= ROUGH {
                     return Some(rough.magnitude());
                 }
-                Some(expression.enclose(&parameter, t)?.second.magnitude())
+                Some(expression.enclose(&parameter, t)?.second().magnitude())
             }
             (Motion::Table(motion), Some(spline)) if self.valid => {
                 Some(motion.curvature(spline, from, to))
@@ -193,8 +193,8 @@ impl<N: Number> MotionInForce<N> {
 pub(crate) fn not_finite(motion: Jet) -> Option<&'static str> {
     let parts = [
         (motion.value, "the value"),
-        (motion.first, "the velocity"),
-        (motion.second, "the acceleration"),
+        (motion.first(), "the velocity"),
+        (motion.second(), "the acceleration"),
     ];
     let (_, what) = parts.into_iter().find(|(part, _)| !part.is_finite())?;
     Some(what)

@@ -7,7 +7,7 @@ use super::form::{Angle, Closure, Form};
 use super::{Loops, MARGIN};
 use crate::kinematics::block::Work;
 use crate::kinematics::constraint::{Axis, Projection, Relation};
-use crate::mechanism::{Interval, MarkerId, Scalar};
+use crate::mechanism::{Interval, MarkerId, Number};
 
 /// How far off, scaled, what was found before may be.
 const SLACK: f64 = 1e-12;

@@ -1,6 +1,6 @@
 //! Sums of waves in the torn angles of a block, and the rows made of them.
 
-use crate::mechanism::{Interval, Scalar};
+use crate::mechanism::{Interval, Number};
 
 /// The angle of a body.
 #[derive(Clone, Copy, Debug)]
@@ -43,10 +43,10 @@ impl Form {
 
     /// self + other · factor.
     pub(super) fn plus(mut self, other: &Self, factor: Interval) -> Self {
-        self.constant = self.constant + other.constant * factor;
+        self.constant += other.constant * factor;
         for (wave, other) in self.waves.iter_mut().zip(&other.waves) {
             for (part, other) in wave.iter_mut().zip(other) {
-                *part = *part + *other * factor;
+                *part += *other * factor;
             }
         }
         self

@@ -17,7 +17,7 @@ use form::Closure;
 use nalgebra::DMatrix;
 
 use crate::kinematics::block::Work;
-use crate::mechanism::Interval;
+use crate::mechanism::{Interval, Number};
 
 /// A block of more unknowns has too many angles for boxes.
 const MOST_UNKNOWNS: usize = 60;

@@ -32,8 +32,8 @@ impl RrpDyad {
                 } => {
                     b = &frames[*place as usize];
                     spin = Spin::of(*reference, velocity, acceleration);
-                    spin.omega += parts.sense * held.first;
-                    spin.alpha += parts.sense * held.second;
+                    spin.omega += parts.sense * held.first();
+                    spin.alpha += parts.sense * held.second();
                 }
                 Second::Parallel { place, anchor, .. } => {
                     b = &frames[*place as usize];
@@ -65,10 +65,10 @@ impl RrpDyad {
         let (omega, alpha) = match self.axis {
             Line::Turning(_) => {
                 // g is the axis: f = g · d + constant.
-                let omega = (target.first - self.g.dot(&d_dot)) / self.slope;
+                let omega = (target.first() - self.g.dot(&d_dot)) / self.slope;
                 let bias = self.g.dot(&d_ddot) + 2.0 * omega * perp(self.g).dot(&d_dot)
                     - omega * omega * self.g.dot(&d);
-                (omega, (target.second - bias) / self.slope)
+                (omega, (target.second() - bias) / self.slope)
             }
             Line::Known(..) | Line::Carried(_) => {
                 let (e, turn) = match self.axis {
@@ -82,12 +82,12 @@ impl RrpDyad {
                 let e_ddot = perp(e) * turn.alpha - e * (turn.omega * turn.omega);
                 let whole = d + self.g;
                 let rate = e_dot.dot(&whole) + e.dot(&d_dot);
-                let omega = (target.first - rate) / self.slope;
+                let omega = (target.first() - rate) / self.slope;
                 let whole_dot = d_dot + perp(self.g) * omega;
                 let bias = e_ddot.dot(&whole)
                     + 2.0 * e_dot.dot(&whole_dot)
                     + e.dot(&(d_ddot - self.g * (omega * omega)));
-                (omega, (target.second - bias) / self.slope)
+                (omega, (target.second() - bias) / self.slope)
             }
         };
         let own = Spin { omega, alpha };

@@ -7,7 +7,7 @@ use crate::kinematics::configuration::{JointUnknownId, ProfileId, perp};
 use crate::kinematics::variation::{
     VariedConfiguration, VariedMarker, VariedVector, quarter_turn, rotate,
 };
-use crate::mechanism::{Jet3, MarkerId, Mechanism, Number, ProfileInForce};
+use crate::mechanism::{MarkerId, Mechanism, Number, ProfileInForce};
 
 /// A cam's contour with a point of contact on it.
 #[derive(Clone, Copy, Debug)]
@@ -74,12 +74,8 @@ impl Contour {
         theta: f64,
         axis: Vector2<f64>,
     ) -> Shape {
-        let Jet3 {
-            value: r,
-            first: r1,
-            second: r2,
-            third: r3,
-        } = profile.radius(theta);
+        let radius = profile.radius(theta);
+        let (r, [r1, r2, r3]) = (radius.value, radius.derivatives);
         let radial = Rotation2::new(theta) * axis;
         let square = r * r + r1 * r1;
         let v = square.sqrt();
@@ -135,9 +131,9 @@ impl Contour {
             return None;
         }
         let (r1, r2, r3) = (
-            radius.first.magnitude(),
-            radius.second.magnitude(),
-            radius.third.magnitude(),
+            radius.first().magnitude(),
+            radius.second().magnitude(),
+            radius.third().magnitude(),
         );
         let radius = radius.value.magnitude();
         let square = radius * radius + r1 * r1;

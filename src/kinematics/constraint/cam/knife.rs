@@ -43,7 +43,7 @@ impl Polar {
     /// R′/ρ.
     fn steepness(&self) -> f64 {
         if self.distance > 0.0 {
-            self.contour.first / self.distance
+            self.contour.first() / self.distance
         } else {
             0.0
         }
@@ -85,7 +85,7 @@ impl Constraint for KnifeEdge {
         let direction = polar.direction();
         row.add_point(at.marker(self.follower), direction);
         row.add_point(at.marker(self.cam), -direction);
-        row.add_direction(at.marker(self.cam), polar.contour.first);
+        row.add_direction(at.marker(self.cam), polar.contour.first());
     }
 
     /// ρ̈ − R″ θ̇² − R′ θ̈, where ρ̈ and θ̈ are those of polar coordinates for q̈ = 0.
@@ -97,7 +97,7 @@ impl Constraint for KnifeEdge {
         let across = perp(polar.radial);
         let swing = across.dot(&d_dot) / polar.distance;
         let rate = swing - angular_velocity(cam, q_dot);
-        let (r1, r2) = (polar.contour.first, polar.contour.second);
+        let (r1, r2) = (polar.contour.first(), polar.contour.second());
         let radial = swing * swing * polar.distance + polar.radial.dot(&d_ddot);
         let angular =
             (across.dot(&d_ddot) - 2.0 * polar.radial.dot(&d_dot) * swing) / polar.distance;
@@ -131,7 +131,7 @@ impl Constraint for KnifeEdge {
         let swung = (reach / polar.distance).asin();
         let off = swung + region.turn(cam);
         let radius = at.profile(self.profile).bounds(polar.angle, off)?;
-        let (r1, r2) = (radius.first.magnitude(), radius.second.magnitude());
+        let (r1, r2) = (radius.first().magnitude(), radius.second().magnitude());
 
         let steepness = polar.steepness().abs();
         let steepened = (r2 * off + steepness * reach) / least;

@@ -5,20 +5,20 @@ use super::*;
 fn assert_jets3_near(found: Jet3, expected: Jet3, tolerance: f64, what: &str) {
     assert_near(found.value, expected.value, tolerance, what);
     assert_near(
-        found.first,
-        expected.first,
+        found.first(),
+        expected.first(),
         tolerance,
         &format!("({what})′"),
     );
     assert_near(
-        found.second,
-        expected.second,
+        found.second(),
+        expected.second(),
         tolerance,
         &format!("({what})″"),
     );
     assert_near(
-        found.third,
-        expected.third,
+        found.third(),
+        expected.third(),
         tolerance,
         &format!("({what})‴"),
     );
@@ -68,7 +68,12 @@ fn third_derivatives_are_those_of_the_closed_forms() {
         for (text, third) in cases {
             // The arithmetic of some ten operations; near 0.95 the arc functions divide by
             // (1 − t²)^2.5, which takes a few digits.
-            assert_near(jet3(text, t).third, third, 1e-13, &format!("{text} at {t}"));
+            assert_near(
+                jet3(text, t).third(),
+                third,
+                1e-13,
+                &format!("{text} at {t}"),
+            );
         }
     }
 }
@@ -102,12 +107,7 @@ fn two_ways_to_write_a_function_agree() {
 
 #[test]
 fn constant_powers_end_where_they_should() {
-    let jet3_of = |value, first, second, third| Jet3 {
-        value,
-        first,
-        second,
-        third,
-    };
+    let jet3_of = |value, first, second, third| Jet3::new(value, [first, second, third]);
     assert_eq!(jet3("t^2", 0.0), jet3_of(0.0, 0.0, 2.0, 0.0));
     assert_eq!(jet3("t^3", 0.0), jet3_of(0.0, 0.0, 0.0, 6.0));
     assert_eq!(jet3("t^1", 0.0), jet3_of(0.0, 1.0, 0.0, 0.0));
@@ -141,28 +141,24 @@ proptest! {
         // The error of a central difference is h²/6 times the fifth derivative, below 1e4 times
         // the third or 1 here, and the rounding of the second derivative over h.
         let h = 1e-4 * t.abs().min(1.0);
-        let third = (jet(text, t + h).second - jet(text, t - h).second) / (2.0 * h);
-        assert_near(jet3(text, t).third, third, 1e-4, &format!("({text})‴ at {t}"));
+        let third = (jet(text, t + h).second() - jet(text, t - h).second()) / (2.0 * h);
+        assert_near(jet3(text, t).third(), third, 1e-4, &format!("({text})‴ at {t}"));
     }
 
     #[test]
     fn lower_derivatives_are_those_of_triples(text in smooth_text(), t in 0.0..1.0_f64) {
         let found = jet3(&text, t);
-        let lower = Jet {
-            value: found.value,
-            first: found.first,
-            second: found.second,
-        };
+        let lower = Jet::new(found.value, [found.first(), found.second()]);
         assert_jets_near(lower, jet(&text, t), 1e-12, &text);
-        prop_assert!(found.third.is_finite());
+        prop_assert!(found.third().is_finite());
     }
 
     #[test]
     fn third_derivatives_of_compositions_are_limits_too(text in smooth_text(), t in 0.0..1.0_f64) {
         // As for the second derivative of triples, with a fifth derivative of up to 1e5.
         let h = 1e-5;
-        let third = (jet(&text, t + h).second - jet(&text, t - h).second) / (2.0 * h);
-        assert_near(jet3(&text, t).third, third, 1e-4, &text);
+        let third = (jet(&text, t + h).second() - jet(&text, t - h).second()) / (2.0 * h);
+        assert_near(jet3(&text, t).third(), third, 1e-4, &text);
     }
 
     #[test]

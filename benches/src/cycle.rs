@@ -1,0 +1,207 @@
+//! FMUs of the four-bar in a host in C; `yardstick/cycle.h` says what a cycle does.
+
+#![allow(unsafe_code, reason = "calls into C")]
+
+use std::array;
+use std::ffi::{CString, c_char, c_longlong, c_uint, c_ulonglong};
+use std::path::{Path, PathBuf};
+use std::ptr::NonNull;
+use std::slice;
+use std::time::Duration;
+
+use biela::mechanism::Jet;
+use tempfile::TempDir;
+
+use crate::by_hand::OUTPUTS;
+use crate::motion::parse;
+use crate::shipped;
+
+#[repr(C)]
+struct RawCycle {
+    _opaque: [u8; 0],
+}
+
+unsafe extern "C" {
+    fn cycle_open(
+        library: *const c_char,
+        guid: *const c_char,
+        resources: *const c_char,
+        turn: c_uint,
+        order: *const c_uint,
+    ) -> *mut RawCycle;
+    fn cycle_close(cycle: *mut RawCycle);
+    fn cycle_run(cycle: *mut RawCycle, cycles: c_ulonglong) -> c_longlong;
+    fn cycle_inputs(cycle: *const RawCycle) -> *const f64;
+    fn cycle_outputs(cycle: *const RawCycle) -> *const f64;
+}
+
+/// Order in which a cycle gets the outputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Order {
+    /// Ascending value references, which is body by body.
+    File,
+    /// x of all bodies, then y of all, and so on.
+    Quantity,
+    /// Descending value references.
+    Reversed,
+    /// A permutation drawn once.
+    Random,
+}
+
+/// Drawn once.
+const PERMUTATION: [c_uint; OUTPUTS] = [
+    11, 4, 22, 0, 16, 9, 25, 13, 2, 20, 7, 18, 26, 5, 14, 1, 23, 10, 19, 6, 12, 3, 24, 17, 8, 21,
+    15,
+];
+
+impl Order {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::File, Self::Quantity, Self::Reversed, Self::Random];
+
+    /// Numbers of the outputs in this order, 0 for the first in the file.
+    #[must_use]
+    pub fn outputs(self) -> [c_uint; OUTPUTS] {
+        array::from_fn(|place| {
+            let number = place as c_uint;
+            match self {
+                Self::File => number,
+                Self::Quantity => 9 * (number % 3) + number / 3,
+                Self::Reversed => OUTPUTS as c_uint - 1 - number,
+                Self::Random => PERMUTATION[place],
+            }
+        })
+    }
+}
+
+/// An instance of the four-bar's FMU in a host in C.
+#[derive(Debug)]
+pub struct Cycle {
+    raw: NonNull<RawCycle>,
+    order: Order,
+    /// The instance's resources.
+    _folder: Option<TempDir>,
+}
+
+impl Cycle {
+    /// Runs the FMU in C, `turn` steps per turn of the crank.
+    ///
+    /// # Panics
+    ///
+    /// If it cannot be run.
+    #[must_use]
+    pub fn yardstick(turn: u32, order: Order) -> Self {
+        let library = Path::new(env!("YARDSTICK_FMU"));
+        Self::open(library, "", "", None, turn, order)
+    }
+
+    /// Runs biela's [`library`], `turn` steps per turn of the crank.
+    ///
+    /// # Panics
+    ///
+    /// If it cannot be run.
+    #[must_use]
+    pub fn biela(turn: u32, order: Order) -> Self {
+        let text = shipped!("four_bar");
+        let guid = biela::fmi::guid(&parse(text));
+        let folder = tempfile::tempdir().expect("there is room for temporary files");
+        std::fs::write(folder.path().join(biela::fmi::RESOURCE), text).expect("it is ours");
+        let resources = format!("file://{}", folder.path().display());
+        Self::open(&library(), &guid, &resources, Some(folder), turn, order)
+    }
+
+    fn open(
+        library: &Path,
+        guid: &str,
+        resources: &str,
+        folder: Option<TempDir>,
+        turn: u32,
+        order: Order,
+    ) -> Self {
+        let text = |text: &str| CString::new(text).expect("no path holds a zero");
+        let path = library.to_str().expect("a path in UTF-8");
+        let (path, guid, resources) = (text(path), text(guid), text(resources));
+        // SAFETY: three texts and `OUTPUTS` numbers, which are not kept.
+        let raw = unsafe {
+            cycle_open(
+                path.as_ptr(),
+                guid.as_ptr(),
+                resources.as_ptr(),
+                turn,
+                order.outputs().as_ptr(),
+            )
+        };
+        Self {
+            raw: NonNull::new(raw).unwrap_or_else(|| panic!("{} runs", library.display())),
+            order,
+            _folder: folder,
+        }
+    }
+
+    /// Does a number of cycles: each sets three inputs, steps and gets 27 outputs. Returns the
+    /// time that C measures.
+    ///
+    /// # Panics
+    ///
+    /// If a call fails.
+    pub fn run(&mut self, cycles: u64) -> Duration {
+        // SAFETY: the instance lives, and nobody else has it.
+        let nanoseconds = unsafe { cycle_run(self.raw.as_ptr(), cycles) };
+        Duration::from_nanos(u64::try_from(nanoseconds).expect("no call fails"))
+    }
+
+    /// Inputs of the last cycle.
+    #[must_use]
+    pub fn inputs(&self) -> Jet {
+        // SAFETY: three numbers, which nobody writes now.
+        let inputs = unsafe { slice::from_raw_parts(cycle_inputs(self.raw.as_ptr()), 3) };
+        Jet::new(inputs[0], [inputs[1], inputs[2]])
+    }
+
+    /// Outputs of the last cycle: for each body x y phi vx vy omega ax ay alpha.
+    #[must_use]
+    pub fn outputs(&self) -> [f64; OUTPUTS] {
+        // SAFETY: as many numbers, which stay until the next run.
+        let got = unsafe { slice::from_raw_parts(cycle_outputs(self.raw.as_ptr()), OUTPUTS) };
+        let mut outputs = [f64::NAN; OUTPUTS];
+        for (number, value) in self.order.outputs().into_iter().zip(got) {
+            outputs[number as usize] = *value;
+        }
+        outputs
+    }
+}
+
+impl Drop for Cycle {
+    fn drop(&mut self) {
+        // SAFETY: it lives, and is not used again.
+        unsafe { cycle_close(self.raw.as_ptr()) }
+    }
+}
+
+/// Returns the path of biela's library.
+///
+/// Measurements take the one in the folder of the build, which `make build` optimises as a whole
+/// and which an FMU ships; cargo leaves another one beside the programs of `cargo bench`. Tests
+/// take that one, as it is never out of date.
+///
+/// # Panics
+///
+/// If it is not there.
+#[must_use]
+pub fn library() -> PathBuf {
+    let name = format!(
+        "{}biela{}",
+        std::env::consts::DLL_PREFIX,
+        std::env::consts::DLL_SUFFIX
+    );
+    let program = std::env::current_exe().expect("this program runs from a file");
+    let beside = program.ancestors().skip(1).take(2);
+    let mut found = beside
+        .map(|folder| folder.join(&name))
+        .filter(|library| library.exists());
+    let library = if cfg!(debug_assertions) {
+        found.next()
+    } else {
+        found.last()
+    };
+    library.unwrap_or_else(|| panic!("{name} is missing; `make build` builds it"))
+}

@@ -1,0 +1,89 @@
+//! The moving picture at its first moment, as SVG whose parts name their attachments.
+
+use super::Animation;
+use super::stage::Stage;
+use crate::drawing::attachment::Placement;
+use crate::drawing::sheet::{CAPITALS, Layer, Mark, WIDTH};
+use crate::drawing::svg::{FONT_SIZE, FONTS, ROUND, escape, number, path, text_element};
+
+/// Widest picture that fits a small screen, in units of the sheet; wider ones scroll there.
+const USUAL: f64 = 1.2 * WIDTH;
+
+/// Returns the picture of the first moment. Groups that move have `data-attachment`, elastic
+/// lines `data-length` and `data-points`: x and y of each point at length zero, and their changes
+/// per unit of length.
+pub(super) fn picture(animation: &Animation, stage: &Stage) -> String {
+    let [corner, size] = stage.view;
+    let view = [corner.x, corner.y, size.x, size.y].map(number).join(" ");
+    let q = animation.moments.first().map_or(&[][..], |m| &m.q);
+    let placements = stage.placements(q);
+    let class = if size.x > USUAL {
+        "stage wide"
+    } else {
+        "stage"
+    };
+    let name = escape(&animation.scene.name);
+    let mut svg = format!(
+        "<svg class=\"{class}\" viewBox=\"{view}\" role=\"img\" aria-label=\"{name}, moving\">"
+    );
+    for (layer, name) in Layer::ALL {
+        let marks = stage.marks.iter().filter(|(_, mark)| mark.layer == layer);
+        let marks: Vec<&(usize, Mark)> = marks.collect();
+        for together in marks.chunk_by(|a, b| a.0 == b.0) {
+            let attachment = together[0].0;
+            svg += &format!("<g class=\"{name}\" {ROUND}");
+            // The first attachment is ground, at rest.
+            if attachment > 0 {
+                let Placement { origin, angle } = placements[attachment];
+                let [x, y, degrees] = [origin.x, origin.y, angle.to_degrees()].map(number);
+                svg += &format!(
+                    " data-attachment=\"{attachment}\" \
+                     transform=\"translate({x} {y}) rotate({degrees})\""
+                );
+            }
+            svg += ">";
+            for (_, mark) in together {
+                svg += &path(mark, &elastic_data(mark, stage));
+            }
+            svg += "</g>";
+        }
+    }
+    svg += "<g class=\"arrows acceleration\"/><g class=\"arrows velocity\"/>";
+    svg += &names(stage);
+    svg + "</svg>"
+}
+
+/// Returns the attributes of an elastic line, or nothing.
+fn elastic_data(mark: &Mark, stage: &Stage) -> String {
+    let Some(elastic) = &mark.elastic else {
+        return String::new();
+    };
+    let length = stage.lengths.iter().position(|l| *l == elastic.measure);
+    let length = length.expect("all lengths are known");
+    let points = elastic.points.iter().flatten();
+    let points: Vec<String> = points.flat_map(|p| [p.x, p.y]).map(number).collect();
+    let points = points.join(" ");
+    format!(" data-length=\"{length}\" data-points=\"{points}\"")
+}
+
+/// Returns the names, each with its middle at its place, and the text of the scale. The letters
+/// are larger on small screens.
+fn names(stage: &Stage) -> String {
+    let size = number(CAPITALS * FONT_SIZE);
+    let names = stage.labels.iter().map(|(_, label)| &label.text);
+    let mut svg = String::new();
+    for (class, texts, part, anchor) in [
+        ("names", names.collect::<Vec<_>>(), 0.5, "middle"),
+        ("scale-text", vec![&stage.scale_text], 0.0, "start"),
+    ] {
+        svg += &format!(
+            "<g class=\"{class}\" font-family=\"{FONTS}\" font-size=\"{size}\" \
+             text-anchor=\"{anchor}\">"
+        );
+        for text in texts {
+            svg += &text_element(text, text.start.x + part * text.width(), "");
+        }
+        svg += "</g>";
+    }
+    svg
+}

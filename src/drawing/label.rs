@@ -1,0 +1,251 @@
+//! Places of names: near the thing named, clear of everything else.
+
+use std::f64::consts::{PI, TAU};
+
+use super::attachment::Attachment;
+use super::lettering;
+use super::outline::{Point, contains, direction};
+use super::palette::Colour;
+use super::sheet::{Bounds, CAPITALS, Layer, Mark, Text};
+
+/// A text that needs a place.
+pub(super) struct Label {
+    pub(super) content: String,
+    pub(super) colour: Colour,
+    /// The frame that it moves with.
+    pub(super) attachment: Attachment,
+    /// Whether it is left out where every place overlaps another label.
+    pub(super) optional: bool,
+    pub(super) candidates: Vec<Candidate>,
+}
+
+/// A label at its place.
+pub(super) struct Placed {
+    pub(super) text: Text,
+    pub(super) attachment: Attachment,
+    pub(super) place: Candidate,
+}
+
+/// A place for a label.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    /// The point that the label names.
+    pub(super) anchor: Point,
+    /// Unit vector towards the label, which lies beside the anchor; `None` for a label on it.
+    pub(super) side: Option<Point>,
+    /// Gap between the anchor and the label.
+    pub(super) gap: f64,
+    /// Penalty against the best place, in lengths of line covered.
+    pub(super) cost: f64,
+}
+
+/// A number with its penalty: a part of a line or a gap.
+pub(super) type Graded = (f64, f64);
+
+/// Free space around a label.
+const PAD: f64 = 2.0;
+/// Cost of an overlap with another label, per unit of area.
+const ON_LABEL: f64 = 4.0;
+/// Cost of a label on the area of another body.
+const ON_AREA: f64 = 14.0;
+/// Cost of a label on a wheel or a cam: they are large and pale.
+pub(super) const ON_WHEEL: f64 = 3.0;
+/// Least difference in cost that counts: rounding decides nothing.
+const BETTER: f64 = 1e-6;
+
+impl Candidate {
+    /// Returns places beside a line: at parts of its length, on sides, at gaps.
+    pub(super) fn beside(
+        [start, end]: [Point; 2],
+        parts: &[Graded],
+        sides: &[(Point, f64)],
+        gaps: &[Graded],
+    ) -> Vec<Self> {
+        let mut places = Vec::with_capacity(parts.len() * sides.len() * gaps.len());
+        for (part, of_part) in parts {
+            for (side, of_side) in sides {
+                for (gap, of_gap) in gaps {
+                    places.push(Self {
+                        anchor: start + *part * (end - start),
+                        side: Some(*side),
+                        gap: *gap,
+                        cost: of_part + of_side + of_gap,
+                    });
+                }
+            }
+        }
+        places
+    }
+
+    /// Returns places around a circle: right and above first, as one reads.
+    pub(super) fn around(center: Point, radius: f64) -> impl Iterator<Item = Self> {
+        const SIDES: u32 = 16;
+        [(3.0, 0.0), (10.0, 4.0), (20.0, 10.0)]
+            .into_iter()
+            .flat_map(move |(gap, far)| {
+                (0..SIDES).map(move |k| {
+                    let turn = f64::from(k) / f64::from(SIDES) * TAU;
+                    let from_best = (turn - 0.25 * PI).cos();
+                    Self {
+                        anchor: center,
+                        side: Some(direction(-turn)),
+                        gap: gap + radius,
+                        cost: far + 1.0 - from_best,
+                    }
+                })
+            })
+    }
+
+    /// Returns the place with a further penalty.
+    pub(super) fn costlier(self, by: f64) -> Self {
+        Self {
+            cost: self.cost + by,
+            ..self
+        }
+    }
+
+    /// Returns the middle of a label of this size.
+    pub(super) fn center(&self, size: Point) -> Point {
+        self.side.map_or(self.anchor, |side| {
+            // The side of the text's box that faces the anchor keeps the gap.
+            let reach = 0.5 * (size.x * side.x.abs() + size.y * side.y.abs());
+            self.anchor + (self.gap + reach) * side
+        })
+    }
+}
+
+/// Gives each label in turn its best place. Optional labels without a place clear of the labels
+/// before them are left out.
+pub(super) fn place<'a>(labels: Vec<Label>, marks: impl Iterator<Item = &'a Mark>) -> Vec<Placed> {
+    let obstacles: Vec<Obstacle> = marks.map(Obstacle::new).collect();
+    let mut taken: Vec<Bounds> = Vec::new();
+    let mut placed = Vec::new();
+    for label in labels {
+        let size = Point::new(lettering::width(&label.content, CAPITALS), CAPITALS);
+        let padded = size + Point::repeat(2.0 * PAD);
+        let mut best: Option<(f64, Candidate)> = None;
+        let clear = |candidate: &&Candidate| {
+            let bounds = Bounds::about(candidate.center(size), size);
+            !label.optional || taken.iter().all(|other| bounds.overlap(other) <= 0.0)
+        };
+        for candidate in label.candidates.iter().filter(clear) {
+            let center = candidate.center(size);
+            let bounds = Bounds::about(center, padded);
+            let on_labels: f64 = taken.iter().map(|other| bounds.overlap(other)).sum();
+            let on_marks: f64 = obstacles.iter().map(|o| o.cost(&bounds, center)).sum();
+            let cost = candidate.cost + ON_LABEL * on_labels + on_marks;
+            if best.is_none_or(|(least, _)| cost < least - BETTER) {
+                best = Some((cost, *candidate));
+            }
+        }
+        if let Some((_, place)) = best {
+            let center = place.center(size);
+            taken.push(Bounds::about(center, padded));
+            placed.push(Placed {
+                text: Text {
+                    content: label.content,
+                    start: center + Point::new(-0.5 * size.x, 0.5 * size.y),
+                    colour: label.colour,
+                },
+                attachment: label.attachment,
+                place,
+            });
+        }
+    }
+    placed
+}
+
+/// A mark that labels keep clear of.
+struct Obstacle {
+    pieces: Vec<[Point; 2]>,
+    bounds: Bounds,
+    /// Cost per unit of its line covered.
+    line: f64,
+    /// Cost of a label with its middle in the area.
+    area: f64,
+}
+
+impl Obstacle {
+    fn new(mark: &Mark) -> Self {
+        let pieces = mark.outline.flattened();
+        let mut bounds = Bounds::NONE;
+        for point in pieces.iter().flatten() {
+            // Lines along an axis have no area of their own.
+            bounds.join(&Bounds::about(*point, Point::repeat(2.0)));
+        }
+        let line = match mark.layer {
+            Layer::Trace => 0.6,
+            Layer::Wheel | Layer::Plate | Layer::Bar | Layer::Slot => 1.5,
+            Layer::Ground | Layer::Driver | Layer::Scale | Layer::Grid | Layer::Curve => 2.5,
+            Layer::Slider | Layer::Block | Layer::Joint | Layer::Point => 4.0,
+        };
+        let area = match mark.layer {
+            Layer::Wheel if mark.fill.is_some() => ON_WHEEL,
+            Layer::Slider | Layer::Plate | Layer::Bar | Layer::Block if mark.fill.is_some() => {
+                ON_AREA
+            }
+            _ => 0.0,
+        };
+        Self {
+            pieces,
+            bounds,
+            line,
+            area,
+        }
+    }
+
+    fn cost(&self, label: &Bounds, center: Point) -> f64 {
+        if self.bounds.overlap(label) <= 0.0 {
+            return 0.0;
+        }
+        let covered: f64 = self.pieces.iter().map(|piece| inside(*piece, label)).sum();
+        let area = if self.area > 0.0 && contains(self.pieces.iter().copied(), center) {
+            self.area
+        } else {
+            0.0
+        };
+        self.line * covered + area
+    }
+}
+
+/// Returns the length of the part of a line inside a rectangle (Liang–Barsky).
+fn inside([a, b]: [Point; 2], bounds: &Bounds) -> f64 {
+    let along = b - a;
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        let (low, high) = (bounds.low[axis] - a[axis], bounds.high[axis] - a[axis]);
+        if along[axis].abs() < 1e-12 {
+            if low > 0.0 || high < 0.0 {
+                return 0.0;
+            }
+            continue;
+        }
+        let (s, t) = (low / along[axis], high / along[axis]);
+        enter = enter.max(s.min(t));
+        leave = leave.min(s.max(t));
+    }
+    (leave - enter).max(0.0) * along.norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_part_of_a_line_inside_a_rectangle_is_measured() {
+        let bounds = Bounds {
+            low: Point::zeros(),
+            high: Point::new(4.0, 2.0),
+        };
+        for (line, expected) in [
+            ([[-1.0, 1.0], [9.0, 1.0]], 4.0),
+            ([[1.0, 1.0], [2.0, 1.0]], 1.0),
+            ([[-1.0, 3.0], [9.0, 3.0]], 0.0),
+            ([[2.0, -5.0], [2.0, 1.0]], 1.0),
+            ([[-1.0, -1.0], [5.0, 5.0]], 8_f64.sqrt()),
+        ] {
+            let line = line.map(|[x, y]| Point::new(x, y));
+            assert!((inside(line, &bounds) - expected).abs() < 1e-12, "{line:?}");
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! From a mechanism to its symbols.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::*;
+use crate::mechanism::{CoordinateKind, Driver, MarkerId, Mechanism};
+
+/// Returns the symbols of a mechanism at the pose q, for a motion through this pose.
+pub(in crate::drawing) fn compose(
+    mechanism: &Mechanism,
+    parameters: &[f64],
+    q: &[f64],
+    motion: &[Vec<f64>],
+    traces: bool,
+) -> Vec<Symbol> {
+    let mut composer = Composer {
+        mechanism,
+        parameters,
+        q,
+        motion,
+        symbols: Vec::new(),
+        spans: vec![Vec::new(); mechanism.bodies.len()],
+        pivots: Vec::new(),
+    };
+    // The other joints decide where a follower reaches, which its knife points to.
+    let is_cam = |joint: &&Joint| matches!(joint.kind, JointKind::Cam { .. });
+    let (cams, others): (Vec<&Joint>, Vec<&Joint>) = mechanism.joints.iter().partition(is_cam);
+    for joint in others.into_iter().chain(cams) {
+        let ends = [joint.from, joint.to].map(|marker| composer.anchor(marker));
+        compose_joint(&mut composer, joint, ends);
+    }
+    for driver in &mechanism.drivers {
+        composer.driver(driver);
+    }
+    for body in 0..mechanism.bodies.len() {
+        link::compose(&mut composer, BodyId(body));
+    }
+    fixture::compose(&mut composer);
+    let frame = trace::frame(&composer);
+    for marker in &mechanism.outputs.markers {
+        let name = mechanism.markers[marker.index()].name.clone();
+        let at = composer.anchor(*marker);
+        composer.symbols.push(InterestPoint { name, at }.into());
+        if traces {
+            trace::compose(&mut composer, at, frame);
+        }
+    }
+    composer.symbols
+}
+
+/// The symbols so far, and the mechanism that they stand for.
+pub(super) struct Composer<'a> {
+    pub(super) mechanism: &'a Mechanism,
+    parameters: &'a [f64],
+    /// The pose, \[m, m, rad\] per body.
+    pub(super) q: &'a [f64],
+    /// Poses along the motion.
+    pub(super) motion: &'a [Vec<f64>],
+    pub(super) symbols: Vec<Symbol>,
+    /// Points that each body reaches besides its markers: the ends of its ways and slots.
+    pub(super) spans: Vec<Vec<[f64; 2]>>,
+    /// Points of ground that hold a body, with the body.
+    pub(super) pivots: Vec<(Anchor, Option<BodyId>)>,
+}
+
+impl Composer<'_> {
+    pub(super) fn value(&self, expression: &Expression) -> f64 {
+        expression.evaluate(&|p| self.parameters[p.index()], 0.0)
+    }
+
+    pub(super) fn parameters(&self) -> &[f64] {
+        self.parameters
+    }
+
+    pub(super) fn anchor(&self, marker: MarkerId) -> Anchor {
+        let marker = &self.mechanism.markers[marker.index()];
+        Anchor {
+            body: marker.body,
+            position: [0, 1].map(|k| self.value(&marker.position[k])),
+            angle: self.value(&marker.angle),
+        }
+    }
+
+    /// Adds a symbol unless it is there already.
+    pub(super) fn add(&mut self, symbol: impl Into<Symbol>) {
+        let symbol = symbol.into();
+        if !self.symbols.contains(&symbol) {
+            self.symbols.push(symbol);
+        }
+    }
+
+    /// Notes a fixture for a point on ground that holds a body.
+    pub(super) fn hold(&mut self, at: Anchor, held: Option<BodyId>) {
+        if at.body.is_none() {
+            self.pivots.push((at, held));
+        }
+    }
+
+    /// Stretches a body along an axis as far as the parts that it carries there.
+    pub(super) fn reach(&mut self, along: Anchor, range: [f64; 2]) {
+        if let Some(body) = along.body {
+            let ends = range.map(|s| along.on_axis(s));
+            self.spans[body.index()].extend(ends.map(<[f64; 2]>::from));
+        }
+    }
+
+    fn driver(&mut self, driver: &Driver) {
+        let coordinate = &driver.coordinate;
+        let [from, to, axes] =
+            [coordinate.from, coordinate.to, coordinate.axes].map(|marker| self.anchor(marker));
+        let name = driver.name.clone();
+        let axis = match coordinate.kind {
+            CoordinateKind::Angle => return angle_driver::compose(self, name, from, to),
+            CoordinateKind::X => Some(axes),
+            CoordinateKind::Y => Some(axes.turned_to(axes.angle + FRAC_PI_2)),
+            CoordinateKind::Distance => None,
+        };
+        let guided = self.mechanism.joints.iter().any(|joint| {
+            let pair = (joint.from, joint.to);
+            pair == (coordinate.from, coordinate.to) || pair == (coordinate.to, coordinate.from)
+        });
+        length_driver::compose(self, name, [from, to], axis, guided);
+    }
+
+    /// Returns the poses of the motion and the present one.
+    pub(super) fn poses(&self) -> impl Iterator<Item = &[f64]> {
+        self.motion.iter().map(Vec::as_slice).chain([self.q])
+    }
+
+    /// Returns the range of a point along the axis of an anchor over the motion \[m\].
+    pub(super) fn range(&self, along: Anchor, point: Anchor) -> [f64; 2] {
+        let positions = self.poses().map(|q| {
+            let axis = along.placed(q);
+            direction(axis.angle).dot(&(point.placed(q).point - axis.point))
+        });
+        positions.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| {
+            [low.min(s), high.max(s)]
+        })
+    }
+
+    /// Returns a part of an axis, stretched to the markers of its body that lie on the axis.
+    pub(super) fn with_markers(&self, along: Anchor, range: [f64; 2]) -> [f64; 2] {
+        let near = 1e-6 * (range[1] - range[0]);
+        self.positions(along.body)
+            .into_iter()
+            .map(|point| along.coordinates(point.into()))
+            .filter(|[_, aside]| aside.abs() <= near)
+            .fold(range, |[low, high], [s, _]| [low.min(s), high.max(s)])
+    }
+
+    /// Returns the markers of a body in its frame; none for ground, which has no shape.
+    pub(super) fn positions(&self, body: Option<BodyId>) -> Vec<[f64; 2]> {
+        let markers = body.map(|body| &self.mechanism.bodies[body.index()].markers);
+        let anchors = markers.into_iter().flatten().map(|m| self.anchor(*m));
+        anchors.map(|anchor| anchor.position).collect()
+    }
+
+    /// Returns the coordinates of a point along an anchor's axes at the present pose \[m\].
+    pub(super) fn coordinates(&self, axes: Anchor, point: Anchor) -> [f64; 2] {
+        let (axes, point) = (axes.placed(self.q), point.placed(self.q).point);
+        let axis = direction(axes.angle);
+        [axis, across(axis)].map(|axis| axis.dot(&(point - axes.point)))
+    }
+
+    /// Returns the distance of two points at the present pose \[m\].
+    pub(super) fn distance(&self, points: [Anchor; 2]) -> f64 {
+        let [a, b] = points.map(|point| point.placed(self.q).point);
+        (b - a).norm()
+    }
+
+    /// Returns the symbols that show a body.
+    pub(super) fn showing(&self, body: BodyId) -> impl Iterator<Item = &dyn Shape> {
+        let shapes = self.symbols.iter().map(Symbol::shape);
+        shapes.filter(move |shape| shape.shows() == Some(body))
+    }
+
+    /// Returns the points of all markers on bodies at the present pose, with the bodies.
+    pub(super) fn markers(&self) -> impl Iterator<Item = (BodyId, Point)> {
+        (0..self.mechanism.markers.len()).filter_map(|marker| {
+            let anchor = self.anchor(MarkerId(marker));
+            Some((anchor.body?, anchor.placed(self.q).point))
+        })
+    }
+}

@@ -1,0 +1,125 @@
+//! Drivers of lengths: dimension lines.
+
+use super::*;
+
+/// A driver of a length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LengthDriver {
+    /// The driver's name.
+    pub name: String,
+    /// Marker i.
+    pub from: Anchor,
+    /// Marker j.
+    pub to: Anchor,
+    /// The axis along which the length is measured, `None` for the distance.
+    pub axis: Option<Anchor>,
+    /// Whether the line is drawn beside the two points, with something else between them.
+    pub beside: bool,
+}
+
+/// Length of a line without room for two arrows.
+const SHORT: f64 = 18.0;
+/// Distance of a dimension line from its points.
+const BESIDE: f64 = 21.0;
+/// Gap between a pin's middle and a dimension line that ends there.
+const INSET: f64 = PIN + 1.0;
+/// Length of an extension line beyond the dimension line, and its gap from the point.
+const EXTENSION: f64 = 4.0;
+const EXTENSION_GAP: f64 = PIN + 2.0;
+/// Distance from the tip of an arrow to the line's end inside it.
+const IN_ARROW: f64 = 0.8 * ARROW[0];
+
+/// Composes the driver of a length between two points; `guided` if a joint lies between them.
+pub(super) fn compose(
+    composer: &mut Composer,
+    name: String,
+    [from, to]: [Anchor; 2],
+    axis: Option<Anchor>,
+    guided: bool,
+) {
+    let beside = guided || axis.is_some();
+    if !beside {
+        for end in [from, to] {
+            pin::compose(composer, [end, end]);
+        }
+    }
+    composer.add(LengthDriver {
+        name,
+        from,
+        to,
+        axis,
+        beside,
+    });
+}
+
+impl Shape for LengthDriver {
+    fn draw(&self, pen: &mut Pen) {
+        let mut line = Line {
+            points: [self.from, self.to],
+            axis: self.axis,
+            offset: 0.0,
+            shortest: SHORT,
+        };
+        let ([from, to], along) = line.on_sheet(pen.q, pen.scale);
+        let aside = pen.away(across(along), 0.5 * (from + to));
+        if self.beside {
+            line.offset = BESIDE * aside.dot(&across(along));
+        }
+        let [start, end] = line.ends(pen.q, pen.scale);
+        let inset = if self.beside { 0.0 } else { INSET };
+        let forth = unit(end - start);
+        let is_short = (to - from).dot(&along).abs() < SHORT;
+        if self.beside && (pen.moving || !is_short) {
+            draw_extensions(pen, line);
+        }
+        let [first, second] = [End::First, End::Second].map(|end| Attachment::Line { line, end });
+        pen.attach(first);
+        let (near, far) = (inset + IN_ARROW, -inset - IN_ARROW);
+        let shaft = vec![
+            [Point::new(near, 0.0), Point::zeros()],
+            [Point::new(far, 0.0), Point::x()],
+        ];
+        pen.elastic(Layer::Driver, Measure::Length(line), shaft, Colour::DRIVER, LINE);
+        pen.attach(second);
+        pen.arrow(end - inset * forth, forth);
+        pen.attach(first);
+        pen.arrow(start + inset * forth, -forth);
+
+        let ends = [start + inset * forth, end - inset * forth];
+        let parts = [(0.5, 0.0), (0.35, 1.0), (0.65, 1.0), (0.2, 3.0), (0.8, 3.0)];
+        let sides = [(aside, 0.0), (-aside, 1.0)];
+        let gaps = [(5.0, 0.0), (14.0, 5.0)];
+        let mut candidates = Candidate::beside(ends, &parts, &sides, &gaps);
+        candidates.extend(ends.into_iter().flat_map(|tip| Candidate::around(tip, 5.0)));
+        pen.attach(Attachment::Point(self.to));
+        pen.name_driver(&self.name, candidates);
+    }
+
+    fn extent(&self) -> Vec<Disc> {
+        [self.from, self.to].map(Disc::from).to_vec()
+    }
+}
+
+/// Draws the lines from both points to the dimension line and a little beyond.
+fn draw_extensions(pen: &mut Pen, line: Line) {
+    let line = Line {
+        shortest: 0.0,
+        ..line
+    };
+    let ([_, to], _) = line.on_sheet(pen.q, pen.scale);
+    let [first, second] = [End::First, End::Second].map(|end| Attachment::Line { line, end });
+    // The first point is beside the line by a length that changes.
+    let beside = Measure::Beside(line);
+    let sign = beside.value(pen.q, pen.scale).signum();
+    let points = vec![
+        [Point::new(0.0, -sign * EXTENSION_GAP), Point::y()],
+        [Point::new(0.0, -sign * EXTENSION), Point::zeros()],
+    ];
+    pen.attach(first);
+    pen.elastic(Layer::Driver, beside, points, Colour::DRIVER, THIN);
+    let end = line.ends(pen.q, pen.scale)[1];
+    let away = unit(end - to);
+    let extension = Outline::line(&[to + EXTENSION_GAP * away, end + EXTENSION * away]);
+    pen.attach(second);
+    pen.line(Layer::Driver, extension, Colour::DRIVER, THIN);
+}

@@ -1,0 +1,286 @@
+//! The pen that symbols are drawn with.
+
+use super::*;
+use crate::drawing::anchor::Frame;
+use crate::drawing::attachment::on_sheet;
+use crate::drawing::label::{self, Label, Placed};
+use crate::drawing::sheet::{Elastic, Mark, Stroke};
+
+/// Half the width of a bar.
+pub(super) const BAR: f64 = 6.5;
+/// Radius of a revolute joint's circle.
+pub(super) const PIN: f64 = 4.2;
+/// Length and height of a block.
+pub(super) const BLOCK: [f64; 2] = [34.0, 22.0];
+/// Length and half the width of an arrow.
+pub(super) const ARROW: [f64; 2] = [8.0, 2.9];
+/// Spacing and depth of hatching.
+pub(super) const HATCH: f64 = 6.0;
+/// Width of a thin line.
+pub(super) const THIN: f64 = 0.9;
+/// Width of a line.
+pub(super) const LINE: f64 = 1.4;
+/// Dashes and gaps of paths.
+pub(super) const DASHES: &[f64] = &[4.0, 3.0];
+/// Dashes and gaps of pitch lines.
+pub(super) const DASH_DOTS: &[f64] = &[10.0, 3.0, 2.0, 3.0];
+
+/// Most bodies with names: more names would hide the mechanism.
+const MOST_NAMES: usize = 60;
+
+/// Draws symbols on a sheet whose origin is the origin of the mechanism.
+pub(in crate::drawing) struct Pen<'a> {
+    pub(super) symbols: &'a [Symbol],
+    pub(super) q: &'a [f64],
+    /// Units of the sheet per metre.
+    pub(super) scale: f64,
+    /// Middle of all bodies.
+    middle: Point,
+    /// Whether the mechanism starts to move: marks then keep their shape in their frames.
+    pub(super) moving: bool,
+    /// The frame that the next marks and labels move with.
+    attachment: Attachment,
+    marks: Vec<Mark>,
+    driver_labels: Vec<Label>,
+    point_labels: Vec<Label>,
+    /// Places for the name of each body, from everything drawn of it.
+    body_places: Vec<Vec<Candidate>>,
+}
+
+impl<'a> Pen<'a> {
+    /// Draws symbols at the pose q; `moving` if the mechanism starts to move there. Returns the
+    /// marks, and the labels at their places.
+    pub(in crate::drawing) fn draw(
+        symbols: &'a [Symbol],
+        bodies: &[String],
+        q: &'a [f64],
+        scale: f64,
+        moving: bool,
+    ) -> (Vec<Mark>, Vec<Placed>) {
+        let shown = symbols.iter().map(Symbol::shape);
+        let points: Vec<Point> = shown
+            .filter(|shape| shape.shows().is_some())
+            .flat_map(Shape::extent)
+            .map(|disc| disc.center.placed(q).point)
+            .collect();
+        let middle = points.iter().sum::<Point>() / points.len().max(1) as f64;
+        let mut pen = Self {
+            symbols,
+            q,
+            scale,
+            middle: on_sheet(middle, scale),
+            moving,
+            attachment: Attachment::Ground,
+            marks: Vec::new(),
+            driver_labels: Vec::new(),
+            point_labels: Vec::new(),
+            body_places: bodies.iter().map(|_| Vec::new()).collect(),
+        };
+        for symbol in symbols {
+            symbol.shape().draw(&mut pen);
+        }
+        pen.finish(bodies)
+    }
+
+    /// Returns all marks, and the labels at their places.
+    fn finish(self, bodies: &[String]) -> (Vec<Mark>, Vec<Placed>) {
+        // Labels choose their places in this order.
+        let mut labels = self.driver_labels;
+        labels.extend(self.point_labels);
+        if bodies.len() <= MOST_NAMES {
+            let bodies = bodies.iter().zip(self.body_places).enumerate();
+            labels.extend(bodies.map(|(index, (name, candidates))| Label {
+                content: name.clone(),
+                // Half the colour's light can be read.
+                colour: Colour::of_body(index).shade(0.55),
+                attachment: Attachment::Body(BodyId(index)),
+                optional: true,
+                candidates,
+            }));
+        }
+        let placed = label::place(labels, self.marks.iter());
+        (self.marks, placed)
+    }
+
+    /// Attaches the next marks and labels to the body of an anchor. Returns the point and x-axis
+    /// of the anchor on the sheet, and the colour of the body.
+    pub(super) fn on(&mut self, anchor: Anchor) -> (Point, Point, Colour) {
+        self.attach(Attachment::of(anchor));
+        let (point, axis) = self.place(anchor);
+        (point, axis, colour_of(anchor.body))
+    }
+
+    /// Sets the frame that the next marks and labels move with.
+    pub(super) fn attach(&mut self, attachment: Attachment) {
+        self.attachment = attachment;
+    }
+
+    // -- places ------------------------------------------------------------------------------
+
+    /// Returns a global point on the sheet.
+    pub(super) fn on_sheet(&self, point: Point) -> Point {
+        on_sheet(point, self.scale)
+    }
+
+    /// Returns point and x-axis of an anchor on the sheet.
+    pub(super) fn place(&self, anchor: Anchor) -> (Point, Point) {
+        let Frame { point, angle } = anchor.placed(self.q);
+        (self.on_sheet(point), on_sheet_direction(angle))
+    }
+
+    /// Returns the two ends of a part of an anchor's x-axis on the sheet.
+    pub(super) fn ends(&self, along: Anchor, range: [f64; 2]) -> [Point; 2] {
+        let (origin, axis) = self.place(along);
+        range.map(|s| origin + self.scale * s * axis)
+    }
+
+    /// Returns this direction or the opposite one: away from the mechanism.
+    pub(super) fn away(&self, aside: Point, from: Point) -> Point {
+        if aside.dot(&(self.middle - from)) > 1e-6 {
+            -aside
+        } else {
+            aside
+        }
+    }
+
+    // -- marks -------------------------------------------------------------------------------
+
+    /// Draws a solid line.
+    pub(super) fn line(&mut self, layer: Layer, outline: Outline, colour: Colour, width: f64) {
+        self.dashed(layer, outline, colour, width, &[]);
+    }
+
+    /// Draws a line of dashes and gaps.
+    pub(super) fn dashed(
+        &mut self,
+        layer: Layer,
+        outline: Outline,
+        colour: Colour,
+        width: f64,
+        dashes: &'static [f64],
+    ) {
+        let stroke = Stroke {
+            dashes,
+            ..Stroke::solid(colour, width)
+        };
+        self.marks.push(Mark {
+            attachment: self.attachment,
+            ..Mark::line(layer, outline, stroke)
+        });
+    }
+
+    /// Draws an area with a colour and an opacity, and an edge.
+    pub(super) fn area(
+        &mut self,
+        layer: Layer,
+        outline: Outline,
+        fill: (Colour, f64),
+        edge: Option<Colour>,
+    ) {
+        self.marks.push(Mark {
+            layer,
+            outline,
+            fill: Some(fill),
+            stroke: edge.map(|colour| Stroke::solid(colour, LINE)),
+            attachment: self.attachment,
+            elastic: None,
+        });
+    }
+
+    /// Draws a line whose points change with a length: each point, in the frame of the
+    /// attachment, at length zero, and its change per unit of length.
+    pub(super) fn elastic(
+        &mut self,
+        layer: Layer,
+        measure: Measure,
+        points: Vec<[Point; 2]>,
+        colour: Colour,
+        width: f64,
+    ) {
+        let frame = self.attachment.placement(self.q, self.scale);
+        let elastic = Elastic { measure, points };
+        let outline = elastic.outline(measure.value(self.q, self.scale));
+        let outline = outline.map(|point| frame.outside(point));
+        self.marks.push(Mark {
+            attachment: self.attachment,
+            elastic: Some(elastic),
+            ..Mark::line(layer, outline, Stroke::solid(colour, width))
+        });
+    }
+
+    /// Draws a line with hatching on one side, the sign of ground.
+    pub(super) fn hatched(&mut self, [start, end]: [Point; 2], outwards: Point) {
+        let along = unit(end - start);
+        let length = (end - start).norm();
+        let edge = Outline::line(&[start, end]);
+        self.line(Layer::Ground, edge, Colour::GROUND, LINE);
+        let count = (length / HATCH).round().max(1.0);
+        let mut hatching = Outline::default();
+        for k in 0..count as usize {
+            let foot = start + (k as f64 + 1.0) / count * length * along;
+            hatching.add_line(&[foot, foot + HATCH * (outwards - along)]);
+        }
+        self.line(Layer::Ground, hatching, Colour::GROUND, THIN);
+    }
+
+    /// Draws the tip of a driver's arrow.
+    pub(super) fn arrow(&mut self, tip: Point, along: Point) {
+        let [length, half] = ARROW;
+        let base = tip - length * along;
+        let aside = half * across(along);
+        let outline = Outline::polygon(&[tip, base + aside, base - aside]);
+        self.area(Layer::Driver, outline, (Colour::DRIVER, 1.0), None);
+    }
+
+    // -- names -------------------------------------------------------------------------------
+
+    /// Names a driver at the best of these places.
+    pub(super) fn name_driver(&mut self, name: &str, candidates: Vec<Candidate>) {
+        let label = self.label(name, Colour::DRIVER.shade(0.8), candidates);
+        self.driver_labels.push(label);
+    }
+
+    /// Names a point at the best of these places.
+    pub(super) fn name_point(&mut self, name: &str, candidates: Vec<Candidate>) {
+        let label = self.label(name, Colour::INK, candidates);
+        self.point_labels.push(label);
+    }
+
+    fn label(&self, name: &str, colour: Colour, candidates: Vec<Candidate>) -> Label {
+        Label {
+            content: name.to_owned(),
+            colour,
+            attachment: self.attachment,
+            optional: false,
+            candidates,
+        }
+    }
+
+    /// Offers places for the name of a body; ground has none.
+    pub(super) fn offer(
+        &mut self,
+        body: Option<BodyId>,
+        places: impl IntoIterator<Item = Candidate>,
+    ) {
+        if let Some(body) = body {
+            self.body_places[body.index()].extend(places);
+        }
+    }
+
+    /// Offers places for the name of a body on one side of a line.
+    pub(super) fn offer_beside(&mut self, body: Option<BodyId>, line: [Point; 2], side: Point) {
+        let parts = [0.5, 0.3, 0.7, 0.1, 0.9].map(|part| (part, 4.0 * f64::abs(part - 0.5)));
+        let gaps = [(5.0, 0.0), (13.0, 5.0), (24.0, 12.0)];
+        self.offer(body, Candidate::beside(line, &parts, &[(side, 0.0)], &gaps));
+    }
+}
+
+/// Returns the colour of a body or of ground.
+pub(super) fn colour_of(body: Option<BodyId>) -> Colour {
+    body.map_or(Colour::GROUND, |body| Colour::of_body(body.index()))
+}
+
+/// Returns the unit vector of an angle on the sheet, where y points down.
+pub(super) fn on_sheet_direction(angle: f64) -> Point {
+    direction(-angle)
+}
