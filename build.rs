@@ -1,25 +1,47 @@
-//! Compiles the C host of the tests against the standard's own headers, so that a call that does
-//! not fit them fails here.
+//! Compiles the C host of the tests, and lists the runtime libraries that the program carries.
 
-use std::path::Path;
-use std::{env, process};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs, process};
 
 const HOST: &str = "tests/host.c";
+
+/// Platforms with the extension of their libraries, as `Platform::ALL` has them.
+const PLATFORMS: [(&str, &str); 5] = [
+    ("linux64", "so"),
+    ("win64", "dll"),
+    ("darwin64", "dylib"),
+    ("aarch64-linux", "so"),
+    ("aarch64-darwin", "dylib"),
+];
 
 fn main() {
     println!("cargo::rerun-if-changed={HOST}");
     println!("cargo::rerun-if-env-changed=BIELA_FMI_HEADERS");
     println!("cargo::rustc-check-cfg=cfg(c_host)");
-    // The host loads the library the Unix way, and runs where it is compiled.
-    let cross = env::var("HOST") != env::var("TARGET");
-    if env::var_os("CARGO_CFG_UNIX").is_some() && !cross {
-        compile_host();
+    let headers = env::var_os("BIELA_FMI_HEADERS").map(PathBuf::from);
+    // The host loads the library the Unix way, and runs where it is compiled. Without headers,
+    // which the program does not need, the package `set-up` refuses to build the tests.
+    let cross = variable("HOST") != variable("TARGET");
+    if env::var_os("CARGO_CFG_UNIX").is_some()
+        && !cross
+        && let Some(headers) = headers.filter(|headers| headers.is_dir())
+    {
+        compile_host(&headers);
+    }
+    if env::var_os("CARGO_FEATURE_CLI").is_some() {
+        embed_libraries();
     }
 }
 
-fn compile_host() {
-    let headers = env::var_os("BIELA_FMI_HEADERS").expect("the package `set-up` has checked it");
-    let host = Path::new(&env::var_os("OUT_DIR").expect("cargo sets it")).join("host");
+fn variable(name: &str) -> String {
+    env::var(name).unwrap_or_else(|_| panic!("cargo sets {name}"))
+}
+
+/// Compiles the C host against the standard's own headers: a call that does not fit them fails.
+fn compile_host(headers: &Path) {
+    let host = Path::new(&variable("OUT_DIR")).join("host");
     let compiler = cc::Build::new().get_compiler();
     let mut command = compiler.to_command();
     if compiler.is_like_gnu() || compiler.is_like_clang() {
@@ -35,4 +57,78 @@ fn compile_host() {
         Ok(_) => process::exit(1),
         Err(error) => println!("cargo::error=cannot run the C compiler: {error}"),
     }
+}
+
+/// Writes the list of libraries that the program carries.
+///
+/// `BIELA_RUNTIMES` names a folder of them, one subfolder per platform; an empty value stands for
+/// none, for a program that has them beside it. Without it a release build carries the library of
+/// its own platform, which is built here: `cargo install` installs nothing but the program.
+fn embed_libraries() {
+    let out = PathBuf::from(variable("OUT_DIR"));
+    let mut libraries: Vec<(&str, PathBuf)> = Vec::new();
+    // Debug builds have the library beside them, and are not built again for an environment.
+    if variable("PROFILE") == "release" {
+        println!("cargo::rerun-if-env-changed=BIELA_RUNTIMES");
+        match env::var_os("BIELA_RUNTIMES") {
+            Some(folder) if folder.is_empty() => {}
+            Some(folder) => {
+                println!("cargo::rerun-if-changed={}", folder.display());
+                for (platform, extension) in PLATFORMS {
+                    let file = format!("{platform}/biela.{extension}");
+                    let library = Path::new(&folder).join(file);
+                    if library.is_file() {
+                        println!("cargo::rerun-if-changed={}", library.display());
+                        libraries.push((platform, library));
+                    }
+                }
+                assert!(
+                    !libraries.is_empty(),
+                    "BIELA_RUNTIMES: `{}` has no runtime library; run `make runtimes`",
+                    folder.display()
+                );
+            }
+            None => libraries.extend(build_library(&out)),
+        }
+    }
+    let mut list = String::from(
+        "/// The runtime libraries that the program carries, by the names of their platforms.\n\
+         static EMBEDDED_LIBRARIES: &[(&str, &[u8])] = &[\n",
+    );
+    for (platform, path) in libraries {
+        let path = fs::canonicalize(path).expect("the library was found");
+        writeln!(list, "    ({platform:?}, include_bytes!({path:?})),").expect("memory suffices");
+    }
+    list.push_str("];\n");
+    fs::write(out.join("embedded_libraries.rs"), list).expect("OUT_DIR can be written");
+}
+
+/// Builds the library for the program's own platform.
+fn build_library(out: &Path) -> Option<(&'static str, PathBuf)> {
+    let (platform, file) = match (
+        &*variable("CARGO_CFG_TARGET_OS"),
+        &*variable("CARGO_CFG_TARGET_ARCH"),
+    ) {
+        ("linux", "x86_64") => ("linux64", "libbiela_runtime.so"),
+        ("linux", "aarch64") => ("aarch64-linux", "libbiela_runtime.so"),
+        ("windows", "x86_64") => ("win64", "biela_runtime.dll"),
+        ("macos", _) => ("darwin64", "libbiela_runtime.dylib"),
+        _ => return None,
+    };
+    for source in ["src", "runtime", "Cargo.toml", "Cargo.lock"] {
+        println!("cargo::rerun-if-changed={source}");
+    }
+    let target = variable("TARGET");
+    let folder = out.join("runtime");
+    // Outside of the folder of this build, which cargo has locked.
+    let status = Command::new(variable("CARGO"))
+        .args(["build", "--release", "--package", "biela-runtime"])
+        .args(["--target", &target, "--target-dir"])
+        .arg(&folder)
+        .status();
+    assert!(
+        status.is_ok_and(|status| status.success()),
+        "cannot build the runtime library"
+    );
+    Some((platform, folder.join(target).join("release").join(file)))
 }

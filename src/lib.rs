@@ -1,23 +1,47 @@
 //! Planar mechanisms as text files, solved exactly and exported as FMI 2.0 FMUs.
 //!
-//! A mechanism is a set of rigid bodies, each with generalized coordinates q = \[x, y, phi\],
-//! held together by joints and moved by drivers. Both are equations in q: with the kinematic
-//! constraints and the drivers as one system
+//! The library reads a mechanism, a set of rigid bodies with joints and drivers, from a TOML file;
+//! assembles it; moves it along its drivers with position, velocity and acceleration exact to
+//! rounding, always on the same assembly mode; and writes it as an FMU for system simulation. The
+//! shortest program that does something assembles a mechanism and prints its pose:
+//!
+//! ```
+//! use biela::kinematics::{Path, Solver};
+//! use biela::mechanism::{Mechanism, Source};
+//!
+//! let file = Source::new("four_bar.toml", include_str!("../mechanisms/four_bar.toml"));
+//! let (mechanism, _warnings) = Mechanism::parse(&file).expect("the file has no errors");
+//! let start = Path::new(&mechanism);
+//! let mut solver = Solver::new(mechanism.into())?;
+//! solver.assemble(&start)?;
+//! for (body, q) in solver.mechanism().bodies.iter().zip(solver.pose().q.chunks_exact(3)) {
+//!     println!("{}: x = {} m, y = {} m, phi = {} rad", body.name, q[0], q[1], q[2]);
+//! }
+//! # Ok::<(), biela::kinematics::Error>(())
+//! ```
+//!
+//! # Layers
+//!
+//! | layer | subject |
+//! |---|---|
+//! | [`mechanism`] | the file: bodies, markers, joints, drivers, expressions, and their diagnostics |
+//! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
+//! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
+//! | [`fmi`] | FMI 2.0 for any model, and for mechanisms: instance, C interface, model description, archive |
+//! | `cli` | the commands of the program `biela` |
+//!
+//! Each layer uses only layers above it in this table. `drawing` and `cli` are features of these
+//! names.
+//!
+//! # Motion
+//!
+//! Each body has generalized coordinates q = \[x, y, phi\]. Joints and drivers are equations in
+//! q, together
 //!
 //! > Phi(q, t) = 0
 //!
-//! its motion follows from the Jacobian Phi_q: position by Newton–Raphson, velocity and
-//! acceleration from two linear systems with the same matrix.
-//!
-//! | layer | what it knows |
-//! |---|---|
-//! | [`mechanism`] | the file: bodies, markers, joints, drivers, expressions, and what is wrong with them |
-//! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
-//! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
-//! | [`fmi`] | FMI 2.0 for any model, and mechanisms as one: instance, C interface, model description, archive |
-//! | `cli` | the commands of the program `biela` |
-//!
-//! Each knows those above it and none below.
+//! and the motion follows from the Jacobian Phi_q: position by Newton–Raphson (Eq. 3.6.7), velocity
+//! and acceleration from two linear systems with the same matrix (Eq. 3.6.10 and 3.6.11).
 //!
 //! ```
 //! use biela::kinematics::{Curve, Path, Rates, Solver};
@@ -36,13 +60,13 @@
 //!     acceleration: 0.0,
 //!     jump: solver.pose().drivers[0] - 0.2,
 //! };
-//! solver.follow(&path).expect("nothing is in the way");
+//! solver.follow(&path).expect("nothing stops it");
 //!
 //! // Rates for a driver that moves at 1 rad/s.
 //! let mut rates = Rates::new(3);
 //! solver.solve_rates(|_driver| Jet::new(0.2, [1.0, 0.0]), &mut rates)?;
 //!
-//! // The rod's middle is 0.25 m below the pivot along the rod.
+//! // The rod's centre is 0.25 m below the pivot, along the rod.
 //! let [x, vx, ax] = [solver.pose().q[0], rates.velocity()[0], rates.acceleration()[0]];
 //! assert!((x - 0.25 * f64::sin(0.2)).abs() < 1e-15);
 //! assert!((vx - 0.25 * f64::cos(0.2)).abs() < 1e-15);
@@ -50,8 +74,8 @@
 //! # Ok::<(), biela::kinematics::Error>(())
 //! ```
 //!
-//! The crate's shared library is the runtime inside every FMU: it exports the functions of
-//! `fmi2Functions.h` and reads the mechanism from the FMU's resources.
+//! The package `biela-runtime` makes the shared library inside every FMU from this crate. It exports
+//! the functions of `fmi2Functions.h` and reads the mechanism from the FMU's resources.
 
 #[cfg(feature = "cli")]
 pub mod cli;

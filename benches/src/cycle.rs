@@ -4,12 +4,13 @@
 
 use std::array;
 use std::ffi::{CString, c_char, c_longlong, c_uint, c_ulonglong};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::ptr::NonNull;
 use std::slice;
 use std::time::Duration;
 
 use biela::mechanism::Jet;
+use set_up::runtime_library;
 use tempfile::TempDir;
 
 use crate::by_hand::OUTPUTS;
@@ -94,7 +95,7 @@ impl Cycle {
         Self::open(library, "", "", None, turn, order)
     }
 
-    /// Runs biela's [`library`], `turn` steps per turn of the crank.
+    /// Runs biela's [`runtime_library`], `turn` steps per turn of the crank.
     ///
     /// # Panics
     ///
@@ -106,7 +107,14 @@ impl Cycle {
         let folder = tempfile::tempdir().expect("there is room for temporary files");
         std::fs::write(folder.path().join(biela::fmi::RESOURCE), text).expect("it is ours");
         let resources = format!("file://{}", folder.path().display());
-        Self::open(&library(), &guid, &resources, Some(folder), turn, order)
+        Self::open(
+            &runtime_library(),
+            &guid,
+            &resources,
+            Some(folder),
+            turn,
+            order,
+        )
     }
 
     fn open(
@@ -175,33 +183,4 @@ impl Drop for Cycle {
         // SAFETY: it lives, and is not used again.
         unsafe { cycle_close(self.raw.as_ptr()) }
     }
-}
-
-/// Returns the path of biela's library.
-///
-/// Measurements take the one in the folder of the build, which `make build` optimises as a whole
-/// and which an FMU ships; cargo leaves another one beside the programs of `cargo bench`. Tests
-/// take that one, as it is never out of date.
-///
-/// # Panics
-///
-/// If it is not there.
-#[must_use]
-pub fn library() -> PathBuf {
-    let name = format!(
-        "{}biela{}",
-        std::env::consts::DLL_PREFIX,
-        std::env::consts::DLL_SUFFIX
-    );
-    let program = std::env::current_exe().expect("this program runs from a file");
-    let beside = program.ancestors().skip(1).take(2);
-    let mut found = beside
-        .map(|folder| folder.join(&name))
-        .filter(|library| library.exists());
-    let library = if cfg!(debug_assertions) {
-        found.next()
-    } else {
-        found.last()
-    };
-    library.unwrap_or_else(|| panic!("{name} is missing; `make build` builds it"))
 }

@@ -8,31 +8,31 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::error::Error;
-use super::estimates::as_estimates;
 use super::input::{Input, warn_of_misfits};
 use super::output::print;
+use super::suggested_estimates::as_estimates;
 use crate::kinematics::{self, Element, Modes, Path, Rates, Solver};
 use crate::mechanism::{CoordinateKind, DriverSource, Mechanism};
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
 ///
-/// Prints the bodies, joints and drivers with the equations that they stand for, the degrees of
-/// freedom, the assembled pose at the drivers' start values, how far each body is from its
-/// estimate, and how well conditioned the pose is (reciprocal condition: 1 is best, 0 a singular
-/// position). Where the mechanism does not close it says whether that is proved, which joints
-/// stay open and by how much, and prints the pose that comes nearest.
+/// Prints the bodies, joints and drivers with their equations, the degrees of freedom, the
+/// assembled pose at the drivers' start values, how far each body is from its estimate, and the
+/// reciprocal condition of the pose (1 is best, 0 a singular position). If the mechanism does not
+/// close, it says whether that is proved, which joints stay open and by how much, and prints the
+/// nearest pose.
 #[derive(Args, Debug)]
 pub(super) struct Check {
     /// The mechanism file.
     file: PathBuf,
-    /// Print the pose, or the one that comes nearest, as estimates to paste into the file.
+    /// Print the pose, or the nearest one, as estimates to paste into the file.
     #[arg(long)]
     estimates: bool,
     /// Look for the other ways in which the mechanism closes at the start values, and print each
     /// as estimates to paste.
     #[arg(long)]
     modes: bool,
-    /// How to tell: in words, or as JSON, with all that is wrong in the file, in SI units.
+    /// The format of the report: text, or JSON in SI units with all errors of the file.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -43,7 +43,7 @@ enum Format {
     Json,
 }
 
-/// Below this the assembled pose is called nearly singular.
+/// Reciprocal condition below which a pose is called nearly singular.
 const NEARLY_SINGULAR: f64 = 1e-6;
 
 impl Check {
@@ -73,7 +73,7 @@ impl Check {
         let assembled = solver.assemble(&Path::new(mechanism));
         if let Err(error) = assembled {
             if let kinematics::Error::NotAssembled { .. } = &error {
-                print("\nnot assembled; the pose that comes nearest\n")?;
+                print("\nnot assembled; the nearest pose\n")?;
                 print(&describe_bodies(&solver))?;
                 if self.estimates {
                     print(&estimates(&solver))?;
@@ -154,7 +154,7 @@ fn describe_equations(mechanism: &std::sync::Arc<Mechanism>) -> String {
     format!("{title}\n\n{out}")
 }
 
-/// The unknowns that joints bring with them.
+/// Lists the unknowns that joints bring with them.
 fn contacts_text(system: &crate::kinematics::System) -> String {
     let first = 3 * system.mechanism().bodies.len();
     let joints: Vec<_> = (first..system.unknowns())
@@ -185,7 +185,7 @@ fn describe_pose(solver: &mut Solver) -> String {
             names.join(", ")
         );
     }
-    // The Jacobian with all drivers is regular, so the drivers are as many as what is free.
+    // The Jacobian with all drivers is regular: one driver per degree of freedom.
     let _ = writeln!(
         out,
         "  {:<20}{:>4}    all driven",
@@ -230,7 +230,7 @@ fn describe_pose(solver: &mut Solver) -> String {
     out
 }
 
-/// A table of the bodies where the solver stands, and of how far that is from their estimates.
+/// Returns a table of the bodies in the solver's pose, with their distance from the estimates.
 fn describe_bodies(solver: &Solver) -> String {
     let (mechanism, q) = (solver.mechanism(), &solver.pose().q);
     let names = mechanism.bodies.iter().map(|body| body.name.len());
@@ -239,7 +239,7 @@ fn describe_bodies(solver: &Solver) -> String {
         "\n  {:<width$}  {:>12}  {:>12}  {:>12}  {:>12}  {:>12}\n",
         "body", "x [m]", "y [m]", "phi [deg]", "moved [m]", "turned [deg]"
     );
-    // Estimates without a value would have been an error before.
+    // An estimate without a value was refused before.
     let moves = solver.moves().unwrap_or_default();
     let bodies = mechanism.bodies.iter().zip(q.chunks_exact(3));
     for ((body, q), moved) in bodies.zip(moves) {
@@ -299,7 +299,7 @@ fn with_unit(kind: CoordinateKind, value: f64) -> String {
     }
 }
 
-/// A number with so many decimals and a power of ten, where it has one.
+/// Formats a number with a power of ten, which is left out if it is zero.
 pub(super) fn scientific(value: f64, decimals: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -308,7 +308,7 @@ pub(super) fn scientific(value: f64, decimals: usize) -> String {
     text.strip_suffix("e0").map_or(text.clone(), str::to_owned)
 }
 
-/// Zero where six decimals would show a negative zero.
+/// Returns zero for a number that six decimals would show as a negative zero.
 fn tidy(value: f64) -> f64 {
     if value.abs() < 5e-7 { 0.0 } else { value }
 }

@@ -6,7 +6,7 @@ use clap_complete::Shell;
 use super::error::Error;
 use super::output::print;
 
-/// Print what makes a shell complete the arguments of biela.
+/// Print a script with which a shell completes the arguments of biela.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   biela completions bash > ~/.local/share/bash-completion/completions/biela

@@ -1,5 +1,6 @@
-//! Parameters and drivers as the command line sets them.
+//! Parameters and motions of drivers as the command line sets them.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use clap::Args;
@@ -9,7 +10,7 @@ use super::input::{Input, warn_of_misfits};
 use super::message::Message;
 use super::signals::Signals;
 use crate::fmi;
-use crate::kinematics::{self, Curve, Path, Solver, Start};
+use crate::kinematics::{self, Curve, Solver, Start};
 use crate::mechanism::{
     DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Parameter, ParameterId, Unit,
     Variable, help, not_finite, quoted, shown,
@@ -27,188 +28,209 @@ pub(super) struct Conditions {
     set: Vec<String>,
 }
 
+/// A mechanism under the conditions of a command line.
+pub(super) struct Scenario {
+    /// The mechanism with the motions of --drive; drivers that follow signals are inputs.
+    pub(super) mechanism: Arc<Mechanism>,
+    /// Parameters in force \[SI\].
+    pub(super) parameters: Vec<f64>,
+    pub(super) signals: Signals,
+    /// Start time \[s\].
+    pub(super) start: f64,
+}
+
 impl Conditions {
-    /// The parameters in force.
-    pub(super) fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
+    /// Applies the options to a mechanism whose run starts at `start`; the CSV file `signals`
+    /// moves further drivers.
+    pub(super) fn scenario(
+        &self,
+        mechanism: &Mechanism,
+        start: f64,
+        signals: Option<&Path>,
+    ) -> Result<Scenario, Error> {
+        let parameters = self.parameters(mechanism)?;
+        let mut driven = mechanism.clone();
+        let mut driven_by_option = Vec::new();
+        let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
+        for (index, text) in DRIVE.assignments(&self.drive, &names.collect::<Vec<_>>())? {
+            let motion = motion(mechanism, text, &parameters, start)?;
+            driven.drivers[index].source = DriverSource::Motion(motion);
+            driven_by_option.push(DriverId(index));
+        }
+        let signals = match signals {
+            Some(path) => Signals::read(path, &driven)?,
+            None => Signals::default(),
+        };
+        if let Some(driver) = driven_by_option.iter().find(|d| signals.has(**d)) {
+            let name = &mechanism.drivers[driver.index()].name;
+            return Err(Error::Usage(format!(
+                "both --drive and --input say how `{name}` moves"
+            )));
+        }
+        signals.make_inputs(&mut driven);
+        Ok(Scenario {
+            mechanism: Arc::new(driven),
+            parameters,
+            signals,
+            start,
+        })
+    }
+
+    /// Returns a solver of the driven mechanism at the start of the simulation.
+    pub(super) fn solver_at_start(&self, input: &Input) -> Result<Solver, Error> {
+        let start = input.mechanism.simulation.start;
+        let scenario = self.scenario(&input.mechanism, start, None)?;
+        let solver = scenario.solver(input.assemble()?);
+        solver.map_err(|error| input.error(error))
+    }
+
+    /// Returns the parameters in force \[SI\].
+    fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
         let mut values = mechanism.default_parameters();
-        let mut given = vec![false; values.len()];
-        for assignment in &self.set {
-            let (name, text) = split(assignment, "--set", "crank_length=120*mm")?;
-            let id = mechanism.parameter_id(name).ok_or_else(|| {
-                let names = mechanism.parameters.iter().map(|p| p.name.as_str());
-                unknown("--set", "parameter", name, names)
-            })?;
-            once("--set", name, &mut given[id.index()])?;
-            let parameter = &mechanism.parameters[id.index()];
+        let names = mechanism.parameters.iter().map(|p| p.name.as_str());
+        for (index, text) in SET.assignments(&self.set, &names.collect::<Vec<_>>())? {
+            let parameter = &mechanism.parameters[index];
             if parameter.derived {
                 return Err(Error::Usage(format!(
-                    "--set: `{name}` is derived from other parameters; set those"
+                    "--set: `{}` is derived from other parameters; set those",
+                    parameter.name
                 )));
             }
-            let value = mechanism
+            values[index] = mechanism
                 .parse_expression(text, None)
-                .map_err(|error| in_argument("--set", text, &error))?
+                .map_err(|error| SET.refuse(text, &error))?
                 .evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
-            check_limits(parameter, value)?;
-            values[id.index()] = value;
+            check_limits(parameter, values[index])?;
         }
         mechanism.derive_parameters(&mut values);
         Ok(values)
     }
+}
 
-    /// The mechanism with the motions of --drive prescribed, whose values and rates are finite at
-    /// the time `start` with these parameters.
-    pub(super) fn driven(
-        &self,
-        mechanism: &Mechanism,
-        parameters: &[f64],
-        start: f64,
-    ) -> Result<Mechanism, Error> {
-        let mut driven = mechanism.clone();
-        let mut given = vec![false; driven.drivers.len()];
-        for assignment in &self.drive {
-            let (name, text) = split(assignment, "--drive", "crank_angle=60*deg + 10*t")?;
-            let id = mechanism.driver_id(name).ok_or_else(|| {
-                let names = mechanism.drivers.iter().map(|d| d.name.as_str());
-                unknown("--drive", "driver", name, names)
-            })?;
-            once("--drive", name, &mut given[id.index()])?;
-            let motion = mechanism
-                .parse_expression(text, Some(Variable::Time))
-                .map_err(|error| in_argument("--drive", text, &error))?;
-            let at_start = motion.evaluate(
-                &|p: ParameterId| Jet::constant(parameters[p.index()]),
-                Jet::variable(start),
-            );
-            if let Some(what) = not_finite(at_start) {
-                let (time, whole) = (shown(start), quoted(text));
-                let error = ExpressionError {
-                    message: format!("at t = {time}, {what} of {whole} is not finite"),
-                    span: 0..text.len(),
-                    help: None,
-                };
-                return Err(in_argument("--drive", text, &error));
-            }
-            driven.drivers[id.index()].source = DriverSource::Motion(Motion::Expression(motion));
-        }
-        Ok(driven)
+/// Reads a motion of --drive, whose value and rates must be finite at the start.
+fn motion(
+    mechanism: &Mechanism,
+    text: &str,
+    parameters: &[f64],
+    start: f64,
+) -> Result<Motion, Error> {
+    let motion = mechanism
+        .parse_expression(text, Some(Variable::Time))
+        .map_err(|error| DRIVE.refuse(text, &error))?;
+    let at_start = motion.evaluate(
+        &|p: ParameterId| Jet::constant(parameters[p.index()]),
+        Jet::variable(start),
+    );
+    if let Some(what) = not_finite(at_start) {
+        let (time, whole) = (shown(start), quoted(text));
+        let error = ExpressionError {
+            message: format!("at t = {time}, {what} of {whole} is not finite"),
+            span: 0..text.len(),
+            help: None,
+        };
+        return Err(DRIVE.refuse(text, &error));
     }
+    Ok(Motion::Expression(motion))
+}
 
-    /// A solver of the driven mechanism at the start of the simulation.
-    pub(super) fn solver_at_start(&self, input: &Input) -> Result<Solver, Error> {
-        self.reach_start(input)?.map_err(|error| input.error(error))
-    }
-
-    /// The same, or else what is in the way from the file's own pose to the start, for those who
-    /// have named the file already.
+impl Scenario {
+    /// Returns a solver of the driven mechanism at the start, in the assembly mode of
+    /// `home_solver`, which has the file's own pose and moves from there.
     ///
     /// # Errors
     ///
-    /// What is wrong with the options, or with the file's own pose.
-    pub(super) fn reach_start(
-        &self,
-        input: &Input,
-    ) -> Result<Result<Solver, kinematics::Error>, Error> {
-        let parameters = self.parameters(&input.mechanism)?;
-        let time = input.mechanism.simulation.start;
-        let driven = Arc::new(self.driven(&input.mechanism, &parameters, time)?);
-        let home_solver = input.assemble()?;
-        Ok(start(home_solver, &driven, &parameters, time, |_| None))
-    }
-
-    /// No driver follows both --drive and the signals of --input.
-    pub(super) fn refuse_twice(
-        &self,
-        signals: &Signals,
-        mechanism: &Mechanism,
-    ) -> Result<(), Error> {
-        for assignment in &self.drive {
-            let (name, _) = split(assignment, "--drive", "crank_angle=60*deg + 10*t")?;
-            if mechanism
-                .driver_id(name)
-                .is_some_and(|driver| signals.has(driver))
-            {
-                return Err(Error::Usage(format!(
-                    "both --drive and --input say how `{name}` moves"
-                )));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// A solver of the driven mechanism at the start, in the file's assembly mode: moved there from
-/// the file's pose, where `home_solver` stands. `given` has the values of drivers that are set
-/// from elsewhere.
-pub(super) fn start(
-    mut home_solver: Solver,
-    driven: &Arc<Mechanism>,
-    parameters: &[f64],
-    time: f64,
-    given: impl Fn(DriverId) -> Option<f64>,
-) -> Result<Solver, kinematics::Error> {
-    let home = home_solver.pose().clone();
-    let mut path = Path::new(home_solver.mechanism());
-    path.duration = time - home.time;
-    path.to.copy_from_slice(parameters);
-    let drivers = home_solver.mechanism().drivers.iter().zip(&driven.drivers);
-    for (index, (curve, (own, driver))) in path.curves.iter_mut().zip(drivers).enumerate() {
-        let kept = match (own.motion(), driver.motion()) {
-            (Some(Motion::Expression(own)), Some(Motion::Expression(given))) => own == given,
-            (Some(Motion::Table(_)), Some(Motion::Table(_))) | (None, None) => true,
-            _ => false,
-        };
-        let position = match (given(DriverId(index)), driver.motion()) {
-            (Some(position), _) => Some(position),
-            (None, Some(Motion::Expression(motion))) if !kept => {
-                Some(motion.evaluate(&|p: ParameterId| parameters[p.index()], time))
-            }
-            _ => None,
-        };
-        if let Some(position) = position {
-            *curve = Curve::Input {
-                position,
-                velocity: 0.0,
-                acceleration: 0.0,
-                jump: home.drivers[index] - position,
+    /// The values at the start cannot be reached and give no assembly either.
+    pub(super) fn solver(&self, mut home_solver: Solver) -> Result<Solver, kinematics::Error> {
+        let home = home_solver.pose().clone();
+        let mut path = kinematics::Path::new(home_solver.mechanism());
+        path.duration = self.start - home.time;
+        path.to.copy_from_slice(&self.parameters);
+        let drivers = (home_solver.mechanism().drivers.iter()).zip(&self.mechanism.drivers);
+        for (index, (curve, (own, driven))) in path.curves.iter_mut().zip(drivers).enumerate() {
+            let given = match driven.motion() {
+                Some(Motion::Expression(motion)) if !matches!(own.motion(), Some(Motion::Expression(own)) if own == motion) => {
+                    Some(motion.evaluate(&|p: ParameterId| self.parameters[p.index()], self.start))
+                }
+                _ => (self.signals.at(DriverId(index), self.start)).map(|signal| signal.value),
             };
+            if let Some(position) = given {
+                *curve = Curve::Input {
+                    position,
+                    velocity: 0.0,
+                    acceleration: 0.0,
+                    jump: home.drivers[index] - position,
+                };
+            }
         }
+        if let Start::Reassembled(_) = home_solver.start(&home, &path)? {
+            let warning = "no continuous motion leads from the file's own pose to these values: \
+                           assembled there from the estimates, possibly in another assembly mode";
+            Message::Warning(warning.to_owned()).show();
+        }
+        let mut solver = Solver::new(Arc::clone(&self.mechanism))?;
+        solver.restore(home_solver.pose());
+        warn_of_misfits(&solver);
+        Ok(solver)
     }
-    if let Start::Reassembled(_) = home_solver.start(&home, &path)? {
-        let warning = "no continuous motion leads from the file's own pose to these values: \
-                       assembled there from the estimates, possibly in another assembly mode";
-        Message::Warning(warning.to_owned()).show();
-    }
-    let mut solver = Solver::new(Arc::clone(driven))?;
-    solver.restore(home_solver.pose());
-    warn_of_misfits(&solver);
-    Ok(solver)
 }
 
-fn split<'a>(
-    assignment: &'a str,
-    option: &str,
-    example: &str,
-) -> Result<(&'a str, &'a str), Error> {
-    assignment
-        .split_once('=')
-        .map(|(name, text)| (name.trim(), text.trim()))
-        .ok_or_else(|| {
-            Error::Usage(format!(
-                "{option}: `{assignment}` has no `=`; expected for example '{example}'"
-            ))
-        })
+/// An option that assigns expressions to names.
+struct Assigning {
+    option: &'static str,
+    kind: &'static str,
+    example: &'static str,
 }
 
-/// Refuses a second value for what has one.
-fn once(option: &str, name: &str, given: &mut bool) -> Result<(), Error> {
-    if std::mem::replace(given, true) {
-        return Err(Error::Usage(format!("{option}: `{name}` is given twice")));
+const SET: Assigning = Assigning {
+    option: "--set",
+    kind: "parameter",
+    example: "crank_length=120*mm",
+};
+const DRIVE: Assigning = Assigning {
+    option: "--drive",
+    kind: "driver",
+    example: "crank_angle=60*deg + 10*t",
+};
+
+impl Assigning {
+    /// Splits each `NAME=EXPRESSION` into the name's index in `names` and the expression.
+    fn assignments<'a>(
+        &self,
+        given: &'a [String],
+        names: &[&str],
+    ) -> Result<Vec<(usize, &'a str)>, Error> {
+        let (option, example) = (self.option, self.example);
+        let mut assignments: Vec<(usize, &str)> = Vec::new();
+        for assignment in given {
+            let Some((name, text)) = assignment.split_once('=') else {
+                return Err(Error::Usage(format!(
+                    "{option}: `{assignment}` has no `=`; expected for example '{example}'"
+                )));
+            };
+            let name = name.trim();
+            let index = names.iter().position(|known| *known == name);
+            let index = index.ok_or_else(|| unknown(option, self.kind, name, names))?;
+            if assignments.iter().any(|(known, _)| *known == index) {
+                return Err(Error::Usage(format!("{option}: `{name}` is given twice")));
+            }
+            assignments.push((index, text.trim()));
+        }
+        Ok(assignments)
     }
-    Ok(())
+
+    /// Returns the error of an expression, with a mark under its place.
+    fn refuse(&self, text: &str, error: &ExpressionError) -> Error {
+        let column = text[..error.span.start].chars().count();
+        let help = (error.help.as_ref()).map_or_else(String::new, |help| format!("; {help}"));
+        let mut message = format!("{}: {}{help}", self.option, error.message);
+        if !text.is_empty() {
+            message += &format!("\n  {text}\n  {:column$}^", "");
+        }
+        Error::Usage(message)
+    }
 }
 
-/// Refuses what the FMU refuses, in its words.
+/// Refuses a value that the FMU refuses, in its words.
 fn check_limits(parameter: &Parameter, value: f64) -> Result<(), Error> {
     let limits = [parameter.min, parameter.max];
     fmi::error::check_limits(&parameter.name, value, limits).map_err(|error| {
@@ -221,31 +243,12 @@ fn check_limits(parameter: &Parameter, value: f64) -> Result<(), Error> {
     })
 }
 
-/// What to say of a name that stands for nothing.
-pub(super) fn unknown<'a>(
-    option: &str,
-    what: &str,
-    name: &str,
-    names: impl Iterator<Item = &'a str>,
-) -> Error {
-    let names: Vec<_> = names.collect();
-    let help = match names[..] {
+/// Returns the error of an unknown name, with the known name that may be meant.
+pub(super) fn unknown(option: &str, kind: &str, name: &str, names: &[&str]) -> Error {
+    let help = match names {
         [] => Some("the mechanism has none".to_owned()),
-        _ => help(name, &names, &[]),
+        _ => help(name, names, &[]),
     };
     let help = help.map_or_else(String::new, |help| format!("; {help}"));
-    Error::Usage(format!("{option}: no {what} `{name}`{help}"))
-}
-
-fn in_argument(option: &str, text: &str, error: &ExpressionError) -> Error {
-    let column = text[..error.span.start].chars().count();
-    let help = error
-        .help
-        .as_ref()
-        .map_or_else(String::new, |help| format!("; {help}"));
-    let mut message = format!("{option}: {}{help}", error.message);
-    if !text.is_empty() {
-        message += &format!("\n  {text}\n  {:column$}^", "");
-    }
-    Error::Usage(message)
+    Error::Usage(format!("{option}: no {kind} `{name}`{help}"))
 }

@@ -1,15 +1,15 @@
-//! What documents an FMU from the inside: its picture and its page.
+//! The documentation inside an FMU: its picture, its page, and licences.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use super::columns::Column;
+use super::column::Column;
 use super::error::Error;
+use super::film::Film;
 use super::input::Input;
 use super::motion::Motion;
 use super::range::{end_text, with_unit};
-use super::recording::Recording;
 use super::signals::Signals;
 use crate::drawing::animation::{Animation, fill, page_with, player};
 use crate::drawing::svg::escape;
@@ -22,39 +22,41 @@ use crate::mechanism::{
 
 const MAIN: &str = include_str!("documentation.html");
 const STYLE: &str = include_str!("documentation.css");
+/// The licences of what is inside the runtime library.
+const LICENSES: &[u8] = include_bytes!("../../runtime/licenses.txt");
 
 /// Width of the picture, which hosts show as an icon or beside the variables.
 const ICON_WIDTH: u32 = 512;
-/// How much larger than on its sheet the drawing is on a page that has room for it.
+/// Scale of the drawing on the page, which has more room than a sheet.
 const ENLARGED: f64 = 4.0 / 3.0;
-/// Pictures of the motion, and how many bodies there are in all of them at most.
+/// Number of moments of the motion, and the largest number of bodies in all of them.
 const MOMENTS: usize = 240;
 const MOST_PLACED: usize = 24_000;
-/// How long a turn of the driver, or its way there and back, is shown \[s\].
+/// Time that the film takes for a turn of the driver, or for its range there and back \[s\].
 const PERIOD: f64 = 4.0;
-/// Looked at less closely than by `biela range`: a turn in steps of three degrees, a few of
-/// them, and a length up to a few times as far as the mechanism is long.
+/// Coarser settings than those of `biela range`: steps of three degrees, few turns, and lengths
+/// up to three times the size of the mechanism.
 const RANGE: RangeSettings = RangeSettings {
     samples: 120,
     turns: 8,
     lengths: 3.0,
 };
-/// What a motion between two limits leaves of its range at both ends: at a dead point itself
+/// Part of the range that a motion between two limits leaves out at each end: at a dead point
 /// there is no velocity.
 const INSIDE: f64 = 0.01;
-/// The part that is shown of a way on which no limit was found.
+/// Part of the searched range that is shown if no limit was found.
 const SHOWN: f64 = 1.0 / 3.0;
 
-/// A mechanism as it moves.
+/// A mechanism in motion.
 pub(super) struct Shown {
     pub(super) animation: Animation,
-    /// What moves, in words.
+    /// The motion, in words.
     pub(super) moving: String,
-    /// For each driver that is an input its range, from where the mechanism stands.
+    /// The range of each driver that is an input, from the mechanism's pose.
     ranges: Vec<Option<Range>>,
 }
 
-/// The picture and the page of a mechanism that stands at its own pose.
+/// Returns the picture and the page of a mechanism, and the licences, whose own pose `home` has.
 pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, Error> {
     let refuse = |error| input.error(error);
     let mut solver = Solver::new(Arc::clone(&input.mechanism)).map_err(refuse)?;
@@ -73,11 +75,15 @@ pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, E
             path: "documentation/index.html".to_owned(),
             content: page(&input.mechanism, &home.pose().parameters, &sheet, &shown).into_bytes(),
         },
+        Document {
+            path: "documentation/licenses/license.txt".to_owned(),
+            content: LICENSES.to_vec(),
+        },
     ])
 }
 
-/// A mechanism from where it stands: along its prescribed motions, or over the range of its
-/// first driver, best an angle.
+/// Moves a mechanism along its prescribed motions, or over the range of its first driver that is
+/// an angle, or else of its first driver.
 pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Error> {
     let own = Arc::clone(solver.mechanism());
     let ranges: Vec<Option<Range>> = (own.drivers.iter().enumerate())
@@ -100,8 +106,8 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
             "The prescribed motion, until the stop time.".to_owned(),
         ),
         Some((driver, range)) => {
-            let (motion, duration) = way(home.drivers[driver], range, simulation.start);
-            // What the way is made of are finite numbers.
+            let (motion, duration) = motion_over(home.drivers[driver], range, simulation.start);
+            // It parses: it is made of finite numbers.
             if let Ok(motion) = own.parse_expression(&motion, Some(Of::Time)) {
                 let motion = Prescribed::Expression(motion);
                 driven.drivers[driver].source = DriverSource::Motion(motion);
@@ -119,32 +125,31 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     let mut solver = Solver::new(Arc::clone(&driven))?;
     solver.restore(&home);
     let start = simulation.start;
-    let parameters = home.parameters;
-    let mut motion = Motion::from(solver, Signals::default(), parameters.clone(), start)?;
-    let told = Recording::of_interest(&Column::all(&driven));
+    let mut motion = Motion::from(solver, Signals::default(), start)?;
+    let told = Column::told(&Column::all(&driven));
     let moments = (MOST_PLACED / own.bodies.len().max(1)).clamp(MOMENTS / 10, MOMENTS);
-    let mut recording = Recording::new(told, moments as u64);
-    recording.add(&motion);
     let step = duration / moments as f64;
+    let mut film = Film::new(told, moments as u64, [start, step]);
+    film.add(&motion);
     if duration > 0.0 {
         for moment in 1..=moments {
-            // What is in the way ends the film there.
+            // The film ends where the mechanism cannot go on.
             if motion.advance(start + moment as f64 * step).is_err() {
                 break;
             }
-            recording.add(&motion);
+            film.add(&motion);
         }
     }
     Ok(Shown {
-        animation: recording.animation(&driven, &parameters, [start, step]),
+        animation: film.animation(&motion),
         moving,
         ranges,
     })
 }
 
-/// An expression in time that leads over a range from where the driver is, and how long it
-/// takes: round and round, or there and back.
-fn way(from: f64, range: &Range, start: f64) -> (String, f64) {
+/// Returns an expression in time that leads from `from` over a range, in full turns or there and
+/// back, and its duration \[s\].
+fn motion_over(from: f64, range: &Range, start: f64) -> (String, f64) {
     if let End::Turns(turns) = range.upper {
         let rate = TAU / PERIOD;
         let turns = f64::from(turns.max(1));
@@ -165,7 +170,7 @@ fn way(from: f64, range: &Range, start: f64) -> (String, f64) {
         }
     });
     let inside = INSIDE * (high - low);
-    // A driver may start near a limit.
+    // The driver may start near a limit.
     let [low, high] = [(low + inside).min(from), (high - inside).max(from)];
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let phase = if half > 0.0 {
@@ -201,7 +206,7 @@ fn page(mechanism: &Mechanism, values: &[f64], sheet: &Sheet, shown: &Shown) -> 
     page_with(&mechanism.name, &mechanism.description, &main, STYLE)
 }
 
-/// Who made it and what may be done with it, as far as the file says.
+/// Returns author, version, licence and copyright, as far as the file has them.
 fn about(mechanism: &Mechanism) -> String {
     let rows = [
         ("Author", &mechanism.author),
@@ -253,7 +258,7 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
     table(&["Driver", "Start", "Range, other drivers held"], rows)
 }
 
-/// The parameters with their values, [SI units].
+/// Returns the table of parameters with their values, in SI units.
 fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
     let rows = variables.iter().filter_map(|variable| {
         let Kind::Real { unit, min, max, .. } = variable.kind else {
@@ -291,7 +296,7 @@ fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
         }
         Some([
             variable.name.clone(),
-            // A derived one has the rounding of its expression, which nobody asks for.
+            // A derived value carries the rounding of its expression.
             shown(Some(rounded(values[parameter.index()]))),
             name_of(unit),
             limits,
@@ -329,7 +334,7 @@ fn outputs(variables: &[Variable<Quantity>]) -> String {
     table(&["Variable", "Causality", "Unit", "Meaning"], rows)
 }
 
-/// Twelve digits of a number.
+/// Rounds to twelve digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
@@ -338,7 +343,7 @@ fn name_of(unit: Option<Unit>) -> String {
     unit.map_or_else(String::new, |unit| unit.name.to_owned())
 }
 
-/// A table, or a word where it would be empty.
+/// Returns a table; a word if it has no rows.
 fn table<const N: usize>(header: &[&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
     let mut html = String::from("<div class=\"table\"><table>\n<thead><tr>");
     for cell in header {
@@ -349,7 +354,7 @@ fn table<const N: usize>(header: &[&str; N], rows: impl Iterator<Item = [String;
     for row in rows {
         empty = false;
         html.push_str("<tr>");
-        // On a telephone each cell says what it is, as there is no room for columns.
+        // On a telephone, without room for columns, each cell shows its header.
         for (what, cell) in header.iter().zip(row) {
             let _ = write!(html, "<td data-what=\"{what}\">{}</td>", escape(&cell));
         }

@@ -8,18 +8,18 @@ use clap::builder::RangedI64ValueParser;
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
-use super::message::tell;
-use super::originals::Originals;
+use super::input_files::InputFiles;
 use super::picture::Format;
 use crate::drawing::{Scene, Sheet};
 
 /// Draw a mechanism as a kinematic diagram, in SVG or PNG.
 ///
-/// Shown is the pose at the start: at the drivers' start values, or where --drive and --set say.
-/// There are bodies, joints, ground, the drivers with their names, and the points of interest
-/// (`[outputs] markers`) with the paths that they take: over the prescribed motions until the
-/// file's stop time or, if none moves, over turns of the first driver that is an angle: as many,
-/// up to eight, as bring the mechanism back, or one, as far as it gets both ways.
+/// The picture shows the pose at the start: at the drivers' start values, or as --drive and --set
+/// say. It has bodies, joints, ground, the drivers with their names, and the points of interest
+/// (`[outputs] markers`) with their paths. The paths cover the prescribed motions until the file's
+/// stop time. If no motion is prescribed, they cover the turns, at most eight, after which the
+/// first driver that is an angle brings the mechanism back, or the part of one turn both ways that
+/// it can reach.
 ///
 /// The same file gives the same picture.
 #[derive(Args, Debug)]
@@ -56,19 +56,14 @@ impl Draw {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.output.as_deref().map_or(Ok(Format::Svg), Format::of)?;
         let input = Input::read(&self.file)?;
-        let is_named = self.output.is_some();
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
-        Originals::new(&self.file, &input.mechanism).refuse_as(&[Some(&path)])?;
+        InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(&path)])?;
         let mut solver = self.conditions.solver_at_start(&input)?;
         let scene = Scene::new(&mut solver, !self.no_traces);
         let sheet = Sheet::new(&scene, &solver.pose().q);
         let width = self.width.unwrap_or(sheet.width());
-        format.write(&path, &sheet, width, self.transparent)?;
-        if !is_named {
-            tell(format_args!("wrote {}", path.display()));
-        }
-        Ok(())
+        format.write(&path, &sheet, width, self.transparent)
     }
 }

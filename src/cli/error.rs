@@ -1,10 +1,10 @@
-//! Why a command failed, and its exit status.
+//! Errors of commands, and their exit status.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::message::Message;
-use super::output::shown;
+use super::stdout::shown;
 use crate::fmi::PackageError;
 use crate::kinematics;
 
@@ -14,7 +14,7 @@ pub(super) enum Error {
     /// The mechanism file has errors, which have been shown.
     #[error("the mechanism file has errors")]
     Diagnosed,
-    /// The mechanism cannot be moved or put together.
+    /// The mechanism cannot be assembled or moved.
     #[error("{file}: {error}")]
     Mechanism {
         file: String,
@@ -23,7 +23,7 @@ pub(super) enum Error {
     /// A run met a dead point.
     #[error("{file}: {why}")]
     DeadPoint { file: String, why: String },
-    /// The command's arguments make no sense.
+    /// An argument of the command is wrong.
     #[error("{0}")]
     Usage(String),
     /// A file cannot be read.
@@ -38,15 +38,16 @@ pub(super) enum Error {
         path: PathBuf,
         source: std::io::Error,
     },
-    /// Nobody can be served.
+    /// The server of `watch` cannot listen.
     #[error("cannot listen on port {port}: {source}; --port names another, 0 a free one")]
     Listen { port: u16, source: std::io::Error },
-    /// The FMU cannot be put together.
+    /// The FMU cannot be written.
     #[error(transparent)]
     Package(#[from] PackageError),
 }
 
 impl Error {
+    /// Tells the error on stderr, unless it was told already or is a closed pipe.
     pub(super) fn show(&self) {
         match self {
             Self::Diagnosed => {}
@@ -55,10 +56,11 @@ impl Error {
         }
     }
 
+    /// Returns 1 for an error in the mechanism, 2 for one in the command.
     pub(super) fn exit_code(&self) -> ExitCode {
         match self {
             Self::Diagnosed | Self::Mechanism { .. } | Self::DeadPoint { .. } => ExitCode::from(1),
-            // Whoever closed the pipe had enough.
+            // A reader that has read enough closes the pipe.
             Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => {
                 ExitCode::SUCCESS
             }

@@ -2,17 +2,19 @@
 
 use std::io::Cursor;
 use std::path::PathBuf;
+use std::time::{Duration, SystemTime};
 
 use clap::Args;
 
 use super::documentation;
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
+use super::input_files::InputFiles;
 use super::message::tell;
-use super::originals::Originals;
-use super::output::{is_stdout, write};
+use super::output::write;
 use super::runtime;
-use crate::fmi::{describe, write_fmu};
+use super::stdout::is_stdout;
+use crate::fmi::{Platform, describe, write_fmu};
 use crate::kinematics::Solver;
 
 /// Export a mechanism as an FMI 2.0 FMU, for co-simulation and for model exchange.
@@ -21,10 +23,12 @@ use crate::kinematics::Solver;
 /// file, its outputs position, velocity and acceleration of all bodies. The mechanism is
 /// assembled first; one that does not close is not exported.
 ///
-/// With it go its picture (model.png) and its documentation (documentation/index.html): what it
-/// is, how it moves, its variables and parameters, the limits of its drivers.
+/// The FMU contains its picture (model.png) and its documentation (documentation/index.html): the
+/// mechanism in motion, its variables and parameters, the limits of its drivers.
 ///
-/// The same file gives the same bytes. Only if the environment variable SOURCE_DATE_EPOCH gives
+/// The FMU runs on the platforms that `biela platforms` lists with a library.
+///
+/// The same file and the same libraries give the same bytes. Only if the environment variable SOURCE_DATE_EPOCH gives
 /// a time (seconds since 1970) does the model description say when it was generated.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela export four_bar.toml -o four_bar.fmu")]
@@ -38,10 +42,15 @@ pub(super) struct Export {
     /// Write only the FMU's modelDescription.xml to this file, `-` for stdout.
     #[arg(long, value_name = "XML", conflicts_with = "output")]
     model_description: Option<PathBuf>,
-    /// Folder of runtime libraries, one subfolder a platform: linux64/biela.so, win64/biela.dll
+    /// Folder of runtime libraries, one subfolder per platform: linux64/biela.so, win64/biela.dll
     /// [default: those installed with this program].
     #[arg(long, value_name = "FOLDER")]
     runtime: Option<PathBuf>,
+    /// Platforms that the FMU shall run on, separated by commas [default: all of which there is a
+    /// runtime library].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = platform,
+        conflicts_with = "model_description")]
+    platforms: Vec<Platform>,
 }
 
 impl Export {
@@ -49,9 +58,9 @@ impl Export {
         let generated = generation_time()?;
         let input = Input::read(&self.file)?;
         let mechanism = &input.mechanism;
-        let originals = Originals::new(&self.file, mechanism);
+        let mut files = InputFiles::new(&self.file, mechanism);
         if let Some(path) = self.model_description {
-            originals.refuse_as(&[Some(&path)])?;
+            files.refuse_as_outputs(&[Some(&path)])?;
             let solver = assemble(&input)?;
             let xml = describe(mechanism, solver.structure()).write(generated.as_deref());
             return write(&path, &xml);
@@ -59,13 +68,15 @@ impl Export {
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", mechanism.name)));
-        let libraries = runtime::find(self.runtime.as_deref())?;
-        let files = libraries.iter().map(|library| library.path.as_path());
-        files
-            .fold(originals, |known, file| {
-                known.with("a runtime library", file)
-            })
-            .refuse_as(&[Some(&path)])?;
+        let mut found = runtime::find(self.runtime.as_deref())?;
+        if !self.platforms.is_empty() {
+            found = runtime::narrow(found, &self.platforms)?;
+        }
+        for library in found.iter().filter_map(|found| found.path.as_deref()) {
+            files.add("a runtime library", library);
+        }
+        let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
+        files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
         let documents = documentation::documents(&input, &solver)?;
         let mut archive = Cursor::new(Vec::new());
@@ -90,14 +101,22 @@ impl Export {
     }
 }
 
-/// A solver at the file's own pose; what does not fit there is told.
+/// Reads the name of a platform.
+fn platform(name: &str) -> Result<Platform, String> {
+    Platform::named(name).ok_or_else(|| {
+        let names = Platform::ALL.map(|platform| platform.name);
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
+/// Returns a solver at the file's own pose; warns of misfits there.
 fn assemble(input: &Input) -> Result<Solver, Error> {
     let solver = input.assemble()?;
     warn_of_misfits(&solver);
     Ok(solver)
 }
 
-/// The time that `SOURCE_DATE_EPOCH` gives, as the schema's `dateTime`.
+/// Returns the time in `SOURCE_DATE_EPOCH` as the schema's `dateTime`.
 fn generation_time() -> Result<Option<String>, Error> {
     let value = std::env::var_os("SOURCE_DATE_EPOCH");
     let Some(value) = value.filter(|value| !value.is_empty()) else {
@@ -117,33 +136,10 @@ fn generation_time() -> Result<Option<String>, Error> {
         })
 }
 
-/// `2026-11-21T03:46:00Z` from seconds since 1970.
+/// Returns seconds since 1970 as `2026-11-21T03:46:00Z`.
 fn date_time(seconds: u64) -> String {
-    let (mut days, second) = (seconds / 86_400, seconds % 86_400);
-    let leap = |year: u64| {
-        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
-    };
-    let mut year = 1970;
-    while days >= 365 + u64::from(leap(year)) {
-        days -= 365 + u64::from(leap(year));
-        year += 1;
-    }
-    let february = 28 + u64::from(leap(year));
-    let mut month = 1;
-    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
-        if days < length {
-            break;
-        }
-        days -= length;
-        month += 1;
-    }
-    format!(
-        "{year:04}-{month:02}-{:02}T{:02}:{:02}:{:02}Z",
-        days + 1,
-        second / 3600,
-        second / 60 % 60,
-        second % 60
-    )
+    let time = SystemTime::UNIX_EPOCH + Duration::from_secs(seconds);
+    humantime::format_rfc3339_seconds(time).to_string()
 }
 
 #[cfg(test)]

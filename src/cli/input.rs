@@ -1,4 +1,4 @@
-//! Reading a mechanism file and showing what is wrong with it.
+//! Reading of a mechanism file, and its diagnostics.
 
 use std::io::IsTerminal;
 use std::path::Path as FilePath;
@@ -18,7 +18,7 @@ pub(super) struct Input {
 }
 
 impl Input {
-    /// Reads a file; errors and warnings are shown on stderr.
+    /// Reads a file and shows its errors and warnings on stderr.
     pub(super) fn read(path: &FilePath) -> Result<Self, Error> {
         let source =
             Source::open(path.display().to_string(), path).map_err(|source| Error::Read {
@@ -40,7 +40,7 @@ impl Input {
         }
     }
 
-    /// An error of the kinematics about this file.
+    /// Returns an error of the kinematics with the name of the file.
     pub(super) fn error(&self, error: crate::kinematics::Error) -> Error {
         Error::Mechanism {
             file: self.source.name().to_owned(),
@@ -48,12 +48,12 @@ impl Input {
         }
     }
 
-    /// A solver that stands nowhere yet.
+    /// Returns a solver without a pose.
     pub(super) fn solver(&self) -> Result<Solver, Error> {
         Solver::new(Arc::clone(&self.mechanism)).map_err(|error| self.error(error))
     }
 
-    /// A solver at the file's own assembled pose.
+    /// Returns a solver at the file's own assembled pose.
     pub(super) fn assemble(&self) -> Result<Solver, Error> {
         let mut solver = self.solver()?;
         solver
@@ -63,15 +63,14 @@ impl Input {
     }
 }
 
-/// Warns on stderr of joints that do not fit their own numbers where the solver stands, and of
-/// redundant ones.
+/// Warns on stderr of joints whose geometry does not fit the solver's pose, and of redundant ones.
 pub(super) fn warn_of_misfits(solver: &Solver) {
     for warning in misfits(solver) {
         warning.show();
     }
 }
 
-/// What [`warn_of_misfits`] warns of.
+/// Returns the warnings of [`warn_of_misfits`].
 pub(super) fn misfits(solver: &Solver) -> Vec<Message> {
     let redundancies = solver.redundancies().into_iter().map(|r| r.to_string());
     let misfits = solver.misfits().into_iter().map(|m| m.to_string());

@@ -1,11 +1,11 @@
-//! What a command says to people, apart from its results.
+//! Messages to the user, on stderr.
 
 use std::fmt::{self, Display, Formatter};
 use std::io::Write as _;
 
 use annotate_snippets::renderer::{DEFAULT_ERROR_STYLE, DEFAULT_NOTE_STYLE, DEFAULT_WARNING_STYLE};
 
-/// A message; as text it begins with its kind.
+/// A message; its text begins with its kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Message {
     Error(String),
@@ -14,13 +14,13 @@ pub(super) enum Message {
 }
 
 impl Message {
-    /// Tells it on stderr, its kind in the colour that the renderer of diagnostics has for it.
+    /// Writes the message to stderr, with its kind in the colour of diagnostics.
     pub(super) fn show(&self) {
         let (kind, style, text) = self.parts();
         tell(format_args!("{style}{kind}{style:#}: {text}"));
     }
 
-    /// Its kind, how that looks, and what it says.
+    /// Returns the kind, the style of the kind, and the text.
     fn parts(&self) -> (&'static str, impl Display, &str) {
         match self {
             Self::Error(text) => ("error", DEFAULT_ERROR_STYLE, text),
@@ -37,8 +37,7 @@ impl Display for Message {
     }
 }
 
-/// Writes a line to stderr, without colours where it is no terminal. That nobody can read it
-/// changes nothing of what a command does.
+/// Writes a line to stderr, in colours if it is a terminal. A closed stderr is no error.
 pub(super) fn tell(line: impl Display) {
     let _ = writeln!(anstream::stderr(), "{line}");
 }

@@ -1,32 +1,37 @@
-//! The command line: one file a command.
+//! The command line: one file per command.
 //!
-//! Results go to stdout, messages to stderr. The exit status is 0, or 1 for a mechanism that is
-//! not right, or 2 for a command that is not.
+//! Results go to stdout, messages to stderr. The exit status is 0 for success, 1 for an error in
+//! the mechanism, 2 for an error in the command.
 
 mod check;
-mod columns;
+mod column;
 mod completions;
 mod conditions;
+mod csv;
 mod documentation;
 mod draw;
 mod error;
-mod estimates;
 mod export;
+mod film;
 mod input;
+mod input_files;
 mod message;
 mod motion;
 mod new;
-mod originals;
 mod output;
 mod picture;
+mod platforms;
+mod plot;
 mod progress;
 mod range;
-mod recording;
+mod recorder;
 pub mod render;
 mod run;
 mod runtime;
 mod schema;
 mod signals;
+mod stdout;
+mod suggested_estimates;
 mod watch;
 
 use std::ffi::OsString;
@@ -36,8 +41,8 @@ use clap::{Parser, Subcommand};
 
 /// Planar mechanisms as text files: check them, run them, export them as FMUs.
 ///
-/// A mechanism file says which bodies there are, which joints hold them together and which
-/// drivers move them. biela computes position, velocity and acceleration of every body, exact to
+/// A mechanism file lists the bodies, the joints that connect them and the drivers that move them.
+/// biela computes position, velocity and acceleration of every body, exact to
 /// rounding, and exports the mechanism as an FMI 2.0 FMU whose inputs are the drivers and whose
 /// outputs are the motion of all bodies.
 #[derive(Debug, Parser)]
@@ -56,6 +61,7 @@ enum Command {
     Draw(draw::Draw),
     Watch(watch::Watch),
     Export(export::Export),
+    Platforms(platforms::Platforms),
     Schema(schema::Schema),
     Completions(completions::Completions),
 }
@@ -65,7 +71,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // clap prints help to stdout and complaints to stderr; a closed pipe is no news.
+            // clap prints help to stdout and errors to stderr; a closed pipe is no error.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
@@ -78,6 +84,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Draw(command) => command.run(),
         Command::Watch(command) => command.run(),
         Command::Export(command) => command.run(),
+        Command::Platforms(command) => command.run(),
         Command::Schema(command) => command.run(),
         Command::Completions(command) => command.run(),
     };

@@ -1,12 +1,10 @@
-//! A mechanism on its way along the motions of its drivers.
+//! A mechanism that moves along the motions of its drivers.
 
-use std::sync::Arc;
-
-use super::conditions;
+use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
-use crate::kinematics::{Curve, Path, Rates, Reason, Solver};
-use crate::mechanism::{DriverId, Jet, Mechanism};
+use crate::kinematics::{Blocked, Curve, Error, Path, Rates, Reason, Solver};
+use crate::mechanism::{DriverId, Jet};
 
 /// A mechanism that moves from one time to the next.
 pub(super) struct Motion {
@@ -14,7 +12,7 @@ pub(super) struct Motion {
     pub(super) rates: Rates,
     /// Value, velocity and acceleration of each driver.
     pub(super) driver_rates: Vec<Jet>,
-    /// What people should know of the way: singular positions that are near, or passed.
+    /// Singular positions that are near or were passed, not told yet.
     pub(super) notices: Vec<Message>,
     path: Path,
     signals: Signals,
@@ -23,31 +21,19 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Moves from the file's pose to the values at the start, in the file's assembly mode.
-    pub(super) fn start(
-        home_solver: Solver,
-        driven: Arc<Mechanism>,
-        signals: Signals,
-        parameters: Vec<f64>,
-        time: f64,
-    ) -> Result<Self, crate::kinematics::Error> {
-        let given = |driver| Some(signals.at(driver, time)?.value);
-        let solver = conditions::start(home_solver, &driven, &parameters, time, given)?;
-        Self::from(solver, signals, parameters, time)
+    /// Moves from the file's pose, which `home_solver` has, to the scenario's start.
+    pub(super) fn start(home_solver: Solver, scenario: Scenario) -> Result<Self, Error> {
+        let solver = scenario.solver(home_solver)?;
+        Self::from(solver, scenario.signals, scenario.start)
     }
 
-    /// From where a solver stands, at a time at which its drivers are there.
-    pub(super) fn from(
-        solver: Solver,
-        signals: Signals,
-        parameters: Vec<f64>,
-        time: f64,
-    ) -> Result<Self, crate::kinematics::Error> {
+    /// Starts from a solver's pose, at a time at which the drivers have its values.
+    pub(super) fn from(solver: Solver, signals: Signals, time: f64) -> Result<Self, Error> {
         let start = solver.pose();
         let mut path = Path::new(solver.mechanism());
         path.start = time;
-        path.from.clone_from(&parameters);
-        path.to = parameters;
+        path.from.clone_from(&start.parameters);
+        path.to.clone_from(&start.parameters);
         for (curve, value) in path.curves.iter_mut().zip(&start.drivers) {
             if let Curve::Input { position, .. } = curve {
                 *position = *value;
@@ -66,29 +52,29 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Goes on to `time`, from one point of the signals to the next.
+    /// Moves on to `time`, from one point of the signals to the next.
     ///
     /// # Errors
     ///
-    /// Why it cannot, and where that is.
+    /// What stops the mechanism, and where.
     pub(super) fn advance(&mut self, time: f64) -> Result<(), String> {
         while self.solver.pose().time < time {
             let start = self.solver.pose().time;
-            self.go(self.signals.next_point(start).min(time))?;
-            // Where a signal jumps.
+            self.follow(self.signals.next_point(start).min(time))?;
+            // A signal that jumps here moves its driver at once.
             if self.aim() {
-                self.go(self.solver.pose().time)?;
+                self.follow(self.solver.pose().time)?;
             }
         }
         self.solve_rates()
             .map_err(|error| format!("at t = {time} s: {error}"))
     }
 
-    /// Directs the drivers that follow signals to where these lead from here; whether any of
-    /// them is elsewhere now.
+    /// Sets the curves of the drivers that follow signals, from the current time on. Returns
+    /// whether a driver is off its signal.
     fn aim(&mut self) -> bool {
         let pose = self.solver.pose();
-        let mut off = false;
+        let mut is_off = false;
         let curves = self.path.curves.iter_mut().zip(&pose.drivers);
         for (driver, (curve, value)) in curves.enumerate() {
             let Some(signal) = self.signals.line(DriverId(driver), pose.time) else {
@@ -101,29 +87,34 @@ impl Motion {
                 jump: value - signal.value,
             };
             // Far less than any mechanism moves by, far more than rounding.
-            off |= (value - signal.value).abs() > 1e-12 * (1.0 + value.abs());
+            is_off |= (value - signal.value).abs() > 1e-12 * (1.0 + value.abs());
         }
-        off
+        is_off
     }
 
     /// Follows the drivers' curves until `time`.
-    fn go(&mut self, time: f64) -> Result<(), String> {
+    fn follow(&mut self, time: f64) -> Result<(), String> {
         self.aim();
         self.path.start = self.solver.pose().time;
         self.path.duration = time - self.path.start;
-        let Err(blocked) = self.solver.follow(&self.path) else {
-            if let Some(approach) = self.solver.approach(&mut self.near_singular) {
-                let notice = format!("t = {time} s: {approach}");
-                self.notices.push(Message::Warning(notice));
-            }
-            for crossing in self.solver.crossed() {
-                let passed = self.solver.describe_crossing(crossing);
-                let notice = format!("t = {time} s: {passed}");
-                self.notices.push(Message::Note(notice));
-            }
-            return Ok(());
-        };
-        let why = match &blocked.reason {
+        if let Err(blocked) = self.solver.follow(&self.path) {
+            return Err(self.describe(&blocked));
+        }
+        if let Some(approach) = self.solver.approach(&mut self.near_singular) {
+            let notice = format!("t = {time} s: {approach}");
+            self.notices.push(Message::Warning(notice));
+        }
+        for crossing in self.solver.crossed() {
+            let passed = self.solver.describe_crossing(crossing);
+            let notice = format!("t = {time} s: {passed}");
+            self.notices.push(Message::Note(notice));
+        }
+        Ok(())
+    }
+
+    /// Says what stops the mechanism, when, and at which values of the moving drivers.
+    fn describe(&self, blocked: &Blocked) -> String {
+        let reason = match &blocked.reason {
             Reason::Value(error) => error.to_string(),
             Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
             Reason::TooLong => "the motion is too fast for the steps".to_owned(),
@@ -131,32 +122,26 @@ impl Motion {
             _ => "no continuous motion".to_owned(),
         };
         let pose = self.solver.pose();
-        let limits = match &blocked.reason {
+        let values = match &blocked.reason {
             Reason::Singular(point) => &point.drivers,
             _ => &pose.drivers,
         };
-        let drivers = self.solver.mechanism().drivers.iter().zip(limits);
-        let moving: Vec<_> = drivers
+        let drivers = self.solver.mechanism().drivers.iter().zip(values);
+        let moving: Vec<String> = drivers
             .enumerate()
             .filter(|(index, (driver, _))| {
                 driver.motion().is_some() || self.signals.has(DriverId(*index))
             })
             .map(|(_, (driver, value))| {
-                format!(
-                    "`{}` at {}",
-                    driver.name,
-                    driver.coordinate.kind.show(*value)
-                )
+                let value = driver.coordinate.kind.show(*value);
+                format!("`{}` at {value}", driver.name)
             })
             .collect();
-        Err(format!(
-            "{why} at t = {:.9} s: the mechanism cannot go on, with {}",
-            pose.time,
-            moving.join(", ")
-        ))
+        let (time, moving) = (pose.time, moving.join(", "));
+        format!("{reason} at t = {time:.9} s: the mechanism cannot go on, with {moving}")
     }
 
-    fn solve_rates(&mut self) -> Result<(), crate::kinematics::Error> {
+    fn solve_rates(&mut self) -> Result<(), Error> {
         let time = self.solver.pose().time;
         let drivers = self.solver.mechanism().drivers.iter().enumerate();
         for (rates, (index, driver)) in self.driver_rates.iter_mut().zip(drivers) {

@@ -12,7 +12,7 @@ use crate::mechanism::is_identifier;
 
 /// Write a commented mechanism to start from.
 ///
-/// It is one of the mechanisms that come with biela, under another name.
+/// The file is a copy of one of the mechanisms that come with biela, under another name.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela new my_linkage --from four_bar")]
 pub(super) struct New {
@@ -120,13 +120,13 @@ impl New {
     }
 }
 
-/// The template's text under another name.
+/// Returns the template's text under another name.
 fn renamed(template: &Template, name: &str) -> String {
     let line = |name: &str| format!("\nname = \"{name}\"\n");
     template.text.replacen(&line(template.name), &line(name), 1)
 }
 
-/// Writes a file that is not there yet.
+/// Writes a new file.
 fn create(path: &Path, text: &str) -> Result<(), Error> {
     let created = std::fs::File::create_new(path);
     let written = created.and_then(|mut file| file.write_all(text.as_bytes()));
@@ -139,14 +139,14 @@ fn create(path: &Path, text: &str) -> Result<(), Error> {
     })
 }
 
-/// An argument as a shell takes it for one word.
+/// Quotes an argument for a shell, if that is necessary.
 fn quoted(argument: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "_-./:\\,+@%=".contains(c);
     let special = |c: char| !plain(c) || (c == '\\' && !cfg!(windows));
     if !argument.contains(special) {
         argument.to_owned()
     } else if cfg!(windows) {
-        // No file there has a double quote in its name.
+        // No file name on Windows has a double quote.
         format!("\"{argument}\"")
     } else {
         format!("'{}'", argument.replace('\'', "'\\''"))

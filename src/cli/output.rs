@@ -1,31 +1,17 @@
-//! Where results go.
+//! Writing results to files and to stdout.
 
 use std::io::Write;
 use std::path::Path;
 
 use super::error::Error;
-
-/// The path that stands for stdout.
-pub(super) const STDOUT: &str = "-";
-
-pub(super) fn is_stdout(path: &Path) -> bool {
-    path.as_os_str() == STDOUT
-}
-
-/// A place for results as messages name it.
-pub(super) fn shown(path: &Path) -> String {
-    if is_stdout(path) {
-        "stdout".to_owned()
-    } else {
-        format!("`{}`", path.display())
-    }
-}
+use super::message::tell;
+use super::stdout::{STDOUT, is_stdout};
 
 /// Writes a file, or to stdout for `-`.
 pub(super) fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
     let written = if is_stdout(path) {
         let mut stdout = std::io::stdout().lock();
-        // What stdout holds back would be lost without a word.
+        // An error in the buffered rest would be lost when the program ends.
         stdout.write_all(content).and_then(|()| stdout.flush())
     } else {
         std::fs::write(path, content)
@@ -36,7 +22,14 @@ pub(super) fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
     })
 }
 
-/// Prints to stdout, where the reader may have gone.
+/// Prints to stdout.
 pub(super) fn print(text: &str) -> Result<(), Error> {
     write(Path::new(STDOUT), text.as_bytes())
+}
+
+/// Tells on stderr that a file was written; nothing for stdout, which shows it itself.
+pub(super) fn tell_written(path: &Path) {
+    if !is_stdout(path) {
+        tell(format_args!("wrote {}", path.display()));
+    }
 }

@@ -1,12 +1,13 @@
-//! Pictures in the format that their file's extension says.
+//! Pictures in the format of their file's extension.
 
 use std::path::Path;
 
 use super::error::Error;
-use super::output::{is_stdout, write};
+use super::output::{tell_written, write};
+use super::stdout::is_stdout;
 use crate::drawing::{Sheet, png, svg};
 
-/// What to write.
+/// The format of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Format {
     Svg,
@@ -14,19 +15,10 @@ pub(super) enum Format {
 }
 
 /// Width of a chart in pixels.
-pub(super) const PLOT_WIDTH: u32 = 800;
+const PLOT_WIDTH: u32 = 800;
 
 impl Format {
-    /// The pixels for a picture of this width: a PNG has twice as many, so that it is sharp on
-    /// most screens.
-    pub(super) fn width(self, width: u32) -> u32 {
-        match self {
-            Self::Svg => width,
-            Self::Png => 2 * width,
-        }
-    }
-
-    /// The format of a file; `-` is SVG.
+    /// Returns the format of a file; `-` is SVG.
     pub(super) fn of(path: &Path) -> Result<Self, Error> {
         if is_stdout(path) {
             return Ok(Self::Svg);
@@ -41,7 +33,16 @@ impl Format {
         }
     }
 
-    /// Writes a picture so many pixels wide.
+    /// Writes a chart; as a PNG with twice the pixels, so that it is sharp on most screens.
+    pub(super) fn write_chart(self, path: &Path, sheet: &Sheet) -> Result<(), Error> {
+        let width = match self {
+            Self::Svg => PLOT_WIDTH,
+            Self::Png => 2 * PLOT_WIDTH,
+        };
+        self.write(path, sheet, width, false)
+    }
+
+    /// Writes a picture `width` pixels wide, and tells so.
     pub(super) fn write(
         self,
         path: &Path,
@@ -54,11 +55,13 @@ impl Format {
             Self::Png => png::write(sheet, width, transparent)
                 .ok_or_else(|| Error::Usage(format!("no PNG is {width} pixels wide")))?,
         };
-        write(path, &picture)
+        write(path, &picture)?;
+        tell_written(path);
+        Ok(())
     }
 }
 
-/// The extension of a file in small letters, empty if it has none.
+/// Returns a file's extension in small letters; an empty text if it has none.
 pub(super) fn extension(path: &Path) -> String {
     let extension = path.extension().unwrap_or_default();
     extension.to_string_lossy().to_ascii_lowercase()

@@ -1,24 +1,23 @@
-//! How far a long run is, on a terminal.
+//! Progress of a long run, on a terminal.
 
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-/// A line on stderr that tells how far a run is; nothing where stderr is no terminal, and
-/// nothing before it has lasted a while.
+/// A line on stderr with the progress of a run; only on a terminal, and only in a long run.
 pub(super) struct Progress {
-    /// `None` where nobody sees it.
+    /// Start of the run; `None` if the line is never shown.
     since: Option<Instant>,
     shown: Option<Instant>,
     total: u64,
 }
 
-/// A run that is shorter needs no line.
+/// Duration of a run before the line appears.
 const PATIENCE: Duration = Duration::from_millis(700);
 const REFRESH: Duration = Duration::from_millis(100);
 const WIDTH: usize = 30;
 
 impl Progress {
-    /// Of a run of so many rows; `hidden` where the terminal shows something else.
+    /// Returns the line for a run of `total` rows; `hidden` if the terminal shows the rows.
     pub(super) fn new(total: u64, hidden: bool) -> Self {
         let seen = !hidden && std::io::stderr().is_terminal();
         Self {
@@ -28,7 +27,7 @@ impl Progress {
         }
     }
 
-    /// So many rows are done.
+    /// Updates the line after `rows` rows.
     pub(super) fn done(&mut self, rows: u64) {
         let Some(since) = self.since else { return };
         let elapsed = since.elapsed();
@@ -36,14 +35,14 @@ impl Progress {
         if elapsed < PATIENCE || fresh {
             return;
         }
-        // A terminal that is gone is no reason to stop.
+        // A closed terminal is no error.
         let mut stderr = std::io::stderr();
         let _ = write!(stderr, "\r{}", line(rows, self.total, elapsed));
         let _ = stderr.flush();
         self.shown = Some(Instant::now());
     }
 
-    /// Clears the line, for others to write.
+    /// Clears the line, before another message.
     pub(super) fn clear(&mut self) {
         if self.shown.take().is_some() {
             let _ = write!(std::io::stderr(), "\r\x1b[K");

@@ -7,25 +7,26 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::check::scientific;
-use super::columns::{MOST_BODIES, axis, moves};
-use super::conditions::{self, Conditions};
+
+use super::conditions::{Conditions, unknown};
 use super::error::Error;
 use super::input::Input;
+use super::input_files::InputFiles;
 use super::message::Message;
-use super::originals::Originals;
-use super::output::{is_stdout, print, write};
-use super::picture::{Format, PLOT_WIDTH};
+use super::output::{print, tell_written, write};
+use super::picture::Format;
+use super::plot::{MOST_BODIES, axis, varies};
+use super::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
 use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, in_line};
 use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit, shown};
 
 /// Find how far a driver can go.
 ///
-/// The driver is followed both ways from the start, the others being held, until the mechanism is
-/// back where it was or something is in the way. At a limit the dead point is located to
-/// rounding, and the bodies that line up there are named. On the way the transmission angle,
-/// from 0 deg at a dead point to 90 deg at best, is that of the worst pair of links, and the
-/// reciprocal condition that of `check`.
+/// biela follows the driver both ways from the start, and holds the others, until the mechanism
+/// returns to its pose or meets a limit. A dead point is located to rounding, and the bodies that
+/// line up there are named. The transmission angle is that of the worst pair of links, from 0 deg
+/// at a dead point to 90 deg at best; the reciprocal condition is that of `check`.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela range tlv.toml --driver side_length --plot range.svg")]
 pub(super) struct Range {
@@ -36,7 +37,7 @@ pub(super) struct Range {
     driver: Option<String>,
     #[command(flatten)]
     conditions: Conditions,
-    /// Write the poses on the way: the driver's value, transmission angle, reciprocal condition,
+    /// Write the poses of the motion: the driver's value, transmission angle, reciprocal condition,
     /// and the position of every body, in SI units; `-` for stdout.
     #[arg(long, value_name = "CSV")]
     csv: Option<PathBuf>,
@@ -50,8 +51,8 @@ impl Range {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
         let input = Input::read(&self.file)?;
-        Originals::new(&self.file, &input.mechanism)
-            .refuse_as(&[self.csv.as_deref(), self.plot.as_deref()])?;
+        InputFiles::new(&self.file, &input.mechanism)
+            .refuse_as_outputs(&[self.csv.as_deref(), self.plot.as_deref()])?;
         let drivers = self.drivers(&input.mechanism)?;
         let mut solver = self.conditions.solver_at_start(&input)?;
         let driven = Arc::clone(solver.mechanism());
@@ -62,6 +63,7 @@ impl Range {
             describe(&mut text, &driven, driver, start, &range);
             if let Some(path) = &self.csv {
                 write(path, table(&driven, driver, &range).as_bytes())?;
+                tell_written(path);
             }
             if let (Some(path), Some(format)) = (&self.plot, format) {
                 let turning = turning(&driven, &range).count();
@@ -72,10 +74,10 @@ impl Range {
                     Message::Note(note).show();
                 }
                 let sheet = Sheet::chart(&chart(&driven, driver, &range));
-                format.write(path, &sheet, format.width(PLOT_WIDTH), false)?;
+                format.write_chart(path, &sheet)?;
             }
         }
-        // A table or a picture on stdout is not mixed with words.
+        // A table or a picture on stdout is not mixed with text.
         if ![self.csv, self.plot]
             .iter()
             .flatten()
@@ -90,7 +92,7 @@ impl Range {
         if let Some(name) = &self.driver {
             let driver = mechanism.driver_id(name).ok_or_else(|| {
                 let names = mechanism.drivers.iter().map(|d| d.name.as_str());
-                conditions::unknown("--driver", "driver", name, names)
+                unknown("--driver", "driver", name, &names.collect::<Vec<_>>())
             })?;
             return Ok(vec![driver]);
         }
@@ -183,24 +185,24 @@ pub(super) fn end_text(end: &End, driver: DriverId, kind: CoordinateKind) -> Str
             };
             format!("{}: {reason}", value(*at))
         }
-        // Where the search ended is no property of the mechanism.
+        // The end of the search is no property of the mechanism: four digits are enough.
         End::NotFound { value: at } => {
             format!("{} and farther: no limit was found", about(kind, *at))
         }
     }
 }
 
-/// Ten decimals: limits are located to rounding.
+/// Formats a value in deg or m with ten decimals: limits are located to rounding.
 pub(super) fn with_unit(kind: CoordinateKind, value: f64) -> String {
     let (value, unit) = in_unit(kind, value);
     let text = format!("{value:.10}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    // What is smaller is rounding.
+    // A smaller value is rounding.
     let text = if text == "-0" { "0" } else { text };
     format!("{text} {unit}")
 }
 
-/// Four digits.
+/// Formats a value in deg or m with four digits.
 fn about(kind: CoordinateKind, value: f64) -> String {
     let (value, unit) = in_unit(kind, value);
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
@@ -239,11 +241,11 @@ fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
     text
 }
 
-/// The bodies whose angles change.
+/// Returns the bodies whose angles change.
 fn turning(mechanism: &Mechanism, range: &Motion) -> impl Iterator<Item = usize> {
     (0..mechanism.bodies.len()).filter(|body| {
         let angles: Vec<f64> = range.samples.iter().map(|s| s.q[3 * body + 2]).collect();
-        moves(&angles)
+        varies(&angles)
     })
 }
 

@@ -1,11 +1,11 @@
-//! Diagnostics as people read them: the line itself, what is wrong in it underlined, and help.
+//! Diagnostics as text: the line of the file, with the error underlined, and help.
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use crate::mechanism::{Diagnostic, Severity, Source, Span};
 
-/// Renders the diagnostics one after the other, each with the lines that it concerns, with a
-/// blank line between them; `styled` adds colours for a terminal.
+/// Renders the diagnostics, each with its lines of the file, separated by blank lines; `styled`
+/// adds colours for a terminal.
 #[must_use]
 pub fn render(source: &Source, diagnostics: &[Diagnostic], styled: bool) -> String {
     let renderer = if styled {
@@ -58,7 +58,7 @@ fn snippet<'a>(
         .annotations(annotations)
 }
 
-/// A span on characters of the text, which one may not be that comes from elsewhere.
+/// Returns a span moved to boundaries of characters, which a span from elsewhere may miss.
 fn within(source: &Source, span: &Span) -> Span {
     let start = source.boundary(span.start);
     start..source.boundary(span.end).max(start)

@@ -1,34 +1,41 @@
-//! Where the runtime libraries are that go into an FMU.
+//! The runtime libraries that go into an FMU.
 
-use std::fs::File;
-use std::io::Read as _;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::error::Error;
 use crate::fmi::{Platform, RuntimeLibrary};
 
-/// The runtime libraries to pack: those in `folder` if one is given, else those beside this
-/// program.
+include!(concat!(env!("OUT_DIR"), "/embedded_libraries.rs"));
+
+/// A runtime library and the file that it comes from; none if the program carries it.
+pub(super) struct FoundLibrary {
+    pub(super) library: RuntimeLibrary,
+    pub(super) path: Option<PathBuf>,
+}
+
+/// Returns the runtime libraries in `folder` if one is given, otherwise those installed with this
+/// program, in the order of the platforms.
 ///
-/// A folder of libraries has one subfolder a platform, as an FMU's `binaries/` has:
-/// `linux64/biela.so`, `win64/biela.dll`. Beside the program they are found where `make install`
-/// puts them (`../lib/biela`) or where cargo builds them.
-pub(super) fn find(folder: Option<&Path>) -> Result<Vec<RuntimeLibrary>, Error> {
+/// A folder of libraries has one subfolder per platform, as an FMU's `binaries/` has:
+/// `linux64/biela.so`, `win64/biela.dll`. Installed are those in `../lib/biela` beside the program,
+/// and for other platforms those that the program carries; without any, the library that cargo
+/// built together with the program.
+pub(super) fn find(folder: Option<&Path>) -> Result<Vec<FoundLibrary>, Error> {
     let found = match folder {
-        Some(folder) => in_folder(folder),
+        Some(folder) => in_folder(folder)?,
         None => {
             let program = std::env::current_exe().map_err(|source| Error::Read {
                 path: PathBuf::from("the running program"),
                 source,
             })?;
-            beside(&program)
+            installed(program.parent().unwrap_or(Path::new("")))?
         }
     };
     if !found.is_empty() {
-        found.iter().try_for_each(check)?;
         return Ok(found);
     }
-    let help = match folder {
+    Err(Error::Usage(match folder {
         Some(folder) => format!(
             "`{}` has no runtime library; expected for example `linux64/biela.so` in it",
             folder.display()
@@ -36,71 +43,91 @@ pub(super) fn find(folder: Option<&Path>) -> Result<Vec<RuntimeLibrary>, Error> 
         None => "no runtime library was found beside this program: run `make install`, or name \
                  their folder with --runtime"
             .to_owned(),
-    };
-    Err(Error::Usage(help))
+    }))
 }
 
-fn in_folder(folder: &Path) -> Vec<RuntimeLibrary> {
-    Platform::ALL
-        .into_iter()
-        .map(|platform| RuntimeLibrary {
-            platform,
-            path: folder
-                .join(platform.name)
-                .join(format!("biela.{}", platform.extension)),
-        })
-        .filter(|library| library.path.is_file())
-        .collect()
-}
-
-/// Refuses what is no shared library of its platform, by the bytes with which these begin.
-fn check(library: &RuntimeLibrary) -> Result<(), Error> {
-    let mut start = Vec::new();
-    let read = File::open(&library.path).and_then(|file| file.take(4).read_to_end(&mut start));
-    if let Err(source) = read {
-        return Err(Error::Read {
-            path: library.path.clone(),
-            source,
-        });
+/// Keeps the libraries of the platforms named.
+pub(super) fn narrow(
+    found: Vec<FoundLibrary>,
+    platforms: &[Platform],
+) -> Result<Vec<FoundLibrary>, Error> {
+    let has = |platform: &Platform| found.iter().any(|f| f.library.platform == *platform);
+    if let Some(missing) = platforms.iter().find(|platform| !has(platform)) {
+        let names: Vec<&str> = found.iter().map(|f| f.library.platform.name).collect();
+        return Err(Error::Usage(format!(
+            "--platforms: no runtime library for {}; there are those for {}",
+            missing.name,
+            names.join(", ")
+        )));
     }
-    let (kind, known): (_, &[&[u8]]) = match library.platform.extension {
+    let is_wanted = |found: &FoundLibrary| platforms.contains(&found.library.platform);
+    Ok(found.into_iter().filter(is_wanted).collect())
+}
+
+fn in_folder(folder: &Path) -> Result<Vec<FoundLibrary>, Error> {
+    let paths = Platform::ALL.into_iter().map(|platform| {
+        let file = format!("biela.{}", platform.extension);
+        (platform, folder.join(platform.name).join(file))
+    });
+    let paths = paths.filter(|(_, path)| path.is_file());
+    paths.map(|(platform, path)| read(platform, path)).collect()
+}
+
+/// Returns the libraries that belong to a program in the folder `programs`.
+fn installed(programs: &Path) -> Result<Vec<FoundLibrary>, Error> {
+    let mut found = in_folder(&programs.join("../lib/biela"))?;
+    for (name, content) in EMBEDDED_LIBRARIES {
+        let platform = Platform::named(name).expect("the build script knows the same names");
+        if !found.iter().any(|found| found.library.platform == platform) {
+            let content = Cow::Borrowed(*content);
+            found.push(FoundLibrary {
+                library: RuntimeLibrary { platform, content },
+                path: None,
+            });
+        }
+    }
+    found.sort_by_key(|found| {
+        let platform = found.library.platform;
+        Platform::ALL.iter().position(|known| *known == platform)
+    });
+    if found.is_empty()
+        && let Some(platform) = Platform::current()
+    {
+        // Cargo builds the library beside the program, and for tests in `examples`.
+        let name = format!(
+            "{}biela_runtime{}",
+            std::env::consts::DLL_PREFIX,
+            std::env::consts::DLL_SUFFIX
+        );
+        let paths = [programs.join(&name), programs.join("examples").join(&name)];
+        let built = paths.into_iter().find(|path| path.is_file());
+        found.extend(built.map(|path| read(platform, path)).transpose()?);
+    }
+    Ok(found)
+}
+
+/// Reads a library; refuses a file that is no shared library of its platform.
+fn read(platform: Platform, path: PathBuf) -> Result<FoundLibrary, Error> {
+    let content = std::fs::read(&path).map_err(|source| Error::Read {
+        path: path.clone(),
+        source,
+    })?;
+    let (format, starts): (_, &[&[u8]]) = match platform.extension {
         "dll" => ("PE", &[b"MZ"]),
-        // Of one processor with 64 bits, or of several.
+        // For one processor with 64 bits, or for several.
         "dylib" => ("Mach-O", &[b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe"]),
         _ => ("ELF", &[b"\x7fELF"]),
     };
-    if known.iter().any(|known| start.starts_with(known)) {
-        return Ok(());
+    if !starts.iter().any(|start| content.starts_with(start)) {
+        return Err(Error::Usage(format!(
+            "`{}` is no shared library for {}: it does not begin as {format} files do",
+            path.display(),
+            platform.name
+        )));
     }
-    Err(Error::Usage(format!(
-        "`{}` is no shared library for {}: it does not begin as {kind} files do",
-        library.path.display(),
-        library.platform.name
-    )))
-}
-
-fn beside(program: &Path) -> Vec<RuntimeLibrary> {
-    let Some(folder) = program.parent() else {
-        return Vec::new();
-    };
-    let installed = in_folder(&folder.join("../lib/biela"));
-    if !installed.is_empty() {
-        return installed;
-    }
-    let Some(platform) = Platform::current() else {
-        return Vec::new();
-    };
-    let name = format!(
-        "{}biela{}",
-        std::env::consts::DLL_PREFIX,
-        std::env::consts::DLL_SUFFIX
-    );
-    // Cargo builds the library in `deps`, together with the program, and copies it one folder
-    // up only when asked for it: the copy may be older.
-    [folder.join("deps").join(&name), folder.join(&name)]
-        .into_iter()
-        .find(|path| path.is_file())
-        .map(|path| RuntimeLibrary { platform, path })
-        .into_iter()
-        .collect()
+    let content = Cow::Owned(content);
+    Ok(FoundLibrary {
+        library: RuntimeLibrary { platform, content },
+        path: Some(path),
+    })
 }

@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::Error;
-use super::output::{STDOUT, write};
+use super::output::write;
+use super::stdout::STDOUT;
 use crate::mechanism;
 
-/// Print a JSON Schema (2020-12) of mechanism files, by which editors complete and check them.
+/// Print a JSON Schema (2020-12) of mechanism files; editors complete and check files with it.
 ///
-/// In an editor with a TOML language server, a first line `#:schema biela.schema.json` in a
+/// In an editor with a TOML language server, the first line `#:schema biela.schema.json` of a
 /// mechanism file turns it on.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela schema -o biela.schema.json")]

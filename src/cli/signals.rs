@@ -1,4 +1,4 @@
-//! Drivers' values over time from a CSV file.
+//! Values of drivers over time from a CSV file.
 
 use std::path::Path;
 
@@ -8,30 +8,29 @@ use crate::mechanism::{
     DriverId, DriverSource, Jet, Mechanism, Separated, comma_hint, help, quoted, shown,
 };
 
-/// Values of drivers over time, straight from each point to the next; before the first and after
-/// the last they hold. At a time that stands twice the value jumps: there and afterwards counts
-/// the later row.
+/// Values of drivers over time: linear between two points, constant before the first and after
+/// the last. At a time that occurs twice the value jumps to that of the later row.
 #[derive(Debug, Default)]
 pub(super) struct Signals {
     times: Vec<f64>,
     signals: Vec<Signal>,
 }
 
-/// What the file has of one driver.
+/// The columns of one driver.
 #[derive(Debug)]
 struct Signal {
     driver: DriverId,
-    /// Position, velocity and acceleration; the first is always there in the end.
+    /// Position, velocity and acceleration; after reading the position is always there.
     columns: [Option<Vec<f64>>; 3],
 }
 
-/// Two times this near, as a part of their size or in seconds, are one.
+/// Largest difference of two times that count as one, relative or in seconds.
 const SAME: f64 = 1e-9;
 
 impl Signals {
-    /// Reads a file as FMPy does: the first column is `time`, the others are the drivers'
-    /// variables, `crank_angle.position` or `crank_angle` for short. Columns are separated as in
-    /// the tables of a mechanism file.
+    /// Reads a file as FMPy does: the first column is `time`, the others are variables of drivers,
+    /// `crank_angle.position` or `crank_angle` for short. Columns are separated as in the tables
+    /// of a mechanism file.
     pub(super) fn read(path: &Path, mechanism: &Mechanism) -> Result<Self, Error> {
         let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
             path: path.to_owned(),
@@ -53,179 +52,168 @@ impl Signals {
             return Err(format!("the first column is `{found}`; expected `time`"));
         }
         let mut signals = Self::default();
-        let mut places = Vec::new();
-        for name in &header[1..] {
-            places.push(signals.add(name, mechanism)?);
-        }
+        let names = header[1..].iter();
+        let places: Vec<(usize, usize)> = names
+            .map(|name| signals.add_column(name, mechanism))
+            .collect::<Result<_, _>>()?;
         if places.is_empty() {
             return Err("it has no column besides `time`".to_owned());
         }
         for (line, record) in rows {
             let fields = without_empty_end(&record, header.len());
             if fields.len() != header.len() {
-                let columns = if fields.len() == 1 {
-                    "column"
-                } else {
-                    "columns"
-                };
+                let found = fields.len();
+                let columns = if found == 1 { "column" } else { "columns" };
                 return Err(format!(
-                    "line {line} has {} {columns}; the first has names for {}",
-                    fields.len(),
+                    "line {line} has {found} {columns}; the first has names for {}",
                     header.len()
                 ));
             }
-            let number = |index: usize| {
-                let field = fields[index];
+            let mut numbers = fields.iter().map(|field| {
                 let number = field.parse().ok().filter(|number: &f64| number.is_finite());
                 number.ok_or_else(|| {
-                    let hint = comma_hint(field);
-                    format!(
-                        "line {line}: {} is not a finite number{hint}",
-                        quoted(field)
-                    )
+                    let (shown, hint) = (quoted(field), comma_hint(field));
+                    format!("line {line}: {shown} is not a finite number{hint}")
                 })
-            };
-            let time = number(0)?;
+            });
+            let time = numbers.next().expect("a row is as long as the header")?;
             if signals.times.last().is_some_and(|last| time < *last) {
                 return Err(format!("line {line}: time goes back to {}", shown(time)));
             }
             signals.times.push(time);
-            for (index, (signal, order)) in places.iter().enumerate() {
-                let value = number(index + 1)?;
-                if let Some(column) = &mut signals.signals[*signal].columns[*order] {
-                    column.push(value);
-                }
+            for ((signal, order), value) in places.iter().zip(numbers) {
+                let column = signals.signals[*signal].columns[*order].as_mut();
+                column.expect("the header has made it").push(value?);
             }
         }
         if signals.times.is_empty() {
             return Err("it has no rows of numbers".to_owned());
         }
-        for signal in &signals.signals {
-            if signal.columns[0].is_none() {
-                let name = &mechanism.drivers[signal.driver.index()].name;
-                return Err(format!(
-                    "it has rates of `{name}` but no column `{name}.position`"
-                ));
-            }
+        if let Some(signal) = signals.signals.iter().find(|s| s.columns[0].is_none()) {
+            let name = &mechanism.drivers[signal.driver.index()].name;
+            return Err(format!(
+                "it has rates of `{name}` but no column `{name}.position`"
+            ));
         }
         Ok(signals)
     }
 
-    /// Makes room for a column; says where it is.
-    fn add(&mut self, name: &str, mechanism: &Mechanism) -> Result<(usize, usize), String> {
-        let (driver_name, order) = Order::ALL
-            .iter()
-            .find_map(|order| {
-                let own = name.strip_suffix(order.suffix())?.strip_suffix('.')?;
-                Some((own, *order as usize))
-            })
-            .unwrap_or((name, 0));
-        let driver = mechanism.driver_id(driver_name).ok_or_else(|| {
-            let names = || mechanism.drivers.iter().map(|driver| driver.name.as_str());
-            let of = |order: Order| names().map(move |name| format!("{name}.{}", order.suffix()));
-            let variables: Vec<String> = Order::ALL.into_iter().flat_map(of).collect();
-            let variables: Vec<&str> = variables.iter().map(String::as_str).collect();
-            let (positions, rates) = variables.split_at(mechanism.drivers.len());
-            let further: Vec<&str> = names().chain(rates.iter().copied()).collect();
-            let help = help(name, positions, &further);
-            let help = help.map_or_else(String::new, |help| format!("; {help}"));
-            format!("column {} is no variable of a driver{help}", quoted(name))
-        })?;
-        let known = self
-            .signals
-            .iter()
-            .position(|signal| signal.driver == driver);
+    /// Adds an empty column; returns the index of its signal, and its order.
+    fn add_column(&mut self, name: &str, mechanism: &Mechanism) -> Result<(usize, usize), String> {
+        let split = Order::ALL.into_iter().find_map(|order| {
+            let driver = name.strip_suffix(order.suffix())?.strip_suffix('.')?;
+            Some((driver, order as usize))
+        });
+        let (driver, order) = split.unwrap_or((name, 0));
+        let driver = (mechanism.driver_id(driver)).ok_or_else(|| unknown(name, mechanism))?;
+        let known = self.signals.iter().position(|s| s.driver == driver);
         let signal = known.unwrap_or_else(|| {
-            self.signals.push(Signal {
-                driver,
-                columns: [const { None }; 3],
-            });
+            let columns = [const { None }; 3];
+            self.signals.push(Signal { driver, columns });
             self.signals.len() - 1
         });
-        let column = &mut self.signals[signal].columns[order];
-        if column.is_some() {
-            return Err(format!("two columns for `{name}`"));
+        match self.signals[signal].columns[order].replace(Vec::new()) {
+            None => Ok((signal, order)),
+            Some(_) => Err(format!("two columns for `{name}`")),
         }
-        *column = Some(Vec::new());
-        Ok((signal, order))
     }
 
-    /// Makes inputs of the drivers that follow signals.
-    pub(super) fn take_over(&self, mechanism: &mut Mechanism) {
+    /// Turns the drivers that follow signals into inputs.
+    pub(super) fn make_inputs(&self, mechanism: &mut Mechanism) {
         for signal in &self.signals {
             let start = signal.position()[0];
             mechanism.drivers[signal.driver.index()].source = DriverSource::Input { start };
         }
     }
 
-    /// Whether a driver follows a signal.
+    /// Returns whether there are no signals at all.
+    pub(super) fn is_empty(&self) -> bool {
+        self.signals.is_empty()
+    }
+
+    /// Returns whether a driver follows a signal.
     pub(super) fn has(&self, driver: DriverId) -> bool {
-        self.signals.iter().any(|signal| signal.driver == driver)
+        self.of(driver).is_some()
     }
 
-    /// A driver's value with the slope of the line from there on.
+    fn of(&self, driver: DriverId) -> Option<&Signal> {
+        self.signals.iter().find(|signal| signal.driver == driver)
+    }
+
+    /// Returns a driver's value, with the slope from this time on as velocity.
     pub(super) fn line(&self, driver: DriverId, time: f64) -> Option<Jet> {
-        let signal = self.signals.iter().find(|signal| signal.driver == driver)?;
-        Some(self.interpolate(signal.position(), time))
+        Some(self.interpolate(self.of(driver)?.position(), time))
     }
 
-    /// A driver's value, velocity and acceleration: where the file has no velocity, the slope of
-    /// the line from there on; where it has no acceleration, zero.
+    /// Returns a driver's value, velocity and acceleration. Without a column of velocities the
+    /// velocity is the slope from this time on, without one of accelerations these are zero.
     pub(super) fn at(&self, driver: DriverId, time: f64) -> Option<Jet> {
-        let signal = self.signals.iter().find(|signal| signal.driver == driver)?;
+        let signal = self.of(driver)?;
         let mut jet = self.interpolate(signal.position(), time);
         let [_, velocity, acceleration] = &signal.columns;
-        if let Some(column) = velocity {
-            jet.derivatives[0] = self.interpolate(column, time).value;
+        if let Some(velocity) = velocity {
+            jet.derivatives[0] = self.interpolate(velocity, time).value;
         }
-        if let Some(column) = acceleration {
-            jet.derivatives[1] = self.interpolate(column, time).value;
+        if let Some(acceleration) = acceleration {
+            jet.derivatives[1] = self.interpolate(acceleration, time).value;
         }
         Some(jet)
     }
 
-    /// The first time after `time` at which a signal has a point.
+    /// Returns the time of the first point after `time`; infinity after the last.
     pub(super) fn next_point(&self, time: f64) -> f64 {
-        let after = self
-            .times
-            .partition_point(|point| *point <= time || same(*point, time));
+        let after = self.points_until(time);
         self.times.get(after).copied().unwrap_or(f64::INFINITY)
     }
 
+    /// Returns how many points are not after `time`.
+    fn points_until(&self, time: f64) -> usize {
+        self.times
+            .partition_point(|point| *point <= time || same(*point, time))
+    }
+
     fn interpolate(&self, values: &[f64], time: f64) -> Jet {
-        let after = self
-            .times
-            .partition_point(|point| *point <= time || same(*point, time));
+        let after = self.points_until(time);
         let Some(before) = after.checked_sub(1) else {
             return Jet::constant(values[0]);
         };
         let Some(end) = self.times.get(after) else {
             return Jet::constant(values[before]);
         };
-        let slope = (values[after] - values[before]) / (end - self.times[before]);
-        let elapsed = if same(time, self.times[before]) {
-            0.0
-        } else {
-            time - self.times[before]
-        };
+        let start = self.times[before];
+        let slope = (values[after] - values[before]) / (end - start);
+        let elapsed = if same(time, start) { 0.0 } else { time - start };
         Jet::new(values[before] + elapsed * slope, [slope, 0.0])
     }
-}
-
-/// The fields of a row without empty ones at its end, which separators leave there; so many are
-/// kept.
-fn without_empty_end(record: &csv::StringRecord, kept: usize) -> Vec<&str> {
-    let mut fields: Vec<&str> = record.iter().collect();
-    while fields.len() > kept && fields.last() == Some(&"") {
-        fields.pop();
-    }
-    fields
 }
 
 impl Signal {
     fn position(&self) -> &[f64] {
         self.columns[0].as_deref().unwrap_or_default()
     }
+}
+
+/// Says that a column is no variable of a driver, and which one may be meant.
+fn unknown(name: &str, mechanism: &Mechanism) -> String {
+    let drivers = || mechanism.drivers.iter().map(|driver| driver.name.as_str());
+    let variables = |order: Order| drivers().map(move |d| format!("{d}.{}", order.suffix()));
+    let variables: Vec<String> = Order::ALL.into_iter().flat_map(variables).collect();
+    let variables: Vec<&str> = variables.iter().map(String::as_str).collect();
+    let (positions, rates) = variables.split_at(mechanism.drivers.len());
+    let further: Vec<&str> = drivers().chain(rates.iter().copied()).collect();
+    let help = help(name, positions, &further);
+    let help = help.map_or_else(String::new, |help| format!("; {help}"));
+    format!("column {} is no variable of a driver{help}", quoted(name))
+}
+
+/// Returns the fields of a row without the empty ones at its end, which separators leave there,
+/// but at least `kept`.
+fn without_empty_end(record: &csv::StringRecord, kept: usize) -> Vec<&str> {
+    let mut fields: Vec<&str> = record.iter().collect();
+    while fields.len() > kept && fields.last() == Some(&"") {
+        fields.pop();
+    }
+    fields
 }
 
 fn same(a: f64, b: f64) -> bool {

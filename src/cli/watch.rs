@@ -13,8 +13,8 @@ use super::conditions::Conditions;
 use super::documentation::show;
 use super::error::Error;
 use super::input::{Input, misfits};
+use super::input_files::tables;
 use super::message::{Message, tell};
-use super::originals::tables;
 use super::output::print;
 use super::render::render;
 use crate::drawing::animation::{fill, page_with, player};
@@ -27,9 +27,9 @@ const STYLE: &str = include_str!("watch/watch.css");
 
 /// Show a mechanism moving in a browser, anew each time its file is saved.
 ///
-/// The page is served to this machine alone. It shows the prescribed motions or, if none moves,
-/// the range of the first driver. While the file has an error, the page says which, with the
-/// last good picture. Ctrl-C ends it.
+/// Only this machine can open the page. It shows the prescribed motions or, if there are none, the
+/// range of the first driver. While the file has an error, the page shows the error and the last
+/// good picture. Ctrl-C ends the command.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela watch four_bar.toml")]
 pub(super) struct Watch {
@@ -49,25 +49,23 @@ pub(super) struct Watch {
 
 impl Watch {
     pub(super) fn run(self) -> Result<(), Error> {
-        // What is wrong with the file may be mended while it is watched, the command not.
+        // An error in the file may be corrected while it is watched, one in the command not.
         if let Ok((input, _)) = read(&self.file)? {
             let start = input.mechanism.simulation.start;
-            let parameters = self.conditions.parameters(&input.mechanism)?;
-            self.conditions
-                .driven(&input.mechanism, &parameters, start)?;
+            self.conditions.scenario(&input.mechanism, start, None)?;
         }
         let server = Server::new(self.port)?;
-        // A closed pipe is no reason to stop: the browser may have the address already.
+        // With stdout closed the browser may have the address already.
         let _ = print(&format!("{}\n", server.address()));
         let mut view = View::new(self);
-        view.look();
+        view.refresh();
         server.serve(|path| match path {
             "/" => {
-                view.look();
+                view.refresh();
                 Answer::page(view.page())
             }
             "/version" => {
-                view.look();
+                view.refresh();
                 Answer::text(view.version.to_string())
             }
             _ => Answer::missing(),
@@ -75,19 +73,19 @@ impl Watch {
     }
 }
 
-/// What there is to see of a file.
+/// The current view of a file.
 struct View {
     watch: Watch,
-    /// Counts what was seen.
+    /// Number of changes seen.
     version: u64,
-    /// Of the file and the tables that it names.
+    /// Time and size of the file, then of the tables that it names.
     seen: Vec<Option<(SystemTime, u64)>>,
     tables: Vec<PathBuf>,
     name: String,
     description: String,
     /// The last good picture.
     player: String,
-    /// What is to be said of that, one paragraph after the other.
+    /// Warnings on that picture, one per paragraph.
     warnings: Vec<String>,
     error: Option<String>,
 }
@@ -107,14 +105,14 @@ impl View {
         }
     }
 
-    /// Looks at the files again if they have changed.
-    fn look(&mut self) {
+    /// Reads the files again if they have changed.
+    fn refresh(&mut self) {
         let seen = self.stamps();
         if seen == self.seen {
             return;
         }
         self.version += 1;
-        self.error = self.try_look().err();
+        self.error = self.read().err();
         if let Some(error) = &self.error {
             tell(error);
         }
@@ -133,15 +131,24 @@ impl View {
             .collect()
     }
 
+    /// Reads the file and makes the picture.
+    ///
     /// # Errors
     ///
-    /// What is wrong, for people.
-    fn try_look(&mut self) -> Result<(), String> {
+    /// The message for the page.
+    fn read(&mut self) -> Result<(), String> {
         let read = read(&self.watch.file).map_err(told)?;
         let (input, mut warnings) = read?;
         self.tables = tables(&self.watch.file, &input.mechanism).collect();
-        let started = self.watch.conditions.reach_start(&input);
-        let mut solver = started.map_err(told)?.map_err(told)?;
+        let start = input.mechanism.simulation.start;
+        let scenario = self
+            .watch
+            .conditions
+            .scenario(&input.mechanism, start, None);
+        let home_solver = input.assemble().map_err(told)?;
+        let solver = scenario.map_err(told)?.solver(home_solver);
+        // The page names the file already.
+        let mut solver = solver.map_err(told)?;
         warnings.extend(misfits(&solver).iter().map(ToString::to_string));
         let shown = show(&mut solver).map_err(told)?;
         self.warnings = warnings;
@@ -189,8 +196,7 @@ impl View {
     }
 }
 
-/// Reads a file without telling the terminal; also what it warns of. Or else what is wrong in it,
-/// for people.
+/// Reads a file and returns its warnings, or its errors as text; tells nothing on the terminal.
 fn read(path: &Path) -> Result<Result<(Input, Vec<String>), String>, Error> {
     let source = Source::open(path.display().to_string(), path).map_err(|source| Error::Read {
         path: path.to_owned(),
@@ -209,7 +215,7 @@ fn read(path: &Path) -> Result<Result<(Input, Vec<String>), String>, Error> {
     })
 }
 
-/// An error as people read it.
+/// Returns the message of an error.
 fn told(error: impl Display) -> String {
     Message::Error(error.to_string()).to_string()
 }

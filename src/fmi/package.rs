@@ -1,47 +1,60 @@
 //! The `.fmu` archive (FMI 2.0, 2.3).
 
+use std::borrow::Cow;
 use std::io::{Seek, Write};
-use std::path::PathBuf;
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::model_description::ModelDescription;
 
-/// A platform by the standard's name of its folder in `binaries/`.
+/// A platform that FMUs run on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Platform {
-    /// `linux64`, `win64`, …
+    /// Name of its folder in `binaries/`: one of the names of FMI 2.0, or else the platform tuple
+    /// of FMI 3.0, as FMI 2.0.4 has it (section 2.3).
     pub name: &'static str,
     /// Extension of its shared libraries.
     pub extension: &'static str,
+    /// Name of the system for people.
+    pub system: &'static str,
 }
 
 impl Platform {
-    /// Platforms of the runtime library. `aarch64-linux` is a name of FMI 3.0, which FMI 2.0
-    /// refers to (2.3).
-    pub const ALL: [Self; 4] = [
-        Self::new("linux64", "so"),
-        Self::new("win64", "dll"),
-        Self::new("darwin64", "dylib"),
-        Self::new("aarch64-linux", "so"),
+    /// All platforms that runtime libraries are built for. FMI 2.0 reserves `darwin64` for x86-64,
+    /// but hosts on Apple silicon open it too: the library there serves both processors.
+    pub const ALL: [Self; 5] = [
+        Self::new("linux64", "so", "Linux, x86-64"),
+        Self::new("win64", "dll", "Windows, x86-64"),
+        Self::new("darwin64", "dylib", "macOS, x86-64 and Apple silicon"),
+        Self::new("aarch64-linux", "so", "Linux, ARM 64-bit"),
+        Self::new("aarch64-darwin", "dylib", "macOS, Apple silicon"),
     ];
 
-    const fn new(name: &'static str, extension: &'static str) -> Self {
-        Self { name, extension }
+    const fn new(name: &'static str, extension: &'static str, system: &'static str) -> Self {
+        Self {
+            name,
+            extension,
+            system,
+        }
     }
 
-    /// Returns the platform that this program runs on.
+    /// Returns the platform of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|platform| platform.name == name)
+    }
+
+    /// Returns the platform that this program was built for.
     #[must_use]
     pub fn current() -> Option<Self> {
-        let name = match (std::env::consts::OS, std::env::consts::ARCH) {
+        Self::named(match (std::env::consts::OS, std::env::consts::ARCH) {
             ("linux", "x86_64") => "linux64",
             ("linux", "aarch64") => "aarch64-linux",
             ("windows", "x86_64") => "win64",
             ("macos", _) => "darwin64",
             _ => return None,
-        };
-        Self::ALL.into_iter().find(|platform| platform.name == name)
+        })
     }
 }
 
@@ -50,22 +63,14 @@ impl Platform {
 pub struct RuntimeLibrary {
     /// Platform of the library.
     pub platform: Platform,
-    /// Path of the file.
-    pub path: PathBuf,
+    /// Content of the file.
+    pub content: Cow<'static, [u8]>,
 }
 
 /// The archive could not be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PackageError {
-    /// A runtime library cannot be read.
-    #[error("cannot read the runtime library `{}`: {source}", path.display())]
-    Library {
-        /// Path of the library.
-        path: PathBuf,
-        /// Reason from the system.
-        source: std::io::Error,
-    },
     /// The archive cannot be written.
     #[error("cannot write the archive: {0}")]
     Archive(#[from] zip::result::ZipError),
@@ -90,7 +95,7 @@ pub struct Document {
 ///
 /// # Errors
 ///
-/// A library cannot be read, or `out` cannot be written.
+/// `out` cannot be written.
 pub fn write<Q>(
     out: impl Write + Seek,
     description: &ModelDescription<'_, Q>,
@@ -112,19 +117,15 @@ pub fn write<Q>(
         zip.start_file(path.as_str(), text)?;
         zip.write_all(content)?;
     }
-    let mut libraries = libraries.to_vec();
+    let mut libraries: Vec<&RuntimeLibrary> = libraries.iter().collect();
     libraries.sort();
-    for RuntimeLibrary { platform, path } in libraries {
-        let content = std::fs::read(&path).map_err(|source| PackageError::Library {
-            path: path.clone(),
-            source,
-        })?;
+    for RuntimeLibrary { platform, content } in libraries {
         let name = format!(
             "binaries/{}/{}.{}",
             platform.name, description.name, platform.extension
         );
         zip.start_file(name, binary)?;
-        zip.write_all(&content)?;
+        zip.write_all(content)?;
     }
     for (name, content) in resources {
         zip.start_file(format!("resources/{name}"), text)?;

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use biela::fmi::{Causality, Kind, Quantity, RESOURCE, Status};
 use biela::mechanism::{Mechanism, Source};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
+use set_up::runtime_library;
 use tempfile::TempDir;
 
 type Variable = biela::fmi::Variable<Quantity>;
@@ -19,17 +20,6 @@ pub(crate) const A: &str = "0";
 pub(crate) const B: &str = "1";
 /// A null pointer: as an instance, an array, a string.
 pub(crate) const NULL: &str = r"\N";
-
-/// Cargo builds the library into the folder of the tests' programs.
-pub(crate) fn library() -> PathBuf {
-    let test = std::env::current_exe().expect("the test runs from a file");
-    let name = format!(
-        "{}biela{}",
-        std::env::consts::DLL_PREFIX,
-        std::env::consts::DLL_SUFFIX
-    );
-    test.with_file_name(name)
-}
 
 /// The unpacked FMU of a mechanism, as far as its library looks at it.
 pub(crate) struct Fmu {
@@ -168,7 +158,7 @@ impl Host {
     /// Starts it through another program, to which `command` leads.
     pub(crate) fn start_with(mut command: Command) -> Self {
         let mut process = command
-            .arg(library())
+            .arg(runtime_library())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

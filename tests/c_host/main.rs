@@ -15,7 +15,8 @@ mod stepping;
 use std::collections::BTreeSet;
 use std::process::Command;
 
-use driver::{Host, library};
+use driver::Host;
+use set_up::runtime_library;
 use states::functions;
 
 /// Calls that no state decides about.
@@ -50,7 +51,10 @@ fn the_functions_of_the_header_are_exported_and_nothing_else() {
     } else {
         &["-D", "--defined-only"]
     };
-    let nm = Command::new("nm").args(list).arg(library()).output();
+    let nm = Command::new("nm")
+        .args(list)
+        .arg(runtime_library())
+        .output();
     let nm = nm.expect("the linker brings `nm` along");
     let exported: BTreeSet<_> = String::from_utf8(nm.stdout)
         .unwrap()

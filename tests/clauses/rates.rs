@@ -2,10 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use biela::fmi::{Category, Interface};
+use biela::fmi::{Category, Interface, describe};
 
 use crate::common::log::Heard;
-use crate::common::{Instance, instance_of, parse, shipped};
+use crate::common::{Instance, assembled, instance_of, parse, shipped};
 use crate::{get, set, started, vr};
 
 const POSITION: &str = "crank_angle.position";
@@ -252,4 +252,48 @@ fn a_fall_by_more_than_half_a_turn_draws_one_warning() {
         "{message}"
     );
     assert!(message.contains("`wrapped = true`"), "{message}");
+}
+
+/// The key `wrapped`: each value means the turn nearest the last one.
+#[test]
+fn a_wrapped_angle_goes_on_turning() {
+    let own = "start = \"60*deg\" }";
+    let text = four_bar_text();
+    assert!(text.contains(own));
+    let (found, advice) = wrapped(&text.replace(own, "start = \"60*deg\", wrapped = true }"));
+    assert_eq!(advice, [""; 0]);
+    for (step, [phi, omega]) in (0_u32..).zip(found) {
+        let expected = PI / 3.0 + 0.1 * f64::from(step);
+        assert!((phi - expected).abs() < 1e-12, "{step}: {phi} {expected}");
+        // Rounding of angles up to 21 rad, differentiated over 0.01 s.
+        assert!(step < 1 || (omega - 10.0).abs() < 1e-11, "{step}: {omega}");
+    }
+}
+
+/// Limits of an input are information (2.2.3): each excursion draws one message and is followed.
+#[test]
+fn a_driver_beyond_its_limits_is_followed_with_one_warning() {
+    let own = "start = \"60*deg\" }";
+    let limited = four_bar_text().replace(own, "start = \"60*deg\", min = 1, max = 1.5 }");
+    let mechanism = parse(&limited);
+    let (solver, _) = assembled(&mechanism);
+    let xml = describe(solver.mechanism(), solver.structure()).write(None);
+    let xml = String::from_utf8(xml).expect("XML is text");
+    assert!(xml.contains("min=\"1.0\" max=\"1.5\""), "{xml}");
+
+    let heard = Heard::default();
+    let mut instance = started(heard.instance(mechanism, Interface::CoSimulation, true));
+    let mut warnings = Vec::new();
+    for (step, angle) in [1.2, 1.6, 1.7, 1.4, 0.9].into_iter().enumerate() {
+        set(&mut instance, [(POSITION, angle)]);
+        instance.do_step(step as f64, 1.0).expect("it turns freely");
+        let [phi] = get(&mut instance, ["crank.phi"]);
+        assert!((phi - angle).abs() < 1e-14, "{phi}");
+        warnings.push(heard.take(Category::Warning));
+    }
+    let counts: Vec<_> = warnings.iter().map(Vec::len).collect();
+    assert_eq!(counts, [0, 1, 0, 0, 1]);
+    assert!(warnings[1][0].contains("driver `crank_angle` is at 1.600000000 rad"));
+    assert!(warnings[1][0].contains("beyond its `max` = 1.500000000 rad"));
+    assert!(warnings[4][0].contains("beyond its `min` = 1.000000000 rad"));
 }

@@ -93,7 +93,7 @@ fn a_mechanism_that_does_not_close_is_shown_at_its_nearest() {
     let assert = biela(&["check", &file, "--estimates"]).code(1);
     insta::assert_snapshot!(behind(&stdout(&assert), "  drivers"), @r#"
 
-    not assembled; the pose that comes nearest
+    not assembled; the nearest pose
 
       body            x [m]         y [m]     phi [deg]     moved [m]  turned [deg]
       crank        0.000000      0.000000     60.000000      0.000000      0.000000

@@ -2,9 +2,7 @@
 
 use std::io::Read as _;
 
-use assert_cmd::Command;
-
-use crate::program::{altered, biela, stderr};
+use crate::program::{altered, biela, program, stderr, stdout};
 
 #[test]
 fn an_fmu_carries_its_picture_and_its_page() {
@@ -26,6 +24,15 @@ fn an_fmu_carries_its_picture_and_its_page() {
     };
     assert!(content("model.png").starts_with(b"\x89PNG"));
     let page = String::from_utf8(content("documentation/index.html")).unwrap();
+    let licences = String::from_utf8(content("documentation/licenses/license.txt")).unwrap();
+    for wanted in [
+        "biela, MIT",
+        "nalgebra 0.",
+        "Apache License",
+        "Rust's standard library",
+    ] {
+        assert!(licences.contains(wanted), "{wanted}");
+    }
     assert!(page.contains("&lt;script&gt;alert(") && !page.contains("<script>alert"));
     for wanted in [
         "down to 0.15 m: dead point, where body arm and body rod line up",
@@ -44,9 +51,7 @@ fn export_is_reproducible_and_dated_only_on_demand() {
     let folder = tempfile::tempdir().unwrap();
     let export = |name: &str, epoch: Option<&str>| {
         let path = folder.path().join(name);
-        let mut command = Command::new(env!("CARGO_BIN_EXE_biela"));
-        command.current_dir(env!("CARGO_MANIFEST_DIR"));
-        command.env_remove("SOURCE_DATE_EPOCH");
+        let mut command = program();
         command.envs(epoch.map(|epoch| ("SOURCE_DATE_EPOCH", epoch)));
         command
             .args(["export", "mechanisms/tlv.toml", "-o"])
@@ -59,7 +64,7 @@ fn export_is_reproducible_and_dated_only_on_demand() {
     assert!(first == export("b.fmu", Some("")));
     assert!(first != export("c.fmu", Some("1700000000")));
     assert!(export("d.fmu", Some("1700000000")) == export("e.fmu", Some("1700000000")));
-    Command::new(env!("CARGO_BIN_EXE_biela"))
+    program()
         .env("SOURCE_DATE_EPOCH", "yesterday")
         .args(["export", "mechanisms/tlv.toml"])
         .assert()
@@ -109,4 +114,47 @@ fn only_shared_libraries_of_their_platform_are_packed() {
     // For several processors.
     write("darwin64/biela.dylib", b"\xca\xfe\xba\xbe");
     export().success();
+}
+
+#[test]
+fn platforms_are_listed_and_narrow_the_export() {
+    let folder = tempfile::tempdir().unwrap();
+    // As far as biela looks into them.
+    let glibc = b"\x7fELF\0GLIBC_2.2.5\0GLIBC_2.17\0";
+    for (library, content) in [("linux64/biela.so", &glibc[..]), ("win64/biela.dll", b"MZ")] {
+        let path = folder.path().join(library);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, content).unwrap();
+    }
+    let fmu = folder.path().join("tlv.fmu");
+    let [fmu, libraries] = [fmu.as_path(), folder.path()].map(|path| path.to_str().unwrap());
+    let list = stdout(&biela(&["platforms", "--runtime", libraries]).success());
+    let lines: Vec<&str> = list.lines().collect();
+    assert_eq!(lines.len(), 5, "{list}");
+    for (line, [start, end]) in lines.iter().zip([
+        ["linux64  ", "glibc 2.17         "],
+        ["win64  ", "biela.dll"],
+        ["darwin64  ", "  -"],
+        ["aarch64-linux  ", "  -"],
+        ["aarch64-darwin  ", "  -"],
+    ]) {
+        assert!(line.starts_with(start) && line.contains(end), "{line}");
+    }
+    let export = |platforms: &str| {
+        let options = ["--runtime", libraries, "--platforms", platforms];
+        biela(&[&["export", "mechanisms/tlv.toml", "-o", fmu][..], &options].concat())
+    };
+    let message = stderr(&export("win64").success());
+    assert!(message.ends_with(" (win64)\n"), "{message}");
+    let message = stderr(&export("win64,linux64").success());
+    assert!(message.ends_with(" (linux64, win64)\n"), "{message}");
+    assert_eq!(
+        stderr(&export("linux64,darwin64").code(2)),
+        "error: --platforms: no runtime library for darwin64; there are those for linux64, win64\n"
+    );
+    let message = stderr(&export("win32").code(2));
+    assert!(
+        message.contains("expected one of linux64, win64, darwin64"),
+        "{message}"
+    );
 }

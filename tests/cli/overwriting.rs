@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use assert_cmd::Command;
-
-use crate::program::{altered, stderr, stdout};
+use crate::program::{altered, program, stderr, stdout};
 
 /// A command in a folder is refused, says so, and leaves all files as they are.
 fn refused(folder: &Path, arguments: &[&str], expected: &str) {
@@ -18,7 +16,7 @@ fn refused(folder: &Path, arguments: &[&str], expected: &str) {
         files
     };
     let before = files();
-    let assert = Command::new(env!("CARGO_BIN_EXE_biela"))
+    let assert = program()
         .current_dir(folder)
         .args(arguments)
         .assert()
@@ -119,7 +117,7 @@ fn two_results_have_two_places() {
         &["run", "tlv.toml", "-o", "a.csv", "--plot", "a.svg"],
         &["run", "tlv.toml", "--plot", "-"],
     ] {
-        Command::new(env!("CARGO_BIN_EXE_biela"))
+        program()
             .current_dir(folder)
             .args(arguments)
             .assert()

@@ -77,7 +77,7 @@ fn run_animates() {
         ],
         0,
     );
-    assert_eq!(messages, "");
+    assert_eq!(messages, format!("wrote {path}\n"));
     assert_eq!(shown["moments"], 12);
     assert_eq!(shown["stop"], 1.05);
     assert_eq!(shown["readings"][0]["name"], "crank_angle");

@@ -5,12 +5,19 @@ use std::path::Path;
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
 
-pub(crate) fn biela(arguments: &[&str]) -> Assert {
-    Command::new(env!("CARGO_BIN_EXE_biela"))
+/// The program, in the project's folder.
+pub(crate) fn program() -> Command {
+    // Exporting packs it.
+    let _ = set_up::runtime_library();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_biela"));
+    command
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .env_remove("SOURCE_DATE_EPOCH")
-        .args(arguments)
-        .assert()
+        .env_remove("SOURCE_DATE_EPOCH");
+    command
+}
+
+pub(crate) fn biela(arguments: &[&str]) -> Assert {
+    program().args(arguments).assert()
 }
 
 pub(crate) fn stdout(assert: &Assert) -> String {

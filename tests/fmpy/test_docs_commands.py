@@ -18,9 +18,10 @@ from harness import ROOT, program, run_biela
 from manual import PAGES, Block, blocks, commands, page_name, same_output
 
 NOT_RUN = {
-    "make demo": "the demo has a test of its own, test_demo.py",
-    "make test": "that is what is running",
-    "make install": "builds for minutes, and writes outside of the checkout",
+    "pip install biela-*.whl": "scripts/test_install.sh does, with a wheel that takes minutes to build",
+    "cargo install --locked --path .": "likewise",
+    "make runtimes": "builds for minutes, with compilers that are not everywhere",
+    "make runtimes ONLY='linux64 win64'": "likewise",
     "python3 -m venv env": "for packages to be downloaded into",
     "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
     "biela watch piston.toml": "runs until it is ended; tests/watch.rs has tests of its own",
@@ -28,7 +29,6 @@ NOT_RUN = {
     "env/bin/python dask_sweep.py": "test_examples.py runs it",
     "env/bin/python step_errors.py": "docs/fmu.md runs it",
     "env/bin/python system/run.py": "it runs further below",
-    'export PATH="$HOME/.local/bin:$PATH"': "of the user's own shell",
 }
 """Commands in blocks marked `norun`, each with the reason."""
 

@@ -16,6 +16,7 @@ PAGE = ROOT / "docs" / "troubleshooting.md"
 FILES_WITHOUT_MESSAGES = {
     "cli/check.rs": "its report, which is the answer and not a complaint",
     "cli/range.rs": "likewise",
+    "cli/platforms.rs": "likewise",
     "cli/documentation.rs": "the page in the FMU",
     "cli/watch/server.rs": "what a browser is told",
     "fmi/mechanism_model/variables.rs": "descriptions in the FMU",
@@ -44,6 +45,10 @@ PARTS = {
     "beyond, …, redundant up to here": "… at t = … s: the mechanism cannot go on, with …",
     "about the solver": "cannot be set: it is …",
     "the running program": "cannot read `…`",
+    "expected one of …": "told by the parser of options",
+    "macOS, x86-64 and Apple silicon": "a name of `biela platforms`",
+    "Linux, ARM 64-bit": "likewise",
+    "macOS, Apple silicon": "likewise",
     "a table of the mechanism": "nothing is written to …: it is …, `…`",
     "the file of --input": "nothing is written to …: it is …, `…`",
     "a runtime library": "nothing is written to …: it is …, `…`",
@@ -81,8 +86,6 @@ PARTS = {
     "an estimate from positions": "an event: … now comes from …",
     "t = … s: sub-steps ……, iterations …, residual …": "solver detail",
     " (… checked, not proved)": "solver detail",
-    ".hidden callback_log": "for the linker",
-    ".private_extern _callback_log": "for the linker",
 }
 """Texts that are no messages by themselves, each with the message that it is a part of."""
 

@@ -1,4 +1,4 @@
-//! What `biela check` finds, for scripts.
+//! The report of `biela check` as JSON.
 
 use std::path::Path as FilePath;
 use std::sync::Arc;
@@ -10,12 +10,12 @@ use crate::cli::error::Error;
 use crate::kinematics::{self, Element, Path, Rates, Solver, System};
 use crate::mechanism::{CoordinateKind, Diagnostic, DriverSource, Mechanism, Source};
 
-/// All that `biela check` finds out about a file, in SI units, and whether the file is right.
+/// Returns the report on a file, in SI units, and the outcome of the command.
 ///
-/// Keys that make no sense for what was found are left out: `mechanism` where the file is none,
-/// `assembled` where it was not, `modes` where they were not asked for.
+/// Keys without a value are left out: `mechanism` if the file has errors, `assembled` if the
+/// mechanism does not close, `modes` if they were not asked for.
 ///
-/// With it comes how the command ends. Only a file that cannot be read is left to be told of.
+/// The report tells all errors but that of a file that cannot be read.
 pub(super) fn report(file: &FilePath, modes: bool) -> (Value, Result<(), Error>) {
     let name = file.display().to_string();
     let mut report = json!({ "file": name, "ok": false });
@@ -111,7 +111,7 @@ fn describe(mechanism: &Arc<Mechanism>) -> Value {
     })
 }
 
-/// The mechanism at its start values.
+/// Assembles the mechanism at its start values and describes the pose.
 fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematics::Error> {
     let mut solver = Solver::new(Arc::clone(mechanism))?;
     solver.assemble(&Path::new(mechanism))?;

@@ -6,18 +6,18 @@ use std::time::Duration;
 
 use crate::cli::error::Error;
 
-/// A request is not longer than this.
+/// Largest size of a request.
 const MOST_BYTES: u64 = 16 * 1024;
-/// Whoever says nothing for so long keeps nobody waiting.
+/// Time after which a silent connection is closed.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Listens on the loopback address alone.
+/// A server that listens on the loopback address only.
 pub(super) struct Server {
     listener: TcpListener,
     port: u16,
 }
 
-/// What a request is answered with.
+/// The answer to a request.
 pub(super) struct Answer {
     status: &'static str,
     kind: &'static str,
@@ -68,14 +68,14 @@ impl Server {
         format!("http://127.0.0.1:{}/", self.port)
     }
 
-    /// Answers one request after the other, by their paths, for as long as it can.
+    /// Answers requests by their paths, one after the other, until accepting one fails.
     pub(super) fn serve(&self, mut answer: impl FnMut(&str) -> Answer) -> Result<(), Error> {
         loop {
             let (stream, _) = self.listener.accept().map_err(|source| Error::Listen {
                 port: self.port,
                 source,
             })?;
-            // A browser that goes away is no error.
+            // A browser may close the connection at any time.
             let _ = self.talk(&stream, &mut answer);
         }
     }
@@ -103,7 +103,7 @@ impl Server {
         }
         let mut words = request.split(' ');
         let (method, path) = (words.next(), words.next());
-        // Under another name it may be a page from elsewhere that asks.
+        // A request under another name may come from a page of another site.
         let own = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
         let known = host.is_some_and(|host| own.contains(&host));
         let Answer { status, kind, body } = match (method, path) {

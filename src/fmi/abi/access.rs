@@ -1,6 +1,6 @@
 //! Setting and getting variables.
 
-use fmi_sys::fmi2::{
+use super::types::{
     fmi2Boolean, fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2ValueReference,
 };
 

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fmi_sys::fmi2::{fmi2Component, fmi2Status, fmi2Status_fmi2Error};
+use super::types::{fmi2Component, fmi2Error, fmi2Status};
 
 use super::Exported;
 use super::host::status_code;
@@ -92,11 +92,11 @@ pub(super) unsafe fn with_instance(
 ) -> fmi2Status {
     // SAFETY: promised by the caller.
     let Some(component) = (unsafe { c.cast::<Component>().as_ref() }) else {
-        return fmi2Status_fmi2Error;
+        return fmi2Error;
     };
     if !component.seize() {
         // The instance's logger cannot be reached now; who is being served will tell of it.
-        return fmi2Status_fmi2Error;
+        return fmi2Error;
     }
     // SAFETY: seized, and calls come from one thread at a time, so that this is the only reference
     // to the instance until `busy` is false again.

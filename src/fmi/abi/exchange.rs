@@ -1,6 +1,6 @@
 //! Model exchange. There are no continuous states and no event indicators.
 
-use fmi_sys::fmi2::{fmi2Boolean, fmi2Component, fmi2EventInfo, fmi2False, fmi2Real, fmi2Status};
+use super::types::{fmi2Boolean, fmi2Component, fmi2EventInfo, fmi2False, fmi2Real, fmi2Status};
 
 use super::arguments::Room;
 use super::component::with_instance;

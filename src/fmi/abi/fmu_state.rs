@@ -5,7 +5,7 @@
 
 use std::ptr::null_mut;
 
-use fmi_sys::fmi2::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Status};
+use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Status};
 
 use super::Exported;
 use super::arguments::{Room, slice, write};

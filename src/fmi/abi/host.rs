@@ -2,9 +2,9 @@
 
 use std::ffi::{CString, c_void};
 
-use fmi_sys::fmi2::{
-    fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Status, fmi2Status_fmi2Discard,
-    fmi2Status_fmi2Error, fmi2Status_fmi2Fatal, fmi2Status_fmi2OK, fmi2Status_fmi2Warning,
+use super::types::{
+    fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Discard, fmi2Error, fmi2Fatal, fmi2OK,
+    fmi2Status, fmi2Warning,
 };
 
 use crate::fmi::{Category, Sink, Status};
@@ -70,11 +70,11 @@ fn shortened(message: &str) -> std::borrow::Cow<'_, str> {
 /// The standard's number of a status.
 pub(super) fn status_code(status: Status) -> fmi2Status {
     match status {
-        Status::Ok => fmi2Status_fmi2OK,
-        Status::Warning => fmi2Status_fmi2Warning,
-        Status::Discard => fmi2Status_fmi2Discard,
-        Status::Error => fmi2Status_fmi2Error,
-        Status::Fatal => fmi2Status_fmi2Fatal,
+        Status::Ok => fmi2OK,
+        Status::Warning => fmi2Warning,
+        Status::Discard => fmi2Discard,
+        Status::Error => fmi2Error,
+        Status::Fatal => fmi2Fatal,
     }
 }
 

@@ -3,9 +3,9 @@
 use std::ffi::c_char;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use fmi_sys::fmi2::{
-    fmi2Boolean, fmi2CallbackFunctions, fmi2Component, fmi2Real, fmi2Status, fmi2String, fmi2Type,
-    fmi2Type_fmi2CoSimulation, fmi2Type_fmi2ModelExchange,
+use super::types::{
+    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
+    fmi2Real, fmi2Status, fmi2String, fmi2Type,
 };
 
 use super::Exported;
@@ -73,8 +73,8 @@ pub unsafe extern "C" fn fmi2Instantiate(
             return Err(CallError::Argument(message));
         }
         let interface = match fmu_type {
-            fmi2Type_fmi2ModelExchange => Interface::ModelExchange,
-            fmi2Type_fmi2CoSimulation => Interface::CoSimulation,
+            fmi2ModelExchange => Interface::ModelExchange,
+            fmi2CoSimulation => Interface::CoSimulation,
             other => {
                 let message = format!("`fmuType` {other} is neither of the two interfaces");
                 return Err(CallError::Argument(message));

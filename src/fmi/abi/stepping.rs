@@ -1,9 +1,8 @@
 //! Steps: their inputs' derivatives, the step itself and how it ended.
 
-use fmi_sys::fmi2::{
-    fmi2Boolean, fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2StatusKind,
-    fmi2StatusKind_fmi2DoStepStatus, fmi2StatusKind_fmi2LastSuccessfulTime,
-    fmi2StatusKind_fmi2Terminated, fmi2String, fmi2ValueReference,
+use super::types::{
+    fmi2Boolean, fmi2Component, fmi2DoStepStatus, fmi2Integer, fmi2LastSuccessfulTime, fmi2Real,
+    fmi2Status, fmi2StatusKind, fmi2String, fmi2Terminated, fmi2ValueReference,
 };
 
 use super::arguments::{Room, slice, write};
@@ -133,15 +132,15 @@ macro_rules! status {
 status! {
     /// `fmi2GetStatus`: how the last step ended.
     fmi2GetStatus(GetStatus): fmi2Status,
-        fmi2StatusKind_fmi2DoStepStatus => |instance| status_code(instance.step_status());
+        fmi2DoStepStatus => |instance| status_code(instance.step_status());
     /// `fmi2GetRealStatus`: the last successful time.
     fmi2GetRealStatus(GetRealStatus): fmi2Real,
-        fmi2StatusKind_fmi2LastSuccessfulTime => |instance| instance.last_successful_time();
+        fmi2LastSuccessfulTime => |instance| instance.last_successful_time();
     /// `fmi2GetIntegerStatus`: the standard defines none.
     fmi2GetIntegerStatus(GetIntegerStatus): fmi2Integer;
     /// `fmi2GetBooleanStatus`: whether a step was discarded for good.
     fmi2GetBooleanStatus(GetBooleanStatus): fmi2Boolean,
-        fmi2StatusKind_fmi2Terminated => |instance| fmi2Boolean::from(instance.is_terminated());
+        fmi2Terminated => |instance| fmi2Boolean::from(instance.is_terminated());
     /// `fmi2GetStringStatus`: nothing is ever pending.
     fmi2GetStringStatus(GetStringStatus): fmi2String;
 }

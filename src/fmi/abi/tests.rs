@@ -5,12 +5,15 @@ use std::ptr::{null, null_mut};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use fmi_sys::fmi2::{
-    fmi2Component, fmi2Status, fmi2Status_fmi2Error, fmi2Status_fmi2Fatal, fmi2Status_fmi2OK,
-};
+use fmi_sys::fmi2 as header;
 
+use super::access::*;
 use super::component::Component;
-use super::*;
+use super::exchange::*;
+use super::fmu_state::*;
+use super::lifecycle::*;
+use super::stepping::*;
+use super::types::*;
 use crate::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
 use crate::mechanism::{Mechanism, Source};
 
@@ -97,11 +100,11 @@ fn after_a_defect_nothing_but_freeing_is_left() {
     let c = component(sink);
     // SAFETY: the component is a new one, and the list has one string.
     let status = unsafe { fmi2SetDebugLogging(c, 1, 1, &c"nonsense".as_ptr()) };
-    assert_eq!(status, fmi2Status_fmi2Fatal);
+    assert_eq!(status, fmi2Fatal);
     assert_eq!(fatal.load(Ordering::Relaxed), 1);
     // SAFETY: it has not been freed.
     let answers = unsafe { answers(c) };
-    assert_eq!(answers, [fmi2Status_fmi2Error; 40]);
+    assert_eq!(answers, [fmi2Error; 40]);
     assert_eq!(fatal.load(Ordering::Relaxed), 1);
     // SAFETY: it is not used any more.
     unsafe { fmi2FreeInstance(c) };
@@ -117,28 +120,161 @@ fn memory_to_be_written_need_not_hold_anything() {
     // SAFETY: the component is a new one, arrays are as long as is said, and `state` is read
     // after `fmi2DeSerializeFMUstate` has written it.
     unsafe {
-        assert_eq!(fmi2EnterInitializationMode(c), fmi2Status_fmi2OK);
+        assert_eq!(fmi2EnterInitializationMode(c), fmi2OK);
         let status = fmi2GetReal(c, [0, 1].as_ptr(), 2, values.as_mut_ptr().cast());
-        assert_eq!(status, fmi2Status_fmi2OK);
+        assert_eq!(status, fmi2OK);
         let written = [values[0].assume_init(), values[1].assume_init()];
         assert_eq!(written[1].to_bits(), 0.0_f64.to_bits());
 
         let mut got = null_mut();
-        assert_eq!(fmi2GetFMUstate(c, &mut got), fmi2Status_fmi2OK);
+        assert_eq!(fmi2GetFMUstate(c, &mut got), fmi2OK);
         let status = fmi2SerializedFMUstateSize(c, got, size.as_mut_ptr());
-        assert_eq!(status, fmi2Status_fmi2OK);
+        assert_eq!(status, fmi2OK);
         let size = size.assume_init();
         let mut bytes = vec![MaybeUninit::<u8>::uninit(); size];
         let status = fmi2SerializeFMUstate(c, got, bytes.as_mut_ptr().cast(), size);
-        assert_eq!(status, fmi2Status_fmi2OK);
+        assert_eq!(status, fmi2OK);
         let status = fmi2DeSerializeFMUstate(c, bytes.as_ptr().cast(), size, state.as_mut_ptr());
-        assert_eq!(status, fmi2Status_fmi2OK);
+        assert_eq!(status, fmi2OK);
         let mut state = state.assume_init();
-        assert_eq!(fmi2SetFMUstate(c, state), fmi2Status_fmi2OK);
+        assert_eq!(fmi2SetFMUstate(c, state), fmi2OK);
         for handle in [&mut got, &mut state] {
-            assert_eq!(fmi2FreeFMUstate(c, handle), fmi2Status_fmi2OK);
+            assert_eq!(fmi2FreeFMUstate(c, handle), fmi2OK);
             assert!(handle.is_null());
         }
         fmi2FreeInstance(c);
     }
+}
+
+/// Checks at compile time that each function has the signature of the standard's header.
+macro_rules! check_signatures {
+    ($($function:ident: $signature:ident,)*) => {
+        $(const _: header::$signature = Some($function);)*
+    };
+}
+
+check_signatures! {
+    fmi2GetTypesPlatform: fmi2GetTypesPlatformTYPE,
+    fmi2GetVersion: fmi2GetVersionTYPE,
+    fmi2SetDebugLogging: fmi2SetDebugLoggingTYPE,
+    fmi2FreeInstance: fmi2FreeInstanceTYPE,
+    fmi2SetupExperiment: fmi2SetupExperimentTYPE,
+    fmi2EnterInitializationMode: fmi2EnterInitializationModeTYPE,
+    fmi2ExitInitializationMode: fmi2ExitInitializationModeTYPE,
+    fmi2Terminate: fmi2TerminateTYPE,
+    fmi2Reset: fmi2ResetTYPE,
+    fmi2GetReal: fmi2GetRealTYPE,
+    fmi2GetInteger: fmi2GetIntegerTYPE,
+    fmi2GetBoolean: fmi2GetBooleanTYPE,
+    fmi2GetString: fmi2GetStringTYPE,
+    fmi2SetReal: fmi2SetRealTYPE,
+    fmi2SetInteger: fmi2SetIntegerTYPE,
+    fmi2SetBoolean: fmi2SetBooleanTYPE,
+    fmi2SetString: fmi2SetStringTYPE,
+    fmi2GetFMUstate: fmi2GetFMUstateTYPE,
+    fmi2SetFMUstate: fmi2SetFMUstateTYPE,
+    fmi2FreeFMUstate: fmi2FreeFMUstateTYPE,
+    fmi2SerializedFMUstateSize: fmi2SerializedFMUstateSizeTYPE,
+    fmi2SerializeFMUstate: fmi2SerializeFMUstateTYPE,
+    fmi2DeSerializeFMUstate: fmi2DeSerializeFMUstateTYPE,
+    fmi2GetDirectionalDerivative: fmi2GetDirectionalDerivativeTYPE,
+    fmi2EnterEventMode: fmi2EnterEventModeTYPE,
+    fmi2EnterContinuousTimeMode: fmi2EnterContinuousTimeModeTYPE,
+    fmi2CompletedIntegratorStep: fmi2CompletedIntegratorStepTYPE,
+    fmi2SetTime: fmi2SetTimeTYPE,
+    fmi2SetContinuousStates: fmi2SetContinuousStatesTYPE,
+    fmi2GetDerivatives: fmi2GetDerivativesTYPE,
+    fmi2GetEventIndicators: fmi2GetEventIndicatorsTYPE,
+    fmi2GetContinuousStates: fmi2GetContinuousStatesTYPE,
+    fmi2GetNominalsOfContinuousStates: fmi2GetNominalsOfContinuousStatesTYPE,
+    fmi2SetRealInputDerivatives: fmi2SetRealInputDerivativesTYPE,
+    fmi2GetRealOutputDerivatives: fmi2GetRealOutputDerivativesTYPE,
+    fmi2DoStep: fmi2DoStepTYPE,
+    fmi2CancelStep: fmi2CancelStepTYPE,
+    fmi2GetStatus: fmi2GetStatusTYPE,
+    fmi2GetRealStatus: fmi2GetRealStatusTYPE,
+    fmi2GetIntegerStatus: fmi2GetIntegerStatusTYPE,
+    fmi2GetBooleanStatus: fmi2GetBooleanStatusTYPE,
+    fmi2GetStringStatus: fmi2GetStringStatusTYPE,
+}
+
+/// The two structures, and the functions that take a pointer to one: a pointer to the header's
+/// own structure would be another type.
+macro_rules! check_layouts {
+    ($($structure:ident { $($field:ident),* $(,)? })*) => {
+        $(
+            const _: () = assert!(
+                size_of::<$structure>() == size_of::<header::$structure>()
+                    && align_of::<$structure>() == align_of::<header::$structure>()
+            );
+            $(const _: () = assert!(
+                std::mem::offset_of!($structure, $field)
+                    == std::mem::offset_of!(header::$structure, $field)
+            );)*
+            /// Gives each field to the header's structure, which takes it only if its type fits.
+            const _: fn($structure) -> header::$structure = |structure| header::$structure {
+                $($field: structure.$field),*
+            };
+        )*
+    };
+}
+
+check_layouts! {
+    fmi2CallbackFunctions {
+        logger, allocateMemory, freeMemory, stepFinished, componentEnvironment,
+    }
+    fmi2EventInfo {
+        newDiscreteStatesNeeded,
+        terminateSimulation,
+        nominalsOfContinuousStatesChanged,
+        valuesOfContinuousStatesChanged,
+        nextEventTimeDefined,
+        nextEventTime,
+    }
+}
+
+type Instantiate<Functions> = unsafe extern "C" fn(
+    fmi2String,
+    fmi2Type,
+    fmi2String,
+    fmi2String,
+    *const Functions,
+    fmi2Boolean,
+    fmi2Boolean,
+) -> fmi2Component;
+const _: Instantiate<fmi2CallbackFunctions> = fmi2Instantiate;
+const _: header::fmi2InstantiateTYPE = None::<Instantiate<header::fmi2CallbackFunctions>>;
+
+type NewDiscreteStates<Info> = unsafe extern "C" fn(fmi2Component, *mut Info) -> fmi2Status;
+const _: NewDiscreteStates<fmi2EventInfo> = fmi2NewDiscreteStates;
+const _: header::fmi2NewDiscreteStatesTYPE = None::<NewDiscreteStates<header::fmi2EventInfo>>;
+
+#[test]
+fn constants_are_those_of_the_header() {
+    assert_eq!(
+        [fmi2OK, fmi2Warning, fmi2Discard, fmi2Error, fmi2Fatal],
+        [
+            header::fmi2Status_fmi2OK,
+            header::fmi2Status_fmi2Warning,
+            header::fmi2Status_fmi2Discard,
+            header::fmi2Status_fmi2Error,
+            header::fmi2Status_fmi2Fatal,
+        ]
+    );
+    assert_eq!(
+        [fmi2ModelExchange, fmi2CoSimulation],
+        [
+            header::fmi2Type_fmi2ModelExchange,
+            header::fmi2Type_fmi2CoSimulation
+        ]
+    );
+    assert_eq!(
+        [fmi2DoStepStatus, fmi2LastSuccessfulTime, fmi2Terminated],
+        [
+            header::fmi2StatusKind_fmi2DoStepStatus,
+            header::fmi2StatusKind_fmi2LastSuccessfulTime,
+            header::fmi2StatusKind_fmi2Terminated,
+        ]
+    );
+    assert_eq!(u32::try_from(fmi2False), Ok(header::fmi2False));
 }

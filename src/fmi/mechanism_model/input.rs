@@ -148,10 +148,6 @@ impl DriverInput {
     }
 
     /// Sets a position modulo one turn: the turn nearest `last`.
-    #[cfg_attr(
-        not(test),
-        expect(dead_code, reason = "mechanism files cannot say so yet")
-    )]
     pub(super) fn set_wrapped(&mut self, value: f64, last: f64) {
         self.set(Order::Position, value);
         self.position += TAU * ((last - value) / TAU).round();

@@ -213,7 +213,15 @@ impl Model for MechanismModel {
         let mut parameters_changed = false;
         for (quantity, value) in values {
             match quantity {
-                Quantity::Input(driver, order) => self.inputs[driver.index()].set(order, value),
+                Quantity::Input(driver, order) => {
+                    let index = driver.index();
+                    let input = &mut self.inputs[index];
+                    if order == Order::Position && self.mechanism.drivers[index].wrapped {
+                        input.set_wrapped(value, self.committed.drivers[index]);
+                    } else {
+                        input.set(order, value);
+                    }
+                }
                 Quantity::Parameter(parameter) => {
                     self.settings.parameters[parameter.index()] = value;
                     parameters_changed = true;

@@ -85,10 +85,6 @@ impl Monitor {
     }
 
     /// Returns whether the driver goes beyond its limits with this value.
-    #[cfg_attr(
-        not(test),
-        expect(dead_code, reason = "mechanism files cannot say so yet")
-    )]
     pub(super) fn goes_beyond(&mut self, value: f64, [min, max]: [Option<f64>; 2]) -> bool {
         let beyond = min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max);
         let was_beyond = std::mem::replace(&mut self.beyond, beyond);

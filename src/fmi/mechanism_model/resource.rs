@@ -37,7 +37,7 @@ pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
 ///
 /// # Errors
 ///
-/// A library cannot be read, or `out` cannot be written.
+/// `out` cannot be written.
 pub fn write_fmu(
     out: impl Write + Seek,
     source: &Source,

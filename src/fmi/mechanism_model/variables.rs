@@ -223,13 +223,22 @@ impl Table {
             let description = describe(mechanism, &driver.description, &driver.coordinate);
             let units = units(&driver.coordinate);
             for order in Order::ALL {
-                let start = if order == Order::Position { start } else { 0.0 };
+                let [start, min, max] = match order {
+                    Order::Position => [Some(start), driver.min, driver.max],
+                    _ => [Some(0.0), None, None],
+                };
                 self.add(
                     format!("{}.{}", driver.name, order.suffix()),
                     of_order(order, &description),
                     Quantity::Input(DriverId(index), order),
                     (Causality::Input, Variability::Continuous),
-                    Kind::real(Some(units[order as usize]), Some(start)),
+                    Kind::Real {
+                        unit: Some(units[order as usize]),
+                        start,
+                        min,
+                        max,
+                        nominal: None,
+                    },
                 );
                 self.derives(order, 1);
             }

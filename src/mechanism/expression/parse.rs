@@ -3,7 +3,8 @@
 use super::function::{CONSTANTS, FUNCTIONS, Function};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
-use crate::mechanism::names::{self, NameTable, quoted};
+use crate::mechanism::names::{self, NameTable};
+use crate::mechanism::wording::quoted;
 use crate::mechanism::{ParameterId, Span};
 
 /// Depth of the parser's own recursion: parentheses, signs, powers and operators within one

@@ -2,7 +2,7 @@
 
 use super::parse::ExpressionError;
 use crate::mechanism::Span;
-use crate::mechanism::names::quoted;
+use crate::mechanism::wording::quoted;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TokenKind<'a> {

@@ -1,0 +1,7 @@
+"""Runs the program: `python -m biela`."""
+
+import sys
+
+from . import main
+
+sys.exit(main())

@@ -1,0 +1,103 @@
+# Cargo for other systems, for the scripts in this folder, which source it from the project's root.
+# shellcheck shell=bash
+#
+# The standard library of a target comes from rustup where it is installed (`rustup target add`),
+# otherwise from Debian's rustc-web, which builds it from rust-web-src. The linker is zig's, from
+# the Python package index, or mingw's for Windows.
+
+CROSS_TOOLS=.tools/cross
+# Versions that are known to build the same bytes.
+CROSS_PACKAGES=(cargo-zigbuild==0.24.0 ziglang==0.17.0 maturin==1.16.0)
+DEBIAN_PACKAGES=(rustc-web cargo-web rust-web-src gcc-mingw-w64-x86-64-win32 llvm-14)
+# The oldest C library that the Linux libraries run with, and the oldest macOS.
+GLIBC=2.17
+export MACOSX_DEPLOYMENT_TARGET=11.0
+
+# Installs the linkers, and Debian's packages if the machine is Debian and the user root.
+cross_setup() {
+    if ! [ -x "$CROSS_TOOLS/bin/maturin" ]; then
+        say "installing ${CROSS_PACKAGES[*]} in $CROSS_TOOLS"
+        python3 -m venv "$CROSS_TOOLS" && "$CROSS_TOOLS/bin/pip" install --quiet "${CROSS_PACKAGES[@]}" ||
+            fail "cannot install ${CROSS_PACKAGES[*]}" "Check the network, and that Python has venv."
+    fi
+    if has apt-get && [ "$(id -u)" = 0 ]; then
+        apt_install "${DEBIAN_PACKAGES[@]}"
+    fi
+}
+
+apt_install() { # PACKAGE...
+    dpkg -s "$@" >/dev/null 2>&1 && return
+    say "installing $*"
+    { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 \
+        install -y -qq --no-install-recommends "$@"; } >/dev/null 2>&1 ||
+        fail "cannot install $*" "Install them with apt-get, or \`rustup target add\` instead."
+}
+
+# Prints the folder of a rustc.
+sysroot() { "$1" --print sysroot; }
+
+# Runs a builder, `cargo zigbuild` or `maturin build --zig`, for a target, such that what it builds
+# has no paths of this machine.
+cross_build() ( # BUILDER TARGET ARGUMENT...
+    local builder=$1 target=$2 flags='' folder
+    shift 2
+    unset RUSTFLAGS CARGO_ENCODED_RUSTFLAGS
+    local rustc=rustc sources='' build_std=()
+    if ! [ -d "$(sysroot rustc)/lib/rustlib/$target/lib" ]; then
+        rustc=/usr/bin/rustc
+        sources=$(echo /usr/src/rustc-*)
+        [ -x /usr/bin/cargo ] && [ -f "$sources/library/Cargo.lock" ] ||
+            fail "no Rust standard library for $target" "Run: rustup target add $target" \
+                "or install Debian's ${DEBIAN_PACKAGES[*]}"
+        export RUSTC=$rustc RUSTDOC=/usr/bin/rustdoc RUSTC_BOOTSTRAP=1
+        PATH=/usr/bin:$PATH
+        build_std=("-Zbuild-std=std,panic_unwind")
+        CARGO_TARGET_DIR=$CARGO_TARGET_DIR/cross
+    else
+        CARGO_TARGET_DIR=$CARGO_TARGET_DIR/portable
+    fi
+    export CARGO_TARGET_DIR PATH=$PWD/$CROSS_TOOLS/bin:$PATH
+    flag() { flags+="${flags:+,}\"$1\""; }
+    for folder in "${CARGO_HOME:-$HOME/.cargo}"/registry/src/*; do
+        flag "--remap-path-prefix=$folder=crates"
+    done
+    [ -z "$sources" ] || flag "--remap-path-prefix=$sources=rust"
+    flag "--remap-path-prefix=$PWD=biela"
+    local named=$target
+    case $target in
+    *-linux-gnu) [ "$builder" != 'cargo zigbuild' ] || named=$target.$GLIBC ;;
+    *-apple-darwin)
+        # Stripped by the linker: its signature comes after.
+        export CARGO_PROFILE_RELEASE_STRIP=none SDKROOT=$CARGO_TARGET_DIR
+        flag "-Clink-arg=-Wl,-s"
+        flag "-Clink-arg=-Wl,-install_name,@rpath/biela.dylib"
+        ;;
+    *-windows-gnu)
+        local objects=$CARGO_TARGET_DIR/windows-crt
+        export CARGO_TARGET_X86_64_PC_WINDOWS_GNU_LINKER=x86_64-w64-mingw32-gcc
+        flag "-Clink-arg=-Wl,--no-insert-timestamp"
+        if [ -n "$sources" ]; then
+            # The only objects that building the standard library leaves out.
+            mkdir -p "$objects"
+            for folder in rsbegin rsend; do
+                "$rustc" --target "$target" --emit=obj -o "$objects/$folder.o" \
+                    "$sources/library/rtstartup/$folder.rs"
+            done
+            flag "-L$objects"
+        fi
+        # mingw links instead of zig.
+        builder=${builder/zigbuild/build}
+        builder=${builder/ --zig/}
+        ;;
+    esac
+    # shellcheck disable=SC2086
+    $builder ${CROSS_EXTRA:-} --release --locked --target "$named" "${build_std[@]}" \
+        --config "target.$target.rustflags=[$flags]" "$@"
+)
+
+# Prints the path of what cross_build has built for a target.
+cross_built() { # TARGET FILE
+    local folder=cross
+    [ ! -d "$(sysroot rustc)/lib/rustlib/$1/lib" ] || folder=portable
+    printf '%s\n' "$CARGO_TARGET_DIR/$folder/$1/release/$2"
+}

@@ -1,0 +1,143 @@
+"""Write runtime/licenses.txt: the licences of what is inside the runtime libraries.
+
+    scripts/licences.py           writes the file
+    scripts/licences.py --check   fails if it is out of date
+
+The text goes into each FMU's documentation/licenses. Needs cargo and Python 3.10 or newer.
+"""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+NOTICES = ROOT / "runtime" / "licenses.txt"
+TARGETS = (
+    "x86_64-unknown-linux-gnu",
+    "x86_64-pc-windows-gnu",
+    "x86_64-apple-darwin",
+    "aarch64-unknown-linux-gnu",
+    "aarch64-apple-darwin",
+)
+# Licences in the order in which one is chosen where a crate leaves the choice, each with words of
+# its text and of the names of its files.
+CHOICE = (
+    ("MIT", "Permission is hereby granted", ("MIT",)),
+    ("Zlib", "This software is provided 'as-is'", ("ZLIB",)),
+    ("BSD-3-Clause", "Redistribution and use in source and binary forms", ("BSD",)),
+    ("Apache-2.0", "Apache License", ("APACHE",)),
+)
+LINE = "-" * 80
+
+
+def cargo(*arguments):
+    command = ["cargo", *arguments]
+    return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+
+
+def alternatives(expression):
+    """Sets of licences, of which each suffices, of an SPDX expression."""
+    tokens = re.findall(r"\(|\)|[^\s()/]+|/", expression)
+    tokens = ["OR" if token == "/" else token for token in tokens]
+
+    def either():
+        found = both()
+        while tokens and tokens[0] == "OR":
+            tokens.pop(0)
+            found = found + both()
+        return found
+
+    def both():
+        found = single()
+        while tokens and tokens[0] == "AND":
+            tokens.pop(0)
+            found = [a | b for b in single() for a in found]
+        return found
+
+    def single():
+        token = tokens.pop(0)
+        if token == "(":
+            found = either()
+            tokens.pop(0)
+            return found
+        if tokens[:1] == ["WITH"]:
+            token += " WITH " + tokens[1]
+            del tokens[:2]
+        return [{token}]
+
+    return either()
+
+
+def packages():
+    metadata = json.loads(cargo("metadata", "--format-version", "1", "--locked"))
+    return {(p["name"], p["version"]): p for p in metadata["packages"]}
+
+
+def inside(known):
+    """The crates that are linked into a runtime library, without biela's own."""
+    found = set()
+    for target in TARGETS:
+        tree = cargo(
+            "tree", "--locked", "--package", "biela-runtime", "--no-default-features",
+            "--edges", "normal,no-proc-macro", "--target", target, "--prefix", "none",
+            "--format", "{p}",
+        )  # fmt: skip
+        for line in tree.splitlines():
+            name, version = line.split()[:2]
+            found.add((name, version.removeprefix("v")))
+    return [known[key] for key in sorted(found) if known[key]["source"]]
+
+
+def text_of(package):
+    """The licence chosen for a crate, and the text that comes with it."""
+    offered = alternatives(package["license"] or "")
+    folder = Path(package["manifest_path"]).parent
+    files = sorted(f for f in folder.iterdir() if re.match(r"(?i)(licen[cs]e|copying|unlicense)", f.name))
+    for licence, words, names in CHOICE:
+        if {licence} not in offered:
+            continue
+        for file in sorted(files, key=lambda f: not any(n in f.name.upper() for n in names)):
+            text = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
+            if words in text:
+                return licence, "\n".join(line.rstrip() for line in text.strip().splitlines())
+    chosen = next((licence for licence, *_ in CHOICE if {licence} in offered), None)
+    if chosen is None:
+        sys.exit(f"{package['name']}: no known licence in `{package['license']}`")
+    authors = ", ".join(re.sub(r" <[^>]*>", "", a) for a in package["authors"])
+    return chosen, f"{chosen}, by {authors or 'the authors of ' + package['name']}"
+
+
+def notices(known):
+    texts = {}
+    for package in inside(known):
+        licence, text = text_of(package)
+        texts.setdefault((licence, text), []).append(f"{package['name']} {package['version']}")
+    mit, apache = ((ROOT / f"LICENSE-{name}").read_text().strip() for name in ("MIT", "APACHE"))
+    parts = [
+        "The library in binaries/ is biela, under the MIT licence or the Apache License 2.0, at your\n"
+        "option. It contains Rust's standard library, under the same two licences, by the Rust project's\n"
+        "contributors, and the Rust crates listed below under their licences. The mechanism in resources/\n"
+        "belongs to its author.",
+        "biela, MIT:\n\n" + mit,
+        "biela and Rust's standard library, Apache-2.0:\n\n" + apache,
+    ]
+    for (licence, text), names in sorted(texts.items(), key=lambda item: item[1]):
+        if text == apache:
+            text = "The text is the one of the Apache License 2.0 above."
+        parts.append(f"{', '.join(names)}, {licence}:\n\n{text}")
+    return f"\n\n{LINE}\n\n".join(parts) + "\n"
+
+
+def main():
+    text = notices(packages())
+    if sys.argv[1:] == ["--check"]:
+        if not NOTICES.exists() or NOTICES.read_text(encoding="utf-8") != text:
+            sys.exit("runtime/licenses.txt is out of date: run `make licences`")
+        return
+    NOTICES.write_text(text, encoding="utf-8")
+    print(f"wrote {NOTICES.relative_to(ROOT)}")
+
+
+main()

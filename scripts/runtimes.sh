@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# Builds the library inside every FMU for all platforms, or for those named, into
+# target/runtimes/PLATFORM/biela.EXTENSION, from where `make install` and `make wheel` take them.
+#
+#   scripts/runtimes.sh [linux64 win64 darwin64 aarch64-linux aarch64-darwin]...
+#   scripts/runtimes.sh --current     lists the libraries that were built from these sources
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=scripts/lib.sh
+. scripts/lib.sh
+# shellcheck source=scripts/cross.sh
+. scripts/cross.sh
+
+CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
+OUT=$PWD/target/runtimes
+# Largest size of a library [bytes], 2 MiB.
+LIMIT=2097152
+
+# Builds the library for a target and prints its path.
+library() { # TARGET FILE
+    cross_build 'cargo zigbuild' "$1" --package biela-runtime >&2
+    cross_built "$1" "$2"
+}
+
+# Prints a digest of all that a library is built from.
+sources() {
+    find src runtime scripts/cross.sh Cargo.toml Cargo.lock -type f ! -name '*.md' -print0 |
+        LC_ALL=C sort -z | xargs -0 cat | digest
+}
+
+digest() { if has sha256sum; then sha256sum; else shasum -a 256; fi; }
+
+current() {
+    local now folder
+    now=$(sources)
+    for folder in "$OUT"/*/; do
+        [ ! -f "$folder/.sources" ] || [ "$(cat "$folder/.sources")" != "$now" ] ||
+            (cd "$OUT" && printf '%s\n' "$(basename "$folder")"/biela.*)
+    done
+}
+
+put() { # PLATFORM/FILE SOURCE
+    mkdir -p "$OUT/${1%/*}"
+    sources >"$OUT/${1%/*}/.sources"
+    cp "$2" "$OUT/$1.new"
+    mv "$OUT/$1.new" "$OUT/$1"
+    local size
+    size=$(wc -c <"$OUT/$1")
+    say "$1: $size bytes"
+    case $1 in darwin64/*) size=$((size / 2)) ;; esac
+    [ "$size" -le "$LIMIT" ] || fail "$1 is larger than $LIMIT bytes"
+}
+
+# Joins libraries of several processors in one file.
+join_mac() { # OUTPUT INPUT...
+    local lipo
+    for lipo in lipo llvm-lipo llvm-lipo-14; do
+        ! has "$lipo" || { "$lipo" -create -output "$@" && return; }
+    done
+    fail "no lipo to join the libraries of macOS" "Install Debian's llvm-14."
+}
+
+build() { # PLATFORM
+    local path other
+    case $1 in
+    linux64) path=$(library x86_64-unknown-linux-gnu libbiela_runtime.so) && put linux64/biela.so "$path" ;;
+    aarch64-linux) path=$(library aarch64-unknown-linux-gnu libbiela_runtime.so) && put aarch64-linux/biela.so "$path" ;;
+    win64) path=$(library x86_64-pc-windows-gnu biela_runtime.dll) && put win64/biela.dll "$path" ;;
+    aarch64-darwin) path=$(library aarch64-apple-darwin libbiela_runtime.dylib) && put aarch64-darwin/biela.dylib "$path" ;;
+    darwin64)
+        path=$(library aarch64-apple-darwin libbiela_runtime.dylib)
+        other=$(library x86_64-apple-darwin libbiela_runtime.dylib)
+        mkdir -p "$OUT"
+        join_mac "$OUT/joined.dylib" "$other" "$path"
+        put darwin64/biela.dylib "$OUT/joined.dylib"
+        rm "$OUT/joined.dylib"
+        ;;
+    *) fail "no platform $1" "Name linux64, win64, darwin64, aarch64-linux or aarch64-darwin." ;;
+    esac
+}
+
+if [ "${1:-}" = --current ]; then
+    current
+    exit
+fi
+cross_setup
+if [ $# -eq 0 ]; then
+    set -- linux64 win64 aarch64-linux aarch64-darwin darwin64
+fi
+for platform in "$@"; do
+    build "$platform"
+done

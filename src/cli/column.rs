@@ -1,0 +1,148 @@
+//! The quantities of a run, as columns of its results.
+
+use super::error::Error;
+use super::motion::Motion;
+use crate::fmi::{Kind, Order, Quantity, Signal, variables};
+use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
+
+/// One quantity of a run.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    /// Name of the FMU's variable.
+    pub(super) name: String,
+    pub(super) signal: Signal,
+    pub(super) order: Order,
+    pub(super) unit: Unit,
+}
+
+impl Column {
+    /// Returns value, velocity and acceleration of every driver, then all outputs of the FMU.
+    pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
+        let variables = variables(mechanism).into_iter();
+        let mut columns: Vec<Self> = variables
+            .filter_map(|variable| {
+                let Kind::Real { unit, .. } = variable.kind else {
+                    return None;
+                };
+                let (signal, order) = match variable.quantity {
+                    // In a run an input follows a motion.
+                    Quantity::Input(driver, order) => (Signal::Motion(driver), order),
+                    Quantity::Output(signal, order) => (signal, order),
+                    _ => return None,
+                };
+                Some(Self {
+                    name: variable.name,
+                    signal,
+                    order,
+                    unit: unit.unwrap_or(Unit::ONE),
+                })
+            })
+            .collect();
+        columns.sort_by_key(|column| match column.signal {
+            Signal::Motion(driver) => driver.index(),
+            _ => usize::MAX,
+        });
+        columns
+    }
+
+    /// Returns the columns of these names: of a variable, or of a body, marker, driver or measure
+    /// with all its variables.
+    pub(super) fn named(
+        columns: &[Self],
+        names: &[String],
+        mechanism: &Mechanism,
+    ) -> Result<Vec<Self>, Error> {
+        let names = names.iter().map(|name| name.trim());
+        let names: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
+        if names.is_empty() {
+            return Err(Error::Usage("--variables: no variable is named".to_owned()));
+        }
+        let exists = |name| columns.iter().any(|column| belongs_to(&column.name, name));
+        if let Some(name) = names.iter().find(|name| !exists(name)) {
+            let why = why_no_output(name, mechanism)
+                .unwrap_or_else(|| format!("there is no `{name}`{}", suggestion(name, columns)));
+            return Err(Error::Usage(format!("--variables: {why}")));
+        }
+        let is_named = |c: &&Self| names.iter().any(|name| belongs_to(&c.name, name));
+        Ok(columns.iter().filter(is_named).cloned().collect())
+    }
+
+    /// Returns the columns that a plot shows by default: the drivers, and of measures, points of
+    /// interest and bodies the first kind that the mechanism has.
+    pub(super) fn plotted(columns: &[Self]) -> Vec<Self> {
+        let select = |is_wanted: fn(&Signal) -> bool| -> Vec<Self> {
+            let wanted = columns.iter().filter(|c| is_wanted(&c.signal));
+            wanted.cloned().collect()
+        };
+        let kinds: [fn(&Signal) -> bool; 3] = [
+            |signal| matches!(signal, Signal::Measure(_)),
+            |signal| matches!(signal, Signal::Marker(..)),
+            |signal| matches!(signal, Signal::Body(..)),
+        ];
+        let mut plotted = select(|signal| matches!(signal, Signal::Motion(_)));
+        let further = kinds.into_iter().map(select).find(|kind| !kind.is_empty());
+        plotted.extend(further.unwrap_or_default());
+        plotted
+    }
+
+    /// Returns the columns that a film tells in numbers by default: positions of drivers, points
+    /// of interest and measures.
+    pub(super) fn told(columns: &[Self]) -> Vec<Self> {
+        let columns = columns.iter().filter(|column| {
+            let of_body = matches!(column.signal, Signal::Body(..));
+            column.order == Order::Position && !of_body
+        });
+        columns.cloned().collect()
+    }
+
+    /// Returns the current value \[SI\].
+    pub(super) fn read(&self, motion: &Motion) -> f64 {
+        let Motion {
+            solver,
+            rates,
+            driver_rates,
+            ..
+        } = motion;
+        self.order.of(self.signal.jet(solver, rates, driver_rates))
+    }
+}
+
+/// Returns whether a variable has a name, or belongs to what has it: `crank.phi` to `crank`.
+fn belongs_to(variable: &str, name: &str) -> bool {
+    let rest = variable.strip_prefix(name);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// Says which body or marker of this name, or of which variable, is no output; nothing if there
+/// is none.
+fn why_no_output(name: &str, mechanism: &Mechanism) -> Option<String> {
+    let outputs = &mechanism.outputs;
+    let markers = (0..mechanism.markers.len()).map(MarkerId);
+    let markers = markers
+        .filter(|id| !outputs.markers.contains(id))
+        .map(|id| ("marker", mechanism.marker_path(id), "markers"));
+    let bodies = (0..mechanism.bodies.len()).map(BodyId);
+    let bodies = bodies
+        .filter(|id| !outputs.bodies.contains(id))
+        .map(|id| ("body", mechanism.bodies[id.index()].name.clone(), "bodies"));
+    let mut others = markers.chain(bodies);
+    let (kind, owner, list) = others.find(|(_, owner, _)| belongs_to(name, owner))?;
+    Some(format!(
+        "{kind} `{owner}` is no output; list it in `{list}` of `[outputs]`"
+    ))
+}
+
+/// Suggests a variable, or an owner of variables, for an unknown name.
+fn suggestion(name: &str, columns: &[Column]) -> String {
+    let names = || columns.iter().map(|column| column.name.as_str());
+    let mut owners = Vec::new();
+    for (owner, _) in names().filter_map(|name| name.split_once('.')) {
+        if !owners.contains(&owner) {
+            owners.push(owner);
+        }
+    }
+    let markers = names().filter_map(|name| Some(name.rsplit_once('.')?.0));
+    let mut further: Vec<&str> = markers.chain(names()).collect();
+    further.dedup();
+    help(name, &owners, &further).map_or_else(String::new, |help| format!("; {help}"))
+}

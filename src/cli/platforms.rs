@@ -1,0 +1,77 @@
+//! `biela platforms`
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::error::Error;
+use super::output::print;
+use super::runtime;
+use crate::fmi::Platform;
+
+/// List the platforms that exported FMUs run on.
+///
+/// An FMU runs on the platforms whose runtime libraries are installed when it is exported: each
+/// export packs them all. The list tells for each platform where its library is, and for Linux the
+/// oldest C library (glibc) that it runs with.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: biela platforms")]
+pub(super) struct Platforms {
+    /// Folder of runtime libraries, one subfolder per platform: linux64/biela.so, win64/biela.dll
+    /// [default: those installed with this program].
+    #[arg(long, value_name = "FOLDER")]
+    runtime: Option<PathBuf>,
+}
+
+impl Platforms {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let found = runtime::find(self.runtime.as_deref())?;
+        let mut text = String::new();
+        for platform in Platform::ALL {
+            let found = found.iter().find(|f| f.library.platform == platform);
+            let (library, needs) = match found {
+                None => ("-".to_owned(), None),
+                Some(found) => (
+                    found.path.as_ref().map_or_else(
+                        || "in this program".to_owned(),
+                        |path| path.display().to_string(),
+                    ),
+                    glibc(&found.library.content),
+                ),
+            };
+            let needs = needs.map_or_else(String::new, |[major, minor]| {
+                format!(", glibc {major}.{minor}")
+            });
+            let system = format!("{}{needs}", platform.system);
+            let _ = writeln!(text, "{:<16}{system:<34}{library}", platform.name);
+        }
+        print(&text)
+    }
+}
+
+/// Returns the newest version of glibc whose symbols an ELF library names.
+fn glibc(library: &[u8]) -> Option<[u32; 2]> {
+    const MARK: &[u8] = b"\0GLIBC_";
+    let versions = library.windows(MARK.len()).enumerate();
+    let versions = versions.filter(|(_, window)| *window == MARK);
+    let versions = versions.filter_map(|(at, _)| {
+        let text = library[at + MARK.len()..].split(|byte| *byte == 0).next()?;
+        let mut numbers = std::str::from_utf8(text).ok()?.split('.');
+        let mut next = || numbers.next()?.parse().ok();
+        Some([next()?, next()?])
+    });
+    versions.max()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::glibc;
+
+    #[test]
+    fn the_newest_version_counts() {
+        let names = b"\0GLIBC_2.2.5\0GLIBC_2.17\0puts\0GLIBC_2.4\0GLIBC_PRIVATE\0";
+        assert_eq!(glibc(names), Some([2, 17]));
+        assert_eq!(glibc(b"MZ"), None);
+    }
+}
