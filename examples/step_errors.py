@@ -85,11 +85,10 @@ SETTINGS = {
     "all wired, extrapolated": {"wired": 3, "extrapolation": TAYLOR},
     "all wired, read after set": {"wired": 3, "read_after_set": True},
 }
-print("| setting | step [ms] | angle | velocity | acceleration |")
-print("|---|---:|---:|---:|---:|")
+print("setting                         step [ms]    angle  velocity  acceleration")
 for setting, options in SETTINGS.items():
     for h in STEPS:
-        errors = " | ".join("0" if error < 1e-10 else f"{error:.0e}" for error in run(h, **options))
-        print(f"| {setting} | {1000 * h:.0f} | {errors} |")
+        errors = ("0" if error < 1e-10 else f"{error:.0e}" for error in run(h, **options))
+        print("{:30}  {:9.0f}  {:>7}  {:>8}  {:>12}".format(setting, 1000 * h, *errors))
 fmu.terminate()
 fmu.freeInstance()
