@@ -17,7 +17,7 @@ impl MechanismModel {
             Reason::Singular(point) => (point.drivers.clone(), point.s),
             _ => (self.solver.pose().drivers.clone(), blocked.s),
         };
-        let asked = self.solver.drivers_at_end(&self.path);
+        let asked = self.path.drivers_at_end(&self.mechanism);
         let mut parts = Vec::new();
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             let show = |value| driver.coordinate.kind.show(value);
@@ -69,7 +69,7 @@ impl MechanismModel {
             for redundancy in self.solver.redundancies() {
                 log.advise(|| redundancy.to_string());
             }
-            for misfit in self.solver.misfits() {
+            for misfit in self.solver.geometry_warnings() {
                 log.advise(|| misfit.to_string());
             }
         }

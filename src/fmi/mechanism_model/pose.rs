@@ -28,7 +28,7 @@ impl MechanismModel {
         }
         self.set_path(start, h);
         self.report_falls(log);
-        match self.solver.follow(&self.path) {
+        match self.solver.track(&self.path) {
             Ok(progress) => {
                 self.path_progress = progress;
                 self.progress = progress;
@@ -279,7 +279,7 @@ impl MechanismModel {
             Interface::CoSimulation => (self.time, 0.0),
         };
         self.set_path(start, h);
-        let followed = self.solver.follow(&self.path);
+        let followed = self.solver.track(&self.path);
         self.at_committed = false;
         self.set_driver_rates(start, h, 1.0);
         match followed {

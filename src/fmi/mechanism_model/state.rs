@@ -241,7 +241,7 @@ fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable>
     let unknowns = q.len();
     codec.resize(crossings, unknowns, || {
         Arc::new(Crossing {
-            kernel: 0,
+            block: 0,
             driver: DriverId(0),
             center: 0.0,
             half_width: 0.0,
@@ -260,14 +260,14 @@ fn visit_crossing(
     codec: &mut impl Codec,
 ) -> Result<(), Unreadable> {
     let Crossing {
-        kernel,
+        block,
         driver,
         center,
         half_width,
         coefficients,
         free,
     } = crossing;
-    codec.index(kernel)?;
+    codec.index(block)?;
     codec.index(&mut driver.0)?;
     codec.finite(center)?;
     codec.finite(half_width)?;

@@ -1,9 +1,10 @@
 //! Closing a mechanism on rows that may be more than enough, or too few.
 
-use crate::kinematics::block::Work;
-use crate::kinematics::constraint::Incidence;
+use super::least_squares::{Part, SMALL_PART, STARTS};
+use crate::kinematics::block::BlockState;
 use crate::kinematics::linear::{Factors, Row, SparseLu, nan_or_larger};
 use crate::kinematics::newton::{AT_ROUNDING, STALLED};
+use crate::kinematics::state::State;
 use crate::kinematics::system::{RowValue, System};
 
 /// A scaled residual of more than this, beyond its rounding, is a gap: five digits above what
@@ -13,7 +14,7 @@ const GAP: f64 = 1e-9;
 const STEPS: usize = 60;
 
 /// Whether a row counts as satisfied.
-pub(super) fn holds(row: RowValue) -> bool {
+pub(in crate::kinematics) fn holds(row: RowValue) -> bool {
     row.value.abs() <= GAP + STALLED * row.rounding
 }
 
@@ -29,7 +30,7 @@ pub(super) fn holds(row: RowValue) -> bool {
 ///
 /// which is as sparse as J and, unlike JᵀJ, as well conditioned.
 #[derive(Debug)]
-pub(super) struct Closing {
+pub(in crate::kinematics) struct Closing {
     rows: Vec<usize>,
     weights: Vec<f64>,
     unknowns: usize,
@@ -41,16 +42,11 @@ pub(super) struct Closing {
 
 impl Closing {
     /// For these rows.
-    pub(super) fn new(system: &System, rows: &[usize]) -> Self {
+    pub(in crate::kinematics) fn new(system: &System, rows: &[usize]) -> Self {
         let (count, unknowns) = (rows.len(), system.unknowns());
         let mut pattern: Vec<Vec<usize>> = (0..count + unknowns).map(|k| vec![k]).collect();
         for (local, &row) in rows.iter().enumerate() {
-            let mut incidence = Incidence::default();
-            let constraint = &system.equations()[row].constraint;
-            constraint.incidence(system.mechanism(), &mut incidence);
-            incidence.unknowns.sort_unstable();
-            incidence.unknowns.dedup();
-            for column in incidence.unknowns {
+            for column in system.incidence(row).unknowns {
                 pattern[local].push(count + column);
                 pattern[count + column].push(local);
             }
@@ -67,7 +63,7 @@ impl Closing {
     }
 
     /// Rows count this much more than others.
-    pub(super) fn weigh(mut self, weight: impl Fn(usize) -> f64) -> Self {
+    pub(in crate::kinematics) fn weigh(mut self, weight: impl Fn(usize) -> f64) -> Self {
         let rows = self.rows.iter();
         self.weights = rows.map(|&row| weight(row)).collect();
         self
@@ -75,39 +71,39 @@ impl Closing {
 
     /// Goes to a minimum near where the mechanism is. Returns the largest scaled residual there
     /// if that is a gap, `None` if all rows are satisfied; infinity for what is no number.
-    pub(super) fn close(&mut self, work: &mut Work<'_>) -> Option<f64> {
-        let size = work.at.size();
-        let mut q: Vec<f64> = (0..self.unknowns).map(|k| work.at.coordinate(k)).collect();
+    pub(in crate::kinematics) fn close(&mut self, state: &mut BlockState<'_>) -> Option<f64> {
+        let size = state.at.size();
+        let mut q: Vec<f64> = (0..self.unknowns).map(|k| state.at.coordinate(k)).collect();
         let mut damping = 1e-6;
-        let mut state = self.evaluate(work);
+        let mut now = self.evaluate(state);
         for _ in 0..STEPS {
-            if !state.cost.is_finite() {
+            if !now.cost.is_finite() {
                 return Some(f64::INFINITY);
             }
-            if state.at_rounding {
+            if now.at_rounding {
                 break;
             }
             let improved = loop {
                 if self.solve(damping) {
                     for (k, q) in q.iter().enumerate() {
                         let step = self.step[self.rows.len() + k];
-                        let next = q + step * work.system.column_scale(k, size);
-                        work.at.set_coordinate(k, next);
+                        let next = q + step * state.system.column_scale(k, size);
+                        state.at.set_coordinate(k, next);
                     }
-                    let next = self.evaluate(work);
-                    if next.cost < state.cost {
-                        let gain = 1.0 - next.cost / state.cost;
-                        state = next;
+                    let next = self.evaluate(state);
+                    if next.cost < now.cost {
+                        let gain = 1.0 - next.cost / now.cost;
+                        now = next;
                         for (k, q) in q.iter_mut().enumerate() {
-                            *q = work.at.coordinate(k);
+                            *q = state.at.coordinate(k);
                         }
                         damping = (damping * 0.1).max(1e-15);
                         break gain > 1e-12;
                     }
                     for (k, &q) in q.iter().enumerate() {
-                        work.at.set_coordinate(k, q);
+                        state.at.set_coordinate(k, q);
                     }
-                    self.evaluate(work);
+                    self.evaluate(state);
                 }
                 damping *= 10.0;
                 if damping > 1e12 {
@@ -118,18 +114,18 @@ impl Closing {
                 break;
             }
         }
-        if state.holds {
+        if now.holds {
             None
-        } else if state.largest.is_nan() {
+        } else if now.largest.is_nan() {
             Some(f64::INFINITY)
         } else {
-            Some(state.largest)
+            Some(now.largest)
         }
     }
 
     /// Evaluates the rows and their gradients where the mechanism is.
-    fn evaluate(&mut self, work: &Work<'_>) -> State {
-        let mut state = State {
+    fn evaluate(&mut self, state: &BlockState<'_>) -> Residuals {
+        let mut now = Residuals {
             cost: 0.0,
             largest: 0.0,
             holds: true,
@@ -137,16 +133,16 @@ impl Closing {
         };
         for (local, &row) in self.rows.iter().enumerate() {
             let entries = &mut self.jacobian[local];
-            let value = evaluate_row(work, row, entries);
+            let value = state.sparse_row(row, entries);
             let weight = self.weights[local];
             entries.iter_mut().for_each(|(_, value)| *value *= weight);
             self.phi[local] = value.value * weight;
-            state.cost += self.phi[local].powi(2);
-            state.largest = nan_or_larger(state.largest, value.value.abs());
-            state.holds &= holds(value);
-            state.at_rounding &= value.value.abs() <= AT_ROUNDING * value.rounding;
+            now.cost += self.phi[local].powi(2);
+            now.largest = nan_or_larger(now.largest, value.value.abs());
+            now.holds &= holds(value);
+            now.at_rounding &= value.value.abs() <= AT_ROUNDING * value.rounding;
         }
-        state
+        now
     }
 
     /// Solves for the step at the pose last evaluated. False if that gives no numbers.
@@ -176,7 +172,7 @@ impl Closing {
 }
 
 /// What the rows are worth at a pose.
-struct State {
+struct Residuals {
     cost: f64,
     /// The largest scaled residual.
     largest: f64,
@@ -184,18 +180,39 @@ struct State {
     at_rounding: bool,
 }
 
-/// Evaluates a row of Phi and writes the entries of its gradient, scaled, each column once.
-pub(super) fn evaluate_row(work: &Work<'_>, row: usize, entries: &mut Row) -> RowValue {
-    entries.clear();
-    work.system.evaluate_row(
-        row,
-        work.at,
-        work.targets,
-        work.drivers,
-        |column, value| match entries.iter_mut().find(|(c, _)| *c == column) {
-            Some((_, sum)) => *sum += value,
-            None if value != 0.0 => entries.push((column, value)),
-            None => {}
-        },
-    )
+/// Returns whether the mechanism is small enough for several starts and dense matrices.
+pub(in crate::kinematics) fn is_small(system: &System) -> bool {
+    system.unknowns() <= SMALL_PART
+}
+
+/// Closes the mechanism on these rows from the estimates, or from starts near them. Returns `None`
+/// if they are satisfied, otherwise the largest scaled residual of the nearest pose found, where
+/// the bodies then are.
+pub(in crate::kinematics) fn close_on(
+    system: &System,
+    state: &mut State,
+    rows: &[usize],
+    estimate: &[f64],
+) -> Option<f64> {
+    let unknowns: Vec<_> = (0..system.unknowns()).collect();
+    let part = Part::new(rows, &unknowns);
+    let small = is_small(system);
+    let mut closing = Closing::new(system, rows);
+    let mut nearest: Option<(f64, Vec<f64>)> = None;
+    for attempt in 0..if small { STARTS } else { 1 } {
+        let mut block_state = state.block_state(system);
+        part.start(&mut block_state, estimate, attempt);
+        if small {
+            part.minimise_growing(&mut block_state);
+        }
+        let gap = closing.close(&mut block_state)?;
+        if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
+            let mut q = vec![0.0; unknowns.len()];
+            state.at.copy_pose(&mut q);
+            nearest = Some((gap, q));
+        }
+    }
+    let (gap, q) = nearest?;
+    state.at.set_pose(system.mechanism(), &q);
+    Some(gap)
 }

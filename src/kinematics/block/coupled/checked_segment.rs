@@ -9,14 +9,14 @@
 //! The place on the line is told by the unknown that moves most. That stands for the driver, so
 //! that there may be one only, and nothing else that moves the block.
 
-use super::Coupled;
+use super::CoupledBlock;
 use super::estimate::Passed;
-use crate::kinematics::block::work::{Advance, Substep, Work};
+use crate::kinematics::block::step::{BlockState, Extrapolation, Step};
 use crate::kinematics::linear::nan_or_larger;
 
 /// A corridor is laid where a single step has c and a norm of K of up to this.
 const WORTH_A_CORRIDOR: f64 = 0.05;
-/// The same for the corridor, about.
+/// The same for the segment, about.
 const GOOD_CONTRACTION: f64 = 0.25;
 /// The most steps that it is laid for, and the largest move of an unknown along it, in radians and
 /// characteristic lengths.
@@ -36,7 +36,7 @@ const AT_REST: f64 = 1e-13;
 
 /// A line along which a block is known to be regular.
 #[derive(Debug, Default)]
-pub(super) struct Corridor {
+pub(super) struct CheckedSegment {
     holds: bool,
     /// Where the block's own unknowns are at its beginning, then those found before; and what the
     /// own ones move by.
@@ -53,7 +53,7 @@ pub(super) struct Corridor {
     stray: f64,
 }
 
-impl Corridor {
+impl CheckedSegment {
     pub(super) fn new(own: usize, known: usize) -> Self {
         Self {
             start: vec![0.0; own + known],
@@ -78,139 +78,142 @@ impl Corridor {
     }
 }
 
-impl Coupled {
-    /// Whether both ends of a sub-step are in the corridor; writes its tube to `next` then.
-    pub(super) fn certify_in_corridor(
+impl CoupledBlock {
+    /// Whether both ends of a sub-step are in the corridor; writes its bound to `next` then.
+    pub(super) fn certify_in_segment(
         &mut self,
-        work: &Work<'_>,
-        substep: &mut Substep<'_>,
+        state: &BlockState<'_>,
+        step: &mut Step<'_>,
     ) -> bool {
-        if !self.corridor.holds || !self.rests(work, substep) {
+        if !self.segment.holds || !self.rests(state, step) {
             return false;
         }
         let Self {
-            block,
-            proof,
-            corridor,
+            equations,
+            test,
+            segment,
             ..
         } = self;
-        let strays = |&driver: &usize| substep.tubes.drivers[driver] > corridor.stray;
-        if proof.drivers.iter().any(strays) {
+        let strays = |&driver: &usize| step.bounds.drivers[driver] > segment.stray;
+        if test.drivers.iter().any(strays) {
             return false;
         }
-        let leading = block.columns[corridor.leading];
-        let from = corridor.along(substep.from[leading]);
-        let to = corridor.along(work.at.coordinate(leading));
+        let leading = equations.columns[segment.leading];
+        let from = segment.along(step.from[leading]);
+        let to = segment.along(state.at.coordinate(leading));
         if !(0.0..=1.0).contains(&from) || !(0.0..=1.0).contains(&to) {
             return false;
         }
-        let size = work.at.size();
-        let lines = block.columns.iter().zip(&corridor.start).zip(&corridor.way);
+        let size = state.at.size();
+        let lines = equations
+            .columns
+            .iter()
+            .zip(&segment.start)
+            .zip(&segment.way);
         let mut off = 0.0;
         for ((&column, start), way) in lines {
             let off_at = |value: f64, s: f64| (value - (start + s * way)).abs();
             let farther = nan_or_larger(
-                off_at(substep.from[column], from),
-                off_at(work.at.coordinate(column), to),
+                off_at(step.from[column], from),
+                off_at(state.at.coordinate(column), to),
             );
-            off = nan_or_larger(off, farther / work.system.column_scale(column, size));
+            off = nan_or_larger(off, farther / state.system.column_scale(column, size));
         }
-        if off > WITHIN * corridor.radius || off.is_nan() {
+        if off > WITHIN * segment.radius || off.is_nan() {
             return false;
         }
         let part = to - from;
-        proof
-            .next
-            .fill(corridor.off_single + part * part * corridor.off);
-        substep.tubes.checked = true;
-        substep.tubes.relied_on_box = true;
+        test.next
+            .fill(segment.off_single + part * part * segment.off);
+        step.bounds.checked = true;
+        step.bounds.reused = true;
         true
     }
 
     /// Lays a corridor from the start of a sub-step that was taken with this c and norm of K, where
     /// that is worth it. The bodies are at the end, where the block is factorised.
-    pub(super) fn lay_corridor(
+    pub(super) fn lay_segment(
         &mut self,
-        work: &mut Work<'_>,
-        substep: &mut Substep<'_>,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
         contraction: f64,
     ) {
-        self.corridor.holds = false;
-        let known = self.block.columns.len()..;
-        for (start, &column) in self.corridor.start[known].iter_mut().zip(&self.proof.known) {
-            *start = substep.from[column];
+        self.segment.holds = false;
+        let known = self.equations.columns.len()..;
+        for (start, &column) in self.segment.start[known].iter_mut().zip(&self.test.known) {
+            *start = step.from[column];
         }
         if contraction > WORTH_A_CORRIDOR
-            || self.proof.drivers.len() != 1
-            || !self.rests(work, substep)
+            || self.test.drivers.len() != 1
+            || !self.rests(state, step)
         {
             return;
         }
-        let proof = &mut *self.proof;
-        proof.known_radii.fill(AT_REST);
+        let test = &mut *self.test;
+        test.known_radii.fill(AT_REST);
         // The rounding of drivers grows on the way; what it moves does so no more than that.
-        self.corridor.off_single = STRAYS * proof.next[0];
-        self.corridor.stray = STRAYS * substep.tubes.drivers[proof.drivers[0]];
+        self.segment.off_single = STRAYS * test.next[0];
+        self.segment.stray = STRAYS * step.bounds.drivers[test.drivers[0]];
         let steps = (GOOD_CONTRACTION / contraction).min(MOST_STEPS);
-        self.lay_line(work, substep, steps);
-        let passed = self.test_line(work, substep);
-        self.proof.put_back(work);
-        for &column in self.block.columns.iter().chain(&self.proof.known) {
-            substep.tubes.region[column] = 0.0;
-            substep.tubes.chord[column] = 0.0;
+        self.lay_line(state, step, steps);
+        let passed = self.test_line(state, step);
+        self.test.return_to_ends(state);
+        for &column in self.equations.columns.iter().chain(&self.test.known) {
+            step.bounds.region[column] = 0.0;
+            step.bounds.chord[column] = 0.0;
         }
         if let Some(Passed { radius, next, .. }) = passed {
-            (self.corridor.radius, self.corridor.off) = (radius, next);
-            self.corridor.holds = true;
+            (self.segment.radius, self.segment.off) = (radius, next);
+            self.segment.holds = true;
         }
     }
 
     /// Writes the line to the corridor and as chord.
-    fn lay_line(&mut self, work: &Work<'_>, substep: &mut Substep<'_>, steps: f64) {
+    fn lay_line(&mut self, state: &BlockState<'_>, step: &mut Step<'_>, steps: f64) {
         let Self {
-            block, corridor, ..
+            equations, segment, ..
         } = self;
-        let size = work.at.size();
+        let size = state.at.size();
         let way = |steps: f64, column: usize| {
-            let advance = Advance {
-                first: steps * substep.advance.first,
-                second: steps * steps * substep.advance.second,
+            let advance = Extrapolation {
+                first: steps * step.extrapolation.first,
+                second: steps * steps * step.extrapolation.second,
             };
-            advance.predict(column, 0.0, work.flow)
+            advance.predict(column, 0.0, state.tangent)
         };
         let mut most = 0.0_f64;
-        for (k, &column) in block.columns.iter().enumerate() {
-            let moved = way(steps, column).abs() / work.system.column_scale(column, size);
+        for (k, &column) in equations.columns.iter().enumerate() {
+            let moved = way(steps, column).abs() / state.system.column_scale(column, size);
             if moved > most {
-                (most, corridor.leading) = (moved, k);
+                (most, segment.leading) = (moved, k);
             }
         }
         let steps = steps * (LARGEST_MOVE / most).min(1.0);
-        for (k, &column) in block.columns.iter().enumerate() {
-            corridor.start[k] = substep.from[column];
-            corridor.way[k] = way(steps, column);
-            substep.tubes.chord[column] = corridor.way[k];
+        for (k, &column) in equations.columns.iter().enumerate() {
+            segment.start[k] = step.from[column];
+            segment.way[k] = way(steps, column);
+            step.bounds.chord[column] = segment.way[k];
         }
     }
 
     /// How the line passes the test, if it does.
-    fn test_line(&mut self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> Option<Passed> {
-        self.proof.slack.fill(0.0);
-        self.stand_on_chord(work, substep, 1.0);
-        self.evaluate_rows(work);
+    fn test_line(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) -> Option<Passed> {
+        self.test.slack.fill(0.0);
+        self.move_to_chord(state, step, 1.0);
+        self.evaluate_rows(state);
         let far = [self.drift(), self.farthest()];
-        self.test_chord(work, substep, far, WIDE).ok()
+        self.test_chord(state, step, far, WIDE).ok()
     }
 
-    /// Whether unknowns found before stand where they do in the corridor.
-    fn rests(&self, work: &Work<'_>, substep: &Substep<'_>) -> bool {
-        let size = work.at.size();
-        let places = &self.corridor.start[self.block.columns.len()..];
-        self.proof.known.iter().zip(places).all(|(&column, place)| {
-            let ends = [substep.from[column], work.at.coordinate(column)];
+    /// Whether unknowns found before stand where they do in the segment.
+    fn rests(&self, state: &BlockState<'_>, step: &Step<'_>) -> bool {
+        let size = state.at.size();
+        let places = &self.segment.start[self.equations.columns.len()..];
+        self.test.known.iter().zip(places).all(|(&column, place)| {
+            let ends = [step.from[column], state.at.coordinate(column)];
             let off = ends.map(|end| (end - place).abs());
-            let most = off[0].max(off[1]) + substep.tubes.radius(column);
-            most <= AT_REST * work.system.column_scale(column, size)
+            let most = off[0].max(off[1]) + step.deviation(column);
+            most <= AT_REST * state.system.column_scale(column, size)
         })
     }
 }

@@ -17,9 +17,9 @@
 //! step is accepted, so that nothing depends on where the last box was: whatever passes here
 //! passes there.
 
-use super::Coupled;
-use crate::kinematics::block::work::{Substep, Work};
-use crate::kinematics::certificate::Tubes;
+use super::CoupledBlock;
+use crate::kinematics::block::step::{BlockState, Step};
+use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::newton::STALLED;
 use crate::kinematics::system::Target;
 
@@ -36,7 +36,7 @@ const LEAST_PART: f64 = 0.25;
 
 /// A box around a pose in which a block is known to be regular.
 #[derive(Debug, Default)]
-pub(super) struct Neighbourhood {
+pub(super) struct CertifiedBox {
     holds: bool,
     /// c and 1/B of the block's own unknowns, then of those found before.
     centre: Vec<f64>,
@@ -49,7 +49,7 @@ pub(super) struct Neighbourhood {
     rounding: f64,
 }
 
-impl Neighbourhood {
+impl CertifiedBox {
     pub(super) fn new(unknowns: usize) -> Self {
         Self {
             centre: vec![0.0; unknowns],
@@ -63,33 +63,33 @@ impl Neighbourhood {
     }
 }
 
-impl Coupled {
-    /// Proves by the box that one motion joins the two ends of a sub-step, and writes its tube to
+impl CoupledBlock {
+    /// Proves by the box that one motion joins the two ends of a sub-step, and writes its bound to
     /// `next`; false if that cannot be had.
-    pub(super) fn certify_in_box(&mut self, work: &Work<'_>, substep: &mut Substep<'_>) -> bool {
+    pub(super) fn certify_in_box(&mut self, state: &BlockState<'_>, step: &mut Step<'_>) -> bool {
         let Self {
-            block,
-            proof,
-            neighbourhood: area,
+            equations,
+            test,
+            certified_box: area,
             ..
         } = self;
-        let columns = &block.columns;
+        let columns = &equations.columns;
         if !area.holds {
             return false;
         }
         let (mut moved, mut far, mut uncertain) = (0.0_f64, 0.0_f64, 0.0_f64);
-        let all = columns.iter().chain(&proof.known);
+        let all = columns.iter().chain(&test.known);
         for ((&column, centre), scale) in all.zip(&area.centre).zip(&area.inverse_width) {
-            let (from, to) = (substep.from[column], work.at.coordinate(column));
+            let (from, to) = (step.from[column], state.at.coordinate(column));
             moved = moved.max((to - from).abs() * scale);
             far = far.max((to - centre).abs().max((from - centre).abs()) * scale);
         }
-        for (&column, scale) in proof.known.iter().zip(&area.inverse_width[columns.len()..]) {
-            uncertain = uncertain.max(substep.tubes.radius(column) * scale);
+        for (&column, scale) in test.known.iter().zip(&area.inverse_width[columns.len()..]) {
+            uncertain = uncertain.max(step.deviation(column) * scale);
         }
         let mut driven = 0.0_f64;
-        for &driver in &proof.drivers {
-            driven = driven.max(substep.tubes.drivers[driver]);
+        for &driver in &test.drivers {
+            driven = driven.max(step.bounds.drivers[driver]);
         }
         let open = 0.5 * moved * area.contraction
             + uncertain * area.upstream
@@ -101,12 +101,12 @@ impl Coupled {
         if reach > 1.0 || reach.is_nan() {
             return false;
         }
-        let size = work.at.size();
+        let size = state.at.size();
         for (k, &column) in columns.iter().enumerate() {
             let width = 1.0 / area.inverse_width[k];
-            proof.next[k] = radius * width / work.system.column_scale(column, size);
+            test.next[k] = radius * width / state.system.column_scale(column, size);
         }
-        substep.tubes.relied_on_box = true;
+        step.bounds.reused = true;
         true
     }
 
@@ -114,39 +114,39 @@ impl Coupled {
     /// is worth it. The block is factorised there.
     pub(super) fn make_box(
         &mut self,
-        work: &Work<'_>,
-        substep: &mut Substep<'_>,
+        state: &BlockState<'_>,
+        step: &mut Step<'_>,
         contraction: f64,
     ) {
-        self.neighbourhood.holds = false;
+        self.certified_box.holds = false;
         if contraction > WORTH_A_BOX {
             return;
         }
-        let size = work.at.size();
+        let size = state.at.size();
         let largest = self
-            .block
+            .equations
             .columns
             .iter()
-            .chain(&self.proof.known)
+            .chain(&self.test.known)
             .map(|&column| {
-                let moved = (work.at.coordinate(column) - substep.from[column]).abs();
-                moved / work.system.column_scale(column, size)
+                let moved = (state.at.coordinate(column) - step.from[column]).abs();
+                moved / state.system.column_scale(column, size)
             })
             .fold(0.0, f64::max);
         // What stands still is given some room, too.
         let largest = largest.max(f64::EPSILON);
-        let proof = &mut *self.proof;
-        self.jacobian.invert(&mut proof.inverse, &mut proof.row);
+        let test = &mut *self.test;
+        self.jacobian.invert(&mut test.inverse, &mut test.row);
         // The region of the single step was about half as wide as the step.
         let mut width = (0.5 * largest * GOOD_CONTRACTION / contraction).min(LARGEST_WIDTH);
         for _ in 0..2 {
-            if !self.measure_box(work, substep, largest, width) {
+            if !self.measure_box(state, step, largest, width) {
                 return;
             }
-            let found = self.neighbourhood.contraction;
+            let found = self.certified_box.contraction;
             if found <= LARGEST_CONTRACTION {
                 // One that the next step leaves is no use, and whatever holds there holds again.
-                self.neighbourhood.holds = width > 2.0 * largest;
+                self.certified_box.holds = width > 2.0 * largest;
                 return;
             }
             width *= GOOD_CONTRACTION / found;
@@ -157,60 +157,59 @@ impl Coupled {
     /// smooth in it.
     fn measure_box(
         &mut self,
-        work: &Work<'_>,
-        substep: &mut Substep<'_>,
+        state: &BlockState<'_>,
+        step: &mut Step<'_>,
         largest: f64,
         width: f64,
     ) -> bool {
-        let area = &mut self.neighbourhood;
-        let tubes = &mut *substep.tubes;
-        let size = work.at.size();
-        let scale = |column: usize| work.system.column_scale(column, size);
-        let all = || self.block.columns.iter().chain(&self.proof.known);
+        let area = &mut self.certified_box;
+        let bounds = &mut *step.bounds;
+        let size = state.at.size();
+        let scale = |column: usize| state.system.column_scale(column, size);
+        let all = || self.equations.columns.iter().chain(&self.test.known);
         for (k, &column) in all().enumerate() {
-            let end = work.at.coordinate(column);
-            let moved = (end - substep.from[column]).abs() / scale(column);
+            let end = state.at.coordinate(column);
+            let moved = (end - step.from[column]).abs() / scale(column);
             let width = width * (moved / largest).max(LEAST_PART) * scale(column);
-            tubes.region[column] = width;
+            bounds.region[column] = width;
             area.centre[k] = end;
             area.inverse_width[k] = 1.0 / width;
         }
-        let smooth = self.bend_rows_in_box(work, tubes);
+        let smooth = self.bend_rows_in_box(state, bounds);
         if smooth {
-            self.gather_rows(work, tubes);
+            self.gather_rows(state, bounds);
         }
-        for &column in self.block.columns.iter().chain(&self.proof.known) {
-            tubes.region[column] = 0.0;
+        for &column in self.equations.columns.iter().chain(&self.test.known) {
+            bounds.region[column] = 0.0;
         }
-        self.proof.slack.fill(0.0);
+        self.test.slack.fill(0.0);
         smooth
     }
 
     /// Writes of each row: δ B to `open`, δ B upstream alone to `slack`, its rounding to `eta`, a
     /// driver's one to `radii`. False if a relation is not smooth in the box.
-    fn bend_rows_in_box(&mut self, work: &Work<'_>, tubes: &Tubes) -> bool {
-        let Self { block, proof, .. } = self;
-        for (local, &row) in block.rows.iter().enumerate() {
-            let Some(bend) = block.bend(local, work, tubes) else {
+    fn bend_rows_in_box(&mut self, state: &BlockState<'_>, bounds: &StepBounds) -> bool {
+        let Self {
+            equations, test, ..
+        } = self;
+        for (local, &row) in equations.rows.iter().enumerate() {
+            let Some(bend) = equations.bend(local, state, bounds) else {
                 return false;
             };
             let (mut own, mut known) = (0.0, 0.0);
             for (column, value) in bend.changes() {
-                let part = value * tubes.region[column];
-                if block.own(column).is_some() {
+                let part = value * bounds.region[column];
+                if equations.own(column).is_some() {
                     own += part;
                 } else {
                     known += part;
                 }
             }
-            proof.open[local] = own + known;
-            proof.slack[local] = known;
-            let rounding = work
-                .system
-                .evaluate_row(row, work.at, work.targets, work.drivers, |_, _| {})
-                .rounding;
-            proof.eta[local] = 2.0 * STALLED * rounding;
-            proof.radii[local] = match work.system.equations()[row].target {
+            test.open[local] = own + known;
+            test.slack[local] = known;
+            let rounding = state.evaluate_row(row, |_, _| {}).rounding;
+            test.eta[local] = 2.0 * STALLED * rounding;
+            test.radii[local] = match state.system.equations()[row].target {
                 Target::Driver(_) => bend.row_scale,
                 Target::Constant(_) => 0.0,
             };
@@ -219,30 +218,31 @@ impl Coupled {
     }
 
     /// Finds h, m and what goes with them from what is known of each row.
-    fn gather_rows(&mut self, work: &Work<'_>, tubes: &Tubes) {
+    fn gather_rows(&mut self, state: &BlockState<'_>, bounds: &StepBounds) {
         let Self {
-            block,
+            equations,
             jacobian,
-            proof,
-            neighbourhood: area,
+            test,
+            certified_box: area,
             ..
         } = self;
-        let size = work.at.size();
-        let scaled = |column: usize| tubes.region[column] / work.system.column_scale(column, size);
+        let size = state.at.size();
+        let scaled =
+            |column: usize| bounds.region[column] / state.system.column_scale(column, size);
         (area.contraction, area.upstream) = (0.0, 0.0);
         (area.driver, area.rounding) = (0.0, 0.0);
-        let rows = proof.inverse.chunks_exact(block.rows.len());
-        for (row, &column) in rows.zip(&block.columns) {
+        let rows = test.inverse.chunks_exact(equations.rows.len());
+        for (row, &column) in rows.zip(&equations.columns) {
             let apply = |b: &[f64]| row.iter().zip(b).map(|(a, b)| a.abs() * b).sum::<f64>();
             let width = scaled(column);
-            let mut known = apply(&proof.slack);
-            for &column in &proof.known {
-                known += jacobian.turned(row, column).abs() * scaled(column);
+            let mut known = apply(&test.slack);
+            for &column in &test.known {
+                known += jacobian.upstream_product(row, column).abs() * scaled(column);
             }
-            area.contraction = area.contraction.max(apply(&proof.open) / width);
+            area.contraction = area.contraction.max(apply(&test.open) / width);
             area.upstream = area.upstream.max(known / width);
-            area.rounding = area.rounding.max(apply(&proof.eta) / width);
-            area.driver = area.driver.max(apply(&proof.radii) / width);
+            area.rounding = area.rounding.max(apply(&test.eta) / width);
+            area.driver = area.driver.max(apply(&test.radii) / width);
         }
     }
 }

@@ -1,14 +1,13 @@
-//! Storage and limits of the certificate of a block.
+//! Storage and limits of the contraction test η + K r < r of a block.
 
-use super::block::{ENTRIES, Jacobian, Place};
-use crate::kinematics::block::elimination::Order;
-use crate::kinematics::block::work::Work;
+use super::equations::{ColumnOwner, ENTRIES, Jacobian};
+use crate::kinematics::block::elimination::EliminationOrder;
+use crate::kinematics::block::step::BlockState;
 use crate::kinematics::configuration::BodyPose;
-use crate::kinematics::constraint::Incidence;
 use crate::kinematics::linear::{Condition, Lu};
 use crate::kinematics::system::{System, Target};
 
-/// The most unknowns, once x and y of bodies are eliminated, of which an inverse is written down.
+/// Most torn unknowns of which the inverse is written down.
 pub(super) const MOST_TORN: usize = 32;
 /// Safety factor on the next trial radii, where those tried were too small.
 pub(super) const ROOM: f64 = 1.25;
@@ -19,32 +18,33 @@ pub(super) const LARGEST_CONTRACTION: f64 = 0.9;
 /// η + K r stays below this part of r: the rounding of A changes it by less than the rest.
 pub(super) const STRICTLY: f64 = 0.999;
 
-/// What the certificate of a block needs.
+/// Storage of the contraction test of a block.
 #[derive(Debug)]
-pub(super) struct Proof {
-    /// Unknowns found before that the rows contain.
+pub(super) struct ContractionTest {
+    /// Unknowns of earlier blocks in the rows.
     pub(super) known: Vec<usize>,
-    /// The drivers that rows of the block are held at.
+    /// Drivers whose values rows of the block are held at.
     pub(super) drivers: Vec<usize>,
     /// The bodies of these and of the block's own unknowns, with their frames at the end.
-    pub(super) bodies: Vec<usize>,
-    pub(super) ends: Vec<BodyPose>,
-    /// The joints' own unknowns among them, likewise.
-    pub(super) joint_unknowns: Vec<usize>,
-    pub(super) joint_ends: Vec<f64>,
-    /// The Jacobian in the middle.
+    bodies: Vec<usize>,
+    ends: Vec<BodyPose>,
+    /// The joint unknowns among them, with their values at the end.
+    joint_unknowns: Vec<usize>,
+    joint_ends: Vec<f64>,
+    /// The Jacobian in the middle of the chord.
     pub(super) middle: Jacobian,
     /// A by rows, empty where it is too large.
     pub(super) inverse: Vec<f64>,
-    /// For where it is.
+    /// Storage of the estimate, where A is too large.
     pub(super) estimate: Estimate,
     pub(super) condition: Condition,
-    /// What the rows are open by on the way, and what of it comes from moving parameters.
+    /// Bound of the rows' values on the way, and the part of it from moving parameters and
+    /// rounding.
     pub(super) open: Vec<f64>,
     pub(super) slack: Vec<f64>,
-    /// How far entries of the block's Jacobian may change: row, column, scaled value.
+    /// Bounds of the change of the Jacobian's entries: row, column, scaled value.
     pub(super) changes: Vec<(usize, usize, f64)>,
-    /// Scaled radii: of what is known, those tried, what η + K r makes of them.
+    /// Scaled radii: of known unknowns, the trial radii r, and η + K r.
     pub(super) known_radii: Vec<f64>,
     pub(super) radii: Vec<f64>,
     pub(super) eta: Vec<f64>,
@@ -53,22 +53,31 @@ pub(super) struct Proof {
     pub(super) row: Vec<f64>,
 }
 
-impl Proof {
+/// Storage of the estimate that replaces the inverse of a large block.
+#[derive(Debug, Default)]
+pub(super) struct Estimate {
+    /// J where the rows were evaluated last minus J where the block is factorised: row, column,
+    /// value.
+    pub(super) drift: Vec<(usize, usize, f64)>,
+    /// F where the rows were evaluated last.
+    pub(super) gap: Vec<f64>,
+}
+
+impl ContractionTest {
+    /// Makes the storage for the block with index `block`.
     pub(super) fn new(
         system: &System,
-        order: &Order,
+        order: &EliminationOrder,
         lu: &Lu,
-        places: &[Place],
-        kernel: usize,
+        owners: &[ColumnOwner],
+        block: usize,
     ) -> Self {
         let n = order.rows.len();
-        let mut incidence = Incidence::default();
-        for &row in &order.rows {
-            let constraint = &system.equations()[row].constraint;
-            constraint.incidence(system.mechanism(), &mut incidence);
-        }
-        let mut known = incidence.unknowns;
-        known.retain(|&column| places[column].kernel != kernel);
+        let rows = order.rows.iter();
+        let mut known: Vec<_> = rows
+            .flat_map(|&row| system.incidence(row).unknowns)
+            .filter(|&column| owners[column].block != block)
+            .collect();
         known.sort_unstable();
         known.dedup();
         let of_bodies = 3 * system.mechanism().bodies.len();
@@ -85,7 +94,11 @@ impl Proof {
         let (inverse, estimate) = if order.torn() <= MOST_TORN {
             (n * n, Estimate::default())
         } else {
-            (0, Estimate::new(n, ENTRIES * n))
+            let estimate = Estimate {
+                drift: Vec::with_capacity(ENTRIES * n),
+                gap: vec![0.0; n],
+            };
+            (0, estimate)
         };
         Self {
             known_radii: vec![0.0; known.len()],
@@ -118,52 +131,33 @@ impl Proof {
         self.middle.lu.clone_from(lu);
     }
 
-    /// Notes where the bodies end.
-    pub(super) fn note_ends(&mut self, work: &Work<'_>) {
-        let frames = work.at.frames();
+    /// Notes the ends of the bodies and joint unknowns.
+    pub(super) fn note_ends(&mut self, state: &BlockState<'_>) {
+        let frames = state.at.frames();
         self.ends.clear();
         self.ends
             .extend(self.bodies.iter().map(|&body| frames[body]));
         for (end, &column) in self.joint_ends.iter_mut().zip(&self.joint_unknowns) {
-            *end = work.at.coordinate(column);
+            *end = state.at.coordinate(column);
         }
     }
 
-    /// Puts the bodies back there.
-    pub(super) fn put_back(&self, work: &mut Work<'_>) {
+    /// Puts the bodies and joint unknowns back to their ends.
+    pub(super) fn return_to_ends(&self, state: &mut BlockState<'_>) {
         for (&body, &end) in self.bodies.iter().zip(&self.ends) {
-            work.at.frames_mut()[body] = end;
+            state.at.frames_mut()[body] = end;
         }
         for (&column, &end) in self.joint_unknowns.iter().zip(&self.joint_ends) {
-            work.at.set_coordinate(column, end);
+            state.at.set_coordinate(column, end);
         }
     }
 
-    /// |A| b, b ≥ 0 being one value a row, added to `sum`.
+    /// Adds |A| b to `sum`, b ≥ 0 having one entry per row.
     pub(super) fn apply(&self, b: &[f64], sum: &mut [f64]) {
         let rows = self.inverse.chunks_exact(b.len());
         for (sum, row) in sum.iter_mut().zip(rows) {
             let parts = row.iter().zip(b).map(|(a, b)| a.abs() * b);
             *sum += parts.sum::<f64>();
-        }
-    }
-}
-
-/// What the estimate of a block needs besides.
-#[derive(Debug, Default)]
-pub(super) struct Estimate {
-    /// J where the rows were evaluated last minus J where the block is factorised: row, column,
-    /// value.
-    pub(super) drift: Vec<(usize, usize, f64)>,
-    /// F where the rows were evaluated last.
-    pub(super) gap: Vec<f64>,
-}
-
-impl Estimate {
-    pub(super) fn new(order: usize, entries: usize) -> Self {
-        Self {
-            drift: Vec::with_capacity(entries),
-            gap: vec![0.0; order],
         }
     }
 }
