@@ -1,5 +1,10 @@
 //! Clauses of FMI 2.0.5, by section, and how hosts' algorithms fare with them.
 
+#![allow(
+    clippy::float_cmp,
+    reason = "values that are set come back to the last bit, and a pose that stays does"
+)]
+
 #[path = "../common/mod.rs"]
 mod common;
 
