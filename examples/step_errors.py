@@ -19,7 +19,6 @@ HERE = Path(__file__).resolve().parent
 subprocess.run(
     ["biela", "export", HERE.parent / "mechanisms" / "four_bar.toml", "-o", "four_bar.fmu"],
     check=True,
-    stdout=subprocess.DEVNULL,
 )
 description = read_model_description("four_bar.fmu")
 reference = {v.name: v.valueReference for v in description.modelVariables}

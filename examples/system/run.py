@@ -32,9 +32,7 @@ subprocess.run(
 with zipfile.ZipFile("motor.fmu", "w") as archive:
     archive.write(HERE / "motor.xml", "modelDescription.xml")
     archive.write(library, f"binaries/{fmpy.platform}/{library}")
-subprocess.run(
-    ["biela", "export", MECHANISM, "-o", "jansen_leg.fmu"], check=True, stdout=subprocess.DEVNULL
-)
+subprocess.run(["biela", "export", MECHANISM, "-o", "jansen_leg.fmu"], check=True)
 with zipfile.ZipFile("walker.ssp", "w") as archive:
     archive.write(HERE / "SystemStructure.ssd", "SystemStructure.ssd")
     for fmu in ("motor.fmu", "jansen_leg.fmu"):
