@@ -562,3 +562,29 @@ fn parameters_of_a_coupled_block_keep_to_the_motion() {
     assert!(difference(&whole, &truth) < 1e-9, "{whole:?} {truth:?}");
     assert!((truth[0] + 0.0435).abs() < 1e-4, "{truth:?}");
 }
+
+/// A length runs until links line up, and back, as a driver does.
+#[test]
+fn a_parameter_comes_back_from_a_dead_point() {
+    let mechanism = shipped("jansen_leg");
+    for (name, far) in [
+        ("m", 0.1),
+        ("j", 0.2),
+        ("k", 0.2),
+        ("a", 0.2),
+        ("b", 0.12),
+        ("f", 0.2),
+    ] {
+        let (mut solver, mut path) = assembled(&mechanism);
+        let home = solver.pose().clone();
+        let index = mechanism.parameter_id(name).expect("it has it").index();
+        path.to[index] = far;
+        solver.track(&path).expect_err("links line up");
+        path.from.clone_from(&solver.pose().parameters);
+        path.to.clone_from(&home.parameters);
+        let back = solver.track(&path);
+        assert!(back.is_ok(), "{name}: {back:?}");
+        let off = difference(&solver.pose().q, &home.q);
+        assert!(off < SAME_POSE, "{name}: {off}");
+    }
+}
