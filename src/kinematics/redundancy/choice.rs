@@ -7,8 +7,8 @@ use super::contradiction::explain_open;
 use super::rank::{
     DEPENDENT, drivers_first, find_freedom, jacobian_rows, singular_position, weakest,
 };
-use crate::kinematics::assembly::closing::holds;
 use crate::kinematics::assembly::estimate::go_to_estimate;
+use crate::kinematics::assembly::least_squares::holds;
 
 use crate::kinematics::Element;
 use crate::kinematics::assembly::gaps::open_joints;
@@ -245,7 +245,7 @@ pub(in crate::kinematics) fn opened(model: &Model, state: &State) -> Option<Open
     let Model {
         system, redundant, ..
     } = model;
-    let is_open = |row: &&usize| !holds(state.row_value(system, **row));
+    let is_open = |row: &&usize| !holds(system.evaluate_row(**row, state.values(), |_, _| {}));
     let first = redundant.now.iter().find(is_open)?;
     let element = system.equations()[*first].element;
     let mut open = open_joints(model, state, &system.rows_of(&[element]), 0.0);

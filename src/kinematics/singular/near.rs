@@ -31,14 +31,9 @@ pub(super) fn bodies_of(system: &System, columns: &[usize], free: &[f64]) -> Vec
 /// Returns the Jacobian of a block's rows in its own unknowns at the pose, scaled.
 pub(super) fn block_jacobian(model: &Model, state: &State, block: usize) -> DMatrix<f64> {
     let block = &model.plan.blocks[block];
-    let (rows, columns) = (block.rows(), block.columns());
-    let mut jacobian = DMatrix::zeros(rows.len(), columns.len());
-    for (place, &row) in rows.iter().enumerate() {
-        for (column, value) in state.jacobian_row(&model.system, row) {
-            if let Some(local) = columns.iter().position(|&own| own == column) {
-                jacobian[(place, local)] += value;
-            }
-        }
-    }
+    let columns = block.columns();
+    let place = |column: usize| columns.iter().position(|&own| own == column);
+    let system = &model.system;
+    let (_, jacobian) = system.dense_rows(block.rows(), columns.len(), place, state.values());
     jacobian
 }

@@ -100,11 +100,15 @@ impl BlockEquations {
         lu.clear();
         upstream.clear();
         for (local, &row) in self.rows.iter().enumerate() {
-            let value = state.evaluate_row(row, |column, value| match self.own(column) {
-                Some(own) => lu.add(local, own, value),
-                None if value != 0.0 => upstream.push((local, column, value)),
-                None => {}
-            });
+            let value = state
+                .system
+                .evaluate_row(row, state.values(), |column, value| {
+                    match self.own(column) {
+                        Some(own) => lu.add(local, own, value),
+                        None if value != 0.0 => upstream.push((local, column, value)),
+                        None => {}
+                    }
+                });
             found(local, value);
         }
     }
