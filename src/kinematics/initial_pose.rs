@@ -17,9 +17,9 @@ use super::state::{Pose, State};
 /// The way to the pose for the first values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
-    /// By continuous motion: the assembly mode is that of the pose at the start.
+    /// Continuous motion: the assembly mode is that of the pose at the start.
     Continuous(Progress),
-    /// From the estimates, as the motion was blocked; possibly in another assembly mode.
+    /// Assembly from the estimates, because the motion was blocked; possibly another assembly mode.
     Reassembled(Assembly),
 }
 

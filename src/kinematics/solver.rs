@@ -100,8 +100,8 @@ impl Solver {
     ///
     /// [`Error::NotAssembled`] with the joints that stay open, and a proof that the mechanism
     /// cannot close, if there is one; [`Error::Singular`] if it closes in a singular position;
-    /// [`Error::NotFinite`] and [`Error::NotPositive`] for values without a mechanism. The solver is
-    /// then without a valid pose until it is assembled or [restored](Self::restore); after the
+    /// [`Error::NotFinite`] and [`Error::NotPositive`] for values without a mechanism. The solver
+    /// is then without a valid pose until it is assembled or [restored](Self::restore); after the
     /// first of these its pose is the nearest one.
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
         initial_pose::assemble(&mut self.model, &mut self.state, path)
@@ -152,8 +152,8 @@ impl Solver {
     }
 
     /// Forgets all that the way to the present pose has left: pivots of sparse matrices, proofs
-    /// that hold for several steps, the choice among redundant rows. From here on everything depends
-    /// on the pose alone, to the last bit.
+    /// that hold for several steps, the choice among redundant rows. From here on everything
+    /// depends on the pose alone, to the last bit.
     pub fn forget_way(&mut self) {
         self.model.plan.forget_pivots();
         self.model.plan.forget_proofs();
@@ -243,9 +243,9 @@ impl Solver {
     }
 
     /// Returns the approach to a singular position, if the mechanism, at the end of a path, has
-    /// come near one since `near` was last false; `near` is true from then on until the mechanism is
-    /// away again. Next to a change point that is crossed there is no warning. Away from singular
-    /// positions it costs a comparison.
+    /// come near one since `near` was last false; `near` is true from then on until the mechanism
+    /// is away again. Next to a change point that is crossed there is no warning. Away from
+    /// singular positions it costs a comparison.
     pub fn approach(&mut self, near: &mut bool) -> Option<Approach> {
         singular::approach(&mut self.model, &mut self.state, near)
     }

@@ -26,8 +26,8 @@ pub struct Range {
 /// The end of the way of a driver in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
-    /// None: after this many turns of the driver the mechanism is at its start again, whole turns of
-    /// its bodies apart.
+    /// None: after this many turns of the driver the mechanism is at its start again, whole turns
+    /// of its bodies apart.
     Turns(u32),
     /// A singular position, located to rounding; as a rule a dead point.
     Singular(Box<SingularPoint>),
