@@ -69,6 +69,10 @@ fn assemble_rows(
         }
     };
     choose_turns(&model.system, state, &estimate);
+    // The search may have chosen pivots, at poses that belong to no motion.
+    model
+        .plan
+        .reset_pivots(&model.system, &state.at, &state.targets);
     state.refresh(model)?;
     let rcond = model.plan.rcond();
     if rcond < SINGULAR {

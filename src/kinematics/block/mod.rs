@@ -167,6 +167,12 @@ impl BlockPlan {
         }
     }
 
+    /// Chooses the pivots of sparse matrices again, as if the plan had not been used.
+    pub(super) fn reset_pivots(&mut self, system: &System, at: &Configuration, targets: &Targets) {
+        self.forget_pivots();
+        self.choose_pivots(system, at, targets);
+    }
+
     /// Forgets the proofs that hold for several steps.
     pub(super) fn forget_proofs(&mut self) {
         for block in &mut self.blocks {
