@@ -143,6 +143,32 @@ fn a_motion_is_a_function_of_time() {
 }
 
 #[test]
+fn a_driver_may_have_limits_and_be_wrapped() {
+    let mechanism = pendulum(
+        "[parameters]\nlongest = { value = 0.9, unit = 'm' }\n[drivers]\n\
+         swing = { coordinate = 'angle', markers = ['ground.O', 'rod.O'], start = 0, \
+         min = '-30*deg', max = '30*deg' }\n\
+         turn = { coordinate = 'angle', markers = ['ground.E', 'rod.P'], start = 0, wrapped = true }\n\
+         reach = { coordinate = 'distance', markers = ['ground.E', 'rod.P'], motion = 0.5, \
+         max = 'longest' }\n",
+    );
+    let limits: Vec<_> = mechanism
+        .drivers
+        .iter()
+        .map(|d| (d.min, d.max, d.wrapped))
+        .collect();
+    let angle = 30.0 * (std::f64::consts::PI / 180.0);
+    assert_eq!(
+        limits,
+        [
+            (Some(-angle), Some(angle), false),
+            (None, None, true),
+            (None, Some(0.9), false),
+        ]
+    );
+}
+
+#[test]
 fn x_and_y_may_be_measured_on_other_axes() {
     let mechanism = pendulum(
         "[measures]\n\
