@@ -14,7 +14,7 @@ use super::redundancy::{assemble_on_all, choose_rows};
 use super::singular::settle;
 use super::state::{Pose, State};
 
-/// The way to the pose for the first values.
+/// The method that found the first pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
     /// Continuous motion: the assembly mode is that of the pose at the start.
@@ -43,7 +43,7 @@ pub(super) fn assemble(
     path: &Path,
 ) -> Result<Assembly, Error> {
     match assemble_rows(model, state, path, !model.redundant.is_empty()) {
-        // Or redundant in a way that numbers alone tell.
+        // The rows may be redundant for these numbers.
         Err(Error::Singular { .. }) => {
             choose_rows(model, state, path)?;
             assemble_rows(model, state, path, true)

@@ -12,7 +12,7 @@ use super::path::{Motions, Path, Rates};
 use super::system::{System, Targets, Values};
 use crate::mechanism::{DriverId, Jet, MarkerId};
 
-/// The pose of a mechanism: all that decides where it is and how it goes on from there.
+/// The pose of a mechanism: all numbers on which its further motion depends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     /// Time \[s\].

@@ -23,7 +23,7 @@ pub(in crate::kinematics) struct Extrapolation {
     pub(in crate::kinematics) second: f64,
 }
 
-/// One sub-step: the way to its end, and the bounds of the motion on that way.
+/// One sub-step: the prediction of its end, and the bounds of the motion to that end.
 pub(in crate::kinematics) struct Step<'a> {
     pub(in crate::kinematics) extrapolation: Extrapolation,
     /// q at the start.

@@ -438,8 +438,8 @@ mod tests {
                 let rcond = condition.rcond(&mut dense);
                 prop_assume!(rcond > 1e-6);
                 sparse.factorise(0.0).unwrap();
-                // Backward stable solves, the sparse one with pivots down to a thousandth of
-                // their row: growth by 1e3 at each of some steps is what it may come to.
+                // Both solves are backward stable. The sparse one admits pivots of a thousandth
+                // of their row, so that entries may grow by 1e3 at some of the pivots.
                 let tolerance = 1e5 * f64::EPSILON / rcond;
                 for transposed in [false, true] {
                     let (mut x, mut y) = (b[..order].to_vec(), b[..order].to_vec());
@@ -466,7 +466,7 @@ mod tests {
         }
     }
 
-    /// The diagonal vanishes, then all: pivots that are gone are replaced while there are any.
+    /// The diagonal vanishes, then all entries: vanished pivots are replaced while others remain.
     #[test]
     fn a_vanishing_pivot_is_chosen_again() {
         let mut lu = SparseLu::new(vec![vec![0, 1], vec![0, 1]]);

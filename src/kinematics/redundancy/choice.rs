@@ -253,8 +253,8 @@ pub(in crate::kinematics) fn opened(model: &Model, state: &State) -> Option<Open
 }
 
 /// Chooses rows at the present places of the bodies: the drivers', then, in the order of
-/// declaration, those of which more than `fit` is left; where these are too few, those of which
-/// less is left.
+/// declaration, those whose remainder exceeds `fit`; if these are too few, those with a smaller
+/// remainder.
 fn choose_here(model: &Model, state: &State, mut fit: f64) -> Choice {
     let rows = jacobian_rows(model, state);
     let unknowns = model.system.unknowns();

@@ -38,8 +38,8 @@ struct Ranks {
 ///
 /// # Errors
 ///
-/// [`Error::Structure`] if something is free or more is driven than is free, [`Error::Singular`]
-/// if the constraints lose rank here but let nothing move.
+/// [`Error::Structure`] if the drivers leave a motion free or there are too many,
+/// [`Error::Singular`] if the constraints lose rank here without a free motion.
 pub(super) fn find_freedom(model: &mut Model, state: &mut State) -> Result<Vec<usize>, Error> {
     let unknowns = model.system.unknowns();
     let mut home = vec![0.0; unknowns];

@@ -9,7 +9,7 @@ use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::linear::{Factors, Lu};
 use crate::kinematics::system::RowValue;
 
-/// Most entries of a row: those of three bodies and of an unknown of its own.
+/// Most entries of a row: of three bodies and one joint unknown.
 pub(super) const ENTRIES: usize = 10;
 
 /// The block that finds an unknown, and the index of the unknown in that block.
