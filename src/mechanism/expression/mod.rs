@@ -10,6 +10,7 @@ mod display;
 mod error;
 mod function;
 mod parse;
+mod polar;
 mod token;
 
 #[cfg(test)]
