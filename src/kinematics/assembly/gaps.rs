@@ -57,9 +57,9 @@ pub(in crate::kinematics) fn open_joints(
 
 /// Most minimisation steps towards the nearest pose of a mechanism that does not close.
 pub(in crate::kinematics) const STEPS_TO_NEAREST: usize = 200;
-/// Weight of all other rows when the gap is gathered in one element: they stay open by 1e-6 of the
-/// gap, far below the part that [`open_joints`] notices.
-const HOLD_CLOSED: f64 = 1e3;
+/// Weight of all other rows when the gap is gathered in one element: they stay open by some 1e-8 of
+/// the gap, below the digits of a message.
+const HOLD_CLOSED: f64 = 1e4;
 
 /// Gathers the gap of some rows in one element: a minimum spreads it over all joints of a loop, but
 /// people look for one joint that does not meet. Returns the largest scaled residual.
