@@ -102,7 +102,7 @@ fn inline_table<'t, 'a>(table: &'t Table<'a>, text: &str, place: &Span) -> Optio
     table.iter().find_map(|(_, value)| {
         let inner = value.get_ref().as_table()?;
         let span = value.span();
-        let is_inline = text[span.clone()].starts_with('{');
+        let is_inline = text.get(span.clone())?.starts_with('{');
         let is_around = is_inline && span.start < place.start && place.end <= span.end;
         inline_table(inner, text, place).or(is_around.then_some(inner))
     })

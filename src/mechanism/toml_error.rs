@@ -15,7 +15,7 @@ type Slip = (Range<usize>, String, Option<String>);
 
 /// Returns the error at `span` of the text, about which the parser says `message`.
 pub(super) fn syntax_error(text: &str, span: Span, message: &str) -> Diagnostic {
-    let at = span.start.min(text.len());
+    let at = text.floor_char_boundary(span.start);
     let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
     let line = text[start..].split(['\r', '\n']).next().unwrap_or_default();
     let at = (at - start).min(line.len());
