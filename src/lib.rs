@@ -60,7 +60,7 @@
 //!     acceleration: 0.0,
 //!     jump: solver.pose().drivers[0] - 0.2,
 //! };
-//! solver.follow(&path).expect("nothing stops it");
+//! solver.track(&path).expect("nothing stops it");
 //!
 //! // Rates for a driver that moves at 1 rad/s.
 //! let mut rates = Rates::new(3);

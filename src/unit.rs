@@ -60,6 +60,10 @@ impl Unit {
     pub const NEWTON: Self = Self::new("N", dimension(1, 1, -2, 0));
     /// `N.m`.
     pub const NEWTON_METRE: Self = Self::new("N.m", dimension(1, 2, -2, 0));
+    /// `J`.
+    pub const JOULE: Self = Self::new("J", dimension(1, 2, -2, 0));
+    /// `W`.
+    pub const WATT: Self = Self::new("W", dimension(1, 2, -3, 0));
     /// `m/s`.
     pub const METRE_PER_SECOND: Self = Self::new("m/s", dimension(0, 1, -1, 0));
     /// `m/s2`.
@@ -74,9 +78,18 @@ impl Unit {
     pub const KILOGRAM_METRE_SQUARED: Self = Self::new("kg.m2", dimension(1, 2, 0, 0));
     /// `1/s`.
     pub const PER_SECOND: Self = Self::new("1/s", dimension(0, 0, -1, 0));
+    /// `N/m`: stiffness of a spring.
+    pub const NEWTON_PER_METRE: Self = Self::new("N/m", dimension(1, 0, -2, 0));
+    /// `N.m/rad`: stiffness of a torsion spring.
+    pub const NEWTON_METRE_PER_RADIAN: Self = Self::new("N.m/rad", dimension(1, 2, -2, -1));
+    /// `N.s/m`: coefficient of a damper.
+    pub const NEWTON_SECOND_PER_METRE: Self = Self::new("N.s/m", dimension(1, 0, -1, 0));
+    /// `N.m.s/rad`: coefficient of a torsion damper.
+    pub const NEWTON_METRE_SECOND_PER_RADIAN: Self =
+        Self::new("N.m.s/rad", dimension(1, 2, -1, -1));
 
     /// Every unit that a file may name, in the order of the format's documentation.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 19] = [
         Self::ONE,
         Self::METRE,
         Self::RADIAN,
@@ -84,12 +97,18 @@ impl Unit {
         Self::KILOGRAM,
         Self::NEWTON,
         Self::NEWTON_METRE,
+        Self::JOULE,
+        Self::WATT,
         Self::METRE_PER_SECOND,
         Self::METRE_PER_SECOND_SQUARED,
         Self::RADIAN_PER_SECOND,
         Self::RADIAN_PER_SECOND_SQUARED,
         Self::KILOGRAM_METRE_SQUARED,
         Self::PER_SECOND,
+        Self::NEWTON_PER_METRE,
+        Self::NEWTON_METRE_PER_RADIAN,
+        Self::NEWTON_SECOND_PER_METRE,
+        Self::NEWTON_METRE_SECOND_PER_RADIAN,
     ];
 
     const fn new(name: &'static str, dimension: Dimension) -> Self {

@@ -177,7 +177,7 @@ fn a_step_of_the_solver_allocates_nothing() {
         let count = allocations(|| {
             for step in 1..=50 {
                 straight_to(&solver, &mut path, home + 1e-4 * f64::from(step));
-                solver.follow(&path).expect("nothing is in the way");
+                solver.track(&path).expect("nothing is in the way");
                 let driver = Jet::new(0.0, [1.0, 0.5]);
                 solver
                     .solve_rates(|_| driver, &mut rates)

@@ -66,7 +66,7 @@ fn swing(mechanism: &Arc<Mechanism>, count: usize) -> Vec<(Vec<f64>, [Vec<f64>; 
     let step = |k| {
         if moved {
             straight_to(&solver, &mut path, swing(k).value);
-            solver.follow(&path).expect("nothing is in the way");
+            solver.track(&path).expect("nothing is in the way");
         }
         let driver = if moved { swing(k) } else { Jet::constant(0.0) };
         let of = |id: biela::mechanism::DriverId| {

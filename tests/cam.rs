@@ -4,7 +4,7 @@ mod common;
 
 use std::f64::consts::{PI, TAU};
 
-use biela::kinematics::{MisfitKind, Path, Rates, Reason, Solver};
+use biela::kinematics::{GeometryWarningKind, Path, Rates, Reason, Solver};
 use biela::mechanism::{Jet, Mechanism};
 use common::{assembled, parse, shipped, straight_to};
 use proptest::prelude::*;
@@ -41,7 +41,7 @@ proptest! {
             for step in &steps {
                 angle += step;
                 straight_to(&solver, &mut path, angle);
-                prop_assert!(solver.follow(&path).is_ok(), "{name} at {angle}");
+                prop_assert!(solver.track(&path).is_ok(), "{name} at {angle}");
                 let off = follower_height(&solver, &mechanism) - law(angle);
                 prop_assert!(off.abs() < 1e-14, "{name}: {off:e}");
             }
@@ -60,7 +60,7 @@ fn the_contact_counts_turns() {
     for turn in 1..=20 {
         let angle = start + TAU * f64::from(turn);
         straight_to(&solver, &mut path, angle);
-        solver.follow(&path).expect("the cam turns on for ever");
+        solver.track(&path).expect("the cam turns on for ever");
         let off = solver.pose().q[contact] - (first - TAU * f64::from(turn));
         // The angle itself has been rounded to half an ulp of up to 126 rad.
         assert!(off.abs() < 1e-13, "{turn}: {off:e}");
@@ -83,7 +83,7 @@ fn a_large_step_does_not_pass_over_a_narrow_bump() {
                 .any(|at| (at - start) * turn.signum() > 0.0 && (at - start).abs() < turn.abs());
             let mut path = Path::new(solver.mechanism());
             straight_to(&solver, &mut path, start + turn);
-            let followed = solver.follow(&path);
+            let followed = solver.track(&path);
             assert_eq!(followed.is_err(), passes, "{turn}: {followed:?}");
         }
     }
@@ -93,7 +93,7 @@ fn a_large_step_does_not_pass_over_a_narrow_bump() {
     let target = solver.pose().drivers[0] + TAU;
     straight_to(&solver, &mut path, target);
     let progress = solver
-        .follow(&path)
+        .track(&path)
         .expect("the edge is a point of the contour");
     // Sub-steps on the bump are shorter than it is.
     assert!(progress.substeps > 20, "{progress:?}");
@@ -108,11 +108,11 @@ fn a_round_cam_moves_nothing() {
         let (mut solver, mut path) = assembled(&mechanism);
         let eccentricity = mechanism.parameter_id("eccentricity").expect("it has one");
         path.to[eccentricity.index()] = 0.0;
-        solver.follow(&path).expect("eccentricities between fit");
+        solver.track(&path).expect("eccentricities between fit");
         path.from.clone_from(&path.to);
         let before = solver.pose().q[3..6].to_vec();
         straight_to(&solver, &mut path, 4.0);
-        solver.follow(&path).expect("a round cam turns");
+        solver.track(&path).expect("a round cam turns");
         for (q, before) in solver.pose().q[3..6].iter().zip(before) {
             // Some eps of lengths up to 0.1 m and angles up to 3 rad.
             assert!((q - before).abs() < 4e-15, "{name}");
@@ -165,11 +165,11 @@ fn a_roller_too_large_for_a_hollow_is_reported() {
         let radius = mechanism.parameter_id("roller_radius").expect("it has one");
         path.to[radius.index()] = roller;
         solver.assemble(&path).expect("it closes");
-        match &solver.misfits()[..] {
+        match &solver.geometry_warnings()[..] {
             [] => assert!(fits),
             [misfit] => {
                 assert!(!fits);
-                let MisfitKind::NarrowHollow {
+                let GeometryWarningKind::NarrowHollow {
                     ranges, curvature, ..
                 } = &misfit.kind
                 else {
@@ -194,10 +194,10 @@ fn a_roller_too_large_for_a_hollow_is_reported() {
 fn a_flat_face_over_a_hollow_is_reported() {
     for (amplitude, hollow) in [("0.0049", false), ("0.0051", true)] {
         let profile = format!("'0.05 + {amplitude}*cos(3*theta)'");
-        let misfits = with_profile("cam_flat", &profile).misfits();
+        let misfits = with_profile("cam_flat", &profile).geometry_warnings();
         let reported = misfits
             .iter()
-            .any(|misfit| matches!(misfit.kind, MisfitKind::HollowUnderFace { .. }));
+            .any(|misfit| matches!(misfit.kind, GeometryWarningKind::HollowUnderFace { .. }));
         assert_eq!(
             (reported, misfits.len()),
             (hollow, usize::from(hollow)),
@@ -217,7 +217,7 @@ fn the_gallery_fits() {
             .is_some_and(|extension| extension == "toml")
         {
             let name = path.file_stem().expect("it has a name").to_string_lossy();
-            let misfits = assembled(&shipped(&name)).0.misfits();
+            let misfits = assembled(&shipped(&name)).0.geometry_warnings();
             assert!(misfits.is_empty(), "{name}: {misfits:?}");
         }
     }
@@ -235,7 +235,7 @@ fn wheels_that_do_not_fit_are_reported() {
              B = {{ type = 'revolute', markers = ['ground.B', 'b.O'] }}\n{joint}\n[drivers]\n\
              u = {{ coordinate = 'angle', markers = ['ground.A', 'a.O'], start = 0 }}\n"
         ));
-        let misfits = assembled(&mechanism).0.misfits();
+        let misfits = assembled(&mechanism).0.geometry_warnings();
         misfits.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     let wheels = |kind: &str, radii: &str, more: &str| {
@@ -271,7 +271,7 @@ fn wheels_that_do_not_fit_are_reported() {
              W = {{ type = 'rack_and_pinion', markers = ['pinion.O', 'rack.R'], radius = 0.05, side = '{side}' }}\n\
              [drivers]\nu = {{ coordinate = 'angle', markers = ['ground.O', 'pinion.O'], start = 0 }}\n"
         ));
-        let misfits = assembled(&mechanism).0.misfits();
+        let misfits = assembled(&mechanism).0.geometry_warnings();
         misfits.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert_eq!(rack("above"), fits);
@@ -317,7 +317,7 @@ fn parameters_that_make_no_contour_are_refused() {
         let (mut solver, mut path) = assembled(&mechanism);
         let before = solver.pose().clone();
         path.to[parameter(name)] = value;
-        let blocked = solver.follow(&path).expect_err(name);
+        let blocked = solver.track(&path).expect_err(name);
         let Reason::Value(_) = blocked.reason else {
             panic!("{name}: {blocked:?}");
         };
@@ -329,7 +329,7 @@ fn parameters_that_make_no_contour_are_refused() {
         assert_eq!(solver.pose(), &before);
         path.to.clone_from(&path.from);
         straight_to(&solver, &mut path, 3.0);
-        solver.follow(&path).expect("the mechanism is as it was");
+        solver.track(&path).expect("the mechanism is as it was");
     }
 }
 

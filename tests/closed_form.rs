@@ -22,7 +22,7 @@ fn the_four_systems_move_as_their_closed_forms_say() {
         let (mut solver, mut path) = assembled(&mechanism);
         let (from, to) = exact.range;
         straight_to(&solver, &mut path, from);
-        solver.follow(&path).expect("the start can be reached");
+        solver.track(&path).expect("the start can be reached");
         let mut rates = Rates::new(solver.pose().q.len());
         let mut errors = Errors::default();
         // From rest with a constant acceleration, over one second.
@@ -39,7 +39,7 @@ fn the_four_systems_move_as_their_closed_forms_say() {
                 acceleration,
                 jump: 0.0,
             };
-            let progress = solver.follow(&path).expect("nothing is in the way");
+            let progress = solver.track(&path).expect("nothing is in the way");
             assert_eq!(progress.substeps, 1, "{}: an ordinary step", exact.file);
             let driver = Jet::new(
                 solver.pose().drivers[0],
@@ -75,7 +75,7 @@ fn a_long_chain_moves_as_its_first_loop() {
         for _ in 0..20 {
             let now = solver.pose().drivers[0];
             straight_to(&solver, &mut path, now + 0.05);
-            let progress = solver.follow(&path).expect("the crank turns fully");
+            let progress = solver.track(&path).expect("the crank turns fully");
             assert_eq!(progress.substeps, 1);
             let driver = Jet::new(0.0, [10.0, 3.0]);
             solver

@@ -29,13 +29,6 @@ const LAYERS: [(&str, &[&str]); 6] = [
 
 /// Circles that are still to be removed; each file belongs to one of them at most.
 const KNOWN_CIRCLES: &[&[&str]] = &[
-    &["mechanism/encoding.rs", "mechanism/source.rs"],
-    &[
-        "mechanism/expression/mod.rs",
-        "mechanism/expression/parse.rs",
-        "mechanism/expression/token.rs",
-        "mechanism/names.rs",
-    ],
     &[
         "kinematics/constraint/angle.rs",
         "kinematics/constraint/cam/contour.rs",

@@ -96,7 +96,7 @@ fn periodic_motions_keep_their_phase_over_a_thousand_turns() {
     for step in 0..16_000 {
         path.start = 0.25 * f64::from(step);
         path.duration = 0.25;
-        solver.follow(&path).expect("a wheel turns on for ever");
+        solver.track(&path).expect("a wheel turns on for ever");
         let quarters = f64::from(step / 4) + [0.5, 1.0, 1.0, 1.0][step as usize % 4];
         let exact = quarters * FRAC_PI_2;
         let ulp = exact.next_up() - exact;
@@ -115,7 +115,7 @@ fn a_table_follows_its_parameters() {
     let reach = mechanism.driver_id("reach").expect("it has one");
     path.duration = 0.3;
     path.to[lift.index()] = 0.2;
-    solver.follow(&path).expect("slides move freely");
+    solver.track(&path).expect("slides move freely");
     // At 0.15 of the cycle: polynomial 3-4-5 from 2 to 1 lifts, two thirds of the way.
     let tau: f64 = 2.0 / 3.0;
     let stroke = tau.powi(3) * (10.0 - 15.0 * tau + 6.0 * tau * tau);
@@ -139,11 +139,11 @@ fn times_that_parameters_disorder_are_refused_and_lose_nothing() {
     );
     let (mut solver, mut path) = assembled(&mechanism);
     path.duration = 0.2;
-    solver.follow(&path).expect("the file's values are right");
+    solver.track(&path).expect("the file's values are right");
     let before = solver.pose().clone();
     path.start = 0.2;
     path.to[ParameterId(0).index()] = 1.2;
-    let blocked = solver.follow(&path).expect_err("the times do not rise");
+    let blocked = solver.track(&path).expect_err("the times do not rise");
     let Reason::Value(error) = &blocked.reason else {
         panic!("{blocked:?}");
     };
@@ -153,7 +153,7 @@ fn times_that_parameters_disorder_are_refused_and_lose_nothing() {
     solver.restore(&before);
     path.to[0] = 0.4;
     path.duration = 0.2;
-    solver.follow(&path).expect("as before");
+    solver.track(&path).expect("as before");
     assert!((solver.pose().q[0] - 1.0).abs() < 1e-15);
 }
 
@@ -163,7 +163,7 @@ fn a_motion_without_rates_is_named() {
     let mut solver = wheel("'sqrt(1 - t)'");
     let mut path = Path::new(solver.mechanism());
     path.duration = 1.0;
-    solver.follow(&path).expect("a wheel turns freely");
+    solver.track(&path).expect("a wheel turns freely");
     let mut rates = Rates::new(3);
     let motion = at(&solver, 1.0);
     let error = solver
@@ -172,7 +172,7 @@ fn a_motion_without_rates_is_named() {
     let expected = "driver `turn` has no finite velocity or acceleration";
     assert_eq!(error.to_string(), expected);
     path.start = 1.0;
-    let blocked = solver.follow(&path).expect_err("there is no value");
+    let blocked = solver.track(&path).expect_err("there is no value");
     let Reason::Value(error) = &blocked.reason else {
         panic!("{blocked:?}");
     };
@@ -237,14 +237,14 @@ fn what_a_table_does_within_a_step_is_not_overlooked() {
         path.duration = step;
         for k in 0..20 {
             path.start = f64::from(k) * step;
-            solver.follow(&path).expect("within the reach of 3");
+            solver.track(&path).expect("within the reach of 3");
         }
         let (mut solver, mut path) = assembled(&parse(&text("3.1")));
         path.duration = step;
         let mut ended = None;
         for k in 0..10 {
             path.start = f64::from(k) * step;
-            if let Err(blocked) = solver.follow(&path) {
+            if let Err(blocked) = solver.track(&path) {
                 ended = Some(path.start + blocked.s * step);
                 break;
             }

@@ -77,7 +77,7 @@ fn turn(
         let angle = start + offset + TAU * f64::from(step) / f64::from(steps);
         straight_to(&solver, &mut path, angle);
         let progress = solver
-            .follow(&path)
+            .track(&path)
             .unwrap_or_else(|blocked| panic!("{} at {angle}: {blocked:?}", exact.file));
         crossings += progress.crossings;
         let driver = Jet::new(angle, [u, v]);
@@ -132,7 +132,7 @@ fn outputs_next_to_a_change_point_are_those_of_the_motion() {
         }
         for target in targets {
             straight_to(&solver, &mut path, target);
-            solver.follow(&path).expect("the crank turns fully");
+            solver.track(&path).expect("the crank turns fully");
             let driver = Jet::new(target, [1.0, -0.7]);
             let pose = solver.pose().clone();
             for restored in [false, true] {
@@ -189,14 +189,14 @@ fn a_pose_next_to_a_change_point_leads_on_with_the_same_bits() {
     let mechanism = crossed();
     let (mut solver, mut path) = assembled(&mechanism);
     straight_to(&solver, &mut path, PI - 0.001);
-    solver.follow(&path).expect("nothing is in the way");
+    solver.track(&path).expect("nothing is in the way");
     let pose = solver.pose().clone();
     assert_eq!(pose.crossings.len(), 1);
     let mut on = |solver: &mut Solver| {
         let mut seen = Vec::new();
         for target in [PI, PI + 0.003, PI - 0.002, PI + 0.1, PI + 1.0] {
             straight_to(solver, &mut path, target);
-            let progress = solver.follow(&path).expect("the crank turns fully");
+            let progress = solver.track(&path).expect("the crank turns fully");
             seen.push((solver.pose().clone(), progress));
         }
         seen
@@ -273,7 +273,7 @@ proptest! {
                 .iter()
                 .map(|limit| ((limit - crank) * way.signum()).rem_euclid(TAU))
                 .fold(f64::INFINITY, f64::min);
-            match solver.follow(&path) {
+            match solver.track(&path) {
                 Ok(_) => prop_assert!(expected.is_infinite(), "{expected}"),
                 Err(blocked) => {
                     let Reason::Singular(point) = &blocked.reason else {
@@ -288,7 +288,7 @@ proptest! {
                     let near = (solver.pose().drivers[0] - crank) * way.signum();
                     prop_assert!(near <= found && near > found - 1e-9);
                     straight_to(&solver, &mut path, crank);
-                    let back = solver.follow(&path);
+                    let back = solver.track(&path);
                     prop_assert!(back.is_ok(), "{blocked:?}\n{back:?}");
                     let off = (0..9).map(|k| (solver.pose().q[k] - start.q[k]).abs());
                     prop_assert!(off.fold(0.0, f64::max) < 1e-9);
@@ -322,7 +322,7 @@ fn a_slightly_wrong_parallelogram_moves_as_its_exact_lengths_say() {
             for step in 1..=20 {
                 let target = start + PI * f64::from(step) / 10.0;
                 straight_to(&solver, &mut path, target);
-                if let Err(end) = solver.follow(&path) {
+                if let Err(end) = solver.track(&path) {
                     blocked = Some(end.reason);
                     break;
                 }

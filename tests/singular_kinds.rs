@@ -17,7 +17,7 @@ use generated::{BAR, scissor_lift};
 fn go(solver: &mut Solver, target: f64) -> Result<Progress, Blocked> {
     let mut path = biela::kinematics::Path::new(solver.mechanism());
     straight_to(solver, &mut path, target);
-    solver.follow(&path)
+    solver.track(&path)
 }
 
 /// Parallelograms in a row, each hung on the one before: all of them flat at once.

@@ -37,7 +37,7 @@ proptest! {
             for step in &steps {
                 angle += step;
                 straight_to(&solver, &mut path, angle);
-                prop_assert!(solver.follow(&path).is_ok(), "{} at {angle}", exact.file);
+                prop_assert!(solver.track(&path).is_ok(), "{} at {angle}", exact.file);
                 let truth: Vec<_> = exact
                     .solution(&mechanism, Jet::constant(angle))
                     .iter()
@@ -58,7 +58,7 @@ proptest! {
         let (mut solver, mut path) = assembled(&mechanism);
         for length in lengths {
             straight_to(&solver, &mut path, length);
-            prop_assert!(solver.follow(&path).is_ok(), "at {length}");
+            prop_assert!(solver.track(&path).is_ok(), "at {length}");
             let solution = exact.solution(&mechanism, Jet::constant(length));
             let truth: Vec<_> = solution.iter().map(|q| q.value).collect();
             // 0.01 m from a limit of 0.65 m the arm's angle changes 12 times as fast as the length
@@ -75,7 +75,7 @@ fn a_whole_turn_in_one_step_is_a_whole_turn() {
     let before = solver.pose().q.clone();
     let target = solver.pose().drivers[0] + TAU;
     straight_to(&solver, &mut path, target);
-    let progress = solver.follow(&path).expect("the crank turns fully");
+    let progress = solver.track(&path).expect("the crank turns fully");
     // A sub-step of more than half a turn has chords that tell nothing of the way between.
     assert!((3..20).contains(&progress.substeps), "{progress:?}");
     assert_eq!(progress.checked, 0);
@@ -92,7 +92,7 @@ fn a_thousand_turns_keep_their_phase() {
     let start = solver.pose().drivers[0];
     for turn in 1..=1000 {
         straight_to(&solver, &mut path, start + TAU * f64::from(turn));
-        solver.follow(&path).expect("the crank turns fully");
+        solver.track(&path).expect("the crank turns fully");
     }
     let angle = solver.pose().drivers[0];
     // The crank's equation is phi − u = 0: its angle is the driver's to the last bit or two.
@@ -113,10 +113,10 @@ fn a_step_in_two_halves_is_the_same_step() {
         let now = whole.pose().drivers[0];
         let target = now + if exact.file == "tlv" { 0.1 } else { 1.0 };
         straight_to(&whole, &mut path, target);
-        whole.follow(&path).expect("nothing is in the way");
+        whole.track(&path).expect("nothing is in the way");
         for part in [0.5 * (now + target), target] {
             straight_to(&halves, &mut path, part);
-            halves.follow(&path).expect("nothing is in the way");
+            halves.track(&path).expect("nothing is in the way");
         }
         assert!(
             difference(&whole.pose().q, &halves.pose().q) < SAME_POSE,
@@ -133,7 +133,7 @@ fn the_way_back_ends_where_the_way_out_began() {
     let home = solver.pose().clone();
     for angle in [2.0, 5.0, 9.0, 5.0, 2.0, home.drivers[0]] {
         straight_to(&solver, &mut path, angle);
-        solver.follow(&path).expect("the crank turns fully");
+        solver.track(&path).expect("the crank turns fully");
     }
     assert!(difference(&solver.pose().q, &home.q) < SAME_POSE);
 }
@@ -145,14 +145,14 @@ fn a_dead_point_is_where_the_triangle_ends() {
         let mechanism = shipped("tlv");
         let (mut solver, mut path) = assembled(&mechanism);
         straight_to(&solver, &mut path, target);
-        let blocked = solver.follow(&path).expect_err("the triangle cannot close");
+        let blocked = solver.track(&path).expect_err("the triangle cannot close");
         let reached = solver.pose().drivers[0];
         assert!((reached - limit).abs() < 1e-9, "{reached} {limit}");
         assert!((blocked.s - (limit - 0.35) / (target - 0.35)).abs() < 1e-8);
         // The pose there is a valid one, and the way back is open.
         assert!(solver.residual() < 1e-14);
         straight_to(&solver, &mut path, 0.35);
-        solver.follow(&path).expect("the way back is open");
+        solver.track(&path).expect("the way back is open");
         assert!((solver.pose().q[2].to_degrees() - 60.0).abs() < 1e-9);
     }
 }
@@ -163,7 +163,7 @@ fn the_dead_point_itself_is_refused() {
     let mechanism = shipped("tlv");
     let (mut solver, mut path) = assembled(&mechanism);
     straight_to(&solver, &mut path, 0.65);
-    solver.follow(&path).expect_err("arm and base are in line");
+    solver.track(&path).expect_err("arm and base are in line");
     assert!(solver.pose().drivers[0] < 0.65);
     assert!(solver.pose().drivers[0] > 0.65 - 1e-9);
 }
@@ -174,7 +174,7 @@ fn a_distance_stays_positive() {
     let mechanism = shipped("tlv");
     let (mut solver, mut path) = assembled(&mechanism);
     straight_to(&solver, &mut path, -0.35);
-    solver.follow(&path).expect_err("no distance is negative");
+    solver.track(&path).expect_err("no distance is negative");
     assert!(solver.pose().drivers[0] >= 0.15);
 }
 
@@ -187,7 +187,7 @@ fn a_prescribed_motion_is_followed_along_its_own_curve() {
     let mechanism = parse(&text);
     let (mut solver, mut path) = assembled(&mechanism);
     path.duration = 1.0;
-    let blocked = solver.follow(&path).expect_err("the peak is at 0.75 m");
+    let blocked = solver.track(&path).expect_err("the peak is at 0.75 m");
     // 0.35 + 0.4 sin(pi t) = 0.65 at t = asin(3/4)/pi.
     let limit = 0.75_f64.asin() / PI;
     assert!((blocked.s - limit).abs() < 1e-8, "{} {limit}", blocked.s);
@@ -202,7 +202,7 @@ fn a_motion_at_rest_at_both_ends_is_followed_in_between() {
         .replace("start = 0.35", "motion = \"0.35 + 0.4*sin(pi*t)^4\"");
     let (mut solver, mut path) = assembled(&parse(&text));
     path.duration = 1.0;
-    let blocked = solver.follow(&path).expect_err("the peak is at 0.75 m");
+    let blocked = solver.track(&path).expect_err("the peak is at 0.75 m");
     // sin(pi t)^4 = 3/4.
     let limit = 0.75_f64.powf(0.25).asin() / PI;
     assert!((blocked.s - limit).abs() < 1e-8, "{} {limit}", blocked.s);
@@ -213,7 +213,7 @@ fn a_path_that_never_ends_is_given_up() {
     let (mut solver, mut path) = assembled(&shipped("four_bar"));
     for target in [1e8, 1e17] {
         straight_to(&solver, &mut path, target);
-        let blocked = solver.follow(&path).expect_err("that is too far to follow");
+        let blocked = solver.track(&path).expect_err("that is too far to follow");
         assert_eq!(blocked.reason, Reason::TooLong);
         assert!(solver.residual() < 1e-10);
     }
@@ -226,7 +226,7 @@ fn a_motion_that_leaves_its_domain_says_so() {
         .replace("start = \"30*deg\"", "motion = \"sqrt(0.5 - t)\"");
     let (mut solver, mut path) = assembled(&parse(&text));
     path.duration = 1.0;
-    let blocked = solver.follow(&path).expect_err("no root of -0.5");
+    let blocked = solver.track(&path).expect_err("no root of -0.5");
     assert!(matches!(blocked.reason, Reason::Value(_)), "{blocked:?}");
     assert!((blocked.s - 0.5).abs() < 1e-6);
 }
@@ -262,7 +262,7 @@ fn small_mechanisms_are_as_accurate_as_large_ones() {
         let (mut solver, mut path) = assembled(&parse(&text));
         for u in [0.35, 0.1, 0.45] {
             straight_to(&solver, &mut path, u * scale);
-            solver.follow(&path).expect("the rod reaches");
+            solver.track(&path).expect("the rod reaches");
             let y = (0.25 - u * u).sqrt() * scale;
             assert!(
                 (solver.pose().q[4] - y).abs() < 1e-14 * scale,
@@ -298,7 +298,7 @@ fn a_planet_keeps_its_phase_over_a_thousand_turns() {
     let (mut solver, mut path) = assembled(&mechanism);
     for turn in 1..=1000 {
         straight_to(&solver, &mut path, TAU * f64::from(turn));
-        solver.follow(&path).expect("gears turn fully");
+        solver.track(&path).expect("gears turn fully");
     }
     let arm = solver.pose().q[2];
     let planet = solver.pose().q[5];
@@ -331,7 +331,7 @@ fn a_pinion_rolls() {
     );
     let (mut solver, mut path) = assembled(&mechanism);
     straight_to(&solver, &mut path, PI);
-    solver.follow(&path).expect("the rack has no end");
+    solver.track(&path).expect("the rack has no end");
     assert!((solver.pose().q[0] + 0.02 * PI).abs() < 1e-15);
 }
 
@@ -343,9 +343,7 @@ fn parameters_move_the_mechanism_continuously() {
         .parameter_id("rocker_length")
         .expect("it is in the file");
     path.to[rocker.index()] = 0.35;
-    solver
-        .follow(&path)
-        .expect("a longer rocker closes as well");
+    solver.track(&path).expect("a longer rocker closes as well");
     // The same mechanism, written with the longer rocker.
     let text = std::fs::read_to_string("mechanisms/four_bar.toml")
         .expect("it is shipped")
@@ -374,7 +372,7 @@ fn a_restored_pose_goes_on_with_the_same_bits() {
             (1..50)
                 .map(|k| {
                     straight_to(solver, path, home.drivers[0] + step * f64::from(k));
-                    solver.follow(path).expect("nothing is in the way");
+                    solver.track(path).expect("nothing is in the way");
                     solver.pose().clone()
                 })
                 .collect::<Vec<_>>()
@@ -396,7 +394,7 @@ fn ten_thousand_steps_leave_no_residual_behind() {
     for step in 1..=10_000 {
         let position = start + TAU * f64::from(step) / 1000.0;
         straight_to(&solver, &mut path, position);
-        let progress = solver.follow(&path).expect("the crank turns fully");
+        let progress = solver.track(&path).expect("the crank turns fully");
         // A predictor of second order needs one correction, or two where the motion is fast.
         assert!(
             progress.substeps == 1 && progress.iterations <= 2,
@@ -424,7 +422,7 @@ fn a_turn_from_rest_is_followed_all_the_way() {
         acceleration: 2.0 * 5.3,
         jump: 0.0,
     };
-    let progress = solver.follow(&path).expect("the crank turns fully");
+    let progress = solver.track(&path).expect("the crank turns fully");
     assert_eq!(progress.crossings, 2);
     assert!((solver.pose().q[8] - (start + 5.3)).abs() < SAME_POSE);
 }
@@ -441,12 +439,12 @@ fn a_jump_beyond_all_rounding_is_refused() {
     let (mut solver, mut path) = assembled(&mechanism);
     let before = solver.pose().clone();
     straight_to(&solver, &mut path, -1e17);
-    let blocked = solver.follow(&path).expect_err("no distance is negative");
+    let blocked = solver.track(&path).expect_err("no distance is negative");
     assert!(matches!(blocked.reason, Reason::Value(_)), "{blocked:?}");
     assert_eq!(solver.pose().parameters, before.parameters);
     solver.restore(&before);
     straight_to(&solver, &mut path, 0.4);
-    solver.follow(&path).expect("the slide is as it was");
+    solver.track(&path).expect("the slide is as it was");
 }
 
 /// A slotted lever whose pivot lies on the pin's circle: where the pin runs over the pivot the
@@ -466,7 +464,7 @@ fn a_pin_runs_over_the_pivot_of_its_slot() {
     let (mut solver, mut path) = assembled(&mechanism);
     for target in [2.0, PI, 4.0, 2.0] {
         straight_to(&solver, &mut path, target);
-        solver.follow(&path).expect("the motion goes on");
+        solver.track(&path).expect("the motion goes on");
         assert!(
             (solver.pose().q[5] - 0.5 * target).abs() < SAME_POSE,
             "{target}"
@@ -504,7 +502,7 @@ fn ordinary_steps_are_one_substep() {
         for _ in 0..steps {
             let target = solver.pose().drivers[0] + TAU / 100.0;
             straight_to(&solver, &mut path, target);
-            let progress = solver.follow(&path).expect("nothing is in the way");
+            let progress = solver.track(&path).expect("nothing is in the way");
             assert_eq!(
                 (progress.substeps, progress.checked),
                 (1, 0),
@@ -521,7 +519,7 @@ fn large_blocks_are_checked_only() {
         let (mut solver, mut path) = assembled(&parse(&scissor_lift(cells)));
         let target = solver.pose().drivers[0] + 0.001;
         straight_to(&solver, &mut path, target);
-        let progress = solver.follow(&path).expect("nothing is in the way");
+        let progress = solver.track(&path).expect("nothing is in the way");
         assert_eq!(progress.checked == 0, proved, "{cells} cells: {progress:?}");
     }
 }

@@ -150,7 +150,7 @@ impl Stepper for Moving {
             };
         }
         self.solver
-            .follow(&self.path)
+            .track(&self.path)
             .expect("nothing is in the way");
         self.solver
             .solve_rates(|driver| drivers[driver.index()], &mut self.rates)

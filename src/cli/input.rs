@@ -73,7 +73,10 @@ pub(super) fn warn_of_misfits(solver: &Solver) {
 /// Returns the warnings of [`warn_of_misfits`].
 pub(super) fn misfits(solver: &Solver) -> Vec<Message> {
     let redundancies = solver.redundancies().into_iter().map(|r| r.to_string());
-    let misfits = solver.misfits().into_iter().map(|m| m.to_string());
+    let misfits = solver
+        .geometry_warnings()
+        .into_iter()
+        .map(|m| m.to_string());
     redundancies.chain(misfits).map(Message::Warning).collect()
 }
 

@@ -97,7 +97,7 @@ impl Motion {
         self.aim();
         self.path.start = self.solver.pose().time;
         self.path.duration = time - self.path.start;
-        if let Err(blocked) = self.solver.follow(&self.path) {
+        if let Err(blocked) = self.solver.track(&self.path) {
             return Err(self.describe(&blocked));
         }
         if let Some(approach) = self.solver.approach(&mut self.near_singular) {

@@ -113,7 +113,7 @@ fn turn(
 
 /// Follows a path as far as possible; false if the motion is blocked before its end.
 fn advance(solver: &mut Solver, path: &Path, poses: &mut Vec<Vec<f64>>) -> bool {
-    let followed = solver.follow(path);
+    let followed = solver.track(path);
     poses.push(solver.pose().q.clone());
     followed.is_ok()
 }

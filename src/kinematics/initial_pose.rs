@@ -1,166 +1,105 @@
-//! The first pose, from the estimates in the file (Ec. 3.6.9).
-//!
-//! Kernels are assembled one behind the other, each in the way that is nearest the estimates. One
-//! that does not close sends the search back to another way of those it depends on. Where all
-//! ways are excluded, by closed forms or by bounds over intervals, the mechanism is proved
-//! impossible; else it was just not found to close.
+//! The first pose, from the estimates in the file (Eq. 3.6.9) or by continuous motion from a known
+//! pose.
 
-use super::continuation::Progress;
+use super::assembly::estimate::{distance, go_to_estimate};
+use super::assembly::nearest::search_at_once;
+use super::assembly::search::search;
+use super::assembly::turns::choose_turns;
+use super::continuation::{PathTracker, Progress};
+use super::error::Error;
+use super::model::Model;
 use super::newton::SINGULAR;
-use super::solver::{Pose, Solver};
-use super::{Error, Path};
+use super::path::Path;
+use super::redundancy::{assemble_on_all, choose_rows};
+use super::singular::settle;
+use super::state::{Pose, State};
 
-/// How the pose for the first values was found.
+/// The way to the pose for the first values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
-    /// By continuous motion: the assembly mode is the one of the pose started from.
+    /// By continuous motion: the assembly mode is that of the pose at the start.
     Continuous(Progress),
-    /// From the estimates, because something was in the way; possibly in another assembly mode.
+    /// From the estimates, as the motion was blocked; possibly in another assembly mode.
     Reassembled(Assembly),
 }
 
-/// How an assembly went.
+/// The outcome of an assembly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assembly {
     /// Newton corrections after the minimisation.
     pub iterations: u32,
-    /// The largest move of a body from its estimate, in radians and characteristic lengths.
+    /// The largest distance of a body from its estimate, in radians and characteristic lengths.
     pub distance: f64,
 }
 
-/// How far a body is from its estimate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Move {
-    /// Of its origin \[m\].
-    pub length: f64,
-    /// Of its angle \[rad\].
-    pub angle: f64,
+/// Finds the pose at the end of `path` near the file's estimates.
+///
+/// # Errors
+///
+/// Those of [`Solver::assemble`](super::Solver::assemble).
+pub(super) fn assemble(
+    model: &mut Model,
+    state: &mut State,
+    path: &Path,
+) -> Result<Assembly, Error> {
+    match assemble_rows(model, state, path, !model.redundant.is_empty()) {
+        // Or redundant in a way that numbers alone tell.
+        Err(Error::Singular { .. }) => {
+            choose_rows(model, state, path)?;
+            assemble_rows(model, state, path, true)
+        }
+        assembled => assembled,
+    }
 }
 
-impl Solver {
-    /// Finds the pose at the end of `path` that is near the file's estimates: minimises
-    /// (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi for growing r (Ec. 3.6.9), then applies Newton–Raphson.
-    ///
-    /// Angles and lengths are scaled by the mechanism's size. An assembled angle is the
-    /// representative nearest its estimate, unless an angle driver says which turn it is.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotAssembled`] with what stays open, and whether there is a proof that the
-    /// mechanism cannot close; [`Error::Singular`] if the mechanism closes
-    /// in a singular position; [`Error::NotFinite`] and [`Error::NotPositive`] for values that
-    /// make no mechanism. The solver is then without a valid pose until it is assembled or
-    /// [restored](Self::restore); after the first of these it stands at the nearest one.
-    pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
-        match self.assemble_rows(path, !self.set_aside.is_empty()) {
-            // Or redundant in a way that only numbers tell.
-            Err(Error::Singular { .. }) => {
-                self.choose_rows(path)?;
-                self.assemble_rows(path, true)
-            }
-            assembled => assembled,
+/// Assembles with the rows chosen so far; `on_all` closes the redundant ones, too.
+fn assemble_rows(
+    model: &mut Model,
+    state: &mut State,
+    path: &Path,
+    on_all: bool,
+) -> Result<Assembly, Error> {
+    let estimate = go_to_estimate(model, state, path)?;
+    let iterations = if on_all {
+        assemble_on_all(model, state, &estimate)?
+    } else {
+        match search(model, state, &estimate) {
+            Ok(iterations) => iterations,
+            Err(failure) => search_at_once(model, state, failure, &estimate)?,
         }
+    };
+    choose_turns(&model.system, state, &estimate);
+    state.refresh(model)?;
+    let rcond = model.plan.rcond();
+    if rcond < SINGULAR {
+        return Err(Error::Singular {
+            rcond,
+            bodies: Vec::new(),
+        });
     }
+    settle(model, state);
+    Ok(Assembly {
+        iterations,
+        distance: distance(&model.system, state, &estimate),
+    })
+}
 
-    /// Assembles with the rows chosen so far, with an eye on all if some are redundant.
-    fn assemble_rows(&mut self, path: &Path, on_all: bool) -> Result<Assembly, Error> {
-        let estimate = self.go_to_estimate(path)?;
-        let iterations = if on_all {
-            self.assemble_on_all(&estimate)?
-        } else {
-            match self.search(&estimate) {
-                Ok(iterations) => iterations,
-                Err(deadlock) => self.search_at_once(deadlock, &estimate)?,
-            }
-        };
-        self.choose_turns(&estimate);
-        self.refresh()?;
-        let rcond = self.plan.rcond();
-        if rcond < SINGULAR {
-            return Err(Error::Singular {
-                rcond,
-                bodies: Vec::new(),
-            });
-        }
-        self.settle();
-        Ok(Assembly {
-            iterations,
-            distance: self.distance_from(&estimate),
-        })
-    }
-
-    /// Takes all values from the end of `path`, and puts the bodies at the estimates, which are
-    /// returned.
-    pub(super) fn go_to_estimate(&mut self, path: &Path) -> Result<Vec<f64>, Error> {
-        self.release_crossings();
-        self.pose.parameters.copy_from_slice(&path.to);
-        self.take_over_parameters()?;
-        self.parameters_move = path.moves_parameters();
-        self.set_path(path, 1.0)?;
-        self.pose.drivers.copy_from_slice(&self.next_drivers);
-        let estimate = self.estimate()?;
-        self.pose.q.copy_from_slice(&estimate);
-        self.stand_at_pose();
-        self.fix_turns();
-        Ok(estimate)
-    }
-
-    /// The largest move of a body from its estimate, in radians and characteristic lengths.
-    pub(super) fn distance_from(&self, estimate: &[f64]) -> f64 {
-        let size = self.at.size();
-        let moves = self.moves_from(estimate);
-        let scaled = moves.map(|moved| (moved.length / size).max(moved.angle));
-        scaled.fold(0.0, f64::max)
-    }
-
-    /// How far each body is from its estimate, where the solver stands.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotFinite`] for estimates that have no value with the parameters in force.
-    pub fn moves(&self) -> Result<Vec<Move>, Error> {
-        Ok(self.moves_from(&self.estimate()?).collect())
-    }
-
-    fn moves_from<'a>(&'a self, estimate: &'a [f64]) -> impl Iterator<Item = Move> + 'a {
-        let bodies = self.system.mechanism().bodies.len();
-        let poses = self.pose.q[..3 * bodies].chunks_exact(3);
-        let moved = poses.zip(estimate.chunks_exact(3));
-        moved.map(|(q, guess)| Move {
-            length: (q[0] - guess[0]).hypot(q[1] - guess[1]),
-            angle: (q[2] - guess[2]).abs(),
-        })
-    }
-
-    /// Finds the pose at the end of `path`: moves there continuously from `home`, which is at its
-    /// start, or, if something is in the way, assembles there from the estimates.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`assemble`](Self::assemble).
-    pub fn start(&mut self, home: &Pose, path: &Path) -> Result<Start, Error> {
-        self.restore(home);
-        match self.follow(path) {
-            Ok(progress) => Ok(Start::Continuous(progress)),
-            Err(_) => self.assemble(path).map(Start::Reassembled),
-        }
-    }
-
-    /// q⁰, with the parameter values in force.
-    pub(super) fn estimate(&self) -> Result<Vec<f64>, Error> {
-        let parameters = &self.pose.parameters;
-        let bodies = &self.system.mechanism().bodies;
-        let mut estimate = vec![0.0; self.system.unknowns()];
-        for (body, q) in bodies.iter().zip(estimate.chunks_exact_mut(3)) {
-            for (q, expression) in q.iter_mut().zip(&body.estimate) {
-                *q = expression.evaluate(&|p| parameters[p.index()], 0.0);
-                if !q.is_finite() {
-                    return Err(Error::NotFinite {
-                        what: format!("the estimate of body `{}`", body.name),
-                    });
-                }
-            }
-        }
-        Ok(estimate)
+/// Finds the pose at the end of `path`: tracks the path from `home`, which is at its start, or
+/// assembles at its end if the motion is blocked.
+///
+/// # Errors
+///
+/// Those of [`assemble`].
+pub(super) fn start(
+    model: &mut Model,
+    state: &mut State,
+    tracker: &mut PathTracker,
+    home: &Pose,
+    path: &Path,
+) -> Result<Start, Error> {
+    state.restore(model, home);
+    match tracker.track(model, state, path) {
+        Ok(progress) => Ok(Start::Continuous(progress)),
+        Err(_) => assemble(model, state, path).map(Start::Reassembled),
     }
 }

@@ -2,25 +2,25 @@
 //!
 //! The formulation is Haug's with Cartesian generalized coordinates, q = \[x, y, phi\] for each
 //! moving body. With the kinematic constraints and the drivers as one system Phi(q, t) = 0
-//! (Ec. 3.6.3):
+//! (Eq. 3.6.3):
 //!
 //! | | | |
 //! |---|---|---|
-//! | position | Phi_q Δq = −Phi | Newton–Raphson, Ec. 3.6.7 and 3.6.8 |
-//! | velocity | Phi_q q̇ = −Phi_t = ν | Ec. 3.6.10 |
-//! | acceleration | Phi_q q̈ = −(Phi_q q̇)_q q̇ − 2 Phi_qt q̇ − Phi_tt = γ | Ec. 3.6.11 |
-//! | sensitivity | Phi_q δq = δu − Phi_p δp | and the derivatives of Ec. 3.6.10 and 3.6.11 |
-//! | assembly | min (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi, r growing | Ec. 3.6.9 |
+//! | position | Phi_q Δq = −Phi | Newton–Raphson, Eq. 3.6.7 and 3.6.8 |
+//! | velocity | Phi_q q̇ = −Phi_t = ν | Eq. 3.6.10 |
+//! | acceleration | Phi_q q̈ = −(Phi_q q̇)_q q̇ − 2 Phi_qt q̇ − Phi_tt = γ | Eq. 3.6.11 |
+//! | sensitivity | Phi_q δq = δu − Phi_p δp | and the derivatives of Eq. 3.6.10 and 3.6.11 |
+//! | assembly | min (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi, r growing | Eq. 3.6.9 |
 //!
 //! The system is solved block by block: [`Structure`] finds which equations determine which
-//! unknowns and in which order, and a plan compiled from it has a kernel for each block, straight
+//! unknowns and in which order, and a plan compiled from it has a block for each block, straight
 //! code for the dyads of which most mechanisms consist. The work of a step is proportional to the
 //! number of bodies. Position, velocity and acceleration share one factorisation a block.
 //!
 //! Redundant equations are found by rank, set aside and watched: see [`Solver::redundancies`].
 //!
 //! [`System`] has the equations and their rows, [`Solver`] a mechanism at one pose, which it can
-//! [assemble](Solver::assemble), [move along a path](Solver::follow) and give
+//! [assemble](Solver::assemble), [track along a path](Solver::track) and give
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.
 
 mod analysis;
@@ -34,6 +34,7 @@ mod element;
 mod error;
 mod initial_pose;
 mod linear;
+mod model;
 mod newton;
 mod path;
 mod redundancy;
@@ -41,14 +42,16 @@ mod redundancy;
 mod reference;
 mod singular;
 mod solver;
+mod state;
 mod structure;
 mod system;
 pub mod variation;
 
 pub use analysis::{
-    ChangePoint, Direction, End, Misfit, MisfitKind, Mode, Modes, Range, RangeSettings, Sample,
-    Sensitivity,
+    ChangePoint, Direction, End, GeometryWarning, GeometryWarningKind, Mode, Modes, Range,
+    RangeSettings, Sample, Sensitivity,
 };
+pub use assembly::estimate::Move;
 pub use block::Crossing;
 pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
@@ -58,10 +61,11 @@ pub use element::Element;
 #[cfg(feature = "cli")]
 pub(crate) use error::in_line;
 pub use error::{Error, OpenJoint, Proof, Verdict};
-pub use initial_pose::{Assembly, Move, Start};
+pub use initial_pose::{Assembly, Start};
 pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
-pub use solver::{Pose, Solver};
+pub use solver::Solver;
+pub use state::Pose;
 pub use structure::{Dependencies, Structure};
 pub use system::{Equation, System, Target, Targets};

@@ -1,17 +1,17 @@
-//! How Newton–Raphson on a part of the position equations (Ec. 3.6.7 and 3.6.8) is judged.
+//! Limits of Newton–Raphson on the position equations (Eq. 3.6.7 and 3.6.8), and its outcome.
 
-/// How the correction of a prediction went.
+/// The outcome of a correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Correction {
     /// Corrections applied.
     pub(super) iterations: u32,
-    /// A cheap measure of how far from singular the Jacobian is where it ended, one at best:
-    /// small wherever the reciprocal condition is, not the other way round.
+    /// A cheap measure of the distance from a singular position, one at best: it is small wherever
+    /// the reciprocal condition is, not the other way round.
     pub(super) regularity: f64,
 }
 
 impl Default for Correction {
-    /// Nothing to correct.
+    /// Returns the outcome where nothing had to be corrected.
     fn default() -> Self {
         Self {
             iterations: 0,
@@ -20,19 +20,21 @@ impl Default for Correction {
     }
 }
 
-/// No pose was found, or one that may not be on the motion that led here.
+/// No pose was found, or one that may be off the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Rejected;
 
-/// A residual of this many times its estimated rounding error counts as zero.
+/// A residual up to this many times its estimated rounding error counts as zero.
 pub(super) const AT_ROUNDING: f64 = 4.0;
-/// So does one that has stopped falling and is below this many times its rounding error: the
-/// estimate leaves out what sums and products inside a row add.
+/// So does a residual up to this many times its rounding error that has stopped falling: the
+/// estimate leaves out the sums and products inside a row.
 pub(super) const STALLED: f64 = 100.0;
 
-/// Newton converges quadratically from a good prediction; one that needs more is halved.
+/// Most corrections in a step: Newton–Raphson converges quadratically from a good prediction.
 pub(super) const MAX_ITERATIONS: u32 = 8;
+/// Most corrections in an assembly, which may also creep into a nearly singular position.
+pub(super) const MAX_ASSEMBLY_ITERATIONS: u32 = 30;
 
-/// A reciprocal condition below this is that of a singular position: there Newton ends within
-/// the square root of the machine's rounding, and rates mean nothing.
+/// A reciprocal condition below this belongs to a singular position: there Newton–Raphson ends
+/// within the square root of the machine's rounding, and rates mean nothing.
 pub(super) const SINGULAR: f64 = 1e-7;

@@ -16,17 +16,19 @@ use proptest::prelude::*;
 
 /// Phi and Phi_q at the solver's pose, as they are.
 fn equations(solver: &Solver) -> (DVector<f64>, DMatrix<f64>) {
-    let equations = solver.system.equations();
+    let equations = solver.system().equations();
     let order = equations.len();
     let mut phi = DVector::zeros(order);
     let mut phi_q = DMatrix::zeros(order, order);
     for (row, equation) in equations.iter().enumerate() {
         let target = solver
-            .system
-            .target(row, &solver.targets, &solver.pose.drivers);
-        phi[row] = equation.constraint.value(&solver.at) - target;
+            .system()
+            .target(row, &solver.state.targets, &solver.pose().drivers);
+        phi[row] = equation.constraint.value(&solver.state.at) - target;
         let mut gradient = Gradient::new();
-        equation.constraint.gradient(&solver.at, &mut gradient);
+        equation
+            .constraint
+            .gradient(&solver.state.at, &mut gradient);
         for (column, value) in gradient.entries() {
             phi_q[(row, column)] += value;
         }
@@ -35,9 +37,9 @@ fn equations(solver: &Solver) -> (DVector<f64>, DMatrix<f64>) {
 }
 
 /// Asserts that q is within rounding of the root that Newton–Raphson on all equations finds from
-/// there, and that the rates solve Ec. 3.6.10 and 3.6.11. Returns the reciprocal condition.
+/// there, and that the rates solve Eq. 3.6.10 and 3.6.11. Returns the reciprocal condition.
 fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
-    let mut rates = Rates::new(solver.pose.q.len());
+    let mut rates = Rates::new(solver.pose().q.len());
     solver
         .solve_rates(|driver| drivers[driver.index()], &mut rates)
         .unwrap_or_else(|error| panic!("{what}: {error}"));
@@ -52,10 +54,10 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
     let rounding = 100.0 * f64::EPSILON / rcond;
 
     let off = solve(&phi);
-    let size = largest(&solver.pose.q);
+    let size = largest(&solver.pose().q);
     assert!(off.amax() <= rounding * size, "{what}: q {:e}", off.amax());
 
-    let equations = solver.system.equations();
+    let equations = solver.system().equations();
     let driver = |row: usize| match equations[row].target {
         Target::Constant(_) => Jet::constant(0.0),
         Target::Driver(driver) => drivers[driver.index()],
@@ -70,7 +72,7 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
     let gamma = DVector::from_fn(order, |row, _| {
         let quadratic = equations[row]
             .constraint
-            .quadratic(&solver.at, rates.velocity());
+            .quadratic(&solver.state.at, rates.velocity());
         driver(row).second() - quadratic
     });
     let acceleration = DVector::from_column_slice(rates.acceleration());
@@ -94,18 +96,23 @@ pub(super) fn assembled(source: &Source) -> (Solver, Path) {
 
 /// Moves each driver by its part of `by`, as far as it goes.
 fn move_on(solver: &mut Solver, path: &mut Path, by: f64) {
-    path.start = solver.pose.time;
-    path.from.copy_from_slice(&solver.pose.parameters);
-    path.to.copy_from_slice(&solver.pose.parameters);
+    path.start = solver.pose().time;
+    path.from.copy_from_slice(&solver.pose().parameters);
+    path.to.copy_from_slice(&solver.pose().parameters);
     path.duration = by.abs();
-    for (k, (curve, now)) in path.curves.iter_mut().zip(&solver.pose.drivers).enumerate() {
+    for (k, (curve, now)) in path
+        .curves
+        .iter_mut()
+        .zip(&solver.pose().drivers)
+        .enumerate()
+    {
         if let Curve::Input { position, jump, .. } = curve {
             *position = now + by / (k + 1) as f64;
             *jump = now - *position;
         }
     }
     // A dead point ends the way; where it ended is as good a place to look.
-    let _ = solver.follow(path);
+    let _ = solver.track(path);
 }
 
 #[test]
@@ -120,7 +127,7 @@ fn every_shipped_mechanism_agrees() {
         let name = file.display().to_string();
         let source = Source::open(name.clone(), &file).expect("it can be read");
         let (mut solver, mut path) = assembled(&source);
-        let drivers: Vec<_> = (0..solver.pose.drivers.len())
+        let drivers: Vec<_> = (0..solver.pose().drivers.len())
             .map(|k| Jet::new(0.0, [1.0 + 0.5 * k as f64, 0.3 - k as f64]))
             .collect();
         for _ in 0..10 {
@@ -268,7 +275,7 @@ proptest! {
         for _ in 0..5 {
             // Where a position is all but singular both sides are as uncertain as each other, and
             // next to a change point the solver is the more accurate one.
-            if solver.rcond() > 1e-4 && solver.pose.crossings.is_empty() {
+            if solver.rcond() > 1e-4 && solver.pose().crossings.is_empty() {
                 check(&mut solver, &[driver], &text);
             }
             move_on(&mut solver, &mut path, step);

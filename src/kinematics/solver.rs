@@ -1,57 +1,26 @@
-//! A mechanism at one pose, with the work space to move it.
+//! The solver: a mechanism at one pose, and all that can be asked of it.
 
 use std::sync::Arc;
 
-use super::block::{Crossing, Plan, Work};
-use super::certificate::Tubes;
-use super::configuration::Configuration;
-use super::constraint::{Constraint, Gradient, of_coordinate, point_acceleration, point_velocity};
-use super::newton::Rejected;
-use super::path::Motions;
-use super::path::Rates;
-use super::redundancy::SetAside;
+use super::analysis::{self, Direction, GeometryWarning, Modes, Range, RangeSettings, Sensitivity};
+use super::assembly::estimate::{Move, estimate, moves};
+use super::block::Crossing;
+use super::continuation::{Blocked, PathTracker, Progress};
+use super::error::Error;
+use super::initial_pose::{self, Assembly, Start};
+use super::model::Model;
+use super::path::{Path, Rates};
+use super::redundancy::{self, Redundancy};
+use super::singular::{self, Approach};
+use super::state::{Pose, State};
 use super::structure::Structure;
-use super::system::{System, Targets};
-use super::{Error, Path};
+use super::system::System;
 use crate::mechanism::{DriverId, Jet, MarkerId, Mechanism};
-
-/// Everything that decides where a mechanism is and how it goes on from there.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pose {
-    /// Time \[s\].
-    pub time: f64,
-    /// All parameters, derived ones included \[SI\].
-    pub parameters: Vec<f64>,
-    /// The values u of all drivers \[m or rad\].
-    pub drivers: Vec<f64>,
-    /// Generalized coordinates, \[m, m, rad\] for each body.
-    pub q: Vec<f64>,
-    /// Whole turns of the angle rows, one a row of the system.
-    pub turns: Vec<i32>,
-    /// The change points next to which the mechanism is, none as a rule.
-    pub crossings: Vec<Arc<Crossing>>,
-}
-
-impl Pose {
-    fn copy_from(&mut self, other: &Self) {
-        self.crossings.clone_from(&other.crossings);
-        self.copy_place(other);
-    }
-
-    /// All but the crossings.
-    fn copy_place(&mut self, other: &Self) {
-        self.time = other.time;
-        self.parameters.copy_from_slice(&other.parameters);
-        self.drivers.copy_from_slice(&other.drivers);
-        self.q.copy_from_slice(&other.q);
-        self.turns.copy_from_slice(&other.turns);
-    }
-}
 
 /// Solves position, velocity and acceleration of one mechanism.
 ///
-/// A solver always stands at a pose. [`assemble`](Self::assemble) finds the first one,
-/// [`follow`](Self::follow) moves it continuously, [`restore`](Self::restore) puts it back to a
+/// A solver is always at a pose. [`assemble`](Self::assemble) finds the first one,
+/// [`track`](Self::track) moves it continuously, [`restore`](Self::restore) puts it back to a
 /// saved one. All storage is made in [`new`](Self::new).
 ///
 /// ```
@@ -70,59 +39,10 @@ impl Pose {
 /// ```
 #[derive(Debug)]
 pub struct Solver {
-    pub(super) system: System,
-    pub(super) structure: Structure,
-    /// Redundant rows.
-    pub(super) set_aside: SetAside,
-    pub(super) measures: Vec<Box<dyn Constraint>>,
-    pub(super) plan: Plan,
-    pub(super) pose: Pose,
-    /// The bodies at the pose, outside of the calls that look for another one.
-    pub(super) at: Configuration,
-    pub(super) targets: Targets,
-    /// Whether `at`, `targets` and the plan are those of the pose's parameters.
-    parameters_taken: bool,
-    /// Whether the plan has the pivots of its sparse matrices.
-    pivots_chosen: bool,
-    /// Whether the plan is factorised at the pose, and, with a single driver, `flow` belongs to
-    /// the pose.
-    pub(super) factorised: bool,
-    /// Rates of q: with a single driver the derivatives with respect to its value, from which
-    /// all others follow; else those along a path.
-    pub(super) flow: Rates,
-    /// The prescribed motions for the pose's parameters.
-    pub(super) motions: Motions,
-    /// Prescribed motions, parameters and drivers along a path on which parameters move.
-    pub(super) path_motions: Motions,
-    pub(super) path_parameters: Vec<Jet>,
-    /// Whether they differ between the ends of the path that is followed.
-    pub(super) parameters_move: bool,
-    /// Time and parameters where a sub-step starts.
-    pub(super) origin_time: f64,
-    pub(super) origin_parameters: Vec<f64>,
-    pub(super) path_drivers: Vec<Jet>,
-    /// The drivers where a sub-step starts.
-    pub(super) origin_drivers: Vec<Jet>,
-    /// The values of all drivers that a step goes to.
-    pub(super) next_drivers: Vec<f64>,
-    /// Where everything stays in a sub-step.
-    pub(super) tubes: Tubes,
-    /// Rates of the drivers that the host gives.
-    host_drivers: Vec<Jet>,
-    /// The least regularity of all kernels at the pose, when they are factorised there.
-    pub(super) regularity: f64,
-    /// The change points passed on the path followed last.
-    pub(super) crossed: Vec<Arc<Crossing>>,
+    pub(super) model: Model,
+    pub(super) state: State,
+    pub(super) tracker: PathTracker,
 }
-
-/// Rates were asked for where there are none.
-pub(super) const SINGULAR_HERE: Error = Error::Singular {
-    rcond: 0.0,
-    bodies: Vec::new(),
-};
-
-/// The rates of a single driver with respect to its own value.
-pub(super) const UNIT: [Jet; 1] = [Jet::new(0.0, [1.0, 0.0])];
 
 impl Solver {
     /// Writes down the equations, analyses their structure and makes all storage.
@@ -130,83 +50,95 @@ impl Solver {
     /// # Errors
     ///
     /// [`Error::Structure`] if the drivers do not match the degrees of freedom. Where equations and
-    /// unknowns do not pair up, the mechanism is looked at in numbers, at the file's own values;
-    /// then also those of [`assemble`](Self::assemble).
+    /// unknowns do not pair up, numbers decide, at the file's own values; then also those of
+    /// [`assemble`](Self::assemble).
     pub fn new(mechanism: Arc<Mechanism>) -> Result<Self, Error> {
         let path = Path::new(&mechanism);
-        let system = System::new(Arc::clone(&mechanism));
-        let structure = Structure::new(&system, &[]);
-        let pairs_up = structure.is_some();
-        let structure = structure.unwrap_or_else(|| Structure::of_nothing(&system));
-        let order = system.unknowns();
-        let drivers = mechanism.drivers.len();
-        let pose = Pose {
-            time: path.start,
-            parameters: path.from,
-            drivers: vec![0.0; drivers],
-            q: vec![0.0; order],
-            turns: vec![0; system.equations().len()],
-            crossings: Vec::new(),
-        };
-        let motions = Motions::new(&mechanism);
-        let measures = mechanism.measures.iter();
-        let mut solver = Self {
-            plan: Plan::new(&system, &structure),
-            structure,
-            set_aside: SetAside::default(),
-            measures: measures
-                .map(|measure| of_coordinate(&measure.coordinate))
-                .collect(),
-            targets: system.targets(),
-            parameters_taken: false,
-            pivots_chosen: false,
-            path_motions: motions.clone(),
-            motions,
-            path_parameters: vec![Jet::constant(0.0); pose.parameters.len()],
-            parameters_move: false,
-            origin_time: pose.time,
-            origin_parameters: pose.parameters.clone(),
-            path_drivers: vec![Jet::constant(0.0); drivers],
-            origin_drivers: vec![Jet::constant(0.0); drivers],
-            next_drivers: vec![0.0; drivers],
-            tubes: Tubes::new(&system),
-            host_drivers: vec![Jet::constant(0.0); drivers],
-            pose,
-            at: system.configuration(),
-            regularity: 0.0,
-            crossed: Vec::new(),
-            factorised: false,
-            flow: Rates::new(order),
-            system,
-        };
+        let (mut model, pairs_up) = Model::new(mechanism);
+        let mut state = State::new(&model.system);
         if !pairs_up {
-            solver.choose_rows(&Path::new(&mechanism))?;
+            redundancy::choose_rows(&mut model, &mut state, &path)?;
         }
-        Ok(solver)
+        Ok(Self {
+            tracker: PathTracker::new(&model.system),
+            model,
+            state,
+        })
     }
 
-    /// The mechanism.
+    /// Returns the mechanism.
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {
-        self.system.mechanism()
+        self.model.system.mechanism()
     }
 
-    /// Its equations.
+    /// Returns its equations.
     #[must_use]
     pub fn system(&self) -> &System {
-        &self.system
+        &self.model.system
     }
 
-    /// Which equations determine which unknowns; redundant ones take no part.
+    /// Returns the structure of the equations that are solved; those set aside take no part.
     #[must_use]
     pub fn structure(&self) -> &Structure {
-        &self.structure
+        &self.model.structure
     }
 
-    /// Where the mechanism is.
+    /// Returns the pose.
     #[must_use]
     pub fn pose(&self) -> &Pose {
-        &self.pose
+        &self.state.pose
+    }
+
+    /// Finds the pose at the end of `path` near the file's estimates: minimises
+    /// (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi for growing r (Eq. 3.6.9), then applies Newton–Raphson.
+    ///
+    /// Angles and lengths are scaled by the mechanism's size. An assembled angle is the
+    /// representative nearest its estimate, unless an angle driver says which turn it is.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotAssembled`] with the joints that stay open, and a proof that the mechanism
+    /// cannot close, if there is one; [`Error::Singular`] if it closes in a singular position;
+    /// [`Error::NotFinite`] and [`Error::NotPositive`] for values without a mechanism. The solver is
+    /// then without a valid pose until it is assembled or [restored](Self::restore); after the
+    /// first of these its pose is the nearest one.
+    pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
+        initial_pose::assemble(&mut self.model, &mut self.state, path)
+    }
+
+    /// Finds the pose at the end of `path`: moves there continuously from `home`, which is at its
+    /// start, or assembles there from the estimates if the motion is blocked.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`assemble`](Self::assemble).
+    pub fn start(&mut self, home: &Pose, path: &Path) -> Result<Start, Error> {
+        initial_pose::start(
+            &mut self.model,
+            &mut self.state,
+            &mut self.tracker,
+            home,
+            path,
+        )
+    }
+
+    /// Moves the mechanism along `path`, at whose start its pose must be. Change points on the way
+    /// are crossed on the smooth continuation of the motion. Allocates nothing, unless a block
+    /// comes near a singular position.
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] if the end cannot be reached on the continuous motion. The pose is then the last
+    /// one reached, which is a valid one.
+    pub fn track(&mut self, path: &Path) -> Result<Progress, Blocked> {
+        self.tracker.track(&mut self.model, &mut self.state, path)
+    }
+
+    /// Returns the change points that the last call of [`track`](Self::track) passed, in order.
+    #[must_use]
+    pub fn crossed(&self) -> &[Arc<Crossing>] {
+        self.tracker.crossed()
     }
 
     /// Puts the mechanism back to a pose that this solver, or one of the same mechanism, was at.
@@ -216,59 +148,41 @@ impl Solver {
     ///
     /// If the pose belongs to another mechanism.
     pub fn restore(&mut self, pose: &Pose) {
-        self.parameters_taken &= self.pose.parameters == pose.parameters;
-        self.release_crossings();
-        self.pose.copy_place(pose);
-        if !self.parameters_taken {
-            self.take_over_parameters()
-                .expect("the parameters of a pose were valid when it was solved");
-        }
-        self.targets.turns.copy_from_slice(&self.pose.turns);
-        if !pose.crossings.is_empty() {
-            self.return_to_first_rows();
-        }
-        self.bridge_all(&pose.crossings);
-        self.plan.forget_boxes();
-        self.stand_at_pose();
+        self.state.restore(&mut self.model, pose);
     }
 
-    /// Lets go of what the way to the present pose has left behind, the pivots of sparse
-    /// matrices, proofs that hold for several steps and the choice among redundant rows: from here
-    /// on everything depends on the pose alone, to the last bit.
+    /// Forgets all that the way to the present pose has left: pivots of sparse matrices, proofs
+    /// that hold for several steps, the choice among redundant rows. From here on everything depends
+    /// on the pose alone, to the last bit.
     pub fn forget_way(&mut self) {
-        self.plan.forget_pivots();
-        self.plan.forget_boxes();
-        self.stand_at_pose();
-        // Where no choice of rows is regular, whoever goes on from here is told.
-        let _ = self.stand_on_fit_rows();
+        self.model.plan.forget_pivots();
+        self.model.plan.forget_proofs();
+        self.state.move_to_pose(&self.model.system);
+        // If no choice of rows is regular, the next step says so.
+        let _ = redundancy::return_to_fit_rows(&mut self.model, &mut self.state);
     }
 
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates
     /// nothing.
     pub fn save(&self, pose: &mut Pose) {
-        pose.copy_from(&self.pose);
+        pose.copy_from(&self.state.pose);
     }
 
-    /// Largest scaled residual of Phi at the present pose: metres over the mechanism's
+    /// Returns the largest scaled residual of Phi at the present pose: metres over the mechanism's
     /// characteristic length, radians.
     #[must_use]
     pub fn residual(&self) -> f64 {
-        self.system
-            .largest_residual(&self.at, &self.targets, &self.pose.drivers)
+        self.state.residual(&self.model.system)
     }
 
-    /// Scaled reciprocal condition of the Jacobian at the present pose: 1 is best, 0 singular.
-    /// It is that of the part of the mechanism that is nearest to a singular position.
+    /// Returns the scaled reciprocal condition of the Jacobian at the present pose: 1 is best, 0
+    /// singular. It is that of the block nearest to a singular position.
     pub fn rcond(&mut self) -> f64 {
-        if self.refresh().is_ok() {
-            self.plan.rcond()
-        } else {
-            0.0
-        }
+        self.state.rcond(&mut self.model)
     }
 
-    /// Rates of q at the present pose for given rates of the drivers (`first` and `second` of
-    /// each [`Jet`]; `value` is not read), by Ec. 3.6.10 and 3.6.11. Allocates nothing.
+    /// Solves the rates of q at the present pose for given rates of the drivers (`first` and
+    /// `second` of each [`Jet`]; `value` is not read), by Eq. 3.6.10 and 3.6.11. Allocates nothing.
     ///
     /// # Errors
     ///
@@ -279,130 +193,118 @@ impl Solver {
         driver: impl Fn(DriverId) -> Jet,
         rates: &mut Rates,
     ) -> Result<(), Error> {
-        self.refresh()?;
-        let finite = if self.has_unit() {
-            let [first, second] = driver(DriverId(0)).derivatives;
-            self.flow.run(first, second, rates)
-        } else {
-            for (index, jet) in self.host_drivers.iter_mut().enumerate() {
-                *jet = driver(DriverId(index));
-            }
-            let mut work = Work {
-                system: &self.system,
-                targets: &self.targets,
-                drivers: &self.pose.drivers,
-                at: &mut self.at,
-                flow: rates,
-            };
-            self.plan.solve_rates(&mut work, &self.host_drivers);
-            rates.is_finite()
-        };
-        if finite {
-            Ok(())
-        } else {
-            Err(self.why_no_rates(driver))
-        }
+        self.state.solve_rates(&mut self.model, driver, rates)
     }
 
-    /// Why there are no finite rates for these rates of the drivers.
-    #[cold]
-    fn why_no_rates(&self, driver: impl Fn(DriverId) -> Jet) -> Error {
-        let mut drivers = (0..self.pose.drivers.len()).map(DriverId);
-        let endless =
-            drivers.find(|&id| !driver(id).derivatives.iter().all(|rate| rate.is_finite()));
-        endless.map_or(SINGULAR_HERE, |id| Error::NoMotion {
-            driver: self.system.describe_driver(id),
-            quantity: "velocity or acceleration",
-        })
-    }
-
-    /// Value, rate and acceleration of a measure of the mechanism at the present pose. Allocates
-    /// nothing.
+    /// Returns value, rate and acceleration of a measure at the present pose. Allocates nothing.
     #[must_use]
     pub fn measure(&self, index: usize, rates: &Rates) -> Jet {
-        let measure = &self.measures[index];
-        let mut gradient = Gradient::new();
-        measure.gradient(&self.at, &mut gradient);
-        let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
-        let acceleration = gradient.dot(q_ddot) + measure.quadratic(&self.at, q_dot);
-        Jet::new(measure.value(&self.at), [gradient.dot(q_dot), acceleration])
+        self.state.measure(&*self.model.measures[index], rates)
     }
 
-    /// Point, velocity and acceleration of a marker: the x component, then the y component.
+    /// Returns point, velocity and acceleration of a marker: the x component, then the y component.
     #[must_use]
     pub fn marker(&self, marker: MarkerId, rates: &Rates) -> [Jet; 2] {
-        let marker = self.at.marker(marker);
-        let velocity = point_velocity(marker, rates.velocity());
-        let acceleration = point_acceleration(marker, rates.velocity(), rates.acceleration());
-        [0, 1].map(|component| {
-            let rates = [velocity[component], acceleration[component]];
-            Jet::new(marker.point[component], rates)
-        })
+        self.state.marker(marker, rates)
     }
 
-    /// Value, velocity and acceleration of a driver with a prescribed motion at a time, for the
-    /// pose's parameters. Parameters contribute nothing to velocities, even while they change.
+    /// Returns value, velocity and acceleration of a driver with a prescribed motion at a time, for
+    /// the pose's parameters. Parameters contribute nothing to velocities, even while they change.
     /// Not a number for an input. Allocates nothing.
     #[must_use]
     pub fn motion(&self, driver: DriverId, time: f64) -> Jet {
-        self.motions.evaluate(driver, Jet::variable(time))
+        self.state.motions.evaluate(driver, Jet::variable(time))
     }
 
-    /// Recomputes all that depends on the parameters of the pose alone.
-    pub(super) fn take_over_parameters(&mut self) -> Result<(), Error> {
-        self.parameters_taken = false;
-        self.system
-            .set_parameters(&self.pose.parameters, &mut self.at, &mut self.targets)?;
-        self.plan
-            .set_parameters(&self.at, &self.targets, &mut self.tubes);
-        if !self.pivots_chosen {
-            self.plan
-                .choose_pivots(&self.system, &self.at, &self.targets);
-            self.pivots_chosen = true;
-        }
-        let parameters = &self.pose.parameters;
-        self.motions
-            .set_parameters(|p| Jet::constant(parameters[p.index()]));
-        self.parameters_taken = true;
-        Ok(())
+    /// Returns the distance of each body from its estimate at the present pose.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] for estimates that have no value with the parameters in force.
+    pub fn moves(&self) -> Result<Vec<Move>, Error> {
+        let pose = self.pose();
+        let estimate = estimate(&self.model.system, &pose.parameters)?;
+        Ok(moves(&self.model.system, &pose.q, &estimate).collect())
     }
 
-    /// The plan, and what it works on.
-    pub(super) fn work(&mut self) -> (&mut Plan, Work<'_>) {
-        let work = Work {
-            system: &self.system,
-            targets: &self.targets,
-            drivers: &self.pose.drivers,
-            at: &mut self.at,
-            flow: &mut self.flow,
-        };
-        (&mut self.plan, work)
+    /// Returns the joints and constraints with redundant equations, known once the solver is
+    /// [assembled](Self::assemble). The mechanism moves without these equations; whether they hold
+    /// is watched, and a step after which they do not is rejected.
+    #[must_use]
+    pub fn redundancies(&self) -> Vec<Redundancy> {
+        redundancy::redundancies(&self.model)
     }
 
-    /// Whether the motion runs along the values of one driver.
-    pub(super) fn has_unit(&self) -> bool {
-        self.pose.drivers.len() == 1
+    /// Returns the joints that do not fit their own numbers at the present pose, in the order of
+    /// declaration.
+    #[must_use]
+    pub fn geometry_warnings(&self) -> Vec<GeometryWarning> {
+        analysis::geometry_warnings(&self.model, &self.state)
     }
 
-    /// Moves the bodies to the pose.
-    pub(super) fn stand_at_pose(&mut self) {
-        self.factorised = false;
-        self.at.set_pose(self.system.mechanism(), &self.pose.q);
+    /// Returns the approach to a singular position, if the mechanism, at the end of a path, has
+    /// come near one since `near` was last false; `near` is true from then on until the mechanism is
+    /// away again. Next to a change point that is crossed there is no warning. Away from singular
+    /// positions it costs a comparison.
+    pub fn approach(&mut self, near: &mut bool) -> Option<Approach> {
+        singular::approach(&mut self.model, &mut self.state, near)
     }
 
-    /// Makes sure that the plan is factorised at the pose.
-    pub(super) fn refresh(&mut self) -> Result<(), Error> {
-        if !self.factorised {
-            let unit = self.has_unit();
-            let (plan, mut work) = self.work();
-            plan.factorise(&mut work)
-                .map_err(|Rejected| SINGULAR_HERE)?;
-            if unit {
-                plan.solve_rates(&mut work, &UNIT);
-            }
-            self.regularity = self.plan.regularity();
-            self.factorised = true;
-        }
-        Ok(())
+    /// Returns the message for a change point that was passed.
+    #[must_use]
+    pub fn describe_crossing(&self, crossing: &Crossing) -> String {
+        singular::describe_crossing(&self.model, crossing)
+    }
+
+    /// Returns whether this mechanism could have come to the crossings of a pose that was read from
+    /// outside, and q lies on them.
+    #[must_use]
+    pub fn admits_crossings(&self, pose: &Pose) -> bool {
+        singular::admits_crossings(&self.model, pose)
+    }
+
+    /// Returns the derivative of the motion at the present pose along a direction, for these rates
+    /// of q and of the drivers, which belong together by [`solve_rates`](Self::solve_rates). Exact
+    /// to rounding; the work is proportional to the size of the mechanism.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where the pose is singular.
+    pub fn sensitivity(
+        &mut self,
+        rates: &Rates,
+        driver_rates: &[Jet],
+        direction: &Direction,
+    ) -> Result<Sensitivity<'_>, Error> {
+        self.state
+            .sensitivity(&self.model, rates, driver_rates, direction)
+    }
+
+    /// Finds the range of one driver up and down from the present pose, with the other drivers,
+    /// time and parameters held: until it is blocked, has turned the mechanism to its start, or has
+    /// gone far enough. A prescribed motion is taken for an input. The pose stays as it is.
+    ///
+    /// # Panics
+    ///
+    /// If the driver is none of the mechanism's.
+    pub fn range(&mut self, driver: DriverId, settings: &RangeSettings) -> Range {
+        let Self {
+            model,
+            state,
+            tracker,
+        } = self;
+        analysis::range(model, state, tracker, driver, settings)
+    }
+
+    /// Finds the other poses in which the mechanism closes with the parameters and driver values of
+    /// the present pose: both branches of each dyad, all branches of other blocks of few angles, by
+    /// bounds over intervals, and those of the rest that minimisation finds from a fixed set of
+    /// starts. The pose stays as it is.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] for estimates that have no value with the parameters in force.
+    pub fn modes(&mut self) -> Result<Modes, Error> {
+        analysis::modes(&mut self.model, &mut self.state)
     }
 }

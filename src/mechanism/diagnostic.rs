@@ -1,18 +1,18 @@
-//! What is wrong with a mechanism file, as data.
+//! Problems of a mechanism file, as data.
 
 use super::{Source, Span};
 
-/// How bad it is.
+/// Severity of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// The mechanism can be used; it is probably not what was meant.
+    /// The mechanism can be used, but is probably not what its author meant.
     Warning,
     /// The file does not describe a mechanism.
     Error,
 }
 
 impl Severity {
-    /// `warning` or `error`.
+    /// Returns `warning` or `error`.
     #[must_use]
     pub fn as_str(self) -> &'static str {
         match self {
@@ -22,32 +22,32 @@ impl Severity {
     }
 }
 
-/// Something wrong in a mechanism file: where, and what would be right.
+/// Problem of a mechanism file, with its places and its help.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Severity: warning or error.
     pub severity: Severity,
-    /// Which kind of problem, in kebab case: `unknown-body`.
+    /// Kind of problem, in kebab case: `unknown-body`.
     pub code: &'static str,
-    /// What is wrong: lower case, no full stop, names in back quotes.
+    /// Description: lower case, no full stop, names in back quotes.
     pub message: String,
-    /// The places concerned, the primary one first; none if the problem has no place.
+    /// Places of the problem, the primary one first.
     pub labels: Vec<Label>,
-    /// What would be right, if that can be told.
+    /// Correction, if one is known.
     pub help: Option<String>,
 }
 
-/// A place in the file with a word on its part in the problem.
+/// Place in the file with its part in the problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
-    /// Where.
+    /// Place.
     pub span: Span,
-    /// What is to be seen there; may be empty.
+    /// Text at the place; may be empty.
     pub text: String,
 }
 
 impl Diagnostic {
-    /// An error without place or help yet.
+    /// Makes an error without place and help.
     pub fn error(code: &'static str, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -58,7 +58,7 @@ impl Diagnostic {
         }
     }
 
-    /// A warning without place or help yet.
+    /// Makes a warning without place and help.
     pub fn warning(code: &'static str, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
@@ -66,7 +66,7 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a place; the first one added is the primary one.
+    /// Adds a place; the first one is the primary one.
     #[must_use]
     pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label {
@@ -76,14 +76,19 @@ impl Diagnostic {
         self
     }
 
-    /// Says what would be right.
+    /// Returns the problem with a correction.
     #[must_use]
     pub fn help(mut self, help: impl Into<Option<String>>) -> Self {
         self.help = help.into();
         self
     }
 
-    /// The problem on one line, `file:line:column: error: message; help`, for a log.
+    /// Adds a correction.
+    pub(super) fn suggest(&mut self, help: impl Into<String>) {
+        self.help = Some(help.into());
+    }
+
+    /// Returns the problem on one line, `file:line:column: error: message; help`, for a log.
     #[must_use]
     pub fn one_line(&self, source: &Source) -> String {
         let mut line = source.name().to_owned();
@@ -99,10 +104,10 @@ impl Diagnostic {
     }
 }
 
-/// Defines the codes and lists them, so that a test can ask for an example of each.
+/// Defines the codes and lists them, so that a test can demand an example of each.
 macro_rules! codes {
     ($($name:ident = $code:literal,)*) => {
-        /// The codes, each a kind of problem.
+        /// Codes of the kinds of problems.
         pub(super) mod code {
             $(pub(in crate::mechanism) const $name: &str = $code;)*
         }

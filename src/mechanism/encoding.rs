@@ -1,26 +1,25 @@
-//! The bytes of a file as text.
+//! Encoding of files: UTF-8, and what to report of others.
 
 use std::fmt::{self, Display, Formatter};
+use std::ops::Range;
 
-use super::Span;
-
-/// Why bytes are not UTF-8; as text what is to be said of "the file".
+/// Fault of bytes that are not UTF-8; displayed as the predicate of "the file".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NotUtf8 {
-    /// A byte that begins no character, or one that is not continued.
+    /// A byte that begins no character, or begins one that is incomplete.
     Byte {
         offset: usize,
         /// From 1.
         line: usize,
         byte: u8,
     },
-    /// It starts with the byte order mark of UTF-16.
+    /// The byte order mark of UTF-16.
     Utf16,
 }
 
 impl NotUtf8 {
-    /// Where it is to be seen in the text of [`decode`].
-    pub(super) fn span(self) -> Span {
+    /// Returns the place of the fault in the text of [`decode`].
+    pub(super) fn span(self) -> Range<usize> {
         match self {
             Self::Byte { offset, .. } => offset..offset + char::REPLACEMENT_CHARACTER.len_utf8(),
             Self::Utf16 => 0..0,
@@ -40,7 +39,7 @@ impl Display for NotUtf8 {
     }
 }
 
-/// The text of a file; if it is not UTF-8, as far as it can be read for people to find the place.
+/// Returns the text of a file. With a fault the text is readable enough to show the place.
 pub(super) fn decode(bytes: Vec<u8>) -> (String, Option<NotUtf8>) {
     let unit = match bytes[..] {
         [0xFF, 0xFE, ..] => Some(u16::from_le_bytes as fn([u8; 2]) -> u16),

@@ -1,4 +1,4 @@
-//! Typed indices: a body cannot be mistaken for a marker.
+//! Typed indices of bodies, markers, drivers and parameters.
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -7,7 +7,7 @@ macro_rules! id {
         pub struct $name(pub usize);
 
         impl $name {
-            /// The position in the mechanism's list.
+            /// Returns the position in the mechanism's list.
             #[must_use]
             pub fn index(self) -> usize {
                 self.0
@@ -17,18 +17,18 @@ macro_rules! id {
 }
 
 id!(
-    /// A moving body: index into [`Mechanism::bodies`](super::Mechanism::bodies). Ground has none.
+    /// Moving body: index into [`Mechanism::bodies`](super::Mechanism::bodies). Ground has none.
     BodyId
 );
 id!(
-    /// A marker, on a body or on ground: index into [`Mechanism::markers`](super::Mechanism::markers).
+    /// Marker on a body or on ground: index into [`Mechanism::markers`](super::Mechanism::markers).
     MarkerId
 );
 id!(
-    /// A driver: index into [`Mechanism::drivers`](super::Mechanism::drivers).
+    /// Driver: index into [`Mechanism::drivers`](super::Mechanism::drivers).
     DriverId
 );
 id!(
-    /// A parameter: index into [`Mechanism::parameters`](super::Mechanism::parameters).
+    /// Parameter: index into [`Mechanism::parameters`](super::Mechanism::parameters).
     ParameterId
 );

@@ -1,38 +1,36 @@
-//! Finding things of a mechanism by name.
+//! Search for parts of a mechanism by name.
 
 use super::expression::Scope;
 use super::names::NameTable;
 use super::{BodyId, DriverId, Expression, ExpressionError, Mechanism, ParameterId, Variable};
 
 impl Mechanism {
-    /// The parameter called `name`.
+    /// Returns the parameter called `name`.
     #[must_use]
     pub fn parameter_id(&self, name: &str) -> Option<ParameterId> {
         let index = self.parameters.iter().position(|p| p.name == name)?;
         Some(ParameterId(index))
     }
 
-    /// The body called `name`; ground is none.
+    /// Returns the moving body called `name`.
     #[must_use]
     pub fn body_id(&self, name: &str) -> Option<BodyId> {
         let index = self.bodies.iter().position(|body| body.name == name)?;
         Some(BodyId(index))
     }
 
-    /// The driver called `name`.
+    /// Returns the driver called `name`.
     #[must_use]
     pub fn driver_id(&self, name: &str) -> Option<DriverId> {
         let index = self.drivers.iter().position(|driver| driver.name == name)?;
         Some(DriverId(index))
     }
 
-    /// Parses an expression over this mechanism's parameters, and over `variable` if there is
-    /// one.
+    /// Parses an expression over this mechanism's parameters and over `variable`.
     ///
     /// # Errors
     ///
-    /// The first thing wrong with the text: syntax, an unknown name, or a constant part that is
-    /// not finite.
+    /// First fault of the text: syntax, an unknown name, or a constant part that is not finite.
     pub fn parse_expression(
         &self,
         text: &str,

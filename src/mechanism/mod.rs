@@ -1,39 +1,46 @@
 //! The mechanism as data: bodies, markers, joints, drivers, measures and parameters.
 //!
-//! A mechanism file is read in three steps: [`Source`] keeps the text and its lines, the reader
-//! (`syntax` and `lower`) turns it into a [`Mechanism`] or into every
-//! [`Diagnostic`] that stands in the way, and [`Expression`]s keep each number as a function of
-//! the parameters. Nothing here computes a pose.
+//! | file | subject |
+//! |---|---|
+//! | `source`, `encoding` | [`Source`]: the text, its lines and columns |
+//! | `syntax` | TOML document in which each key and value knows its place |
+//! | `read` | from the document to the [`Mechanism`], or to all its problems |
+//! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
+//! | `expression` | [`Expression`]: a number as a function of the parameters |
+//! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
+//! | `names`, `reserved`, `lookup`, `id` | names, and what they stand for |
+//! | `wording` | names and numbers in messages |
+//!
+//! Nothing here computes a pose.
 
 mod diagnostic;
 mod encoding;
 mod expression;
 mod id;
 mod lookup;
-mod lower;
 mod motion;
 mod names;
 mod number;
 mod parameter;
 mod profile;
+mod read;
+mod reserved;
 mod source;
 mod spline;
 mod syntax;
 mod table;
+mod wording;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use expression::{Expression, ExpressionError, Variable};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
-pub use lower::is_identifier;
-#[cfg(feature = "cli")]
-pub use lower::schema;
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
-pub(crate) use names::shown;
 #[cfg(feature = "cli")]
-pub(crate) use names::{help, quoted};
+pub(crate) use names::help;
+pub use names::is_identifier;
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::Parameter;
 pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
@@ -42,9 +49,11 @@ pub use spline::{Ends, Spline};
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
+#[cfg(feature = "cli")]
+pub(crate) use wording::quoted;
+pub(crate) use wording::shown;
 
-/// A planar mechanism as its file describes it, checked for names, types and units, not yet for
-/// assembly.
+/// Planar mechanism as its file describes it. Names, types and units are checked, assembly is not.
 ///
 /// Lists are in file order. Every index ([`BodyId`], [`MarkerId`], …) is valid for the mechanism
 /// it came from.
@@ -52,7 +61,7 @@ pub use table::{Table, TableFile};
 pub struct Mechanism {
     /// FMI `modelName` and `modelIdentifier`: a C identifier.
     pub name: String,
-    /// One line for people, empty if the file gives none.
+    /// Description in one line, empty if the file gives none.
     pub description: String,
     /// FMI attribute `author`.
     pub author: Option<String>,
@@ -67,39 +76,39 @@ pub struct Mechanism {
     /// Parameters whose value uses other parameters, in an order in which each comes after those
     /// it uses.
     pub derivation_order: Vec<ParameterId>,
-    /// The moving bodies.
+    /// Moving bodies.
     pub bodies: Vec<Body>,
     /// All markers: those of ground first, then body by body.
     pub markers: Vec<Marker>,
-    /// The joints.
+    /// Joints.
     pub joints: Vec<Joint>,
-    /// Bare coordinates held at a value.
+    /// Coordinates held at values.
     pub constraints: Vec<Constraint>,
-    /// The drivers: FMI inputs and prescribed motions.
+    /// Drivers: FMI inputs and prescribed motions.
     pub drivers: Vec<Driver>,
     /// Coordinates that are outputs.
     pub measures: Vec<Measure>,
-    /// What the FMU gives out.
+    /// Outputs of the FMU besides measures and solver quantities.
     pub outputs: Outputs,
     /// Default experiment.
     pub simulation: Simulation,
-    /// The CSV files that the mechanism file names, each once.
+    /// CSV files that the mechanism file names, each once.
     pub table_files: Vec<TableFile>,
-    /// The content of the file and of its tables without comments and layout: equal only for
-    /// files that describe the same mechanism with the same values and tables in the same order.
+    /// Content of the file and of its CSV files without comments and layout. Two files have the
+    /// same canonical form only if they have the same keys and values in the same order.
     pub canonical: String,
 }
 
-/// A rigid body with generalized coordinates q = \[x, y, phi\] (seed, 5.4.1).
+/// Rigid body with generalized coordinates q = \[x, y, phi\] (seed, 5.4.1).
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Name, unique among all named things of the mechanism.
     pub name: String,
-    /// One line for people, empty if the file gives none.
+    /// Description in one line, empty if the file gives none.
     pub description: String,
     /// Its markers, in file order.
     pub markers: Vec<MarkerId>,
-    /// Where to look for the assembly: x, y \[m\], phi \[rad\].
+    /// Start of the search for the assembled pose: x, y \[m\], phi \[rad\].
     pub estimate: [Expression; 3],
     /// Mass \[kg\].
     pub mass: Option<Expression>,
@@ -109,34 +118,34 @@ pub struct Body {
     pub center: Option<[Expression; 2]>,
 }
 
-/// A frame fixed on a body or on ground: a point and a direction.
+/// Frame fixed on a body or on ground: a point and a direction.
 #[derive(Clone, Debug)]
 pub struct Marker {
     /// Name, unique within its body.
     pub name: String,
-    /// The body that carries it, `None` on ground.
+    /// Body that carries it, `None` on ground.
     pub body: Option<BodyId>,
-    /// The point s = (x', y') in the body's frame \[m\].
+    /// Point s = (x', y') in the body's frame \[m\].
     pub position: [Expression; 2],
     /// Direction of the marker's x-axis in the body's frame \[rad\].
     pub angle: Expression,
 }
 
-/// A scalar measured from one marker to another.
+/// Scalar measured from one marker to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coordinate {
-    /// What is measured.
+    /// Quantity measured.
     pub kind: CoordinateKind,
     /// Marker i, measured from.
     pub from: MarkerId,
     /// Marker j, measured to.
     pub to: MarkerId,
-    /// Marker k on whose axes `x` and `y` are measured; marker i unless the file says otherwise.
+    /// Marker k on whose axes `x` and `y` are measured; marker i unless the file gives another.
     /// Without meaning for `angle` and `distance`.
     pub axes: MarkerId,
 }
 
-/// The four relative coordinates. theta is a marker's direction, P its point, u and n the x- and
+/// Relative coordinates. theta is a marker's direction, P its point, u and n the x- and
 /// y-axis of marker k.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CoordinateKind {
@@ -151,7 +160,25 @@ pub enum CoordinateKind {
 }
 
 impl CoordinateKind {
-    /// A value of it for people, with its unit.
+    /// Whether the coordinate is measured on the axes of a marker.
+    #[must_use]
+    pub fn has_axes(self) -> bool {
+        match self {
+            Self::X | Self::Y => true,
+            Self::Angle | Self::Distance => false,
+        }
+    }
+
+    /// Returns the unit of its values.
+    #[must_use]
+    pub fn unit(self) -> Unit {
+        match self {
+            Self::Angle => Unit::RADIAN,
+            Self::X | Self::Y | Self::Distance => Unit::METRE,
+        }
+    }
+
+    /// Returns a value as text with its unit.
     #[must_use]
     pub fn show(self, value: f64) -> String {
         match self {
@@ -161,12 +188,14 @@ impl CoordinateKind {
     }
 }
 
-/// A named bundle of constraints between two markers.
+/// Named set of constraints between two markers.
 #[derive(Clone, Debug)]
 pub struct Joint {
     /// Name, unique among all named things of the mechanism.
     pub name: String,
-    /// Which bundle.
+    /// Description in one line, empty if the file gives none.
+    pub description: String,
+    /// Type of the joint.
     pub kind: JointKind,
     /// Marker i.
     pub from: MarkerId,
@@ -174,10 +203,10 @@ pub struct Joint {
     pub to: MarkerId,
 }
 
-/// The kinds of joint.
+/// Types of joints.
 #[derive(Clone, Debug)]
 pub enum JointKind {
-    /// The points coincide: x = y = 0.
+    /// Pin: the points coincide, x = y = 0.
     Revolute,
     /// Marker j slides along the x-axis of marker i without turning: y = angle = 0.
     Translational,
@@ -196,41 +225,41 @@ pub enum JointKind {
     },
     /// The markers coincide: x = y = angle = 0.
     Weld,
-    /// Two toothed wheels that roll on each other. Marker angles set the phase.
+    /// Two toothed wheels in mesh. Marker angles set the phase.
     Gear {
-        /// The wheels' sizes, that of marker i's wheel first.
+        /// Sizes of the wheels of markers i and j.
         sizes: WheelSizes,
-        /// Whether the smaller wheel runs inside the larger one: both turn the same way.
+        /// Whether the smaller wheel runs inside the larger one, so that both turn the same way.
         internal: bool,
-        /// The body that carries both centres, `None` for ground.
+        /// Body that carries both centres, `None` for ground.
         carrier: Option<BodyId>,
     },
     /// Two wheels joined by a belt or chain. Marker angles set the phase.
     Belt {
-        /// The wheels' sizes, that of marker i's wheel first.
+        /// Sizes of the wheels of markers i and j.
         sizes: WheelSizes,
-        /// Whether the belt crosses between the wheels: they then turn opposite ways.
+        /// Whether the belt crosses between the wheels, so that they turn opposite ways.
         crossed: bool,
-        /// The body that carries both centres, `None` for ground.
+        /// Body that carries both centres, `None` for ground.
         carrier: Option<BodyId>,
     },
     /// A pinion, which has marker i, that rolls along the x-axis of marker j, the rack.
     RackAndPinion {
-        /// The pinion's radius \[m\].
+        /// Radius of the pinion \[m\].
         radius: Expression,
-        /// On which side of the rack the pinion is.
+        /// Side of the rack on which the pinion is.
         side: RackSide,
     },
     /// A follower, which has marker j, on the contour of a cam, which has marker i.
     Cam {
-        /// What touches the cam.
+        /// Part of the follower that touches the cam.
         follower: CamFollower,
-        /// The contour.
+        /// Contour of the cam.
         profile: Profile,
     },
 }
 
-/// What of a follower touches the cam, on the outer side of its contour.
+/// Part of a follower that touches the cam, on the outer side of its contour.
 #[derive(Clone, Debug)]
 pub enum CamFollower {
     /// The marker's point.
@@ -244,7 +273,7 @@ pub enum CamFollower {
     Flat,
 }
 
-/// The sizes of two wheels. Their ratio decides how they turn.
+/// Sizes of two wheels, whose ratio is the ratio of transmission.
 #[derive(Clone, Debug)]
 pub enum WheelSizes {
     /// Radii of the pitch circles \[m\].
@@ -254,7 +283,7 @@ pub enum WheelSizes {
 }
 
 impl WheelSizes {
-    /// Both sizes, in metres or in teeth.
+    /// Returns both sizes, in metres or in teeth.
     #[must_use]
     pub fn expressions(&self) -> &[Expression; 2] {
         match self {
@@ -263,7 +292,7 @@ impl WheelSizes {
     }
 }
 
-/// The side of a rack on which its pinion rolls.
+/// Side of a rack on which its pinion rolls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RackSide {
     /// On the +y side of the rack's marker.
@@ -272,32 +301,42 @@ pub enum RackSide {
     Below,
 }
 
-/// A bare coordinate held at a value.
+/// Coordinate held at a value.
 #[derive(Clone, Debug)]
 pub struct Constraint {
     /// Name, unique among all named things of the mechanism.
     pub name: String,
-    /// The coordinate.
+    /// Description in one line, empty if the file gives none.
+    pub description: String,
+    /// Coordinate.
     pub coordinate: Coordinate,
-    /// Its value \[m or rad\].
+    /// Value \[m or rad\].
     pub value: Expression,
 }
 
-/// A coordinate whose value is given as a function of time.
+/// Coordinate that moves: an FMI input or a prescribed motion.
 #[derive(Clone, Debug)]
 pub struct Driver {
     /// Name, unique among all named things of the mechanism.
     pub name: String,
-    /// One line for people, empty if the file gives none.
+    /// Description in one line, empty if the file gives none.
     pub description: String,
-    /// The coordinate it drives.
+    /// Coordinate that is driven.
     pub coordinate: Coordinate,
-    /// Where its value comes from.
+    /// Source of its value.
     pub source: DriverSource,
+    /// Smallest value that is meant \[m or rad\], evaluated with the file's parameter values. No
+    /// wall: a value beyond it is followed.
+    pub min: Option<f64>,
+    /// Largest value that is meant \[m or rad\], likewise.
+    pub max: Option<f64>,
+    /// Whether an input gives an angle modulo one turn: each value means the turn nearest the last
+    /// value. Only for the coordinate `angle` and for inputs.
+    pub wrapped: bool,
 }
 
 impl Driver {
-    /// The prescribed motion, `None` for an FMI input.
+    /// Returns the prescribed motion, `None` for an FMI input.
     #[must_use]
     pub fn motion(&self) -> Option<&Motion> {
         match &self.source {
@@ -307,40 +346,40 @@ impl Driver {
     }
 }
 
-/// Where a driver's value comes from.
+/// Source of a driver's value.
 #[derive(Clone, Debug)]
 pub enum DriverSource {
-    /// An FMI input.
+    /// FMI input.
     Input {
-        /// The value that defines the assembly mode \[m or rad\], evaluated with the file's
+        /// Value that defines the assembly mode \[m or rad\], evaluated with the file's
         /// parameter values.
         start: f64,
     },
-    /// A prescribed motion.
+    /// Prescribed motion.
     Motion(Motion),
 }
 
-/// A coordinate that is an output.
+/// Coordinate that is an output.
 #[derive(Clone, Debug)]
 pub struct Measure {
     /// Name, unique among all named things of the mechanism.
     pub name: String,
-    /// One line for people, empty if the file gives none.
+    /// Description in one line, empty if the file gives none.
     pub description: String,
-    /// The coordinate.
+    /// Coordinate.
     pub coordinate: Coordinate,
 }
 
-/// What the FMU gives out besides measures and solver quantities.
+/// Outputs of the FMU besides measures and solver quantities.
 #[derive(Clone, Debug)]
 pub struct Outputs {
-    /// The bodies, in mechanism order; all of them unless the file narrows them.
+    /// Bodies, in mechanism order; all unless the file narrows them.
     pub bodies: Vec<BodyId>,
     /// Points of interest, in the order of the file's list.
     pub markers: Vec<MarkerId>,
 }
 
-/// The FMI default experiment, and what a run takes where nothing else is said.
+/// FMI default experiment, and the default settings of a run.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     /// Start time \[s\].
@@ -349,14 +388,14 @@ pub struct Simulation {
     pub stop: f64,
     /// Communication step size \[s\].
     pub step: f64,
-    /// Relative tolerance, handed on to the host; the solver itself works to rounding.
+    /// Relative tolerance for the host; the solver itself works to rounding.
     pub tolerance: f64,
     /// Gravity \[m/s²\]; read and checked, without effect on the kinematics.
     pub gravity: [f64; 2],
 }
 
 impl Mechanism {
-    /// How the file calls a marker: `crank.A`, `ground.O2`.
+    /// Returns a marker's name with its body's: `crank.A`, `ground.O2`.
     #[must_use]
     pub fn marker_path(&self, id: MarkerId) -> String {
         let marker = &self.markers[id.index()];

@@ -1,56 +1,60 @@
-//! Names: which are legal, which are taken, and the nearest right one to a wrong one.
+//! Names: legal ones, and suggestions for wrong ones.
 
 use std::cell::Cell;
 use std::collections::HashMap;
 
-use super::expression::{CONSTANTS, function_names};
+use super::wording::{either, quoted};
 
-/// Names that the FMU or the file's language uses itself, besides constants and functions.
-pub(super) const TAKEN: [&str; 6] = ["ground", "solver", "rates", "extrapolation", "time", "t"];
-
-/// Names of a body's own quantities, which no marker may bear.
-pub(super) const BODY_QUANTITIES: [&str; 9] =
-    ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
-
-/// Looked up for a suggestion at most so often per table, so that a file of nothing but wrong
-/// names takes no quadratic time.
+/// Most suggestions per table of names: a file of wrong names would take quadratic time.
 const MAX_SUGGESTIONS: u32 = 100;
 
-/// Names longer than this get no suggestion: edit distance is quadratic in the length.
+/// Length of the longest name that gets a suggestion: edit distance is quadratic in the length.
 const MAX_SUGGESTED_LENGTH: usize = 64;
 
 /// Most names that a message lists.
 const MAX_LISTED: usize = 16;
 
-/// Longest piece of the file that a message repeats, in characters.
-const MAX_QUOTED_LENGTH: usize = 60;
-
 /// Whether `name` matches `[A-Za-z][A-Za-z0-9_]*`.
+///
+/// Names of FMI type definitions have other characters, so that they never equal a variable's
+/// (FMI 2.0.4, section 2.2.3).
 pub(super) fn is_legal(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
 }
 
-/// All names that [`is_taken`] knows.
-#[cfg(feature = "cli")]
-pub(super) fn taken() -> impl Iterator<Item = &'static str> {
-    let constants = CONSTANTS.iter().map(|(constant, _)| *constant);
-    TAKEN.into_iter().chain(constants).chain(function_names())
+/// Whether `name` is a device of Windows, which no file there can be called: `CON`, `com1`.
+pub(super) fn is_device(name: &str) -> bool {
+    let is = |device: &&str| name.eq_ignore_ascii_case(device);
+    let is_port = |port: &&str| {
+        let (start, number) = name.split_at_checked(3).unwrap_or_default();
+        start.eq_ignore_ascii_case(port) && matches!(number.as_bytes(), [b'0'..=b'9'])
+    };
+    ["con", "prn", "aux", "nul"].iter().any(is) || ["com", "lpt"].iter().any(is_port)
 }
 
-/// Whether `name` is not free for parameters, bodies, joints and the like.
-pub(super) fn is_taken(name: &str) -> bool {
-    TAKEN.contains(&name)
-        || CONSTANTS.iter().any(|(constant, _)| *constant == name)
-        || function_names().any(|function| function == name)
+/// Words of C11 that are no identifiers. `_Bool` and its like are not written by accident.
+pub(super) const C_KEYWORDS: [&str; 34] = [
+    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
+    "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
+    "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
+    "union", "unsigned", "void", "volatile", "while",
+];
+
+/// Whether a mechanism may have this name: a C identifier that is no device of Windows.
+#[must_use]
+pub fn is_identifier(name: &str) -> bool {
+    is_c_identifier(name) && !is_device(name)
 }
 
-/// Whether `name` is the name of a body's own quantity.
-pub(super) fn is_body_quantity(name: &str) -> bool {
-    BODY_QUANTITIES.contains(&name)
+/// Whether `name` is an identifier of the C language and none of its words.
+pub(super) fn is_c_identifier(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        && !C_KEYWORDS.contains(&name)
 }
 
-/// What names stand for, with a bounded supply of suggestions for wrong ones.
+/// Names with their meanings, and a bounded number of suggestions for wrong ones.
 #[derive(Debug)]
 pub(super) struct NameTable<'a, T> {
     meanings: HashMap<&'a str, T>,
@@ -65,7 +69,7 @@ impl<'a, T: Copy> NameTable<'a, T> {
         }
     }
 
-    /// Adds a name; if it is there already, leaves and returns its meaning.
+    /// Adds a name; keeps and returns the meaning of one that the table has already.
     pub(super) fn insert(&mut self, name: &'a str, meaning: T) -> Option<T> {
         let earlier = self.get(name);
         if earlier.is_none() {
@@ -74,16 +78,12 @@ impl<'a, T: Copy> NameTable<'a, T> {
         earlier
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.meanings.len()
-    }
-
     pub(super) fn get(&self, name: &str) -> Option<T> {
         self.meanings.get(name).copied()
     }
 
-    /// Help for a name that is not in the table, nor among `further` legal ones: the nearest of
-    /// all these, or else the table's names if they are few.
+    /// Returns help for a name that is neither in the table nor among `further` legal ones: the
+    /// nearest of all these, otherwise the table's names if they are few.
     pub(super) fn help(&self, name: &str, further: &[&str]) -> Option<String> {
         let left = self.suggestions_left.get().checked_sub(1)?;
         self.suggestions_left.set(left);
@@ -104,32 +104,32 @@ impl<'a, T: Copy> FromIterator<(&'a str, T)> for NameTable<'a, T> {
     }
 }
 
-/// The nearest candidate, or else all of them if they are few; `further` ones may be meant too, but
-/// are not listed.
+/// Returns help for a wrong name: the nearest of `candidates` and `further`, otherwise the
+/// candidates if they are few.
 pub(crate) fn help(name: &str, candidates: &[&str], further: &[&str]) -> Option<String> {
     did_you_mean(name, &[candidates, further].concat()).or_else(|| list(candidates))
 }
 
-/// "did you mean `crank`?", if that is near.
+/// Returns "did you mean `crank`?" if that is near.
 fn did_you_mean(name: &str, candidates: &[&str]) -> Option<String> {
     nearest(name, candidates).map(|near| format!("did you mean {}?", quoted(near)))
 }
 
-/// "expected `x`, `y` or `angle`", if there are few candidates.
+/// Returns "expected `x`, `y` or `angle`" if there are few candidates.
 fn list(candidates: &[&str]) -> Option<String> {
     (1..=MAX_LISTED)
         .contains(&candidates.len())
         .then(|| format!("expected {}", either(candidates)))
 }
 
-/// The candidate nearest to `name` in edit distance, if one is near enough to be meant.
+/// Returns the candidate nearest to `name` in edit distance, if one is near enough.
 pub(super) fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let length = name.chars().count();
     if length > MAX_SUGGESTED_LENGTH {
         return None;
     }
-    // One slip in a short word, up to one in three letters of a long one; a single letter is
-    // not near to any other, except to itself in the other case.
+    // One slip in a short word, up to one per three letters of a long one. A single letter is near
+    // to itself in the other case only.
     let near = if length < 2 { 0 } else { length.div_ceil(3) };
     let distance = |candidate: &str| {
         if candidate.eq_ignore_ascii_case(name) {
@@ -140,7 +140,7 @@ pub(super) fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str>
             Some(strsim::damerau_levenshtein(name, candidate)).filter(|d| *d <= near)
         }
     };
-    // Farther than any slip: one is short for the other, as `deg` is for `degree`.
+    // An abbreviation, such as `deg` of `degree`, counts as farther than any slip.
     let abbreviation = |candidate: &str| {
         let (short, long) = if candidate.len() < name.len() {
             (candidate, name)
@@ -160,45 +160,6 @@ pub(super) fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str>
         .map(|(_, candidate)| candidate)
 }
 
-/// "`a`, `b` or `c`".
-pub(super) fn either(candidates: &[&str]) -> String {
-    joined(candidates, "or")
-}
-
-/// The candidates in back quotes, the last after `conjunction`.
-pub(super) fn joined(candidates: &[&str], conjunction: &str) -> String {
-    match candidates {
-        [] => "nothing".to_owned(),
-        [one] => quoted(one),
-        [first @ .., last] => {
-            let first: Vec<String> = first.iter().map(|c| quoted(c)).collect();
-            format!("{} {conjunction} {}", first.join(", "), quoted(last))
-        }
-    }
-}
-
-/// A number as people write it: every digit, but no rows of zeros.
-pub(crate) fn shown(number: f64) -> String {
-    if number == 0.0 || (1e-4..1e7).contains(&number.abs()) {
-        format!("{number}")
-    } else {
-        format!("{number:e}")
-    }
-}
-
-/// A piece of the file in back quotes, on one line, cut where it is very long.
-pub(crate) fn quoted(text: &str) -> String {
-    let mut shown: String = text
-        .chars()
-        .take(MAX_QUOTED_LENGTH)
-        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
-        .collect();
-    if text.chars().nth(MAX_QUOTED_LENGTH).is_some() {
-        shown.push('…');
-    }
-    format!("`{shown}`")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -214,11 +175,13 @@ mod tests {
     }
 
     #[test]
-    fn taken_names_include_constants_and_functions() {
-        for name in ["ground", "t", "pi", "deg", "sin", "max", "hypot", "rates"] {
-            assert!(is_taken(name), "{name}");
+    fn devices_have_their_names_in_any_case() {
+        for name in ["CON", "nul", "Aux", "prn", "COM0", "COM1", "lpt9"] {
+            assert!(is_device(name), "{name}");
         }
-        assert!(!is_taken("crank"));
+        for name in ["", "con1", "com", "com10", "lpt", "crank", "ñul"] {
+            assert!(!is_device(name), "{name}");
+        }
     }
 
     #[test]
@@ -242,21 +205,5 @@ mod tests {
             assert!(table.help("cranc", &[]).is_some());
         }
         assert_eq!(table.help("cranc", &[]), None);
-    }
-
-    #[test]
-    fn numbers_are_shown_without_rows_of_zeros() {
-        let numbers = [0.0, 1.0, -0.25, 1e-6, 1e300, 0.1 + 0.2].map(shown);
-        assert_eq!(
-            numbers,
-            ["0", "1", "-0.25", "1e-6", "1e300", "0.30000000000000004"]
-        );
-    }
-
-    #[test]
-    fn quotes_stay_on_one_line() {
-        assert_eq!(quoted("a\nb"), "`a\u{fffd}b`");
-        assert!(quoted(&"y".repeat(100)).ends_with("y…`"));
-        assert_eq!(either(&["a", "b", "c"]), "`a`, `b` or `c`");
     }
 }

@@ -1,4 +1,4 @@
-//! The text of a mechanism file, and where in it something is.
+//! Text of a mechanism file, with lines and columns.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -6,11 +6,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::encoding::{NotUtf8, decode};
+use super::names::is_device;
 
-/// A stretch of the text, in bytes.
+/// Range of the text, in bytes.
 pub type Span = Range<usize>;
 
-/// A place in the text as people count: lines and columns from 1, columns in characters.
+/// Place in the text: line and column, both from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
     /// Line, from 1.
@@ -19,27 +20,27 @@ pub struct Position {
     pub column: usize,
 }
 
-/// Mechanism files larger than this are not read \[bytes\]. It is room for fifty thousand bodies
-/// with their joints, which take some seconds and some hundred megabytes.
+/// Size of the largest mechanism file \[bytes\]. It holds fifty thousand bodies with their joints,
+/// which take some seconds and some hundred megabytes.
 const LARGEST_MECHANISM: u64 = 16 << 20;
-/// Tables larger than this are not read \[bytes\]: none comes near it.
+/// Size of the largest CSV file \[bytes\], beyond any that people make.
 const LARGEST_TABLE: u64 = 64 << 20;
 
-/// The text of a mechanism file and the name under which people know it.
+/// Text of a mechanism file with the name of the file.
 #[derive(Clone, Debug)]
 pub struct Source {
     name: String,
     text: String,
-    /// Why the text is not what the file has.
+    /// Fault in the encoding of the file.
     fault: Option<NotUtf8>,
-    /// Where the files are that it names.
+    /// Folder of the files that it names.
     folder: Option<PathBuf>,
     /// Byte offset at which each line starts.
     line_starts: Vec<usize>,
 }
 
 impl Source {
-    /// Keeps `text`, named `name` in messages: its path as the user gave it.
+    /// Makes a source of `text`; `name` is its path as the user gave it, for messages.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         let text = text.into();
         let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
@@ -55,9 +56,8 @@ impl Source {
         }
     }
 
-    /// Reads the file at `path`, named `name` in messages. Files that it names are looked for
-    /// beside it. A file that is not UTF-8 is no mechanism, which is told with all else that is
-    /// wrong in it: by [`Mechanism::parse`](super::Mechanism::parse).
+    /// Reads the file at `path`, called `name` in messages. Files that it names are in the same
+    /// folder. [`Mechanism::parse`](super::Mechanism::parse) reports a file that is not UTF-8.
     ///
     /// # Errors
     ///
@@ -72,7 +72,7 @@ impl Source {
         })
     }
 
-    /// The content of a file that the text names, which is beside it.
+    /// Returns the content of a file in the same folder.
     ///
     /// # Errors
     ///
@@ -98,24 +98,24 @@ impl Source {
         }
     }
 
-    /// The name given to [`Source::new`].
+    /// Returns the name given to [`Source::new`].
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The whole text.
+    /// Returns the whole text.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Why the text is not what the file has, if it is not.
+    /// Returns the fault in the encoding of the file, if there is one.
     pub(super) fn fault(&self) -> Option<NotUtf8> {
         self.fault
     }
 
-    /// The place of a byte offset; one past the end of the text counts as its end.
+    /// Returns the line and column of a byte offset; one past the end counts as the end.
     #[must_use]
     pub fn position(&self, offset: usize) -> Position {
         let offset = self.boundary(offset);
@@ -128,7 +128,7 @@ impl Source {
         }
     }
 
-    /// The start of the character at `offset`, or the end of the text.
+    /// Returns the start of the character at `offset`, or the end of the text.
     pub(crate) fn boundary(&self, offset: usize) -> usize {
         (0..=offset.min(self.text.len()))
             .rev()
@@ -136,7 +136,7 @@ impl Source {
             .unwrap_or(0)
     }
 
-    /// Line `number`, from 1, without its line break; empty if the text has no such line.
+    /// Returns line `number`, from 1, without its line break; empty if there is none.
     #[must_use]
     pub fn line(&self, number: usize) -> &str {
         let Some(&start) = number
@@ -151,20 +151,11 @@ impl Source {
     }
 }
 
-/// Whether every system and every zip tool takes this for the name of a file.
+/// Whether every system and every zip tool accepts this as the name of a file.
 fn is_portable(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default();
-    let device = ["con", "prn", "aux", "nul"]
-        .iter()
-        .any(|device| stem.eq_ignore_ascii_case(device))
-        || (["com", "lpt"].iter().any(|device| {
-            stem.get(..3)
-                .is_some_and(|start| start.eq_ignore_ascii_case(device))
-                && stem.len() == 4
-                && stem.ends_with(|c: char| c.is_ascii_digit())
-        }));
     let legal = |c: char| c.is_alphanumeric() || " ._-+()".contains(c);
-    !device
+    !is_device(stem)
         && name.chars().all(legal)
         && !stem.trim().is_empty()
         && !name.ends_with(['.', ' '])

@@ -1,4 +1,4 @@
-//! TOML to a document in which each key and value knows its place.
+//! TOML document in which each key and value knows its place.
 
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
@@ -6,23 +6,24 @@ use toml::de::{DeString, DeTable, DeValue};
 use super::diagnostic::code;
 use super::{Diagnostic, Source, Span};
 
-/// A key with its place.
+/// Key with its place.
 pub(super) type Key<'a> = Spanned<DeString<'a>>;
 
-/// A value with its place.
+/// Value with its place.
 pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 
-/// A table, in the order of the file.
+/// Table in the order of the file.
 pub(super) type Table<'a> = DeTable<'a>;
 
-/// What the TOML parser says of a key that a table already has.
+/// The TOML parser's message about a key that a table already has.
 const DUPLICATE_KEY: &str = "duplicate key";
 
-/// Parses the text. With the document come the keys that stand twice, whose first value is kept.
+/// Parses the text. Returns with the document the errors about repeated keys, whose first value
+/// counts.
 ///
 /// # Errors
 ///
-/// The file is not UTF-8; or the first syntax error: one slip brings a dozen others after it.
+/// The file is not UTF-8, or has a syntax error: only the first, as one slip causes others.
 pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Diagnostic>), Diagnostic> {
     if let Some(fault) = source.fault() {
         return Err(
@@ -37,7 +38,7 @@ pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Diagnostic>), Dia
         let span = error.span().unwrap_or(0..0);
         if error.message() == DUPLICATE_KEY {
             let key = source.text().get(span.clone()).unwrap_or_default();
-            let message = format!("the key {} stands here twice", super::names::quoted(key));
+            let message = format!("the key {} stands here twice", super::wording::quoted(key));
             duplicates.push(Diagnostic::error(code::DUPLICATE_KEY, message).label(span, ""));
         } else {
             return Err(Diagnostic::error(code::SYNTAX, error.message()).label(span, ""));
@@ -46,7 +47,7 @@ pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Diagnostic>), Dia
     Ok((document.into_inner(), duplicates))
 }
 
-/// What kind of value it is, as people say it.
+/// Returns the type of a value for messages.
 pub(super) fn kind(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a string",
@@ -58,8 +59,8 @@ pub(super) fn kind(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// The number nearest to what a TOML integer or float says; `None` for other values. Infinite for
-/// one that is out of range.
+/// Returns the number nearest to a TOML integer or float, infinite if it is out of range; `None`
+/// for other values.
 pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
@@ -78,9 +79,9 @@ pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// Where in the source the content of a string is, if the source has it literally: between plain
-/// quotes and without escapes. Then byte n of the string is byte n of that place.
-pub(super) fn content_span(source: &Source, quoted: Span, content: &str) -> Option<Span> {
+/// Returns the place of a string's content, `None` if the source has it with escapes. Byte n of
+/// the string is byte n of that place.
+fn content_span(source: &Source, quoted: Span, content: &str) -> Option<Span> {
     let raw = source.text().get(quoted.clone())?;
     ["\"\"\"", "'''", "\"", "'"].iter().find_map(|quote| {
         let inner = raw.strip_prefix(quote)?.strip_suffix(quote)?;
@@ -89,8 +90,18 @@ pub(super) fn content_span(source: &Source, quoted: Span, content: &str) -> Opti
     })
 }
 
-/// The document's content as text without comments and layout: equal for two documents exactly
-/// when they have the same keys and values in the same order, numbers compared as 64-bit floats.
+/// Returns the place of the bytes `part` of a string's content, the whole string's if `part` is
+/// empty or the source has the string with escapes.
+pub(super) fn part_span(source: &Source, quoted: Span, content: &str, part: Span) -> Span {
+    match content_span(source, quoted.clone(), content) {
+        Some(place) if !part.is_empty() => place.start + part.start..place.start + part.end,
+        _ => quoted,
+    }
+}
+
+/// Returns the document's content as text without comments and layout. Two documents have the same
+/// text exactly if they have the same keys and values in the same order, numbers compared as
+/// 64-bit floats.
 pub(super) fn canonical(document: &Table<'_>) -> String {
     let mut text = String::new();
     write_table(&mut text, document);

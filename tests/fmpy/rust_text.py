@@ -77,9 +77,7 @@ def reported(name: str, text: str) -> Iterator[Literal]:
     arguments = {
         r"ExpressionError::new": 1,
         r"Diagnostic::(?:error|warning)": 1,
-        r"self\.error": 2,
-        r"self\.error_with_help": 2,
-        r"self\.not_a_motion": 1,
+        r"(?:self|context)\s*\.(?:error|warn)": 2,
     }
     places = [
         split_arguments(code, call.end())[index]

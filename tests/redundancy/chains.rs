@@ -56,7 +56,7 @@ fn one_joint_too_many_in_a_long_chain_is_found() {
         let angle = TAU / 6.0 + 0.1;
         straight_to(&solver, &mut path, angle);
         solver
-            .follow(&path)
+            .track(&path)
             .unwrap_or_else(|blocked| panic!("{what}: {blocked:?}"));
         // Every rocker turns like the first.
         let phi = |k: usize| {

@@ -30,7 +30,7 @@ fn turn_three_cranks(runs: &[(u32, u32)]) {
             let angle = TAU / 6.0 + TAU * f64::from(step) / f64::from(steps);
             straight_to(&solver, &mut path, angle);
             let progress = solver
-                .follow(&path)
+                .track(&path)
                 .unwrap_or_else(|blocked| panic!("{blocked:?}"));
             assert!(progress.substeps < 30, "{step} of {steps}: {progress:?}");
             let q = &solver.pose().q;
@@ -72,7 +72,7 @@ fn cranks_in_line_cross_their_change_points() {
                 let angle = TAU / 6.0 + TAU * f64::from(step) / f64::from(steps);
                 straight_to(&solver, &mut path, angle);
                 solver
-                    .follow(&path)
+                    .track(&path)
                     .unwrap_or_else(|blocked| panic!("{more:?}, {step} of {steps}: {blocked:?}"));
                 for &phi in &turning {
                     // As what is interpolated next to a change point.
@@ -95,7 +95,7 @@ fn a_parallelogram_with_a_doubled_pin_crosses_its_change_points() {
         let angle = TAU / 6.0 + TAU / 24.0 * f64::from(step);
         straight_to(&solver, &mut path, angle);
         solver
-            .follow(&path)
+            .track(&path)
             .unwrap_or_else(|blocked| panic!("{step}: {blocked:?}"));
         // The change points are known to 1e-9, as is what is said next to them.
         let off = solver.pose().q[3 * rocker.index() + 2] - angle;

@@ -28,7 +28,7 @@ fn a_parameter_that_ends_a_redundancy_is_refused() {
     let home = solver.pose().clone();
     path.from = vec![0.4];
     path.to = vec![0.41];
-    let blocked = solver.follow(&path).expect_err("the rod is too long");
+    let blocked = solver.track(&path).expect_err("the rod is too long");
     let Reason::Contradiction(open) = &blocked.reason else {
         panic!("{blocked:?}");
     };
@@ -49,7 +49,7 @@ fn a_parameter_that_ends_a_redundancy_is_refused() {
     assert!(solver.residual() < 4.0 * f64::EPSILON);
     path.to = vec![0.4];
     straight_to(&solver, &mut path, 2.0);
-    solver.follow(&path).expect("it moves as before");
+    solver.track(&path).expect("it moves as before");
     assert!(solver.residual() < 8.0 * f64::EPSILON);
 }
 
@@ -72,9 +72,7 @@ fn a_redundancy_that_ends_on_the_way_stops_the_mechanism_there() {
     assert_eq!(solver.redundancies()[0].element, "constraint `level`");
     // The contact is at theta = 90° − u.
     straight_to(&solver, &mut path, -TAU / 12.0);
-    let blocked = solver
-        .follow(&path)
-        .expect_err("the lobe begins on the way");
+    let blocked = solver.track(&path).expect_err("the lobe begins on the way");
     let Reason::Contradiction(open) = &blocked.reason else {
         panic!("{blocked:?}");
     };

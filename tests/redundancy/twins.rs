@@ -49,8 +49,8 @@ fn compare(redundant: &Arc<Mechanism>, twin: &Arc<Mechanism>, values: &[f64], wh
         straight_to(&solver, &mut path, value);
         straight_to(&other, &mut other_path, value);
         let moved = (
-            solver.follow(&path).is_ok(),
-            other.follow(&other_path).is_ok(),
+            solver.track(&path).is_ok(),
+            other.track(&other_path).is_ok(),
         );
         assert_eq!(moved.0, moved.1, "{what} at {value}");
         if !moved.0 {

@@ -144,7 +144,7 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
         "rcond": rcond,
         "nearly_singular": rcond < NEARLY_SINGULAR,
         "redundancies": texts(&mut solver.redundancies().iter().map(ToString::to_string)),
-        "misfits": texts(&mut solver.misfits().iter().map(ToString::to_string)),
+        "misfits": texts(&mut solver.geometry_warnings().iter().map(ToString::to_string)),
     });
     if modes {
         let modes = solver.modes()?;

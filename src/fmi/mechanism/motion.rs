@@ -27,7 +27,7 @@ impl MechanismModel {
             self.at_committed = true;
         }
         self.lay_path(start, h);
-        match self.solver.follow(&self.path) {
+        match self.solver.track(&self.path) {
             Ok(progress) => {
                 self.progress = progress;
                 self.collect_driver_rates(start, h, 1.0);
@@ -133,7 +133,7 @@ impl MechanismModel {
         if starting {
             let redundancies = self.solver.redundancies().into_iter();
             let redundancies = redundancies.map(|redundancy| redundancy.to_string());
-            let misfits = self.solver.misfits().into_iter();
+            let misfits = self.solver.geometry_warnings().into_iter();
             for warning in redundancies.chain(misfits.map(|misfit| misfit.to_string())) {
                 log.write(Status::Warning, Category::Warning, &warning);
             }
@@ -212,7 +212,7 @@ impl MechanismModel {
             Reason::Singular(point) => (point.drivers.clone(), point.s),
             _ => (self.solver.pose().drivers.clone(), blocked.s),
         };
-        let asked = self.solver.drivers_at_end(&self.path);
+        let asked = self.path.drivers_at_end(&self.mechanism);
         let mut parts: Vec<String> = self
             .mechanism
             .drivers
@@ -374,7 +374,7 @@ impl MechanismModel {
             Interface::CoSimulation => (self.time, 0.0),
         };
         self.lay_path(start, h);
-        let followed = self.solver.follow(&self.path);
+        let followed = self.solver.track(&self.path);
         self.at_committed = false;
         self.collect_driver_rates(start, h, 1.0);
         match followed {

@@ -218,7 +218,7 @@ fn walk_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> 
     let unknowns = q.len();
     codec.resize(crossings, unknowns, || {
         Arc::new(Crossing {
-            kernel: 0,
+            block: 0,
             driver: DriverId(0),
             center: 0.0,
             half_width: 0.0,
@@ -237,14 +237,14 @@ fn walk_crossing(
     codec: &mut impl Codec,
 ) -> Result<(), Unreadable> {
     let Crossing {
-        kernel,
+        block,
         driver,
         center,
         half_width,
         coefficients,
         free,
     } = crossing;
-    codec.place(kernel)?;
+    codec.place(block)?;
     codec.place(&mut driver.0)?;
     codec.finite(center)?;
     codec.finite(half_width)?;

@@ -1,34 +1,36 @@
-//! Whether wheels are where their sizes ask for, and whether a follower can follow its cam.
+//! Checks the geometry of joints: the distances of wheels, and the hollows of cams.
 //!
-//! The equations of these pairs hold all the same; a misfit tells that the drawing does not
-//! belong to them.
+//! The equations of these joints hold all the same; a warning tells that the drawing does not fit
+//! them.
 
 use std::f64::consts::TAU;
 use std::fmt;
 
 use nalgebra::Vector2;
 
-use crate::kinematics::configuration::{ProfileId, perp};
+use crate::kinematics::configuration::{Configuration, ProfileId, perp};
 use crate::kinematics::constraint::Contour;
-use crate::kinematics::solver::Solver;
+use crate::kinematics::model::Model;
+use crate::kinematics::state::State;
 use crate::mechanism::{
-    CamFollower, Interval, Jet3, JointKind, MarkerId, ProfileInForce, RackSide, WheelSizes,
+    CamFollower, Expression, Interval, Jet3, JointKind, MarkerId, ProfileInForce, RackSide,
+    WheelSizes,
 };
 
-/// A joint that does not fit its own numbers, in the pose at which the solver stands.
+/// A joint that does not fit its own numbers at a pose.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Misfit {
+pub struct GeometryWarning {
     /// Name of the joint.
     pub joint: String,
-    /// What does not fit.
-    pub kind: MisfitKind,
+    /// The numbers that do not fit.
+    pub kind: GeometryWarningKind,
 }
 
-/// What does not fit in a joint.
+/// The numbers of a joint that do not fit each other.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum MisfitKind {
-    /// The centres of two gears are not as far apart as their radii ask for.
+pub enum GeometryWarningKind {
+    /// The distance of the centres of two gears does not fit their radii.
     GearCentres {
         /// Distance of the centres \[m\].
         distance: f64,
@@ -39,10 +41,10 @@ pub enum MisfitKind {
     BeltCentres {
         /// Distance of the centres \[m\].
         distance: f64,
-        /// What it has to exceed \[m\].
+        /// The least distance at which they do not overlap \[m\].
         least: f64,
     },
-    /// A pinion's centre is not a radius away from the rack.
+    /// The distance of a pinion's centre from the rack does not fit its radius.
     RackDistance {
         /// The centre's coordinate on the rack marker's y-axis \[m\].
         distance: f64,
@@ -52,39 +54,39 @@ pub enum MisfitKind {
     /// The contour has a hollow that is too narrow for the roller: undercutting. The contact
     /// jumps from one of its sides to the other.
     NarrowHollow {
-        /// Polar angles from which to which, one a hollow \[rad\].
+        /// First and last polar angle of each hollow \[rad\].
         ranges: Vec<[f64; 2]>,
-        /// Radius of curvature where they are narrowest \[m\].
+        /// Least radius of curvature in the hollows \[m\].
         curvature: f64,
         /// Radius of the roller \[m\].
         roller: f64,
     },
     /// A flat face cannot reach into a hollow of the contour: the contact jumps across it.
     HollowUnderFace {
-        /// Polar angles from which to which the contour is not convex \[rad\].
+        /// First and last polar angle of each part that is not convex \[rad\].
         ranges: Vec<[f64; 2]>,
     },
 }
 
-impl fmt::Display for Misfit {
+impl fmt::Display for GeometryWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint `{}`: ", self.joint)?;
         match &self.kind {
-            MisfitKind::GearCentres { distance, expected } => write!(
+            GeometryWarningKind::GearCentres { distance, expected } => write!(
                 f,
                 "the centres are {distance:.6} m apart; the radii ask for {expected:.6} m"
             ),
-            MisfitKind::BeltCentres { distance, least } => write!(
+            GeometryWarningKind::BeltCentres { distance, least } => write!(
                 f,
                 "the centres are {distance:.6} m apart; wheels of these radii need more than \
                  {least:.6} m"
             ),
-            MisfitKind::RackDistance { distance, expected } => write!(
+            GeometryWarningKind::RackDistance { distance, expected } => write!(
                 f,
                 "the pinion's centre is at y = {distance:.6} m of the rack; its radius and side \
                  ask for {expected:.6} m"
             ),
-            MisfitKind::NarrowHollow {
+            GeometryWarningKind::NarrowHollow {
                 ranges,
                 curvature,
                 roller,
@@ -94,7 +96,7 @@ impl fmt::Display for Misfit {
                  radius of curvature goes down to {curvature:.6} m: {}",
                 degrees(ranges)
             ),
-            MisfitKind::HollowUnderFace { ranges } => write!(
+            GeometryWarningKind::HollowUnderFace { ranges } => write!(
                 f,
                 "a flat face cannot follow the contour where it is hollow: {}",
                 degrees(ranges)
@@ -103,7 +105,7 @@ impl fmt::Display for Misfit {
     }
 }
 
-/// Ranges of polar angles, the first of them.
+/// Describes the first of some ranges of polar angles.
 fn degrees(ranges: &[[f64; 2]]) -> String {
     const SHOWN: usize = 4;
     let shown = ranges.iter().take(SHOWN).map(|range| {
@@ -117,69 +119,77 @@ fn degrees(ranges: &[[f64; 2]]) -> String {
     text
 }
 
-/// Into so many parts a contour is divided to begin with.
+/// Number of parts of a contour at first.
 const PARTS: u32 = 64;
-/// Parts are divided down to this width \[rad\], 0.02°.
+/// Least width of a part \[rad\], 0.02°.
 const SMALLEST_PART: f64 = TAU / 16_384.0;
-/// A distance that is wrong by no more than this part of it fits.
+/// Relative error of a distance that fits.
 const TOLERANCE: f64 = 1e-6;
 
-impl Solver {
-    /// What does not fit in the pose at which the mechanism stands, in the order of the joints.
-    #[must_use]
-    pub fn misfits(&self) -> Vec<Misfit> {
-        let mut misfits = Vec::new();
-        let mut profiles = (0..).map(ProfileId);
-        for joint in &self.mechanism().joints {
-            let centres = [joint.from, joint.to];
-            let kind = match &joint.kind {
-                JointKind::Gear {
-                    sizes: WheelSizes::Radii(radii),
-                    internal,
-                    ..
-                } => self.misfit_of_gear(
-                    centres,
-                    radii.each_ref().map(|r| self.number(r)),
-                    *internal,
-                ),
-                JointKind::Belt {
-                    sizes: WheelSizes::Radii(radii),
-                    crossed,
-                    ..
-                } => {
-                    self.misfit_of_belt(centres, radii.each_ref().map(|r| self.number(r)), *crossed)
-                }
-                JointKind::RackAndPinion { radius, side } => {
-                    self.misfit_of_rack(centres, self.number(radius), *side)
-                }
-                JointKind::Cam { follower, .. } => {
-                    let profile = profiles.next().map(|id| self.at.profile(id));
-                    profile.and_then(|profile| self.misfit_of_cam(profile, follower))
-                }
-                _ => None,
-            };
-            misfits.extend(kind.map(|kind| Misfit {
-                joint: joint.name.clone(),
-                kind,
-            }));
-        }
-        misfits
+/// Returns the joints that do not fit their own numbers at the pose, in the order of declaration.
+pub(in crate::kinematics) fn geometry_warnings(
+    model: &Model,
+    state: &State,
+) -> Vec<GeometryWarning> {
+    let check = Check {
+        at: &state.at,
+        parameters: &state.pose.parameters,
+    };
+    let mut profiles = (0..).map(ProfileId);
+    let joints = model.system.mechanism().joints.iter();
+    let warnings = joints.filter_map(|joint| {
+        let centres = [joint.from, joint.to];
+        let kind = match &joint.kind {
+            JointKind::Gear {
+                sizes: WheelSizes::Radii(radii),
+                internal,
+                ..
+            } => check.gear(centres, check.numbers(radii), *internal),
+            JointKind::Belt {
+                sizes: WheelSizes::Radii(radii),
+                crossed,
+                ..
+            } => check.belt(centres, check.numbers(radii), *crossed),
+            JointKind::RackAndPinion { radius, side } => {
+                check.rack(centres, check.number(radius), *side)
+            }
+            JointKind::Cam { follower, .. } => {
+                let profile = profiles.next().map(|id| state.at.profile(id));
+                profile.and_then(|profile| check.cam(profile, follower))
+            }
+            _ => None,
+        };
+        let joint = joint.name.clone();
+        kind.map(|kind| GeometryWarning { joint, kind })
+    });
+    warnings.collect()
+}
+
+/// A check of joints at a pose.
+struct Check<'a> {
+    at: &'a Configuration,
+    parameters: &'a [f64],
+}
+
+impl Check<'_> {
+    fn number(&self, expression: &Expression) -> f64 {
+        expression.evaluate(&|p| self.parameters[p.index()], 0.0)
     }
 
-    fn number(&self, expression: &crate::mechanism::Expression) -> f64 {
-        expression.evaluate(&|p| self.pose.parameters[p.index()], 0.0)
+    fn numbers(&self, expressions: &[Expression; 2]) -> [f64; 2] {
+        expressions.each_ref().map(|e| self.number(e))
     }
 
     fn distance(&self, [from, to]: [MarkerId; 2]) -> f64 {
         (self.at.marker(to).point - self.at.marker(from).point).norm()
     }
 
-    fn misfit_of_gear(
+    fn gear(
         &self,
         centres: [MarkerId; 2],
         [first, second]: [f64; 2],
         internal: bool,
-    ) -> Option<MisfitKind> {
+    ) -> Option<GeometryWarningKind> {
         let distance = self.distance(centres);
         let expected = if internal {
             (first - second).abs()
@@ -187,30 +197,30 @@ impl Solver {
             first + second
         };
         ((distance - expected).abs() > TOLERANCE * first.max(second))
-            .then_some(MisfitKind::GearCentres { distance, expected })
+            .then_some(GeometryWarningKind::GearCentres { distance, expected })
     }
 
-    fn misfit_of_belt(
+    fn belt(
         &self,
         centres: [MarkerId; 2],
         [first, second]: [f64; 2],
         crossed: bool,
-    ) -> Option<MisfitKind> {
+    ) -> Option<GeometryWarningKind> {
         let distance = self.distance(centres);
         let least = if crossed {
             first + second
         } else {
             (first - second).abs()
         };
-        (distance <= least).then_some(MisfitKind::BeltCentres { distance, least })
+        (distance <= least).then_some(GeometryWarningKind::BeltCentres { distance, least })
     }
 
-    fn misfit_of_rack(
+    fn rack(
         &self,
         [pinion, rack]: [MarkerId; 2],
         radius: f64,
         side: RackSide,
-    ) -> Option<MisfitKind> {
+    ) -> Option<GeometryWarningKind> {
         let (pinion, rack) = (self.at.marker(pinion), self.at.marker(rack));
         let distance = perp(rack.axis).dot(&(pinion.point - rack.point));
         let expected = match side {
@@ -218,16 +228,12 @@ impl Solver {
             RackSide::Below => -radius,
         };
         ((distance - expected).abs() > TOLERANCE * radius)
-            .then_some(MisfitKind::RackDistance { distance, expected })
+            .then_some(GeometryWarningKind::RackDistance { distance, expected })
     }
 
-    fn misfit_of_cam(
-        &self,
-        profile: &ProfileInForce,
-        follower: &CamFollower,
-    ) -> Option<MisfitKind> {
+    fn cam(&self, profile: &ProfileInForce, follower: &CamFollower) -> Option<GeometryWarningKind> {
         match follower {
-            // A point of the contour at every polar angle, whatever its curvature.
+            // A knife edge touches a point at every polar angle, whatever the curvature.
             CamFollower::Knife => None,
             // A roller that touches the contour in two places leaves a pocket between them, and
             // every pocket has a hollow narrower than the roller: looking for those is enough.
@@ -246,7 +252,7 @@ impl Solver {
                     .chain(ProfileInForce::sample_angles())
                     .map(|theta| curvature(profile, theta))
                     .fold(f64::INFINITY, f64::min);
-                (!ranges.is_empty()).then(|| MisfitKind::NarrowHollow {
+                (!ranges.is_empty()).then(|| GeometryWarningKind::NarrowHollow {
                     ranges,
                     curvature: -narrowest.recip(),
                     roller,
@@ -254,13 +260,13 @@ impl Solver {
             }
             CamFollower::Flat => {
                 let ranges = ranges_below_zero(profile, |radius| bending(radius).1);
-                (!ranges.is_empty()).then_some(MisfitKind::HollowUnderFace { ranges })
+                (!ranges.is_empty()).then_some(GeometryWarningKind::HollowUnderFace { ranges })
             }
         }
     }
 }
 
-/// R² + R′², and R² + 2R′² − R R″, which has the sign of the curvature.
+/// Returns R² + R′², and R² + 2R′² − R R″, which has the sign of the curvature.
 fn bending(radius: Jet3<Interval>) -> (Interval, Interval) {
     let square = |x: Interval| {
         let (low, high) = (x.low.abs().min(x.high.abs()), x.magnitude());
@@ -272,20 +278,20 @@ fn bending(radius: Jet3<Interval>) -> (Interval, Interval) {
     (sum, sum + slope - radius.value * radius.second())
 }
 
-/// The curvature of a contour, positive where it is convex \[1/m\].
+/// Returns the curvature of a contour, positive where it is convex \[1/m\].
 fn curvature(profile: &ProfileInForce, theta: f64) -> f64 {
     let shape = Contour::shape(profile, theta, Vector2::x());
     shape.turn[0] / shape.speed[0]
 }
 
-/// The polar angles, from which to which in rising order, where a function of the contour is
-/// certainly negative, to within a part of a degree.
+/// Returns the ranges of polar angles, ascending, in which a function of the contour is certainly
+/// negative, to within a part of a degree.
 fn ranges_below_zero(
     profile: &ProfileInForce,
     function: impl Fn(Jet3<Interval>) -> Interval,
 ) -> Vec<[f64; 2]> {
     let mut ranges: Vec<[f64; 2]> = Vec::new();
-    // Ranges still to be looked at, the last one first.
+    // Ranges still to be divided, the last one first.
     let mut open: Vec<[f64; 2]> = (0..PARTS)
         .rev()
         .map(|part| [part, part + 1].map(|k| f64::from(k) * (TAU / f64::from(PARTS))))
@@ -300,11 +306,11 @@ fn ranges_below_zero(
                 _ => ranges.push([from, to]),
             },
             _ if to - from > SMALLEST_PART => open.extend([[middle, to], [from, middle]]),
-            // On the edge, or at a place where the curvature jumps.
+            // At the edge of a range, or where the curvature jumps.
             _ => {}
         }
     }
-    // What goes on over the seam is one range.
+    // A range across the seam is one.
     if let [first, .., last] = &mut ranges[..]
         && first[0] + TAU - last[1] <= SMALLEST_PART
     {

@@ -1,18 +1,21 @@
-//! Questions about a mechanism that no step asks.
+//! Analyses of a mechanism that no step needs.
 //!
-//! | file | question |
+//! | file | subject |
 //! |---|---|
-//! | [`sensitivity`] | the derivatives of a motion by drivers and parameters |
-//! | [`range`] | the values that a driver can reach |
-//! | [`modes`] | the other poses for the same values of the drivers |
-//! | [`geometry_check`] | wheels whose distance does not fit, cams that a follower cannot follow |
+//! | [`sensitivity`] | derivatives of a motion by drivers and parameters |
+//! | [`range`](mod@range) | values that a driver can reach |
+//! | [`modes`](mod@modes) | other poses for the same values of the drivers |
+//! | [`geometry_check`] | distances of wheels, hollows of cams |
 
 mod geometry_check;
 mod modes;
 mod range;
 mod sensitivity;
 
-pub use geometry_check::{Misfit, MisfitKind};
+pub(super) use geometry_check::geometry_warnings;
+pub use geometry_check::{GeometryWarning, GeometryWarningKind};
+pub(super) use modes::modes;
 pub use modes::{Mode, Modes};
+pub(super) use range::range;
 pub use range::{ChangePoint, End, Range, RangeSettings, Sample};
 pub use sensitivity::{Direction, Sensitivity};

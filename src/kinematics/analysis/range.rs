@@ -2,18 +2,20 @@
 
 use std::f64::consts::TAU;
 
-use crate::kinematics::Reason;
-use crate::kinematics::singular::SingularPoint;
-use crate::kinematics::solver::{Pose, Solver};
-use crate::kinematics::{Curve, Path};
+use crate::kinematics::continuation::{PathTracker, Reason};
+use crate::kinematics::model::Model;
+use crate::kinematics::path::{Curve, Path};
+use crate::kinematics::singular::{SingularPoint, bodies_in_line};
+use crate::kinematics::state::{Pose, State};
+use crate::kinematics::system::System;
 use crate::mechanism::{CoordinateKind, DriverId};
 
-/// How far a driver moves a mechanism either way from one pose.
+/// The range of a driver from one pose, either way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Range {
-    /// The way down from the start.
+    /// The end of the way down from the start.
     pub lower: End,
-    /// The way up.
+    /// The end of the way up.
     pub upper: End,
     /// The change points passed, by the driver's value, ascending.
     pub crossings: Vec<ChangePoint>,
@@ -21,22 +23,22 @@ pub struct Range {
     pub samples: Vec<Sample>,
 }
 
-/// How the way of a driver in one direction ends.
+/// The end of the way of a driver in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
-    /// It does not: after this many turns of the driver the mechanism is where it was, whole
-    /// turns of its bodies apart.
+    /// None: after this many turns of the driver the mechanism is at its start again, whole turns of
+    /// its bodies apart.
     Turns(u32),
-    /// At a singular position, located to rounding; as a rule a dead point.
+    /// A singular position, located to rounding; as a rule a dead point.
     Singular(Box<SingularPoint>),
-    /// At a value beyond which the motion could not be followed, for another reason.
+    /// A value beyond which the tracker stopped for another reason.
     Blocked {
         /// The driver's value that was reached \[m or rad\].
         value: f64,
-        /// What is in the way.
+        /// The cause of the stop.
         reason: Reason,
     },
-    /// It was followed to this value and was not blocked \[m or rad\].
+    /// None up to this value \[m or rad\].
     NotFound {
         /// The driver's value that was reached \[m or rad\].
         value: f64,
@@ -59,30 +61,30 @@ pub struct Sample {
     pub driver: f64,
     /// Generalized coordinates.
     pub q: Vec<f64>,
-    /// Scaled reciprocal condition, as [`Solver::rcond`] has it.
+    /// Scaled reciprocal condition; see [`Solver::rcond`](crate::kinematics::Solver::rcond).
     pub rcond: f64,
-    /// Scaled residual, as [`Solver::residual`] has it.
+    /// Scaled residual; see [`Solver::residual`](crate::kinematics::Solver::residual).
     pub residual: f64,
-    /// The smallest transmission angle, from 0 at a dead point to π/2 at best \[rad\]: that between
-    /// the two links of a dyad of revolutes, or between a link and the normal of the line along
+    /// The smallest transmission angle, from 0 at a dead point to π/2 at best \[rad\]: the angle
+    /// between the two links of an RRR dyad, or between a link and the normal of the line along
     /// which its end slides. `None` if the mechanism has no such pair.
     pub transmission: Option<f64>,
 }
 
-/// How closely and how far a range is followed.
+/// The resolution and the extent of a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeSettings {
-    /// Samples a turn of an angle. Those of a length are as far apart as two characteristic
-    /// lengths of the mechanism divided by this, and farther when it has gone farther.
+    /// Samples per turn of an angle. Samples of a length are two characteristic lengths of the
+    /// mechanism divided by this apart, and farther beyond one length from the start.
     pub samples: u32,
-    /// The most turns of an angle that the mechanism may take to come back to where it was.
+    /// Most turns of an angle after which the mechanism may be at its start again.
     pub turns: u32,
-    /// How far a length is followed, in characteristic lengths of the mechanism.
+    /// Largest change of a length, in characteristic lengths of the mechanism.
     pub lengths: f64,
 }
 
 impl Default for RangeSettings {
-    /// One sample a degree, gears of up to 64 teeth, a hundred lengths.
+    /// Returns one sample per degree, gears of up to 64 teeth, a hundred lengths.
     fn default() -> Self {
         Self {
             samples: 360,
@@ -92,62 +94,74 @@ impl Default for RangeSettings {
     }
 }
 
-/// A mechanism is where it was if no unknown is further off, scaled and whole turns apart: after
+/// A mechanism is at its start if no unknown differs by more, scaled and whole turns apart: after
 /// some thousand sub-steps, and up to a thousand turns, rounding is below that.
 const SAME_PLACE: f64 = 1e-9;
 
-impl Solver {
-    /// Follows one driver up and down from the present pose, the other drivers, time and
-    /// parameters being held, until it is blocked, has turned the mechanism to where it was, or
-    /// has gone far enough. A prescribed motion is taken for a driver that can be set. Leaves the
-    /// mechanism where it was.
-    ///
-    /// # Panics
-    ///
-    /// If the driver is none of the mechanism's.
-    pub fn range(&mut self, driver: DriverId, settings: &RangeSettings) -> Range {
-        let start = self.pose().clone();
-        let from = start.drivers[driver.index()];
-        let mut crossings = Vec::new();
-        let mut up = Vec::new();
-        let upper = self.explore(driver, 1.0, settings, &mut up, &mut crossings);
-        self.restore(&start);
-        let here = self.sample(from);
-        let mut samples = Vec::new();
-        let lower = if let End::Turns(turns) = upper {
-            End::Turns(turns)
-        } else {
-            let lower = self.explore(driver, -1.0, settings, &mut samples, &mut crossings);
-            self.restore(&start);
-            lower
-        };
-        samples.reverse();
-        samples.push(here);
-        samples.extend(up);
-        crossings.sort_by(|a, b| a.value.total_cmp(&b.value));
-        Range {
-            lower,
-            upper,
-            crossings,
-            samples,
-        }
+/// Finds the range of one driver from the present pose, with the other drivers, time and
+/// parameters held. See [`Solver::range`](crate::kinematics::Solver::range).
+pub(in crate::kinematics) fn range(
+    model: &mut Model,
+    state: &mut State,
+    tracker: &mut PathTracker,
+    driver: DriverId,
+    settings: &RangeSettings,
+) -> Range {
+    let start = state.pose.clone();
+    let mut explorer = Explorer {
+        model,
+        state,
+        tracker,
+        driver,
+        settings,
+        start: &start,
+        crossings: Vec::new(),
+    };
+    let mut up = Vec::new();
+    let upper = explorer.explore(1.0, &mut up);
+    explorer.restore();
+    let here = explorer.sample();
+    let mut samples = Vec::new();
+    let lower = if let End::Turns(turns) = upper {
+        End::Turns(turns)
+    } else {
+        let lower = explorer.explore(-1.0, &mut samples);
+        explorer.restore();
+        lower
+    };
+    samples.reverse();
+    samples.push(here);
+    samples.extend(up);
+    let mut crossings = explorer.crossings;
+    crossings.sort_by(|a, b| a.value.total_cmp(&b.value));
+    Range {
+        lower,
+        upper,
+        crossings,
+        samples,
     }
+}
 
-    /// One way, away from the start.
-    fn explore(
-        &mut self,
-        driver: DriverId,
-        sign: f64,
-        settings: &RangeSettings,
-        samples: &mut Vec<Sample>,
-        crossings: &mut Vec<ChangePoint>,
-    ) -> End {
-        let start = self.pose().clone();
-        let from = start.drivers[driver.index()];
-        let kind = self.mechanism().drivers[driver.index()].coordinate.kind;
-        let size = self.at.size();
-        let per_turn = settings.samples.max(1);
-        let mut path = self.held_path();
+/// The exploration of a driver's range.
+struct Explorer<'a> {
+    model: &'a mut Model,
+    state: &'a mut State,
+    tracker: &'a mut PathTracker,
+    driver: DriverId,
+    settings: &'a RangeSettings,
+    start: &'a Pose,
+    crossings: Vec<ChangePoint>,
+}
+
+impl Explorer<'_> {
+    /// Moves the driver one way from the start, up (1) or down (−1).
+    fn explore(&mut self, sign: f64, samples: &mut Vec<Sample>) -> End {
+        let index = self.driver.index();
+        let from = self.start.drivers[index];
+        let kind = self.model.system.mechanism().drivers[index].coordinate.kind;
+        let size = self.state.at.size();
+        let per_turn = self.settings.samples.max(1);
+        let mut path = held_path(self.start);
         let mut count = 0_u32;
         let mut off = 0.0_f64;
         loop {
@@ -155,91 +169,77 @@ impl Solver {
             off = if kind == CoordinateKind::Angle {
                 TAU * f64::from(count) / f64::from(per_turn)
             } else {
-                // Further away it is looked at less closely.
                 off + 2.0 * size.max(off) / f64::from(per_turn)
             };
             let value = from + sign * off;
-            let now = self.pose().drivers[driver.index()];
-            path.curves[driver.index()] = Curve::Input {
-                position: value,
-                velocity: 0.0,
-                acceleration: 0.0,
-                jump: now - value,
-            };
-            let followed = self.follow(&path);
-            crossings.extend(self.crossed().iter().map(|crossing| ChangePoint {
+            path.curves[index] = Curve::held(value, self.state.pose.drivers[index]);
+            let tracked = self.tracker.track(self.model, self.state, &path);
+            let crossed = self.tracker.crossed().iter();
+            self.crossings.extend(crossed.map(|crossing| ChangePoint {
                 value: crossing.center,
-                bodies: self.bodies_in_line(crossing),
+                bodies: bodies_in_line(self.model, crossing),
             }));
-            let reached = self.pose().drivers[driver.index()];
-            samples.push(self.sample(reached));
-            match followed.map_err(|blocked| blocked.reason) {
+            samples.push(self.sample());
+            match tracked.map_err(|blocked| blocked.reason) {
                 Err(Reason::Singular(point)) => return End::Singular(point),
                 Err(reason) => {
                     return End::Blocked {
-                        value: reached,
+                        value: self.state.pose.drivers[index],
                         reason,
                     };
                 }
                 Ok(_) => {}
             }
             if kind != CoordinateKind::Angle {
-                if off > settings.lengths * size {
+                if off > self.settings.lengths * size {
                     return End::NotFound { value };
                 }
             } else if count.is_multiple_of(per_turn) {
                 let turns = count / per_turn;
-                if self.is_where_it_was(&start) {
+                if is_same_place(&self.model.system, self.state, self.start) {
                     return End::Turns(turns);
                 }
-                if turns >= settings.turns {
+                if turns >= self.settings.turns {
                     return End::NotFound { value };
                 }
             }
         }
     }
 
-    /// A path from the pose on which nothing moves yet, all drivers taken for inputs.
-    pub(in crate::kinematics) fn held_path(&self) -> Path {
-        let pose = self.pose();
-        Path {
-            start: pose.time,
-            duration: 0.0,
-            from: pose.parameters.clone(),
-            to: pose.parameters.clone(),
-            curves: pose
-                .drivers
-                .iter()
-                .map(|&position| Curve::Input {
-                    position,
-                    velocity: 0.0,
-                    acceleration: 0.0,
-                    jump: 0.0,
-                })
-                .collect(),
-        }
+    /// Returns to the start.
+    fn restore(&mut self) {
+        self.state.restore(self.model, self.start);
     }
 
-    /// Whether all bodies are where they were at a pose, whole turns apart.
-    fn is_where_it_was(&self, before: &Pose) -> bool {
-        let size = self.at.size();
-        let unknowns = self.pose().q.iter().zip(&before.q).enumerate();
-        unknowns.fold(true, |same, (column, (now, before))| {
-            let mut off = now - before;
-            if self.system.is_angle(column) {
-                off -= TAU * (off / TAU).round();
-            }
-            same && (off / self.system.column_scale(column, size)).abs() < SAME_PLACE
-        })
-    }
-
-    fn sample(&mut self, driver: f64) -> Sample {
+    /// Returns the present pose as a sample.
+    fn sample(&mut self) -> Sample {
         Sample {
-            driver,
-            rcond: self.rcond(),
-            residual: self.residual(),
-            transmission: self.plan.transmission(),
-            q: self.pose().q.clone(),
+            driver: self.state.pose.drivers[self.driver.index()],
+            rcond: self.state.rcond(self.model),
+            residual: self.state.residual(&self.model.system),
+            transmission: self.model.plan.transmission(),
+            q: self.state.pose.q.clone(),
         }
     }
+}
+
+/// Returns a path from a pose on which nothing moves, with all drivers as inputs.
+fn held_path(pose: &Pose) -> Path {
+    let drivers = pose.drivers.iter();
+    Path {
+        start: pose.time,
+        duration: 0.0,
+        from: pose.parameters.clone(),
+        to: pose.parameters.clone(),
+        curves: drivers.map(|&value| Curve::held(value, value)).collect(),
+    }
+}
+
+/// Returns whether all bodies are where they were at a pose, whole turns apart.
+fn is_same_place(system: &System, state: &State, before: &Pose) -> bool {
+    let size = state.at.size();
+    let unknowns = state.pose.q.iter().zip(&before.q).enumerate();
+    let mut differences =
+        unknowns.map(|(column, (&now, &before))| system.difference(column, size, now, before));
+    differences.all(|difference| difference.abs() < SAME_PLACE)
 }

@@ -6,18 +6,20 @@
 //! | | |
 //! |---|---|
 //! | Phi_q δq = δu − Phi_p δp | from Phi = 0 |
-//! | Phi_q δq̇ = δu̇ − what Φ̇ changes by with δq and δp, were δq̇ zero | from Ec. 3.6.10 |
-//! | Phi_q δq̈ = δü − what Φ̈ changes by with δq, δq̇ and δp, were δq̈ zero | from Ec. 3.6.11 |
+//! | Phi_q δq̇ = δu̇ − what Φ̇ changes by with δq and δp, were δq̇ zero | from Eq. 3.6.10 |
+//! | Phi_q δq̈ = δü − what Φ̈ changes by with δq, δq̇ and δp, were δq̈ zero | from Eq. 3.6.11 |
 //!
 //! Each Φ, Φ̇ and Φ̈ comes with its change from the relations on [`Varied`] numbers.
 
-use crate::kinematics::block::{General, Work};
+use crate::kinematics::block::{BlockJacobian, BlockState};
 use crate::kinematics::constraint::Constraint;
+use crate::kinematics::error::Error;
+use crate::kinematics::model::Model;
 use crate::kinematics::newton::Rejected;
-use crate::kinematics::solver::SINGULAR_HERE;
+use crate::kinematics::path::Rates;
+use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::Target;
 use crate::kinematics::variation::{Varied, VariedConfiguration, VariedVector, evaluate};
-use crate::kinematics::{Error, Rates, Solver};
 use crate::mechanism::{DriverId, Dual, Jet, MarkerId, MotionInForce, ParameterId};
 
 /// A direction: how fast drivers and parameters change along it.
@@ -79,21 +81,21 @@ fn along(varied: Varied) -> Jet {
     )
 }
 
-impl Solver {
-    /// How the motion at the present pose, with these rates of q and of the drivers, changes
-    /// along a direction. The rates are those that [`solve_rates`](Self::solve_rates) gives for
-    /// these drivers. Exact to rounding; work proportional to the size of the mechanism.
+impl State {
+    /// Returns the derivative of the motion at the pose along a direction. See
+    /// [`Solver::sensitivity`](crate::kinematics::Solver::sensitivity).
     ///
     /// # Errors
     ///
     /// [`Error::Singular`] where the pose is singular.
-    pub fn sensitivity(
+    pub(in crate::kinematics) fn sensitivity<'a>(
         &mut self,
+        model: &'a Model,
         rates: &Rates,
         driver_rates: &[Jet],
         direction: &Direction,
-    ) -> Result<Sensitivity<'_>, Error> {
-        let system = &self.system;
+    ) -> Result<Sensitivity<'a>, Error> {
+        let system = &model.system;
         let mechanism = system.mechanism();
         let changes = self.pose.parameters.iter().zip(&direction.parameters);
         let mut parameters: Vec<_> = changes
@@ -131,16 +133,16 @@ impl Solver {
             .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
         let mut at = system.varied(parameter, motion, self.at.profiles());
 
-        let mut jacobian = General::new(system, &self.structure);
-        let work = Work {
+        let mut jacobian = BlockJacobian::new(system, &model.structure);
+        let mut work = BlockState {
             system,
             targets: &self.targets,
             drivers: &self.pose.drivers,
             at: &mut self.at,
-            flow: &mut self.flow,
+            tangent: &mut self.tangent,
         };
         jacobian
-            .factorise(&work)
+            .factorise(&mut work)
             .map_err(|Rejected| SINGULAR_HERE)?;
         let targets: Vec<_> = system
             .equations()
@@ -168,7 +170,7 @@ impl Solver {
             at,
             drivers,
             parameters,
-            measures: &self.measures,
+            measures: &model.measures,
         })
     }
 }

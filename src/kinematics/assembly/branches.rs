@@ -1,25 +1,25 @@
-//! The ways in which one kernel closes behind those before it, one after the other.
+//! The branches in which one block closes behind those before it, one after the other.
 
 use nalgebra::DVector;
 
-use super::loops::{AllWays, all_ways};
-use crate::kinematics::assembly::least_squares::{ATTEMPTS, MAX_ITERATIONS, Part};
-use crate::kinematics::block::{Kernel, Miss, Work};
+use super::least_squares::{ATTEMPTS, Part};
+use super::loops::{AllBranches, all_branches};
+use crate::kinematics::block::{BlockSolver, BlockState, ClosureGap, SolveBlock};
 use crate::kinematics::constraint::{Gradient, Region};
-use crate::kinematics::newton::Correction;
+use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS};
 
-/// How hard to look for ways where neither a closed form nor bounds give them all.
+/// How hard to look for branches where neither a closed form nor bounds give them all.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::kinematics) enum Effort {
+pub(in crate::kinematics) enum SearchEffort {
     /// At and near the estimates.
     Near,
     /// From so many places anywhere as well.
     Anywhere(usize),
 }
 
-/// The ways in which a kernel closes, nearest the estimates first as far as that is known.
+/// The branches in which a block closes, nearest the estimates first as far as that is known.
 #[derive(Debug)]
-pub(in crate::kinematics) struct Ways {
+pub(in crate::kinematics) struct Branches {
     source: Source,
     /// How many it has given.
     pub(super) given: usize,
@@ -29,7 +29,7 @@ pub(in crate::kinematics) struct Ways {
     failures: usize,
 }
 
-/// Where ways come from.
+/// Where branches come from.
 #[derive(Debug)]
 enum Source {
     /// Unknowns that follow from what was found before.
@@ -43,34 +43,34 @@ enum Source {
         /// Whether the rows are linear, once another way has been asked for.
         linear: Option<bool>,
         found: Vec<DVector<f64>>,
-        /// The ways that bounds give, once the starts near the estimates are used up.
-        all: Option<AllWays>,
+        /// The branches that bounds give, once the starts near the estimates are used up.
+        all: Option<AllBranches>,
     },
     /// A closed form that misses: there are none.
-    None(Miss),
+    None(ClosureGap),
 }
 
-impl Ways {
-    /// Those of a kernel; all that it reads is found in `work`.
+impl Branches {
+    /// Those of a block; all that it reads is found in `work`.
     pub(in crate::kinematics) fn new(
-        kernel: &Kernel,
-        work: &mut Work<'_>,
+        block: &BlockSolver,
+        work: &mut BlockState<'_>,
         estimate: &[f64],
-        effort: Effort,
+        effort: SearchEffort,
     ) -> Self {
-        let found = match kernel {
-            Kernel::Pinned(_) | Kernel::Interpolated(_) => Ok(Source::Explicit),
-            Kernel::RrrDyad(dyad) => dyad.ways(work, estimate).map(Source::ClosedForm),
-            Kernel::RrpDyad(slide) => {
-                let ways = slide.ways(work, estimate);
-                ways.map(|[first, second]| Source::ClosedForm([[first, 0.0], [second, 0.0]]))
+        let found = match block {
+            BlockSolver::PinnedBody(_) | BlockSolver::InterpolatedBlock(_) => Ok(Source::Explicit),
+            BlockSolver::RrrDyad(dyad) => dyad.branches(work, estimate).map(Source::ClosedForm),
+            BlockSolver::RrpDyad(slide) => {
+                let branches = slide.branches(work, estimate);
+                branches.map(|[first, second]| Source::ClosedForm([[first, 0.0], [second, 0.0]]))
             }
-            Kernel::Coupled(kernel) => Ok(Source::Starts {
-                part: Part::new(kernel.rows(), kernel.columns()),
+            BlockSolver::CoupledBlock(block) => Ok(Source::Starts {
+                part: Part::new(block.rows(), block.columns()),
                 linear: None,
                 most: match effort {
-                    Effort::Near => ATTEMPTS,
-                    Effort::Anywhere(starts) => ATTEMPTS + starts,
+                    SearchEffort::Near => ATTEMPTS,
+                    SearchEffort::Anywhere(starts) => ATTEMPTS + starts,
                 },
                 found: Vec::new(),
                 all: None,
@@ -91,7 +91,7 @@ impl Ways {
             // What a closed form promises has to be there.
             Source::ClosedForm(_) => self.failures == 0,
             Source::Starts { linear, all, .. } => {
-                let listed = all.as_ref().is_some_and(|all| all.ways.is_some());
+                let listed = all.as_ref().is_some_and(|all| all.branches.is_some());
                 *linear == Some(true) || listed && self.failures == 0
             }
             Source::None(miss) => miss.certain,
@@ -106,7 +106,7 @@ impl Ways {
         }
     }
 
-    /// By how much a kernel in closed form misses that gave no way \[m\].
+    /// By how much a block in closed form misses that gave no way \[m\].
     pub(super) fn gap(&self) -> Option<f64> {
         match &self.source {
             Source::Explicit | Source::Starts { .. } => None,
@@ -116,22 +116,28 @@ impl Ways {
         }
     }
 
-    /// Puts the kernel, in `work`, in the next of its ways; `None` if there is no other.
+    /// Puts the block, in `work`, in the next of its branches; `None` if there is no other.
     pub(in crate::kinematics) fn next(
         &mut self,
-        kernel: &mut Kernel,
-        work: &mut Work<'_>,
+        block: &mut BlockSolver,
+        work: &mut BlockState<'_>,
         estimate: &[f64],
     ) -> Option<Correction> {
         loop {
             let attempt = self.starts;
-            let corrected = match (&mut self.source, &mut *kernel) {
-                (Source::Explicit, kernel) if attempt == 0 => kernel.close(work, MAX_ITERATIONS),
-                (Source::ClosedForm(ways), Kernel::RrrDyad(kernel)) if attempt < ways.len() => {
-                    kernel.close_from(work, ways[attempt], MAX_ITERATIONS)
+            let corrected = match (&mut self.source, &mut *block) {
+                (Source::Explicit, block) if attempt == 0 => {
+                    block.close(work, MAX_ASSEMBLY_ITERATIONS)
                 }
-                (Source::ClosedForm(ways), Kernel::RrpDyad(kernel)) if attempt < ways.len() => {
-                    kernel.close_from(work, ways[attempt][0], MAX_ITERATIONS)
+                (Source::ClosedForm(branches), BlockSolver::RrrDyad(block))
+                    if attempt < branches.len() =>
+                {
+                    block.close_from(work, branches[attempt], MAX_ASSEMBLY_ITERATIONS)
+                }
+                (Source::ClosedForm(branches), BlockSolver::RrpDyad(block))
+                    if attempt < branches.len() =>
+                {
+                    block.close_from(work, branches[attempt][0], MAX_ASSEMBLY_ITERATIONS)
                 }
                 (
                     Source::Starts {
@@ -141,29 +147,29 @@ impl Ways {
                         found,
                         all,
                     },
-                    Kernel::Coupled(kernel),
+                    BlockSolver::CoupledBlock(block),
                 ) => {
                     if self.given > 0
                         && *linear
-                            .get_or_insert_with(|| is_linear(kernel.rows(), kernel.columns(), work))
+                            .get_or_insert_with(|| is_linear(block.rows(), block.columns(), work))
                     {
                         return None;
                     }
                     let far = attempt.checked_sub(ATTEMPTS);
                     if far.is_some() && all.is_none() {
                         let (rows, columns) = (&part.rows, part.columns());
-                        *all = Some(all_ways(rows, columns, work, estimate));
+                        *all = Some(all_branches(rows, columns, work, estimate));
                         // From here on a failure is one to close where a way was promised.
                         self.failures = 0;
                     }
-                    let listed = all.as_ref().and_then(|all| all.ways.as_ref());
-                    let mut correct = |work: &mut Work<'_>, most| kernel.correct(work, most);
+                    let listed = all.as_ref().and_then(|all| all.branches.as_ref());
+                    let mut correct = |work: &mut BlockState<'_>, most| block.close(work, most);
                     let corrected = match (far, listed) {
                         (None, _) => part.attempt(work, estimate, attempt, correct),
                         (Some(far), Some(listed)) => {
                             let way = listed.get(far)?;
                             part.write(work, &DVector::from_column_slice(way));
-                            correct(work, MAX_ITERATIONS)
+                            correct(work, MAX_ASSEMBLY_ITERATIONS)
                         }
                         (Some(far), None) if attempt < *most => {
                             part.attempt_anywhere(work, estimate, far, correct)
@@ -198,7 +204,7 @@ impl Ways {
 }
 
 /// Whether the rows are linear in the unknowns, so that there is one way at the most.
-fn is_linear(rows: &[usize], columns: &[usize], work: &Work<'_>) -> bool {
+fn is_linear(rows: &[usize], columns: &[usize], work: &BlockState<'_>) -> bool {
     let size = work.at.size();
     let unknowns = work.system.unknowns();
     let (mut radii, mut direction) = (vec![0.0; unknowns], vec![0.0; unknowns]);

@@ -1,21 +1,19 @@
-//! Assembly of a part of the mechanism: minimises Ec. 3.6.9 from several starts.
+//! Assembly of a part of the mechanism: minimises Eq. 3.6.9 from several starts.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::kinematics::block::Work;
+use crate::kinematics::block::BlockState;
 use crate::kinematics::constraint::{Gradient, Relation};
-use crate::kinematics::newton::{Correction, Rejected};
+use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS, Rejected};
 use crate::kinematics::system::System;
 
-/// The weights r of Ec. 3.6.9, from one where the estimates count as much as the constraints to
+/// The weights r of Eq. 3.6.9, from one where the estimates count as much as the constraints to
 /// one where the minimum is within Newton's reach.
 const WEIGHTS: [f64; 5] = [1.0, 1e2, 1e4, 1e6, 1e8];
 /// Minimisation steps for each weight; Newton follows, so that none needs to converge.
 const STEPS_PER_WEIGHT: usize = 20;
-/// Newton from the minimum; it also has to creep into nearly singular positions.
-pub(in crate::kinematics) const MAX_ITERATIONS: u32 = 30;
 /// The estimates themselves, and this many less one deterministic shifts of them: estimates of
 /// zero often lie on a symmetry from which no minimisation can choose a side.
 pub(in crate::kinematics) const STARTS: usize = 8;
@@ -66,7 +64,7 @@ impl Part {
     }
 
     /// The unknowns as they are.
-    pub(in crate::kinematics) fn read(&self, work: &Work<'_>) -> DVector<f64> {
+    pub(in crate::kinematics) fn read(&self, work: &BlockState<'_>) -> DVector<f64> {
         let columns = self.columns.iter();
         DVector::from_iterator(
             self.columns.len(),
@@ -77,7 +75,7 @@ impl Part {
     /// Whether these unknowns put the bodies in the same places, whole turns apart.
     pub(in crate::kinematics) fn is_same(
         &self,
-        work: &Work<'_>,
+        work: &BlockState<'_>,
         a: &DVector<f64>,
         b: &DVector<f64>,
     ) -> bool {
@@ -85,14 +83,14 @@ impl Part {
         columns.all(|(k, &column)| is_same(work.system, size, column, a[k], b[k]))
     }
 
-    pub(in crate::kinematics) fn write(&self, work: &mut Work<'_>, values: &DVector<f64>) {
+    pub(in crate::kinematics) fn write(&self, work: &mut BlockState<'_>, values: &DVector<f64>) {
         for (&column, &value) in self.columns.iter().zip(values) {
             work.at.set_coordinate(column, value);
         }
     }
 
     /// What a scaled unknown of one stands for, one an unknown.
-    fn scale(&self, work: &Work<'_>) -> DVector<f64> {
+    fn scale(&self, work: &BlockState<'_>) -> DVector<f64> {
         let size = work.at.size();
         let columns = self.columns.iter();
         DVector::from_iterator(
@@ -105,7 +103,7 @@ impl Part {
     /// comes last in the list, and starts where it suits the bodies.
     pub(in crate::kinematics) fn start(
         &self,
-        work: &mut Work<'_>,
+        work: &mut BlockState<'_>,
         estimate: &[f64],
         attempt: usize,
     ) {
@@ -114,7 +112,7 @@ impl Part {
     }
 
     /// Goes to the estimates and as far from them, scaled, as `off` says.
-    fn start_off(&self, work: &mut Work<'_>, estimate: &[f64], off: impl Fn(usize) -> f64) {
+    fn start_off(&self, work: &mut BlockState<'_>, estimate: &[f64], off: impl Fn(usize) -> f64) {
         let size = work.at.size();
         for &column in &self.columns {
             let start = match work.system.estimate_joint_unknown(column, work.at) {
@@ -127,7 +125,7 @@ impl Part {
 
     /// Where points whose distance is held lie on each other, their rows have no slope to go
     /// along: takes their bodies a little away.
-    fn leave_zero_distances(&self, work: &mut Work<'_>) {
+    fn leave_zero_distances(&self, work: &mut BlockState<'_>) {
         let size = work.at.size();
         for &row in &self.rows {
             let constraint = &work.system.equations()[row].constraint;
@@ -156,17 +154,17 @@ impl Part {
     /// [`Rejected`] if this did not lead to a pose.
     pub(in crate::kinematics) fn attempt(
         &self,
-        work: &mut Work<'_>,
+        work: &mut BlockState<'_>,
         estimate: &[f64],
         attempt: usize,
-        correct: impl FnOnce(&mut Work<'_>, u32) -> Result<Correction, Rejected>,
+        correct: impl FnOnce(&mut BlockState<'_>, u32) -> Result<Correction, Rejected>,
     ) -> Result<Correction, Rejected> {
         let Some(attempt) = attempt.checked_sub(1) else {
             // One correction solves linear rows, from wherever it starts, and estimates as good
             // as that need no more. For a large part Newton is worth a try by itself.
             self.start(work, estimate, 0);
             let large = self.columns.len() > SMALL_PART;
-            return correct(work, if large { MAX_ITERATIONS } else { 1 });
+            return correct(work, if large { MAX_ASSEMBLY_ITERATIONS } else { 1 });
         };
         self.start(work, estimate, attempt);
         // The larger the part, the fewer minimisations anyone would wait for.
@@ -178,7 +176,7 @@ impl Part {
         if self.columns.len() <= most {
             self.minimise_growing(work);
         }
-        correct(work, MAX_ITERATIONS)
+        correct(work, MAX_ASSEMBLY_ITERATIONS)
     }
 
     /// Tries to assemble from anywhere: angles all around, points within a length or so of the
@@ -189,19 +187,19 @@ impl Part {
     /// [`Rejected`] if this did not lead to a pose.
     pub(in crate::kinematics) fn attempt_anywhere(
         &self,
-        work: &mut Work<'_>,
+        work: &mut BlockState<'_>,
         estimate: &[f64],
         attempt: usize,
-        correct: impl FnOnce(&mut Work<'_>, u32) -> Result<Correction, Rejected>,
+        correct: impl FnOnce(&mut BlockState<'_>, u32) -> Result<Correction, Rejected>,
     ) -> Result<Correction, Rejected> {
         let anywhere = |column| TAU * (scattered(attempt, column) - 0.5);
         self.start_off(work, estimate, anywhere);
         self.minimise(work, None, |_| 1.0, STEPS_FROM_ANYWHERE);
-        correct(work, MAX_ITERATIONS)
+        correct(work, MAX_ASSEMBLY_ITERATIONS)
     }
 
-    /// Minimises Ec. 3.6.9 for growing r from where the part is, which counts as the estimate.
-    pub(in crate::kinematics) fn minimise_growing(&self, work: &mut Work<'_>) {
+    /// Minimises Eq. 3.6.9 for growing r from where the part is, which counts as the estimate.
+    pub(in crate::kinematics) fn minimise_growing(&self, work: &mut BlockState<'_>) {
         let start = self.read(work);
         for weight in WEIGHTS {
             let pull = Some((&start, weight.recip()));
@@ -213,7 +211,7 @@ impl Part {
     /// the part is.
     pub(in crate::kinematics) fn minimise(
         &self,
-        work: &mut Work<'_>,
+        work: &mut BlockState<'_>,
         pull: Option<(&DVector<f64>, f64)>,
         weight: impl Fn(usize) -> f64,
         steps: usize,
@@ -270,14 +268,17 @@ impl Part {
     }
 
     /// Phi and Phi_q of the part, scaled.
-    pub(in crate::kinematics) fn equations(&self, work: &Work<'_>) -> (DVector<f64>, DMatrix<f64>) {
+    pub(in crate::kinematics) fn equations(
+        &self,
+        work: &BlockState<'_>,
+    ) -> (DVector<f64>, DMatrix<f64>) {
         self.weighted_equations(work, |_| 1.0)
     }
 
     /// Phi and Phi_q of the part, scaled, each row times its weight.
     fn weighted_equations(
         &self,
-        work: &Work<'_>,
+        work: &BlockState<'_>,
         weight: impl Fn(usize) -> f64,
     ) -> (DVector<f64>, DMatrix<f64>) {
         let mut residual = DVector::zeros(self.rows.len());
@@ -297,7 +298,7 @@ impl Part {
 
 /// A row of Phi and its gradient, scaled as [`System::evaluate_row`] has them. That of a distance
 /// u is (d·d − u²)/(2u), which is smooth where the points lie on each other.
-fn evaluate_smoothly(work: &Work<'_>, row: usize, mut entry: impl FnMut(usize, f64)) -> f64 {
+fn evaluate_smoothly(work: &BlockState<'_>, row: usize, mut entry: impl FnMut(usize, f64)) -> f64 {
     let equation = &work.system.equations()[row];
     let distance = matches!(equation.constraint.relation(), Relation::Distance(_));
     let stretch = if distance {
@@ -314,7 +315,7 @@ fn evaluate_smoothly(work: &Work<'_>, row: usize, mut entry: impl FnMut(usize, f
     value.value * 0.5 * (1.0 + stretch)
 }
 
-/// Whether two values of an unknown put a body in the same place, whole turns apart.
+/// Returns whether two values of an unknown put a body in the same place, whole turns apart.
 pub(in crate::kinematics) fn is_same(
     system: &System,
     size: f64,
@@ -322,12 +323,7 @@ pub(in crate::kinematics) fn is_same(
     a: f64,
     b: f64,
 ) -> bool {
-    let off = (a - b) / system.column_scale(column, size);
-    if system.is_angle(column) {
-        (off - TAU * (off / TAU).round()).abs() < SAME
-    } else {
-        off.abs() < SAME
-    }
+    system.difference(column, size, a, b).abs() < SAME
 }
 
 /// A number from 0 to 1 for attempt and coordinate, one as likely as any other and all of them

@@ -1,4 +1,4 @@
-//! Finds a pose that satisfies given rows, from the estimates in the file (Eq. 3.6.9).
+//! Assembly: finds a pose that satisfies given rows, from the estimates in the file (Eq. 3.6.9).
 //!
 //! The blocks are assembled one after the other, each on the branch that is nearest the
 //! estimates. A block that does not close sends the search back to another branch of the blocks
@@ -7,16 +7,22 @@
 //!
 //! | file | subject |
 //! |---|---|
+//! | [`estimate`] | the estimates, and the distance of a pose from them |
+//! | [`turns`] | whole turns of angles |
 //! | [`least_squares`] | minimises Eq. 3.6.9 over a part of the mechanism |
+//! | [`closing`] | closes any rows, for mechanisms of any size |
+//! | [`gaps`] | the joints that stay open |
 //! | [`loops`] | finds all branches of a block by bounds over intervals |
 //! | [`branches`] | lists the branches of one block |
 //! | [`search`] | finds branches of all blocks that fit together |
-//! | [`nearest`] | finds the pose that comes nearest, and what stays open there |
-//! | [`turns`] | chooses the whole turns of angles |
+//! | [`nearest`] | finds the nearest pose of a mechanism that does not close |
 
 pub(super) mod branches;
+pub(super) mod closing;
+pub(super) mod estimate;
+pub(super) mod gaps;
 pub(super) mod least_squares;
 mod loops;
-mod nearest;
+pub(super) mod nearest;
 pub(super) mod search;
-mod turns;
+pub(super) mod turns;

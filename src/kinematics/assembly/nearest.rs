@@ -1,355 +1,325 @@
-//! What is said of a mechanism whose kernels do not all close: the pose that comes nearest, what
-//! stays open there, and whether there is a proof.
+//! The nearest pose of a mechanism that does not close block by block, and the proof that it cannot
+//! close, if there is one.
 
-use super::branches::{Effort, Ways};
-use super::search::{Deadlock, Nearest};
-use crate::kinematics::assembly::least_squares::{
-    LARGEST_PART, MAX_ITERATIONS, Part, SMALL_PART, STARTS,
-};
-use crate::kinematics::block::Kernel;
-use crate::kinematics::constraint::Dimension;
-use crate::kinematics::{Element, Error, OpenJoint, Proof, Solver, Verdict};
+use super::branches::{Branches, SearchEffort};
+use super::closing::close_on;
+use super::gaps::open_joints;
+use super::least_squares::{LARGEST_PART, Part, SMALL_PART, STARTS};
+use super::search::{Nearest, NoBranch};
+use crate::kinematics::block::{BlockSolver, SolveBlock};
+use crate::kinematics::element::Element;
+use crate::kinematics::error::{Error, OpenJoint, Proof, Verdict};
+use crate::kinematics::model::Model;
+use crate::kinematics::newton::MAX_ASSEMBLY_ITERATIONS;
+use crate::kinematics::state::State;
 
 /// Minimisation steps towards the nearest pose of a mechanism that does not close.
 const STEPS_TO_NEAREST: usize = 200;
 /// A scaled residual below this is no gap that anyone could measure: the mechanism closes, and
-/// Newton failed because the position is singular.
+/// Newton–Raphson failed because the position is singular.
 const CLOSED: f64 = 1e-7;
-/// What has no value where lengths are too large for their squares to be numbers.
+/// The quantity without a value where squares of lengths overflow.
 const AN_EQUATION: &str = "an equation of the mechanism";
-/// How much more than a joint left open all others count when the gap is gathered in it.
+/// Weight of all other joints when the gap is gathered in one.
 const HOLD_CLOSED: f64 = 1e4;
 
-impl Solver {
-    /// Assembles a mechanism as a whole, after a kernel did not close behind the others in any way
-    /// that was found.
-    ///
-    /// # Errors
-    ///
-    /// The verdict.
-    pub(in crate::kinematics) fn search_at_once(
-        &mut self,
-        mut deadlock: Deadlock,
-        estimate: &[f64],
-    ) -> Result<u32, Error> {
-        let rows: Vec<_> = (0..self.system.equations().len()).collect();
-        let columns: Vec<_> = (0..self.system.unknowns()).collect();
-        let nearest = deadlock.nearest.take();
-        if columns.len() > SMALL_PART {
-            return match nearest {
-                Some(nearest) => Err(self.explain_miss(&deadlock, &nearest, estimate)),
-                None => self.search_sparsely(deadlock, &rows, estimate),
-            };
-        }
-        let whole = Part::new(&rows, &columns);
-        if !deadlock.proved || nearest.is_none() {
-            if let Some(iterations) = self.minimise_from_all(&whole, deadlock.proved, estimate) {
-                return Ok(iterations);
-            }
-            deadlock.starts += STARTS;
-        }
-        Err(match nearest {
-            Some(nearest) => self.explain_miss(&deadlock, &nearest, estimate),
-            None => self.explain_failure(&deadlock, &whole),
-        })
+/// Assembles a mechanism as a whole, after the search over its blocks failed. Returns the most
+/// corrections of a block.
+///
+/// # Errors
+///
+/// [`Error::NotAssembled`], or [`Error::Singular`] if it closes in a singular position.
+pub(in crate::kinematics) fn search_at_once(
+    model: &mut Model,
+    state: &mut State,
+    mut failure: NoBranch,
+    estimate: &[f64],
+) -> Result<u32, Error> {
+    let rows: Vec<_> = (0..model.system.equations().len()).collect();
+    let columns: Vec<_> = (0..model.system.unknowns()).collect();
+    let nearest = failure.nearest.take();
+    if columns.len() > SMALL_PART {
+        return match nearest {
+            Some(nearest) => Err(explain_gap(model, state, &failure, &nearest, estimate)),
+            None => search_sparsely(model, state, failure, &rows, estimate),
+        };
     }
-
-    /// Minimises a mechanism of any size as a whole and closes it from there.
-    ///
-    /// # Errors
-    ///
-    /// The verdict on the nearest pose.
-    fn search_sparsely(
-        &mut self,
-        mut deadlock: Deadlock,
-        rows: &[usize],
-        estimate: &[f64],
-    ) -> Result<u32, Error> {
-        let gap = self.close_on(rows, estimate);
-        deadlock.starts += 1;
-        self.at.copy_pose(&mut self.pose.q);
-        if gap.is_none()
-            && let Some(iterations) = self.close()
-        {
+    let whole = Part::new(&rows, &columns);
+    if !failure.proved || nearest.is_none() {
+        let closed = minimise_from_all(model, state, &whole, failure.proved, estimate);
+        if let Some(iterations) = closed {
             return Ok(iterations);
         }
-        self.stand_at_pose();
-        let largest = self.residual();
-        if !largest.is_finite() {
-            return Err(Error::NotFinite {
-                what: AN_EQUATION.to_owned(),
-            });
-        }
-        if !deadlock.proved && largest <= CLOSED {
-            return Err(Error::Singular {
-                rcond: self.rcond(),
-                bodies: Vec::new(),
-            });
-        }
-        let proof = self.proof(&deadlock, deadlock.kernel);
-        let open = self.open_joints(rows, largest);
-        Err(self.not_assembled(&deadlock, proof, open))
+        failure.starts += STARTS;
     }
+    Err(match nearest {
+        Some(nearest) => explain_gap(model, state, &failure, &nearest, estimate),
+        None => explain_failure(model, state, &failure, &whole),
+    })
+}
 
-    /// Minimises the whole from all starts and goes to the nearest pose, or closes the mechanism
-    /// from one of them, unless that is `proved` not to be. Returns the most corrections that a
-    /// kernel needed for that.
-    fn minimise_from_all(&mut self, whole: &Part, proved: bool, estimate: &[f64]) -> Option<u32> {
-        let mut nearest: Option<(f64, Vec<f64>)> = None;
-        for attempt in 0..STARTS {
-            let (_, mut work) = self.work();
-            whole.start(&mut work, estimate, attempt);
-            whole.minimise_growing(&mut work);
-            if !proved {
-                self.at.copy_pose(&mut self.pose.q);
-                if let Some(iterations) = self.close() {
-                    return Some(iterations);
-                }
-                self.stand_at_pose();
-            }
-            let (_, mut work) = self.work();
-            whole.minimise(&mut work, None, |_| 1.0, STEPS_TO_NEAREST);
-            let gap = whole.equations(&work).0.norm();
-            if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
-                self.at.copy_pose(&mut self.pose.q);
-                nearest = Some((gap, self.pose.q.clone()));
-            }
-        }
-        if let Some((_, q)) = nearest {
-            self.pose.q.copy_from_slice(&q);
-        }
-        self.stand_at_pose();
-        None
+/// Minimises a mechanism of any size as a whole and closes it from there.
+///
+/// # Errors
+///
+/// Those of [`search_at_once`].
+fn search_sparsely(
+    model: &mut Model,
+    state: &mut State,
+    mut failure: NoBranch,
+    rows: &[usize],
+    estimate: &[f64],
+) -> Result<u32, Error> {
+    let gap = close_on(&model.system, state, rows, estimate);
+    failure.starts += 1;
+    state.accept_bodies();
+    if gap.is_none()
+        && let Some(iterations) = close(model, state)
+    {
+        return Ok(iterations);
     }
+    state.move_to_pose(&model.system);
+    Err(explain_pose(model, state, &failure, failure.block))
+}
 
-    /// Newton–Raphson, kernel by kernel, from where the bodies are. Returns the most corrections
-    /// that one needed; `None` leaves the pose as it was.
-    pub(in crate::kinematics) fn close(&mut self) -> Option<u32> {
-        let (plan, mut work) = self.work();
-        let mut iterations = 0;
-        for kernel in &mut plan.kernels {
-            let correction = kernel.close(&mut work, MAX_ITERATIONS).ok()?;
-            iterations = iterations.max(correction.iterations);
+/// Minimises the whole from all starts and goes to the nearest pose. Unless that is `proved`
+/// impossible, closes the mechanism from one of them; then returns the most corrections of a
+/// block.
+fn minimise_from_all(
+    model: &mut Model,
+    state: &mut State,
+    whole: &Part,
+    proved: bool,
+    estimate: &[f64],
+) -> Option<u32> {
+    let mut nearest: Option<(f64, Vec<f64>)> = None;
+    for attempt in 0..STARTS {
+        let mut block_state = state.block_state(&model.system);
+        whole.start(&mut block_state, estimate, attempt);
+        whole.minimise_growing(&mut block_state);
+        if !proved {
+            state.accept_bodies();
+            if let Some(iterations) = close(model, state) {
+                return Some(iterations);
+            }
+            state.move_to_pose(&model.system);
         }
-        self.at.copy_pose(&mut self.pose.q);
-        Some(iterations)
+        let mut block_state = state.block_state(&model.system);
+        whole.minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
+        let gap = whole.equations(&block_state).0.norm();
+        if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
+            state.accept_bodies();
+            nearest = Some((gap, state.pose.q.clone()));
+        }
     }
-
-    /// The verdict where a kernel in closed form misses by least: the others behind it close as
-    /// well as they can.
-    fn explain_miss(&mut self, deadlock: &Deadlock, nearest: &Nearest, estimate: &[f64]) -> Error {
-        self.pose.q.copy_from_slice(&nearest.q);
-        self.stand_at_pose();
-        let proof = self.proof(deadlock, nearest.kernel);
-        let (plan, mut work) = self.work();
-        for (index, kernel) in plan.kernels.iter_mut().enumerate().skip(nearest.kernel) {
-            let mut ways = Ways::new(kernel, &mut work, estimate, Effort::Near);
-            if index > nearest.kernel && ways.next(kernel, &mut work, estimate).is_some() {
-                continue;
-            }
-            match kernel {
-                Kernel::Pinned(kernel) => kernel.locate(&mut work),
-                Kernel::RrrDyad(kernel) => kernel.stretch(&mut work, estimate),
-                Kernel::RrpDyad(kernel) => kernel.stretch(&mut work, estimate),
-                // None is in force where bodies are at their estimates.
-                Kernel::Interpolated(_) => {}
-                Kernel::Coupled(kernel) => {
-                    let part = Part::new(kernel.rows(), kernel.columns());
-                    part.start(&mut work, estimate, 0);
-                    if part.unknowns() <= LARGEST_PART {
-                        part.minimise(&mut work, None, |_| 1.0, STEPS_TO_NEAREST);
-                    }
-                }
-            }
-        }
-        self.at.copy_pose(&mut self.pose.q);
-        self.stand_at_pose();
-        let largest = self.residual();
-        if !largest.is_finite() {
-            return Error::NotFinite {
-                what: AN_EQUATION.to_owned(),
-            };
-        }
-        if !deadlock.proved && largest <= CLOSED {
-            let rcond = self.rcond();
-            return Error::Singular {
-                rcond,
-                bodies: Vec::new(),
-            };
-        }
-        let rows: Vec<_> = (0..self.system.equations().len()).collect();
-        let open = self.open_joints(&rows, largest);
-        self.not_assembled(deadlock, proof, open)
+    if let Some((_, q)) = nearest {
+        state.pose.q.copy_from_slice(&q);
     }
+    state.move_to_pose(&model.system);
+    None
+}
 
-    /// Why a kernel that does not close does not, where those before it are at the pose.
-    fn proof(&mut self, deadlock: &Deadlock, kernel: usize) -> Proof {
-        let mechanism = std::sync::Arc::clone(self.system.mechanism());
-        let name = |body: usize| mechanism.bodies[body].name.clone();
-        let (plan, work) = self.work();
-        match &plan.kernels[kernel] {
-            Kernel::RrrDyad(kernel) => {
-                let reach = kernel.reach(&work);
-                let mut ends = kernel.ends();
-                ends.sort_unstable_by_key(|(body, _)| *body);
-                Proof::Reach {
-                    bodies: ends.map(|(body, _)| name(body)),
-                    points: ends.map(|(_, anchor)| mechanism.marker_path(anchor)),
-                    distance: reach.distance,
-                    span: [reach.shortest, reach.longest],
-                }
-            }
-            Kernel::RrpDyad(kernel) => Proof::Line {
-                body: name(kernel.body()),
-            },
-            kernel => {
-                let mut bodies: Vec<_> = kernel.columns().iter().map(|k| k / 3).collect();
-                // What joints bring with them comes behind the bodies.
-                bodies.retain(|&body| body < mechanism.bodies.len());
-                bodies.sort_unstable();
-                bodies.dedup();
-                Proof::Excluded {
-                    bodies: bodies.into_iter().map(name).collect(),
-                    boxes: deadlock.boxes,
+/// Closes block by block by Newton–Raphson, from where the bodies are. Returns the most
+/// corrections of a block; `None` leaves the pose as it was.
+fn close(model: &mut Model, state: &mut State) -> Option<u32> {
+    let Model { system, plan, .. } = model;
+    let closed = plan.close(&mut state.block_state(system), MAX_ASSEMBLY_ITERATIONS);
+    let iterations = closed.ok()?;
+    state.accept_bodies();
+    Some(iterations)
+}
+
+/// Explains a block in closed form that leaves the least gap, once the blocks behind it are as
+/// near to closing as they come.
+fn explain_gap(
+    model: &mut Model,
+    state: &mut State,
+    failure: &NoBranch,
+    nearest: &Nearest,
+    estimate: &[f64],
+) -> Error {
+    state.pose.q.copy_from_slice(&nearest.q);
+    state.move_to_pose(&model.system);
+    let proof = proof(model, state, failure, nearest.block);
+    let Model { system, plan, .. } = &mut *model;
+    let mut block_state = state.block_state(system);
+    for (index, block) in plan.blocks.iter_mut().enumerate().skip(nearest.block) {
+        let mut branches = Branches::new(block, &mut block_state, estimate, SearchEffort::Near);
+        let behind = index > nearest.block;
+        if behind && branches.next(block, &mut block_state, estimate).is_some() {
+            continue;
+        }
+        match block {
+            BlockSolver::PinnedBody(block) => block.locate(&mut block_state),
+            BlockSolver::RrrDyad(block) => block.stretch(&mut block_state, estimate),
+            BlockSolver::RrpDyad(block) => block.stretch(&mut block_state, estimate),
+            // The pose has no crossings where bodies are at their estimates.
+            BlockSolver::InterpolatedBlock(_) => {}
+            BlockSolver::CoupledBlock(block) => {
+                let part = Part::new(block.rows(), block.columns());
+                part.start(&mut block_state, estimate, 0);
+                if part.unknowns() <= LARGEST_PART {
+                    part.minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
                 }
             }
         }
     }
+    state.accept_bodies();
+    state.move_to_pose(&model.system);
+    judge(model, state, failure, proof)
+}
 
-    fn not_assembled(
-        &self,
-        deadlock: &Deadlock,
-        proof: Proof,
-        open: Vec<(Element, OpenJoint)>,
-    ) -> Error {
-        let verdict = if deadlock.proved {
-            Verdict::Impossible {
-                proof: Box::new(proof),
-                ways: deadlock.dead_ends,
-            }
-        } else {
-            Verdict::NotFound {
-                starts: deadlock.starts,
-            }
-        };
-        Error::NotAssembled {
-            verdict,
-            open: open.into_iter().map(|(_, joint)| joint).collect(),
-            nearest: self.pose.q.clone(),
-        }
-    }
+/// Explains the pose, which is the nearest one found, by a block that does not close.
+fn explain_pose(model: &mut Model, state: &mut State, failure: &NoBranch, block: usize) -> Error {
+    let proof = proof(model, state, failure, block);
+    judge(model, state, failure, proof)
+}
 
-    /// The verdict on a mechanism whose nearest pose, at which the solver stands, leaves gaps.
-    fn explain_failure(&mut self, deadlock: &Deadlock, whole: &Part) -> Error {
-        let (residual, jacobian) = whole.equations(&self.work().1);
-        // Lengths whose squares overflow leave nothing to look at.
-        let beyond_numbers = || Error::NotFinite {
+/// Judges the pose, which is the nearest one found.
+fn judge(model: &mut Model, state: &mut State, failure: &NoBranch, proof: Proof) -> Error {
+    let largest = state.residual(&model.system);
+    if !largest.is_finite() {
+        return Error::NotFinite {
             what: AN_EQUATION.to_owned(),
         };
-        let mut numbers = residual.iter().chain(jacobian.iter());
-        if !numbers.all(|x| x.is_finite()) {
-            return beyond_numbers();
-        }
-        if !deadlock.proved && residual.amax() <= CLOSED {
-            let singular = jacobian.singular_values();
-            return Error::Singular {
-                rcond: singular.min() / singular.max(),
-                bodies: Vec::new(),
-            };
-        }
-        let spread = self.open_joints(&whole.rows, residual.amax());
-        if spread.is_empty() {
-            return beyond_numbers();
-        }
-        let proof = self.proof(deadlock, deadlock.kernel);
-        let Some((joint, q)) = self.gather(whole, &spread) else {
-            return self.not_assembled(deadlock, proof, spread);
+    }
+    if !failure.proved && largest <= CLOSED {
+        return Error::Singular {
+            rcond: state.rcond(model),
+            bodies: Vec::new(),
         };
-        self.pose.q.copy_from_slice(&q);
-        self.stand_at_pose();
-        self.not_assembled(deadlock, proof, vec![joint])
     }
+    let rows: Vec<_> = (0..model.system.equations().len()).collect();
+    let open = open_joints(model, state, &rows, largest);
+    not_assembled(state, failure, proof, open)
+}
 
-    /// The minimum spreads the gap over all joints of a loop. People look for one joint that
-    /// does not meet: gathers it where it is smallest, in the joint declared last on a tie.
-    /// Returns that joint, and q with the others closed.
-    fn gather(
-        &mut self,
-        part: &Part,
-        spread: &[(Element, OpenJoint)],
-    ) -> Option<((Element, OpenJoint), Vec<f64>)> {
-        let mut best: Option<(f64, (Element, OpenJoint), Vec<f64>)> = None;
-        for (element, _) in spread {
-            self.stand_at_pose();
-            let (_, mut work) = self.work();
-            let equations = work.system.equations();
-            let weight = |row: usize| {
-                if equations[row].element == *element {
-                    1.0
-                } else {
-                    HOLD_CLOSED
-                }
-            };
-            part.minimise(&mut work, None, weight, STEPS_TO_NEAREST);
-            let largest = part.equations(&work).0.amax();
-            if let [joint] = &self.open_joints(&part.rows, largest)[..]
-                && joint.0 == *element
-                && let gap = (joint.1.gap / self.at.size()).max(joint.1.angle)
-                && best
-                    .as_ref()
-                    .is_none_or(|(smallest, ..)| gap <= smallest * (1.0 + 1e-3))
-            {
-                let mut q = self.pose.q.clone();
-                self.at.copy_pose(&mut q);
-                best = Some((gap, joint.clone(), q));
+/// Returns the proof that a block does not close, where those before it are at the pose.
+fn proof(model: &Model, state: &mut State, failure: &NoBranch, block: usize) -> Proof {
+    let mechanism = model.system.mechanism();
+    let name = |body: usize| mechanism.bodies[body].name.clone();
+    match &model.plan.blocks[block] {
+        BlockSolver::RrrDyad(block) => {
+            let reach = block.reach(&state.block_state(&model.system));
+            let mut ends = block.ends();
+            ends.sort_unstable_by_key(|(body, _)| *body);
+            Proof::Reach {
+                bodies: ends.map(|(body, _)| name(body)),
+                points: ends.map(|(_, anchor)| mechanism.marker_path(anchor)),
+                distance: reach.distance,
+                span: [reach.shortest, reach.longest],
             }
         }
-        self.stand_at_pose();
-        best.map(|(_, joint, q)| (joint, q))
-    }
-
-    /// Joints, constraints and drivers with a noticeable part of the largest scaled residual.
-    pub(in crate::kinematics) fn open_joints(
-        &self,
-        rows: &[usize],
-        largest: f64,
-    ) -> Vec<(Element, OpenJoint)> {
-        let least = 0.01 * largest;
-        let mut open: Vec<(Element, OpenJoint)> = Vec::new();
-        for &row in rows {
-            let equation = &self.system.equations()[row];
-            let target = self.system.target(row, &self.targets, &self.pose.drivers);
-            let error = (equation.constraint.value(&self.at) - target).abs();
-            let (gap, angle) = match equation.constraint.dimension() {
-                Dimension::Length => (error, 0.0),
-                Dimension::Angle if error > least => (0.0, error),
-                Dimension::Angle => continue,
-            };
-            match open.last_mut() {
-                Some((element, joint)) if *element == equation.element => {
-                    joint.gap = joint.gap.hypot(gap);
-                    joint.angle = joint.angle.max(angle);
-                }
-                _ => open.push((
-                    equation.element,
-                    OpenJoint {
-                        element: String::new(),
-                        gap,
-                        angle,
-                    },
-                )),
+        BlockSolver::RrpDyad(block) => Proof::Line {
+            body: name(block.body()),
+        },
+        block => {
+            let mut bodies: Vec<_> = block.columns().iter().map(|k| k / 3).collect();
+            // Joint unknowns come behind the bodies.
+            bodies.retain(|&body| body < mechanism.bodies.len());
+            bodies.sort_unstable();
+            bodies.dedup();
+            Proof::Excluded {
+                bodies: bodies.into_iter().map(name).collect(),
+                boxes: failure.boxes,
             }
         }
-        open.retain_mut(|(element, joint)| {
-            if joint.gap <= least * self.at.size() {
-                joint.gap = 0.0;
-            }
-            let kept = joint.gap.max(joint.angle) > 0.0;
-            if kept {
-                joint.element = element.describe(self.system.mechanism());
-            }
-            kept
-        });
-        open
     }
+}
+
+fn not_assembled(
+    state: &State,
+    failure: &NoBranch,
+    proof: Proof,
+    open: Vec<(Element, OpenJoint)>,
+) -> Error {
+    let verdict = if failure.proved {
+        Verdict::Impossible {
+            proof: Box::new(proof),
+            ways: failure.dead_ends,
+        }
+    } else {
+        Verdict::NotFound {
+            starts: failure.starts,
+        }
+    };
+    Error::NotAssembled {
+        verdict,
+        open: open.into_iter().map(|(_, joint)| joint).collect(),
+        nearest: state.pose.q.clone(),
+    }
+}
+
+/// Explains a mechanism whose nearest pose, which is that of the state, leaves gaps.
+fn explain_failure(
+    model: &mut Model,
+    state: &mut State,
+    failure: &NoBranch,
+    whole: &Part,
+) -> Error {
+    let (residual, jacobian) = whole.equations(&state.block_state(&model.system));
+    let beyond_numbers = || Error::NotFinite {
+        what: AN_EQUATION.to_owned(),
+    };
+    let mut numbers = residual.iter().chain(jacobian.iter());
+    if !numbers.all(|x| x.is_finite()) {
+        return beyond_numbers();
+    }
+    if !failure.proved && residual.amax() <= CLOSED {
+        let singular = jacobian.singular_values();
+        return Error::Singular {
+            rcond: singular.min() / singular.max(),
+            bodies: Vec::new(),
+        };
+    }
+    let spread = open_joints(model, state, &whole.rows, residual.amax());
+    if spread.is_empty() {
+        return beyond_numbers();
+    }
+    let proof = proof(model, state, failure, failure.block);
+    let Some((joint, q)) = gather(model, state, whole, &spread) else {
+        return not_assembled(state, failure, proof, spread);
+    };
+    state.pose.q.copy_from_slice(&q);
+    state.move_to_pose(&model.system);
+    not_assembled(state, failure, proof, vec![joint])
+}
+
+/// Gathers the gap in one joint. The minimum spreads it over all joints of a loop, but people look
+/// for one joint that does not meet: the one with the smallest gap, on a tie the one declared
+/// last. Returns that joint, and q with the others closed.
+fn gather(
+    model: &Model,
+    state: &mut State,
+    part: &Part,
+    spread: &[(Element, OpenJoint)],
+) -> Option<((Element, OpenJoint), Vec<f64>)> {
+    let mut best: Option<(f64, (Element, OpenJoint), Vec<f64>)> = None;
+    let equations = model.system.equations();
+    for (element, _) in spread {
+        state.move_to_pose(&model.system);
+        let weight = |row: usize| {
+            if equations[row].element == *element {
+                1.0
+            } else {
+                HOLD_CLOSED
+            }
+        };
+        let mut block_state = state.block_state(&model.system);
+        part.minimise(&mut block_state, None, weight, STEPS_TO_NEAREST);
+        let largest = part.equations(&block_state).0.amax();
+        if let [joint] = &open_joints(model, state, &part.rows, largest)[..]
+            && joint.0 == *element
+            && let gap = (joint.1.gap / state.at.size()).max(joint.1.angle)
+            && best
+                .as_ref()
+                .is_none_or(|(smallest, ..)| gap <= smallest * (1.0 + 1e-3))
+        {
+            let mut q = state.pose.q.clone();
+            state.at.copy_pose(&mut q);
+            best = Some((gap, joint.clone(), q));
+        }
+    }
+    state.move_to_pose(&model.system);
+    best.map(|(_, joint, q)| (joint, q))
 }

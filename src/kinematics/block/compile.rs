@@ -1,36 +1,36 @@
-//! From equations and blocks to kernels.
+//! Compiles the plan from the equations and their structure.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use std::sync::Arc;
 
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
-use super::coupled::{Coupled, Place};
-use super::elimination;
-use super::pinned::{self, Pinned};
+use super::coupled::{CoupledBlock, column_owners};
+use super::elimination::EliminationOrder;
+use super::pinned::{self, PinnedBody};
 use super::rrp_dyad::{self, RrpDyad, SecondParts};
 use super::rrr_dyad::{self, RrrDyad, SideParts};
-use super::{Kernel, Plan};
+use super::{BlockPlan, BlockSolver};
+use crate::kinematics::certificate::Pivots;
 use crate::kinematics::constraint::{Axis, Relation};
 use crate::kinematics::structure::Structure;
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{MarkerId, Mechanism};
 
-/// Blocks that one kernel solves.
+/// Blocks of the structure that one block solver takes together.
 struct Group {
     /// Ascending.
     blocks: Vec<usize>,
     recipe: Recipe,
 }
 
-/// Which kernel, and what it is made of.
+/// The block solver of a group, and its parts.
 enum Recipe {
-    Pinned(pinned::Parts),
+    PinnedBody(pinned::Parts),
     RrrDyad(rrr_dyad::Parts),
     RrpDyad(rrp_dyad::Parts),
-    Coupled,
+    CoupledBlock,
 }
 
 /// The two rows of a revolute: its points coincide.
@@ -41,7 +41,7 @@ struct Revolute {
     to: MarkerId,
 }
 
-/// What the search for kernels looks at.
+/// The search for groups of blocks that a special solver knows.
 struct Search<'a> {
     system: &'a System,
     structure: &'a Structure,
@@ -53,9 +53,9 @@ struct Search<'a> {
     groups: Vec<Group>,
 }
 
-impl Plan {
-    /// Compiles the plan. Each block of the structure that a special kernel knows how to solve,
-    /// alone or with others of the same bodies, goes to it; the rest is left to [`Coupled`].
+impl BlockPlan {
+    /// Compiles the plan. Each block of the structure that a special solver knows, alone or with
+    /// others of the same bodies, goes to it; the rest is left to [`CoupledBlock`].
     pub(in crate::kinematics) fn new(system: &System, structure: &Structure) -> Self {
         let mut search = Search {
             system,
@@ -68,12 +68,15 @@ impl Plan {
         search.find();
         let order = search.order();
         Self {
-            kernels: search.kernels(&order),
+            blocks: search.solvers(&order),
+            pivots: Pivots::new(system.mechanism().bodies.len()),
+            has_pivots: false,
         }
     }
 }
 
-/// Whether each group is part of a knot: it reads what reads it, directly or through others.
+/// Tells for each group whether it is part of a knot: a group that reads it, directly or through
+/// others, is one that it reads.
 fn knots(reads: &[Vec<usize>]) -> Vec<bool> {
     let mut graph = DiGraph::<(), (), usize>::with_capacity(reads.len(), reads.len());
     for _ in reads {
@@ -124,7 +127,7 @@ fn revolutes(system: &System) -> Vec<Option<Revolute>> {
 }
 
 impl Search<'_> {
-    /// Groups blocks for the special kernels, then leaves each other block to itself.
+    /// Groups blocks for the special solvers, then leaves each other block to itself.
     fn find(&mut self) {
         for block in 0..self.structure.blocks().len() {
             if self.group_of[block].is_some() {
@@ -132,11 +135,11 @@ impl Search<'_> {
             }
             let bodies = self.turning(block);
             let group = match bodies[..] {
-                [body] => self.pinned(body).or_else(|| self.slide_from(block, body)),
+                [body] => self.pinned(body).or_else(|| self.rrp_dyad_in(block, body)),
                 [a, b] => self
-                    .dyad(a, b)
-                    .or_else(|| self.slide(a, Some(b)))
-                    .or_else(|| self.slide(b, Some(a))),
+                    .rrr_dyad(a, b)
+                    .or_else(|| self.rrp_dyad(a, Some(b)))
+                    .or_else(|| self.rrp_dyad(b, Some(a))),
                 _ => None,
             };
             if let Some(group) = group {
@@ -155,13 +158,13 @@ impl Search<'_> {
                 self.group_of[block] = Some(self.groups.len());
                 self.groups.push(Group {
                     blocks: vec![block],
-                    recipe: Recipe::Coupled,
+                    recipe: Recipe::CoupledBlock,
                 });
             }
         }
     }
 
-    /// The bodies whose angles a block determines.
+    /// Returns the bodies whose angles a block determines.
     fn turning(&self, block: usize) -> Vec<usize> {
         let bodies = self.mechanism.bodies.len();
         let columns = self.structure.blocks()[block].columns.iter();
@@ -169,7 +172,7 @@ impl Search<'_> {
         angles.map(|column| column / 3).collect()
     }
 
-    /// The blocks that determine these bodies and nothing else, and their rows.
+    /// Returns the blocks that determine these bodies and nothing else, and their rows.
     fn determining(&self, bodies: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
         let columns = || {
             bodies
@@ -199,7 +202,7 @@ impl Search<'_> {
         body.map(|body| body.index())
     }
 
-    /// A body with a revolute to a point found before, its angle held or driven.
+    /// Recognises a body with a revolute to a point found before, its angle held or driven.
     fn pinned(&self, body: usize) -> Option<Group> {
         let (blocks, rows) = self.determining(&[body])?;
         let [first, second, third] = rows[..] else {
@@ -222,7 +225,7 @@ impl Search<'_> {
         };
         Some(Group {
             blocks,
-            recipe: Recipe::Pinned(pinned::Parts {
+            recipe: Recipe::PinnedBody(pinned::Parts {
                 rows: [revolute.rows[0], revolute.rows[1], angle],
                 body,
                 pin,
@@ -234,7 +237,7 @@ impl Search<'_> {
         })
     }
 
-    /// The marker of a revolute that is on `body`, then the other, which is not.
+    /// Returns the marker of a revolute on `body`, then the other one, which is on another body.
     fn own_first(&self, revolute: Revolute, body: usize) -> Option<(MarkerId, MarkerId)> {
         let mine = |marker| self.body_of(marker) == Some(body);
         match (mine(revolute.from), mine(revolute.to)) {
@@ -244,8 +247,8 @@ impl Search<'_> {
         }
     }
 
-    /// Two bodies with a revolute between them and one each to points found before.
-    fn dyad(&self, a: usize, b: usize) -> Option<Group> {
+    /// Recognises two bodies with a revolute between them and one each to points found before.
+    fn rrr_dyad(&self, a: usize, b: usize) -> Option<Group> {
         let (blocks, rows) = self.determining(&[a, b])?;
         let mut revolutes = Vec::with_capacity(3);
         for pair in rows.chunks(2) {
@@ -289,9 +292,9 @@ impl Search<'_> {
         })
     }
 
-    /// A slide whose angle is that of body `a`, in `block`: with a body that meets it in the
-    /// block, or alone.
-    fn slide_from(&self, block: usize, a: usize) -> Option<Group> {
+    /// Recognises an RRP dyad whose unknown is the angle of body `a`: with a body that shares a row
+    /// of the block with it, or alone.
+    fn rrp_dyad_in(&self, block: usize, a: usize) -> Option<Group> {
         let rows = &self.structure.blocks()[block].rows;
         let met = rows.iter().flat_map(|&row| {
             let markers = match self.system.equations()[row].constraint.relation() {
@@ -303,13 +306,13 @@ impl Search<'_> {
         });
         met.filter_map(|marker| self.body_of(marker))
             .filter(|&b| b != a)
-            .find_map(|b| self.slide(a, Some(b)))
-            .or_else(|| self.slide(a, None))
+            .find_map(|b| self.rrp_dyad(a, Some(b)))
+            .or_else(|| self.rrp_dyad(a, None))
     }
 
-    /// Body `a` with a revolute to a point found before, and a point on a line; `b`, if any,
-    /// slides along with it.
-    fn slide(&self, a: usize, b: Option<usize>) -> Option<Group> {
+    /// Recognises body `a` with a revolute to a point found before and a point on a line, and `b`,
+    /// if any, that slides along with it.
+    fn rrp_dyad(&self, a: usize, b: Option<usize>) -> Option<Group> {
         let bodies: Vec<_> = std::iter::once(a).chain(b).collect();
         let (blocks, rows) = self.determining(&bodies)?;
         let mut revolutes: Vec<Revolute> = Vec::new();
@@ -401,9 +404,9 @@ impl Search<'_> {
         })
     }
 
-    /// An order of the groups in which each comes after those it reads, as close to that of the
-    /// blocks as can be. Grouping may have tied a knot, where two groups read parts of each
-    /// other; such groups are taken apart again.
+    /// Returns an order of the groups in which each comes after those it reads, close to the order
+    /// of the blocks. Where grouping has tied a knot, two groups that read parts of each other,
+    /// such groups are taken apart again.
     fn order(&mut self) -> Vec<usize> {
         loop {
             let reads = self.reads();
@@ -425,7 +428,7 @@ impl Search<'_> {
         }
     }
 
-    /// The groups that each group reads.
+    /// Returns the groups that each group reads.
     fn reads(&self) -> Vec<Vec<usize>> {
         let groups = self.groups.iter().enumerate();
         groups
@@ -462,46 +465,42 @@ impl Search<'_> {
         order
     }
 
-    /// Makes the kernels in this order of their groups.
-    fn kernels(self, order: &[usize]) -> Vec<Kernel> {
-        let none = Place {
-            kernel: usize::MAX,
-            local: 0,
-        };
-        let mut places = vec![none; self.system.unknowns()];
-        let mut orders = Vec::new();
-        for (kernel, &group) in order.iter().enumerate() {
-            let group = &self.groups[group];
-            if let Recipe::Coupled = group.recipe {
-                let block = &self.structure.blocks()[group.blocks[0]];
-                let order = elimination::Order::new(self.system, block);
-                for (local, &column) in order.columns.iter().enumerate() {
-                    places[column] = Place { kernel, local };
-                }
-                orders.push(order);
-            }
-        }
-        let mut orders = orders.into_iter();
-        let places: Arc<[Place]> = places.into();
+    /// Makes the block solvers in this order of their groups.
+    fn solvers(self, order: &[usize]) -> Vec<BlockSolver> {
         let mut groups: Vec<_> = self.groups.into_iter().map(Some).collect();
-        let in_order = order.iter().map(|&group| groups[group].take());
-        in_order
-            .flatten()
-            .enumerate()
-            .map(|(index, group)| match group.recipe {
-                Recipe::Pinned(parts) => {
-                    Kernel::Pinned(Box::new(Pinned::new(self.mechanism, parts)))
-                }
-                Recipe::RrrDyad(parts) => Kernel::RrrDyad(RrrDyad::new(self.mechanism, parts)),
-                Recipe::RrpDyad(parts) => {
-                    Kernel::RrpDyad(Box::new(RrpDyad::new(self.mechanism, parts)))
-                }
-                Recipe::Coupled => {
-                    let order = orders.next().expect("each group of this kind has one");
-                    let places = Arc::clone(&places);
-                    Kernel::Coupled(Box::new(Coupled::new(index, order, self.system, places)))
-                }
-            })
-            .collect()
+        let groups = order.iter().filter_map(|&group| groups[group].take());
+        // The orders of elimination of coupled blocks, by index in the plan.
+        let mut orders = Vec::new();
+        let mut recipes = Vec::with_capacity(order.len());
+        for (index, group) in groups.enumerate() {
+            if let Recipe::CoupledBlock = group.recipe {
+                let block = &self.structure.blocks()[group.blocks[0]];
+                orders.push((index, EliminationOrder::new(self.system, block)));
+            }
+            recipes.push(group.recipe);
+        }
+        let owners = column_owners(
+            self.system.unknowns(),
+            orders.iter().map(|(index, order)| (*index, order)),
+        );
+        let mut coupled = orders.into_iter().map(|(index, order)| {
+            BlockSolver::CoupledBlock(Box::new(CoupledBlock::new(
+                index,
+                order,
+                self.system,
+                &owners,
+            )))
+        });
+        let solvers = recipes.into_iter().map(|recipe| match recipe {
+            Recipe::PinnedBody(parts) => {
+                BlockSolver::PinnedBody(Box::new(PinnedBody::new(self.mechanism, parts)))
+            }
+            Recipe::RrrDyad(parts) => BlockSolver::RrrDyad(RrrDyad::new(self.mechanism, parts)),
+            Recipe::RrpDyad(parts) => {
+                BlockSolver::RrpDyad(Box::new(RrpDyad::new(self.mechanism, parts)))
+            }
+            Recipe::CoupledBlock => coupled.next().expect("each coupled group has its order"),
+        });
+        solvers.collect()
     }
 }

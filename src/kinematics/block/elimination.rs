@@ -1,26 +1,27 @@
-//! In which order the rows and unknowns of a block are eliminated.
+//! The order in which the rows and unknowns of a block are eliminated.
 //!
 //! Two rows hold two points together: x_j + (A_j s_j)_x = x_i + (A_i s_i)_x, and the same in y.
 //! Over all pairs that share unknowns these rows make a graph of the bodies; along each of its
 //! trees they eliminate x and y with pivots of ±1, whatever the pose, and leave the angles.
 
-use crate::kinematics::constraint::{Axis, Incidence, Relation};
+use crate::kinematics::constraint::{Axis, Relation};
 use crate::kinematics::linear::{DenseLu, Lu, SparseLu};
 use crate::kinematics::structure::Block;
 use crate::kinematics::system::System;
+use crate::mechanism::MarkerId;
 
-/// With more unknowns left than this a sparse matrix is quicker.
+/// Most torn unknowns for which a dense matrix is quicker than a sparse one.
 const DENSE: usize = 4;
 
 /// Rows and unknowns of a block in the order of elimination.
-pub(super) struct Order {
+pub(super) struct EliminationOrder {
     pub(super) rows: Vec<usize>,
     pub(super) columns: Vec<usize>,
-    /// How many of the first pivots are ±1.
+    /// Number of leading pivots that are ±1.
     fixed: usize,
 }
 
-impl Order {
+impl EliminationOrder {
     pub(super) fn new(system: &System, block: &Block) -> Self {
         let mut order = Self {
             rows: Vec::with_capacity(block.rows.len()),
@@ -53,11 +54,11 @@ impl Order {
         let component = usize::from(axis == Axis::Y);
         let mut columns: Vec<usize> = block.columns.clone();
         columns.sort_unstable();
-        // Nodes are the block's unknowns in this direction, and last all that is known.
+        // Nodes are the block's unknowns in this direction; the last node is all that is known.
         let bodies = 3 * mechanism.bodies.len();
         columns.retain(|column| *column < bodies && column % 3 == component);
         let known = columns.len();
-        let node = |marker: crate::mechanism::MarkerId| {
+        let node = |marker: MarkerId| {
             let body = mechanism.markers[marker.index()].body;
             body.and_then(|body| columns.binary_search(&(3 * body.index() + component)).ok())
                 .unwrap_or(known)
@@ -74,7 +75,7 @@ impl Order {
                 }
             }
         }
-        // Breadth first from what is known, then from each body that this does not reach.
+        // Breadth first from the known node, then from each body that this does not reach.
         let mut reached = vec![false; known + 1];
         let mut forest = Vec::new();
         for root in std::iter::once(known).chain(0..known) {
@@ -97,12 +98,12 @@ impl Order {
         }
     }
 
-    /// How many unknowns are left once those with pivots of ±1 are eliminated.
+    /// Returns the number of torn unknowns: those left once the pivots of ±1 are eliminated.
     pub(super) fn torn(&self) -> usize {
         self.rows.len() - self.fixed
     }
 
-    /// An empty matrix for rows and columns in this order.
+    /// Makes an empty matrix for rows and columns in this order.
     pub(super) fn matrix(&self, system: &System) -> Lu {
         if self.torn() <= DENSE {
             return Lu::Dense(DenseLu::new(self.rows.len(), self.fixed));
@@ -114,12 +115,9 @@ impl Order {
             found.ok().map(|index| places[index])
         };
         let pattern = self.rows.iter().map(|&row| {
-            let mut incidence = Incidence::default();
-            let constraint = &system.equations()[row].constraint;
-            constraint.incidence(system.mechanism(), &mut incidence);
-            let mut entries: Vec<_> = incidence.unknowns.iter().filter_map(place).collect();
+            let unknowns = system.incidence(row).unknowns;
+            let mut entries: Vec<_> = unknowns.iter().filter_map(place).collect();
             entries.sort_unstable();
-            entries.dedup();
             entries
         });
         Lu::Sparse(Box::new(SparseLu::new(pattern.collect())))

@@ -1,32 +1,34 @@
-//! A part of the mechanism near a change point.
+//! A block near a change point, on the interpolated motion.
 
 use std::sync::Arc;
 
-use super::Kernel;
+use super::BlockSolver;
 use super::crossing::{Crossing, SEAM};
-use super::work::{Substep, Work};
-use crate::kinematics::certificate::Tube;
+use super::solve::SolveBlock;
+use super::step::{BlockState, Step};
+use crate::kinematics::certificate::ChordBound;
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::mechanism::Jet;
 
-/// Any kernel while its unknowns come from a [`Crossing`].
+/// Any block while its unknowns come from a [`Crossing`].
 #[derive(Debug)]
-pub(in crate::kinematics) struct Interpolated {
-    pub(in crate::kinematics) kernel: Kernel,
+pub(in crate::kinematics) struct InterpolatedBlock {
+    /// The solver that takes over again beyond the crossing.
+    pub(in crate::kinematics) block: BlockSolver,
     pub(in crate::kinematics) crossing: Arc<Crossing>,
-    /// The driver's value where it stands.
+    /// The driver's value at the last factorisation.
     value: f64,
-    /// Whether the kernel could not be factorised where it stands.
+    /// Whether the block could not be factorised there.
     singular: bool,
 }
 
-/// Rounding of the polynomials, in eps of the values.
+/// Rounding of the polynomials, in parts of the values.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-impl Interpolated {
-    pub(in crate::kinematics) fn new(kernel: Kernel, crossing: Arc<Crossing>) -> Self {
+impl InterpolatedBlock {
+    pub(in crate::kinematics) fn new(block: BlockSolver, crossing: Arc<Crossing>) -> Self {
         Self {
-            kernel,
+            block,
             value: crossing.center,
             crossing,
             singular: false,
@@ -38,15 +40,15 @@ impl Interpolated {
     /// # Errors
     ///
     /// [`Rejected`] outside of the crossing.
-    pub(super) fn close(&mut self, work: &mut Work<'_>) -> Result<Correction, Rejected> {
-        let value = work.drivers[self.crossing.driver.index()];
+    fn interpolate(&self, state: &mut BlockState<'_>) -> Result<Correction, Rejected> {
+        let value = state.drivers[self.crossing.driver.index()];
         let place = self.crossing.place(value).abs();
         if place.is_nan() || place > SEAM {
             return Err(Rejected);
         }
-        for (local, &column) in self.kernel.columns().iter().enumerate() {
+        for (local, &column) in self.block.columns().iter().enumerate() {
             let [position, ..] = self.crossing.evaluate(local, value);
-            work.at.set_coordinate(column, position);
+            state.at.set_coordinate(column, position);
         }
         Ok(Correction {
             iterations: 1,
@@ -54,88 +56,126 @@ impl Interpolated {
         })
     }
 
-    /// Goes to the driver's value; there is nothing to predict. The crossing is one motion from
-    /// end to end, so that there is nothing to prove either: it strays from its chord by an eighth
-    /// of what it bends, and by what the driver strays.
-    pub(super) fn advance(
-        &mut self,
-        work: &mut Work<'_>,
-        substep: &mut Substep<'_>,
-    ) -> Result<Correction, Rejected> {
-        let correction = match self.close(work) {
-            Ok(correction) => correction,
-            Err(Rejected) => return Err(substep.tubes.break_off()),
-        };
-        self.note_tubes(work, substep);
-        self.factorise(work);
-        Ok(correction)
-    }
-
-    fn note_tubes(&self, work: &Work<'_>, substep: &mut Substep<'_>) {
-        let Substep { from, tubes, .. } = substep;
+    /// Writes the chord bounds: each unknown deviates by an eighth of its bend along the way, and
+    /// by the deviation of the driver times its slope.
+    fn write_bounds(&self, state: &BlockState<'_>, step: &mut Step<'_>) {
+        let Step {
+            from,
+            pivots,
+            bounds,
+            ..
+        } = step;
         let driver = self.crossing.driver.index();
-        let way = work.drivers[driver] - self.value;
-        let bodies = 3 * work.system.mechanism().bodies.len();
-        let straight = !matches!(self.kernel, Kernel::Coupled(_));
-        let strays = tubes.drivers[driver];
-        // Angles first: points are turned by them.
+        let way = state.drivers[driver] - self.value;
+        let bodies = 3 * state.system.mechanism().bodies.len();
+        let has_pivots = !matches!(self.block, BlockSolver::CoupledBlock(_));
+        let driver_deviation = bounds.drivers[driver];
+        // Angles first: the turn of a body moves its pivot.
         for phi in [true, false] {
-            for (local, &column) in self.kernel.columns().iter().enumerate() {
-                let (before, now) = (from[column], work.at.coordinate(column));
+            for (local, &column) in self.block.columns().iter().enumerate() {
+                let (before, now) = (from[column], state.at.coordinate(column));
                 let [slope, bend] = self.crossing.steepest(local);
-                let radius = 0.125 * bend * way * way
-                    + slope * strays
+                let deviation = 0.125 * bend * way * way
+                    + slope * driver_deviation
                     + ROUNDING * (1.0 + before.abs() + now.abs());
                 if column >= bodies {
-                    tubes.set_joint_unknown(column, radius);
+                    bounds.set_joint_unknown(column, deviation);
                 } else if column % 3 == 2 {
                     if phi {
                         let (sin, cos) = before.sin_cos();
-                        let tube = tubes.body_mut(column / 3);
-                        *tube = Tube {
+                        *bounds.body_mut(column / 3) = ChordBound {
                             cos,
                             sin,
                             turn: now - before,
-                            radius,
-                            stray: 0.0,
+                            angle_deviation: deviation,
+                            point_deviation: 0.0,
                         };
                     }
-                } else if !phi && straight {
-                    let place = column / 3;
-                    let arm = tubes.pivot(place).norm();
-                    let tube = tubes.body_mut(place);
-                    tube.stray = tube.stray.max(1.5 * radius + tube.arc(arm));
+                } else if !phi && has_pivots {
+                    let body = column / 3;
+                    let arm = pivots.get(body).norm();
+                    let bound = bounds.body_mut(body);
+                    bound.point_deviation = bound
+                        .point_deviation
+                        .max(1.5 * deviation + bound.arc_deviation(arm));
                 } else if !phi {
-                    tubes.set_component(column / 3, column % 3, radius);
+                    bounds.set_origin(column / 3, column % 3, deviation);
                 }
             }
         }
     }
+}
 
-    /// Factorises the kernel for its condition alone; at the point itself that is zero.
-    pub(super) fn factorise(&mut self, work: &mut Work<'_>) {
-        self.value = work.drivers[self.crossing.driver.index()];
-        self.singular = self.kernel.factorise(work).is_err();
+impl SolveBlock for InterpolatedBlock {
+    fn rows(&self) -> &[usize] {
+        self.block.rows()
     }
 
-    /// That of the kernel's own equations.
-    pub(super) fn rcond(&mut self) -> f64 {
-        if self.singular {
-            0.0
-        } else {
-            self.kernel.rcond()
-        }
+    fn columns(&self) -> &[usize] {
+        self.block.columns()
     }
 
-    /// The derivatives in the driver's value times the driver's rates.
-    pub(super) fn solve_rates(&self, work: &mut Work<'_>, drivers: &[Jet]) {
+    /// Goes to the driver's value. The crossing is one motion from end to end: there is nothing to
+    /// predict or to prove.
+    fn step(
+        &mut self,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
+    ) -> Result<Correction, Rejected> {
+        let correction = self
+            .interpolate(state)
+            .map_err(|Rejected| step.bounds.reject())?;
+        self.write_bounds(state, step);
+        self.factorise(state)?;
+        Ok(correction)
+    }
+
+    fn close(
+        &mut self,
+        state: &mut BlockState<'_>,
+        _max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        self.interpolate(state)
+    }
+
+    /// Factorises the block's own equations for their condition alone; at the change point itself
+    /// the condition is zero.
+    fn factorise(&mut self, state: &mut BlockState<'_>) -> Result<(), Rejected> {
+        self.value = state.drivers[self.crossing.driver.index()];
+        self.singular = self.block.factorise(state).is_err();
+        Ok(())
+    }
+
+    /// Multiplies the derivatives in the driver's value with the driver's rates.
+    fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]) {
         let driver = self.crossing.driver.index();
-        let (value, rates) = (work.drivers[driver], drivers[driver]);
-        let (velocity, acceleration) = work.flow.both_mut();
-        for (local, &column) in self.kernel.columns().iter().enumerate() {
+        let (value, rates) = (state.drivers[driver], drivers[driver]);
+        let (velocity, acceleration) = state.tangent.both_mut();
+        for (local, &column) in self.block.columns().iter().enumerate() {
             let [_, first, second] = self.crossing.evaluate(local, value);
             velocity[column] = first * rates.first();
             acceleration[column] = first * rates.second() + second * rates.first() * rates.first();
         }
+    }
+
+    /// Returns the condition of the block's own equations.
+    fn rcond(&mut self) -> f64 {
+        if self.singular {
+            0.0
+        } else {
+            self.block.rcond()
+        }
+    }
+
+    fn transmission(&self) -> Option<f64> {
+        self.block.transmission()
+    }
+
+    fn forget_pivots(&mut self) {
+        self.block.forget_pivots();
+    }
+
+    fn forget_proofs(&mut self) {
+        self.block.forget_proofs();
     }
 }

@@ -1,16 +1,19 @@
-//! The order of work: which unknowns are found when, each group of them by a kernel of its own.
+//! The plan: the blocks of the mechanism in the order of solution, each with its own solver.
 //!
-//! A plan is compiled once from the equations and their block structure. It lists kernels so
-//! that each reads only what those before it have found. Position, velocity and acceleration go
-//! through the list once; the work is proportional to the number of bodies.
+//! The plan is compiled once from the equations and their structure. A block solver reads only
+//! what those before it have found. Position, velocity and acceleration go through the list once,
+//! so that the work is proportional to the number of bodies.
 //!
-//! | kernel | unknowns | how |
+//! | block solver | unknowns | method |
 //! |---|---|---|
-//! | [`Pinned`] | x, y, phi of a body | straight from a revolute and an angle |
-//! | [`RrrDyad`] | x, y, phi of two bodies | Newton on two angles, 2×2 in closed form |
+//! | [`PinnedBody`] | x, y, phi of a body with a revolute and a known angle | explicit |
+//! | [`RrrDyad`] | x, y, phi of two bodies between three revolutes | Newton on two angles, 2×2 in closed form |
 //! | [`RrpDyad`] | x, y, phi of one or two bodies, one point on a line | Newton on one angle |
-//! | [`Coupled`] | any block | Newton on its rows, whatever they are |
-//! | [`Interpolated`] | those of any kernel near a change point | the interpolated motion |
+//! | [`CoupledBlock`] | those of any block | Newton on all rows |
+//! | [`InterpolatedBlock`] | those of any block near a change point | interpolation of the motion |
+//!
+//! A new kind is a file with its `impl SolveBlock`, a variant of [`BlockSolver`], and its
+//! recognition in [`compile`].
 
 mod anchor;
 mod compile;
@@ -23,80 +26,128 @@ mod pinned;
 mod reach;
 mod rrp_dyad;
 mod rrr_dyad;
-mod work;
+mod solve;
+mod step;
 
 use std::f64::consts::FRAC_PI_2;
+use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
-use super::certificate::Tubes;
+use super::certificate::{Pivots, StepBounds};
 use super::configuration::Configuration;
 use super::newton::{Correction, Rejected};
 use super::path::Rates;
 use super::system::{System, Targets};
 use crate::mechanism::Jet;
 
-pub(super) use coupled::Coupled;
+pub(super) use coupled::CoupledBlock;
 pub use crossing::Crossing;
 pub(super) use crossing::SEAM;
-pub(super) use interpolated::Interpolated;
-pub(super) use jacobian::General;
-use pinned::Pinned;
-pub(super) use reach::Miss;
+pub(super) use interpolated::InterpolatedBlock;
+pub(super) use jacobian::BlockJacobian;
+use pinned::PinnedBody;
+pub(super) use reach::ClosureGap;
 use rrp_dyad::RrpDyad;
 use rrr_dyad::RrrDyad;
-pub(super) use work::{Advance, Substep, Work};
+pub(super) use solve::SolveBlock;
+pub(super) use step::{BlockState, Extrapolation, Step};
 
-/// The kernels in the order in which they run.
+/// The blocks in the order of solution.
 #[derive(Debug, Default)]
-pub(super) struct Plan {
-    pub(super) kernels: Vec<Kernel>,
+pub(super) struct BlockPlan {
+    pub(super) blocks: Vec<BlockSolver>,
+    pub(super) pivots: Pivots,
+    /// Whether sparse matrices have chosen their pivots.
+    has_pivots: bool,
 }
 
-/// What finds the unknowns of one part of the mechanism.
+/// The solver of one block.
 #[derive(Debug)]
 #[allow(
     clippy::large_enum_variant,
-    reason = "most kernels are dyads, which lie side by side as they are"
+    reason = "most blocks are dyads, which lie side by side as they are"
 )]
-pub(super) enum Kernel {
-    Pinned(Box<Pinned>),
+pub(super) enum BlockSolver {
+    PinnedBody(Box<PinnedBody>),
     RrrDyad(RrrDyad),
     RrpDyad(Box<RrpDyad>),
-    Coupled(Box<Coupled>),
-    Interpolated(Box<Interpolated>),
+    CoupledBlock(Box<CoupledBlock>),
+    InterpolatedBlock(Box<InterpolatedBlock>),
 }
 
-impl Plan {
-    /// Takes over what depends on the parameters alone. Allocates nothing.
+impl Deref for BlockSolver {
+    type Target = dyn SolveBlock;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::PinnedBody(block) => &**block,
+            Self::RrrDyad(block) => block,
+            Self::RrpDyad(block) => &**block,
+            Self::CoupledBlock(block) => &**block,
+            Self::InterpolatedBlock(block) => &**block,
+        }
+    }
+}
+
+impl DerefMut for BlockSolver {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        match self {
+            Self::PinnedBody(block) => &mut **block,
+            Self::RrrDyad(block) => block,
+            Self::RrpDyad(block) => &mut **block,
+            Self::CoupledBlock(block) => &mut **block,
+            Self::InterpolatedBlock(block) => &mut **block,
+        }
+    }
+}
+
+impl BlockPlan {
+    /// Takes over all that depends on the parameters alone. Allocates nothing, but the first time.
     pub(super) fn set_parameters(
         &mut self,
+        system: &System,
         at: &Configuration,
         targets: &Targets,
-        tubes: &mut Tubes,
     ) {
-        for kernel in &mut self.kernels {
-            match kernel {
-                Kernel::Pinned(kernel) => kernel.set_parameters(at, tubes),
-                Kernel::RrrDyad(kernel) => kernel.set_parameters(at, tubes),
-                Kernel::RrpDyad(kernel) => kernel.set_parameters(at, targets, tubes),
-                Kernel::Coupled(kernel) => kernel.forget_box(),
-                // Parameters do not move while a crossing is in force.
-                Kernel::Interpolated(_) => {}
-            }
+        for block in &mut self.blocks {
+            block.set_parameters(at, targets, &mut self.pivots);
+        }
+        if !std::mem::replace(&mut self.has_pivots, true) {
+            self.choose_pivots(system, at, targets);
         }
     }
 
-    /// Chooses the pivots of sparse matrices, at a pose that has nothing to do with any motion:
-    /// so they do not depend on where the mechanism has been.
-    pub(super) fn choose_pivots(&mut self, system: &System, at: &Configuration, targets: &Targets) {
-        let kernels = self.kernels.iter_mut();
-        let sparse = kernels.filter_map(|kernel| match kernel {
-            Kernel::Coupled(kernel) if kernel.is_sparse() => Some(kernel),
-            _ => None,
+    /// Lets the unknowns of a block come from a crossing.
+    pub(super) fn interpolate(&mut self, crossing: &Arc<Crossing>) {
+        self.replace(crossing.block, |block| {
+            let block = InterpolatedBlock::new(block, Arc::clone(crossing));
+            BlockSolver::InterpolatedBlock(Box::new(block))
         });
-        let mut sparse = sparse.peekable();
-        if sparse.peek().is_none() {
+    }
+
+    /// Lets a block solve its equations again.
+    pub(super) fn release(&mut self, block: usize) {
+        self.replace(block, |block| match block {
+            BlockSolver::InterpolatedBlock(interpolated) => interpolated.block,
+            block => block,
+        });
+    }
+
+    /// Replaces the block with this index.
+    fn replace(&mut self, index: usize, make: impl FnOnce(BlockSolver) -> BlockSolver) {
+        let block = self.blocks.swap_remove(index);
+        self.blocks.push(make(block));
+        let last = self.blocks.len() - 1;
+        self.blocks.swap(index, last);
+    }
+
+    /// Chooses the pivots of sparse matrices at a fixed pose that belongs to no motion: the same
+    /// pivots result wherever the mechanism has been.
+    fn choose_pivots(&mut self, system: &System, at: &Configuration, targets: &Targets) {
+        let mut sparse = self.blocks.iter_mut().filter(|block| block.keeps_pivots());
+        let Some(first) = sparse.next() else {
             return;
-        }
+        };
         // Spread evenly by the golden ratio: nothing is in line or at right angles there.
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let q: Vec<_> = (1..=system.unknowns())
@@ -104,124 +155,116 @@ impl Plan {
             .collect();
         let mut anywhere = at.clone();
         anywhere.set_pose(system.mechanism(), &q);
-        let work = Work {
+        let mut state = BlockState {
             system,
             targets,
             drivers: &vec![1.0; system.mechanism().drivers.len()],
             at: &mut anywhere,
-            flow: &mut Rates::new(0),
+            tangent: &mut Rates::new(0),
         };
-        for kernel in sparse {
-            // Should the pose be singular, the pivots are chosen at the first one that is not.
-            kernel.choose_pivots(&work);
+        for block in std::iter::once(first).chain(sparse) {
+            block.choose_pivots(&mut state);
         }
     }
 
-    /// Lets go of what proofs for earlier steps are kept for others.
-    pub(super) fn forget_boxes(&mut self) {
-        for kernel in &mut self.kernels {
-            if let Some(kernel) = kernel.coupled_mut() {
-                kernel.forget_box();
-            }
+    /// Forgets the proofs that hold for several steps.
+    pub(super) fn forget_proofs(&mut self) {
+        for block in &mut self.blocks {
+            block.forget_proofs();
         }
     }
 
-    /// Lets sparse matrices choose their pivots anew; the plan has then to be factorised again.
+    /// Lets sparse matrices choose their pivots again at the next factorisation.
     pub(super) fn forget_pivots(&mut self) {
-        for kernel in &mut self.kernels {
-            if let Some(kernel) = kernel.coupled_mut() {
-                kernel.forget_pivots();
-            }
+        for block in &mut self.blocks {
+            block.forget_pivots();
         }
     }
 
-    /// Goes from the pose at which all kernels are factorised to the one that belongs to new
-    /// values of the drivers: predicts along the flow, corrects, and proves that the motion leads
-    /// there, kernel by kernel. With `unit`, the flow becomes the one for these rates of the
-    /// drivers at the new pose on the way.
+    /// Goes from the pose at which all blocks are factorised to the pose for the drivers' values
+    /// in `state`, block by block: predicts along the tangent, corrects, and certifies. With
+    /// `unit_rates`, the tangent becomes the one for these rates of the drivers at the new pose.
+    /// Returns the most corrections of a block, and the least regularity.
     ///
     /// # Errors
     ///
-    /// A kernel cannot show that it stayed on its motion; [`Tubes::load`] tells by how much. What
-    /// was found up to there is then in `work`, to be put back.
-    pub(super) fn advance(
+    /// [`Rejected`] if a block cannot prove that it kept to its motion;
+    /// [`StepBounds::step_ratio`] tells by how much the step is too long. The bodies, the tangent
+    /// and the factorisations are then somewhere on the way.
+    pub(super) fn step(
         &mut self,
-        work: &mut Work<'_>,
-        substep: &mut Substep<'_>,
-        unit: Option<&[Jet]>,
+        state: &mut BlockState<'_>,
+        extrapolation: Extrapolation,
+        from: &[f64],
+        bounds: &mut StepBounds,
+        unit_rates: Option<&[Jet]>,
     ) -> Result<Correction, Rejected> {
-        let mut most = Correction::default();
-        for kernel in &mut self.kernels {
-            let correction = match kernel {
-                Kernel::Pinned(kernel) => {
-                    let correction = kernel.advance(work, substep);
-                    if let Some(unit) = unit {
-                        kernel.solve_rates(work, unit);
-                    }
-                    correction
+        let mut step = Step {
+            extrapolation,
+            from,
+            pivots: &self.pivots,
+            bounds,
+        };
+        let mut worst = Correction::default();
+        for block in &mut self.blocks {
+            // The two most frequent ones are compiled into this loop.
+            let correction = match block {
+                BlockSolver::PinnedBody(block) => {
+                    step_block(&mut **block, state, &mut step, unit_rates)
                 }
-                Kernel::RrrDyad(kernel) => {
-                    let correction = kernel.advance(work, substep)?;
-                    if unit.is_some() {
-                        kernel.solve_rates(work);
-                    }
-                    correction
-                }
-                Kernel::RrpDyad(kernel) => {
-                    let correction = kernel.advance(work, substep)?;
-                    if let Some(unit) = unit {
-                        kernel.solve_rates(work, unit);
-                    }
-                    correction
-                }
-                Kernel::Coupled(kernel) => {
-                    let correction = kernel.advance(work, substep)?;
-                    if let Some(unit) = unit {
-                        kernel.solve_rates(work, unit);
-                    }
-                    correction
-                }
-                Kernel::Interpolated(kernel) => {
-                    let correction = kernel.advance(work, substep)?;
-                    if let Some(unit) = unit {
-                        kernel.solve_rates(work, unit);
-                    }
-                    correction
-                }
-            };
-            most.iterations = most.iterations.max(correction.iterations);
-            most.regularity = most.regularity.min(correction.regularity);
+                BlockSolver::RrrDyad(block) => step_block(block, state, &mut step, unit_rates),
+                block => step_block(&mut **block, state, &mut step, unit_rates),
+            }?;
+            worst.iterations = worst.iterations.max(correction.iterations);
+            worst.regularity = worst.regularity.min(correction.regularity);
         }
-        Ok(most)
+        Ok(worst)
     }
 
-    /// Factorises every kernel at the pose in `work`.
+    /// Factorises every block at the pose in `state`.
     ///
     /// # Errors
     ///
     /// [`Rejected`] where a Jacobian is singular to the last bit.
-    pub(super) fn factorise(&mut self, work: &mut Work<'_>) -> Result<(), Rejected> {
-        let mut kernels = self.kernels.iter_mut();
-        kernels.try_for_each(|kernel| kernel.factorise(work))
+    pub(super) fn factorise(&mut self, state: &mut BlockState<'_>) -> Result<(), Rejected> {
+        let mut blocks = self.blocks.iter_mut();
+        blocks.try_for_each(|block| block.factorise(state))
     }
 
-    /// Makes the flow the one for these rates of the drivers (`first` and `second` of each) at
-    /// the pose at which all kernels are factorised.
-    pub(super) fn solve_rates(&mut self, work: &mut Work<'_>, drivers: &[Jet]) {
-        for kernel in &mut self.kernels {
-            kernel.solve_rates(work, drivers);
+    /// Solves the tangent for these rates of the drivers (`first` and `second` of each) at the
+    /// pose at which all blocks are factorised.
+    pub(super) fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]) {
+        for block in &mut self.blocks {
+            block.solve_rates(state, drivers);
         }
     }
 
-    /// The least [regularity](Correction::regularity) of all kernels, which are factorised.
-    pub(super) fn regularity(&self) -> f64 {
-        let kernels = self.kernels.iter();
-        kernels.fold(1.0, |least: f64, kernel| least.min(kernel.regularity()))
+    /// Closes block by block with Newton–Raphson from where the bodies are. Returns the most
+    /// corrections of a block.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] if a block does not close.
+    pub(super) fn close(
+        &mut self,
+        state: &mut BlockState<'_>,
+        max_iterations: u32,
+    ) -> Result<u32, Rejected> {
+        self.blocks.iter_mut().try_fold(0, |most: u32, block| {
+            let correction = block.close(state, max_iterations)?;
+            Ok(most.max(correction.iterations))
+        })
     }
 
-    /// The smallest transmission angle of all dyads and slides, which are factorised \[rad\].
+    /// Returns the least [regularity](Correction::regularity) of all blocks, which are factorised.
+    pub(super) fn regularity(&self) -> f64 {
+        let blocks = self.blocks.iter();
+        blocks.fold(1.0, |least: f64, block| least.min(block.regularity()))
+    }
+
+    /// Returns the smallest transmission angle of all dyads, which are factorised \[rad\].
     pub(super) fn transmission(&self) -> Option<f64> {
-        let sines = self.kernels.iter().filter_map(Kernel::transmission);
+        let sines = self.blocks.iter().filter_map(|block| block.transmission());
         let least = sines.fold(f64::INFINITY, f64::min);
         // Next to 1 the last digits of a sine are half of the digits of its angle.
         let right = least > 1.0 - 8.0 * f64::EPSILON;
@@ -230,150 +273,56 @@ impl Plan {
             .then(|| if right { FRAC_PI_2 } else { least.asin() })
     }
 
-    /// Scaled reciprocal condition: the smallest of all kernels, which are factorised.
+    /// Returns the smallest scaled reciprocal condition of all blocks, which are factorised.
     pub(super) fn rcond(&mut self) -> f64 {
-        let kernels = self.kernels.iter_mut();
-        kernels.fold(1.0, |smallest: f64, kernel| smallest.min(kernel.rcond()))
+        let blocks = self.blocks.iter_mut();
+        blocks.fold(1.0, |smallest: f64, block| smallest.min(block.rcond()))
     }
 }
 
-impl Kernel {
-    /// The block of any equations that it is, or that a crossing stands for.
-    fn coupled_mut(&mut self) -> Option<&mut Coupled> {
-        match self {
-            Self::Coupled(kernel) => Some(kernel),
-            Self::Interpolated(bridged) => bridged.kernel.coupled_mut(),
-            Self::Pinned(_) | Self::RrrDyad(_) | Self::RrpDyad(_) => None,
-        }
+/// Steps one block, then solves its part of the tangent.
+#[inline(always)]
+fn step_block<B: SolveBlock + ?Sized>(
+    block: &mut B,
+    state: &mut BlockState<'_>,
+    step: &mut Step<'_>,
+    unit_rates: Option<&[Jet]>,
+) -> Result<Correction, Rejected> {
+    let correction = block.step(state, step)?;
+    if let Some(rates) = unit_rates {
+        block.solve_rates(state, rates);
     }
-
-    /// The rows of Phi that it satisfies.
-    pub(super) fn rows(&self) -> &[usize] {
-        match self {
-            Self::Pinned(kernel) => kernel.rows(),
-            Self::RrrDyad(kernel) => kernel.rows(),
-            Self::RrpDyad(kernel) => kernel.rows(),
-            Self::Coupled(kernel) => kernel.rows(),
-            Self::Interpolated(bridged) => bridged.kernel.rows(),
-        }
-    }
-
-    /// The unknowns that it finds, as many as rows.
-    pub(super) fn columns(&self) -> &[usize] {
-        match self {
-            Self::Pinned(kernel) => kernel.columns(),
-            Self::RrrDyad(kernel) => kernel.columns(),
-            Self::RrpDyad(kernel) => kernel.columns(),
-            Self::Coupled(kernel) => kernel.columns(),
-            Self::Interpolated(bridged) => bridged.kernel.columns(),
-        }
-    }
-
-    /// Scaled reciprocal condition: 1 is best, 0 singular.
-    pub(super) fn rcond(&mut self) -> f64 {
-        match self {
-            Self::Pinned(_) => 1.0,
-            Self::RrrDyad(kernel) => kernel.rcond(),
-            Self::RrpDyad(kernel) => kernel.rcond(),
-            Self::Coupled(kernel) => kernel.rcond(),
-            Self::Interpolated(kernel) => kernel.rcond(),
-        }
-    }
-
-    /// A cheap measure of how far from singular the pose is at which it is factorised.
-    pub(super) fn regularity(&self) -> f64 {
-        match self {
-            Self::Pinned(_) => 1.0,
-            Self::RrrDyad(kernel) => kernel.regularity(),
-            Self::RrpDyad(kernel) => kernel.regularity(),
-            Self::Coupled(kernel) => kernel.regularity(),
-            // It is past the worst.
-            Self::Interpolated(_) => 1.0,
-        }
-    }
-
-    /// The sine of its transmission angle, if it has one.
-    fn transmission(&self) -> Option<f64> {
-        match self {
-            Self::RrrDyad(kernel) => Some(kernel.regularity()),
-            Self::RrpDyad(kernel) => Some(kernel.regularity()),
-            Self::Pinned(_) | Self::Coupled(_) => None,
-            Self::Interpolated(bridged) => bridged.kernel.transmission(),
-        }
-    }
-
-    /// Newton–Raphson from where the bodies are, behind the kernels before it.
-    pub(super) fn close(
-        &mut self,
-        work: &mut Work<'_>,
-        max_iterations: u32,
-    ) -> Result<Correction, Rejected> {
-        match self {
-            Self::Pinned(kernel) => {
-                kernel.locate(work);
-                Ok(Correction::default())
-            }
-            Self::RrrDyad(kernel) => kernel.close(work, max_iterations),
-            Self::RrpDyad(kernel) => kernel.close(work, max_iterations),
-            Self::Coupled(kernel) => kernel.correct(work, max_iterations),
-            Self::Interpolated(kernel) => kernel.close(work),
-        }
-    }
-
-    /// Factorises it at the pose in `work`.
-    pub(super) fn factorise(&mut self, work: &mut Work<'_>) -> Result<(), Rejected> {
-        match self {
-            Self::Pinned(_) => Ok(()),
-            Self::RrrDyad(kernel) => kernel.factorise(work),
-            Self::RrpDyad(kernel) => kernel.factorise(work),
-            Self::Coupled(kernel) => kernel.factorise(work),
-            Self::Interpolated(kernel) => {
-                kernel.factorise(work);
-                Ok(())
-            }
-        }
-    }
-
-    /// Writes the rates of its unknowns at the pose at which it is factorised.
-    pub(super) fn solve_rates(&mut self, work: &mut Work<'_>, drivers: &[Jet]) {
-        match self {
-            Self::Pinned(kernel) => kernel.solve_rates(work, drivers),
-            Self::RrrDyad(kernel) => kernel.solve_rates(work),
-            Self::RrpDyad(kernel) => kernel.solve_rates(work, drivers),
-            Self::Coupled(kernel) => kernel.solve_rates(work, drivers),
-            Self::Interpolated(kernel) => kernel.solve_rates(work, drivers),
-        }
-    }
+    Ok(correction)
 }
 
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
 
-    use super::Kernel;
+    use super::{BlockSolver, SolveBlock};
     use crate::kinematics::Solver;
     use crate::mechanism::{Mechanism, Source};
 
-    /// A letter a kernel, `C` with the number of its unknowns.
-    fn kernels(name: &str) -> String {
+    /// Returns a letter per block, `C` with the number of its unknowns.
+    fn blocks(name: &str) -> String {
         let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(path).expect("it is shipped");
         let (mechanism, _) =
             Mechanism::parse(&Source::new("test.toml", text)).expect("it has no errors");
         let solver = Solver::new(Arc::new(mechanism)).expect("the drivers match");
-        let letters = solver.plan.kernels.iter().map(|kernel| match kernel {
-            Kernel::Pinned(_) => "P".to_owned(),
-            Kernel::RrrDyad(_) => "D".to_owned(),
-            Kernel::RrpDyad(_) => "S".to_owned(),
-            Kernel::Coupled(coupled) => format!("C{}", coupled.columns().len()),
-            Kernel::Interpolated(_) => "B".to_owned(),
+        let letters = solver.model.plan.blocks.iter().map(|block| match block {
+            BlockSolver::PinnedBody(_) => "P".to_owned(),
+            BlockSolver::RrrDyad(_) => "D".to_owned(),
+            BlockSolver::RrpDyad(_) => "S".to_owned(),
+            BlockSolver::CoupledBlock(coupled) => format!("C{}", coupled.columns().len()),
+            BlockSolver::InterpolatedBlock(_) => "B".to_owned(),
         });
         letters.collect::<Vec<_>>().join(" ")
     }
 
-    /// Work is a result, too: a mechanism that falls to a slower kernel shows here.
+    /// Work is a result, too: a mechanism that falls to a slower solver shows here.
     #[test]
-    fn each_part_has_the_kernel_that_suits_it() {
+    fn each_block_has_the_solver_that_suits_it() {
         for (name, expected) in [
             ("four_bar", "P D"),
             ("slider_crank", "P S"),
@@ -387,7 +336,7 @@ mod tests {
             // Driven between coupler and rocker: all three angles at once.
             ("double_rocker", "C1 C1 C1 C1 C5"),
         ] {
-            assert_eq!(kernels(name), expected, "{name}");
+            assert_eq!(blocks(name), expected, "{name}");
         }
     }
 }

@@ -1,47 +1,48 @@
-//! A body that a revolute and an angle put in its place, such as a driven crank.
+//! A body with a revolute to a body found before, its angle held or driven.
 
 use nalgebra::Vector2;
 
 use super::anchor::Anchor;
-use super::work::{Substep, Work};
-use crate::kinematics::certificate::{Tube, Tubes};
+use super::solve::SolveBlock;
+use super::step::{BlockState, Step};
+use crate::kinematics::certificate::{ChordBound, Pivots};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
-use crate::kinematics::newton::Correction;
-use crate::kinematics::system::Target;
+use crate::kinematics::newton::{Correction, Rejected};
+use crate::kinematics::system::{Target, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
-/// x, y and phi of one body: phi from an angle to a body already found, x and y from a point
-/// that coincides with one already found. All three are explicit.
+/// x, y and phi of one body: phi from an angle to a body found before, x and y from a point that
+/// coincides with a point found before. All three are explicit.
 #[derive(Debug)]
-pub(in crate::kinematics) struct Pinned {
+pub(in crate::kinematics) struct PinnedBody {
     parts: Parts,
     columns: [usize; 3],
     anchor: Anchor,
     /// s of the pin.
     s: Vector2<f64>,
-    /// The body that the angle is measured against, `None` for ground.
+    /// The body that the angle is measured from, `None` for ground.
     reference: Option<usize>,
     /// phi where that body's angle and the target are zero.
     zero: f64,
 }
 
-/// What a body pinned by an angle is made of.
+/// The rows and markers of a pinned body.
 #[derive(Debug)]
 pub(super) struct Parts {
-    /// The x and y rows of the revolute, then that of the angle.
+    /// The x and y rows of the revolute, then the row of the angle.
     pub(super) rows: [usize; 3],
     pub(super) body: usize,
-    /// The point of the body in the revolute, and its partner on what is already found.
+    /// The point of the body in the revolute, and its partner on the body found before.
     pub(super) pin: MarkerId,
     pub(super) anchor: MarkerId,
-    /// The marker of the body whose angle is held or driven, the one that it is measured
-    /// against, and +1 where the angle counts from that one to the body, else −1.
+    /// The marker of the body whose angle is held or driven, the marker that it is measured
+    /// from, and +1 where the angle counts from that marker to the body, otherwise −1.
     pub(super) angle: MarkerId,
     pub(super) reference: MarkerId,
     pub(super) sense: f64,
 }
 
-impl Pinned {
+impl PinnedBody {
     pub(super) fn new(mechanism: &Mechanism, parts: Parts) -> Self {
         Self {
             columns: [0, 1, 2].map(|k| 3 * parts.body + k),
@@ -55,85 +56,100 @@ impl Pinned {
         }
     }
 
-    pub(super) fn rows(&self) -> &[usize] {
-        &self.parts.rows
-    }
-
-    pub(super) fn columns(&self) -> &[usize] {
-        &self.columns
-    }
-
-    pub(super) fn set_parameters(&mut self, at: &Configuration, tubes: &mut Tubes) {
-        self.s = at.local(self.parts.pin).0;
-        self.anchor.set_parameters(at, tubes, self.parts.anchor);
-        tubes.set_pivot(self.parts.body, self.s);
-        self.zero = at.local(self.parts.reference).1 - at.local(self.parts.angle).1;
-    }
-
-    /// Puts the body where it belongs.
-    pub(in crate::kinematics) fn locate(&self, work: &mut Work<'_>) {
+    /// Puts the body at the pose that the bodies before it and the target give.
+    pub(in crate::kinematics) fn locate(&self, state: &mut BlockState<'_>) {
         let parts = &self.parts;
-        let target = work
+        let target = state
             .system
-            .target(parts.rows[2], work.targets, work.drivers);
+            .target(parts.rows[2], state.targets, state.drivers);
         let reference = self
             .reference
-            .map_or(0.0, |body| work.at.frames()[body].phi);
+            .map_or(0.0, |body| state.at.frames()[body].phi);
         let phi = reference + parts.sense * target + self.zero;
         let frame = BodyPose::turned(phi);
-        let point = self.anchor.point(work.at.frames());
-        work.at.frames_mut()[parts.body] = BodyPose {
+        let point = self.anchor.point(state.at.frames());
+        state.at.frames_mut()[parts.body] = BodyPose {
             origin: point - frame.rotate(self.s),
             ..frame
         };
     }
+}
 
-    /// Puts the body where it belongs. There is nothing to solve, and so nothing to prove: it
-    /// strays as far as what it hangs on does.
+impl SolveBlock for PinnedBody {
+    fn rows(&self) -> &[usize] {
+        &self.parts.rows
+    }
+
+    fn columns(&self) -> &[usize] {
+        &self.columns
+    }
+
+    fn set_parameters(&mut self, at: &Configuration, _targets: &Targets, pivots: &mut Pivots) {
+        self.s = at.local(self.parts.pin).0;
+        self.anchor.set_parameters(at, pivots, self.parts.anchor);
+        pivots.set(self.parts.body, self.s);
+        self.zero = at.local(self.parts.reference).1 - at.local(self.parts.angle).1;
+    }
+
+    /// Puts the body at its pose. Its equations are explicit, so that it deviates from its chord
+    /// no more than the bodies and the target that it depends on.
     #[inline(always)]
-    pub(super) fn advance(&self, work: &mut Work<'_>, substep: &mut Substep<'_>) -> Correction {
+    fn step(
+        &mut self,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
+    ) -> Result<Correction, Rejected> {
         let parts = &self.parts;
-        let place = parts.body;
-        let before = work.at.frames()[place];
-        self.locate(work);
-        let tubes = &mut *substep.tubes;
-        let phi = work.at.frames()[place].phi;
-        let mut radius = f64::EPSILON * (1.0 + phi.abs() + before.phi.abs());
+        let before = state.at.frames()[parts.body];
+        self.locate(state);
+        let bounds = &mut *step.bounds;
+        let phi = state.at.frames()[parts.body].phi;
+        let mut angle_deviation = f64::EPSILON * (1.0 + phi.abs() + before.phi.abs());
         if let Some(body) = self.reference {
-            radius += tubes.body(body).radius;
+            angle_deviation += bounds.body(body).angle_deviation;
         }
-        if let Target::Driver(driver) = work.system.equations()[parts.rows[2]].target {
-            radius += tubes.drivers[driver.index()];
+        if let Target::Driver(driver) = state.system.equations()[parts.rows[2]].target {
+            angle_deviation += bounds.drivers[driver.index()];
         }
-        let mut stray = self.anchor.strays(tubes);
-        if let Some(slips) = tubes.slips() {
-            let angle = slips.angle(parts.angle) + slips.angle(parts.reference);
-            radius += 2.0 * (angle + slips.constant(parts.rows[2]));
-            stray += 2.0 * (slips.position(parts.pin) + slips.position(parts.anchor));
+        let mut point_deviation = self.anchor.deviation(bounds);
+        if let Some(parameters) = bounds.moving_parameters() {
+            let angle = parameters.angle(parts.angle) + parameters.angle(parts.reference);
+            angle_deviation += 2.0 * (angle + parameters.constant(parts.rows[2]));
+            point_deviation +=
+                2.0 * (parameters.position(parts.pin) + parameters.position(parts.anchor));
         }
-        *tubes.body_mut(place) = Tube {
+        *bounds.body_mut(parts.body) = ChordBound {
             cos: before.cos,
             sin: before.sin,
             turn: phi - before.phi,
-            radius,
-            stray,
+            angle_deviation,
+            point_deviation,
         };
-        // Linear equations are solved by one.
-        Correction {
+        // One correction solves linear equations.
+        Ok(Correction {
             iterations: 1,
             ..Correction::default()
-        }
+        })
     }
 
-    pub(super) fn solve_rates(&self, work: &mut Work<'_>, drivers: &[Jet]) {
+    fn close(
+        &mut self,
+        state: &mut BlockState<'_>,
+        _max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        self.locate(state);
+        Ok(Correction::default())
+    }
+
+    fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]) {
         let parts = &self.parts;
-        let frames = work.at.frames();
-        let (velocity, acceleration) = work.flow.both_mut();
+        let frames = state.at.frames();
+        let (velocity, acceleration) = state.tangent.both_mut();
         let [mut omega, mut alpha] = self.reference.map_or([0.0; 2], |body| {
             let phi = 3 * body + 2;
             [velocity[phi], acceleration[phi]]
         });
-        if let Target::Driver(driver) = work.system.equations()[parts.rows[2]].target {
+        if let Target::Driver(driver) = state.system.equations()[parts.rows[2]].target {
             let driver = drivers[driver.index()];
             omega += parts.sense * driver.first();
             alpha += parts.sense * driver.second();

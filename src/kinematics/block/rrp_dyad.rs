@@ -1,11 +1,11 @@
-//! A body with a revolute to something already found and a point on a line, alone or with a
-//! second body that slides.
+//! A body with a revolute to a body found before and a point on a line, alone or with a second
+//! body that slides.
 
+mod branches;
 mod certify;
 mod equation;
 mod parameters;
 mod rates;
-mod ways;
 
 use nalgebra::Vector2;
 
@@ -13,15 +13,17 @@ use certify::Before;
 use equation::Known;
 
 use super::anchor::{Anchor, compact};
-use super::work::{Substep, Work};
-use crate::kinematics::configuration::{BodyPose, perp};
+use super::solve::SolveBlock;
+use super::step::{BlockState, Step};
+use crate::kinematics::certificate::Pivots;
+use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::constraint::Projection;
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
-use crate::mechanism::{MarkerId, Mechanism};
+use crate::kinematics::system::Targets;
+use crate::mechanism::{Jet, MarkerId, Mechanism};
 
-/// x, y and phi of body a, and of body b if there is one. Everything follows from the angle of
-/// a, for which one equation is left: with what is known gathered in κ and w, and the rest fixed
-/// to body a as g,
+/// x, y and phi of body a, and of body b if there is one. All follow from the angle of a, for
+/// which one equation is left: with κ and w known, and g fixed to body a,
 ///
 /// f = e · (P_j − P_i) − target = κ + w · A_a g.
 ///
@@ -29,19 +31,19 @@ use crate::mechanism::{MarkerId, Mechanism};
 /// a, g = e in a's frame and w is the known part of P_j − P_i, as the rest turns with e.
 #[derive(Debug)]
 pub(in crate::kinematics) struct RrpDyad {
-    place: u32,
+    body: u32,
     anchor: Anchor,
     /// s of a's point in the revolute.
     s: Vector2<f64>,
     second: Second,
-    /// Of i and j.
+    /// The points i and j.
     points: [Point; 2],
     axis: Line,
     /// A_a g at the pose last factorised, ∂f/∂phi, and the known part of P_j − P_i.
     g: Vector2<f64>,
     slope: f64,
     still: Vector2<f64>,
-    /// |w| |g|, what the slope is measured against.
+    /// |w| |g|, or the mechanism's size if that is larger: the scale of the slope.
     scale: f64,
     parts: Box<Parts>,
 }
@@ -50,27 +52,27 @@ pub(in crate::kinematics) struct RrpDyad {
 #[derive(Debug)]
 enum Second {
     None,
-    /// Pinned to a, its angle held against something known.
+    /// Pinned to a, its angle measured from a body found before.
     Carried {
-        place: u32,
-        /// The body that its angle is held against, `None` for ground.
+        body: u32,
+        /// The body that its angle is measured from, `None` for ground.
         reference: Option<usize>,
-        /// phi_b less that body's angle and the target.
+        /// phi_b where that body's angle and the target are zero.
         zero: f64,
         /// l, from a's outer to its inner point, and the inner point in b's frame.
         l: Vector2<f64>,
         s: Vector2<f64>,
     },
-    /// Pinned to something known, its angle held against a.
+    /// Pinned to a body found before, its angle measured from a.
     Parallel {
-        place: u32,
+        body: u32,
         anchor: Anchor,
         zero: f64,
         s: Vector2<f64>,
     },
 }
 
-/// Where a point stands: a part that is known and one that turns with a.
+/// A point as the sum of a known part and a part that turns with a.
 #[derive(Clone, Copy, Debug)]
 enum Point {
     Known(Anchor),
@@ -82,43 +84,43 @@ enum Point {
     Parallel(Vector2<f64>),
 }
 
-/// Where the axis is.
+/// The axis of the line.
 #[derive(Clone, Copy, Debug)]
 enum Line {
     /// On a body found before (`None` for ground), in its frame.
     Known(Option<usize>, Vector2<f64>),
     /// On b, which is carried.
     Carried(Vector2<f64>),
-    /// Turning with a, in its frame.
+    /// On a, or on b that is parallel to a, in the frame of a.
     Turning(Vector2<f64>),
 }
 
-/// What a slide is made of.
+/// The rows, unknowns and markers of the block.
 #[derive(Debug)]
 pub(super) struct Parts {
     pub(super) rows: Vec<usize>,
     pub(super) columns: Vec<usize>,
-    /// Body a with its point in the revolute, and that point's partner.
+    /// Body a, its point in the revolute, and the partner of that point.
     pub(super) body: usize,
     pub(super) pin: MarkerId,
     pub(super) anchor: MarkerId,
     pub(super) second: Option<SecondParts>,
-    /// The row of the projection, and what it is.
+    /// The row of the projection, and its relation.
     pub(super) row: usize,
     pub(super) projection: Projection,
 }
 
-/// What the second body is made of.
+/// The row and markers of the second body.
 #[derive(Debug)]
 pub(super) struct SecondParts {
     pub(super) body: usize,
-    /// Whether its revolute is to body a; else it is to something known.
+    /// Whether its revolute is to body a; otherwise it is to a body found before.
     pub(super) carried: bool,
-    /// Its point in that revolute, and that point's partner.
+    /// Its point in that revolute, and the partner of that point.
     pub(super) pin: MarkerId,
     pub(super) partner: MarkerId,
-    /// The row of the angle: its marker of body b, the other, and +1 where the angle counts from
-    /// the other to b, else −1.
+    /// The row of the angle, its marker on body b, its other marker, and +1 where the angle counts
+    /// from the other marker to b, otherwise −1.
     pub(super) row: usize,
     pub(super) angle: MarkerId,
     pub(super) reference: MarkerId,
@@ -135,14 +137,14 @@ impl RrpDyad {
         let second = match &parts.second {
             None => Second::None,
             Some(b) if b.carried => Second::Carried {
-                place: compact(b.body),
+                body: compact(b.body),
                 reference: body_of(b.reference),
                 zero: 0.0,
                 l: zero,
                 s: zero,
             },
             Some(b) => Second::Parallel {
-                place: compact(b.body),
+                body: compact(b.body),
                 anchor: Anchor::new(mechanism, b.partner),
                 zero: 0.0,
                 s: zero,
@@ -161,7 +163,7 @@ impl RrpDyad {
             Point::First(_) | Point::Parallel(_) => Line::Turning(zero),
         };
         Self {
-            place: compact(parts.body),
+            body: compact(parts.body),
             anchor: Anchor::new(mechanism, parts.anchor),
             s: zero,
             points: [on(parts.projection.from), on(parts.projection.to)],
@@ -175,51 +177,19 @@ impl RrpDyad {
         }
     }
 
-    pub(super) fn rows(&self) -> &[usize] {
-        &self.parts.rows
-    }
-
-    pub(super) fn columns(&self) -> &[usize] {
-        &self.parts.columns
-    }
-
-    /// Body a, whose angle is looked for.
+    /// Returns body a, whose angle is the unknown.
     pub(in crate::kinematics) fn body(&self) -> usize {
         self.parts.body
     }
 
-    /// Predicts the angle of a, corrects it until the point is on its line to rounding, and proves
-    /// that the motion leads there.
-    pub(super) fn advance(
-        &mut self,
-        work: &mut Work<'_>,
-        substep: &mut Substep<'_>,
-    ) -> Result<Correction, Rejected> {
-        let column = 3 * self.place as usize + 2;
-        let before = Before::new(self, work);
-        let predicted = substep.advance.predict(column, before.first.phi, work.flow);
-        let found = self.correct(work, predicted, MAX_ITERATIONS);
-        let found = found.map_err(|_| substep.tubes.break_off())?;
-        self.certify(work, substep.tubes, &before, &found)?;
-        Ok(Correction {
-            regularity: self.regularity(),
-            ..found.correction
-        })
-    }
-
-    /// The slope of the equation in the angle, as part of what it can be.
-    pub(super) fn regularity(&self) -> f64 {
-        self.slope.abs() / self.scale
-    }
-
-    /// Newton–Raphson on the angle of a.
+    /// Solves for the angle of a by Newton–Raphson.
     fn correct(
         &mut self,
-        work: &mut Work<'_>,
+        state: &mut BlockState<'_>,
         mut phi: f64,
         max_iterations: u32,
     ) -> Result<Found, Rejected> {
-        let known = self.known(work);
+        let known = self.known(state);
         let scale = known.w.norm() * known.g.norm();
         let mut correction = Correction::default();
         let mut last_gap = f64::INFINITY;
@@ -233,10 +203,10 @@ impl RrpDyad {
             if open <= AT_ROUNDING * rounding
                 || (open <= STALLED * rounding && open >= 0.5 * last_gap)
             {
-                self.put(work.at.frames_mut(), &known, frame);
-                // A line that turns about a point which the pin has reached turns freely.
+                self.put(state.at.frames_mut(), &known, frame);
+                // Next to the pin |w| |g| goes to zero: a line through the pin turns freely.
                 (self.g, self.slope, self.still) = (g, slope, known.still);
-                self.scale = scale.max(work.at.size());
+                self.scale = scale.max(state.at.size());
                 return Ok(Found {
                     known,
                     correction,
@@ -253,50 +223,94 @@ impl RrpDyad {
         }
     }
 
-    /// Closes from where body a is.
-    pub(in crate::kinematics) fn close(
-        &mut self,
-        work: &mut Work<'_>,
-        max_iterations: u32,
-    ) -> Result<Correction, Rejected> {
-        let phi = work.at.frames()[self.place as usize].phi;
-        self.close_from(work, phi, max_iterations)
-    }
-
-    /// Closes from this angle of body a.
+    /// Closes by Newton–Raphson from this angle of body a.
     pub(in crate::kinematics) fn close_from(
         &mut self,
-        work: &mut Work<'_>,
+        state: &mut BlockState<'_>,
         phi: f64,
         max_iterations: u32,
     ) -> Result<Correction, Rejected> {
-        Ok(self.correct(work, phi, max_iterations)?.correction)
+        Ok(self.correct(state, phi, max_iterations)?.correction)
+    }
+}
+
+impl SolveBlock for RrpDyad {
+    fn rows(&self) -> &[usize] {
+        &self.parts.rows
     }
 
-    /// Notes the slope at the pose.
-    pub(super) fn factorise(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
-        let known = self.known(work);
-        self.g = work.at.frames()[self.place as usize].rotate(known.g);
+    fn columns(&self) -> &[usize] {
+        &self.parts.columns
+    }
+
+    fn set_parameters(&mut self, at: &Configuration, targets: &Targets, pivots: &mut Pivots) {
+        self.take_over_parameters(at, targets, pivots);
+    }
+
+    fn step(
+        &mut self,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
+    ) -> Result<Correction, Rejected> {
+        let column = 3 * self.body as usize + 2;
+        let before = Before::new(self, state);
+        let predicted = step
+            .extrapolation
+            .predict(column, before.first.phi, state.tangent);
+        let found = self.correct(state, predicted, MAX_ITERATIONS);
+        let found = found.map_err(|_| step.bounds.reject())?;
+        self.certify(state, step.bounds, &before, &found)?;
+        Ok(Correction {
+            regularity: self.regularity(),
+            ..found.correction
+        })
+    }
+
+    fn close(
+        &mut self,
+        state: &mut BlockState<'_>,
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        let phi = state.at.frames()[self.body as usize].phi;
+        self.close_from(state, phi, max_iterations)
+    }
+
+    /// Notes the slope.
+    fn factorise(&mut self, state: &mut BlockState<'_>) -> Result<(), Rejected> {
+        let known = self.known(state);
+        self.g = state.at.frames()[self.body as usize].rotate(known.g);
         self.slope = known.w.dot(&perp(self.g));
         self.still = known.still;
-        self.scale = (known.w.norm() * known.g.norm()).max(work.at.size());
+        self.scale = (known.w.norm() * known.g.norm()).max(state.at.size());
         if self.slope == 0.0 || !self.slope.is_finite() {
             return Err(Rejected);
         }
         Ok(())
     }
 
-    /// |∂f/∂phi| over the largest that it can be, or over the mechanism's size.
-    pub(super) fn rcond(&self) -> f64 {
-        let rcond = self.slope.abs() / self.scale;
+    fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]) {
+        self.solve_angles(state, drivers);
+    }
+
+    /// Returns |∂f/∂phi| over its scale.
+    fn rcond(&mut self) -> f64 {
+        let rcond = self.regularity();
         if rcond.is_finite() { rcond } else { 0.0 }
+    }
+
+    fn regularity(&self) -> f64 {
+        self.slope.abs() / self.scale
+    }
+
+    fn transmission(&self) -> Option<f64> {
+        Some(self.regularity())
     }
 }
 
-/// Where Newton ended.
+/// The result of Newton–Raphson.
 struct Found {
     known: Known,
     correction: Correction,
-    /// What is left of f, at the most.
+    /// Bound of the remainder of f.
     open: f64,
 }

@@ -1,4 +1,4 @@
-//! Two bodies joined to each other and each to something already found, by revolutes.
+//! Two bodies with a revolute between them and a revolute each to a body found before.
 
 mod certify;
 
@@ -7,33 +7,35 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use super::anchor::{Anchor, Moving, compact, larger, largest};
-use super::reach::{Miss, Reach};
-use super::work::{Advance, Substep, Work};
-use crate::kinematics::certificate::Tubes;
+use super::reach::{ClosureGap, Reach};
+use super::solve::SolveBlock;
+use super::step::{BlockState, Extrapolation, Step};
+use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
-use crate::mechanism::{MarkerId, Mechanism};
+use crate::kinematics::system::Targets;
+use crate::mechanism::{Jet, MarkerId, Mechanism};
 
-/// x, y and phi of two bodies: P_a + A_a l_a = P_b + A_b l_b with both P already found. The two
-/// angles are solved for; x and y follow.
+/// x, y and phi of two bodies: P_a + A_a l_a = P_b + A_b l_b, both P found before. Newton–Raphson
+/// solves for the two angles; x and y follow.
 ///
-/// With d = A l of each side the Jacobian in the angles is \[perp(d_a), −perp(d_b)\], its
+/// With d = A l of each side the Jacobian in the angles is \[perp(d_a), −perp(d_b)\] and its
 /// determinant d_a × d_b, so that solving takes two dot products.
 #[derive(Debug)]
 pub(in crate::kinematics) struct RrrDyad {
     sides: [Side; 2],
     /// d_a × d_b at the pose last factorised.
     determinant: f64,
-    /// What no step needs.
+    /// Numbers that no step needs.
     parts: Box<Parts>,
 }
 
 /// One of the two bodies of a dyad.
 #[derive(Debug)]
 struct Side {
-    /// Place of the body.
-    place: u32,
-    /// The point that its outer point coincides with, on what is already found.
+    /// Index of the body.
+    body: u32,
+    /// The partner of its outer point, on a body found before.
     anchor: Anchor,
     /// s of the outer point.
     s: Vector2<f64>,
@@ -44,34 +46,34 @@ struct Side {
     link: Vector2<f64>,
 }
 
-/// What a dyad is made of.
+/// The rows, unknowns and markers of a dyad.
 #[derive(Debug)]
 pub(super) struct Parts {
-    /// The rows of the first side's outer revolute, the second's, and the inner one's.
+    /// The rows of the first side's outer revolute, of the second side's, and of the inner one.
     pub(super) rows: [usize; 6],
     pub(super) columns: [usize; 6],
     pub(super) sides: [SideParts; 2],
 }
 
-/// What one side of a dyad is made of.
+/// The body and markers of one side of a dyad.
 #[derive(Debug)]
 pub(super) struct SideParts {
     pub(super) body: usize,
-    /// Its point in the revolute to what is already found, and that point's partner there.
+    /// Its point in the revolute to a body found before, and the partner of that point.
     pub(super) outer: MarkerId,
     pub(super) anchor: MarkerId,
     /// Its point in the revolute to the other side.
     pub(super) inner: MarkerId,
 }
 
-/// Turns of up to this are taken from the sine and cosine at hand by their series.
+/// Turns up to this one update the sine and cosine at hand by their series \[rad\].
 const SHORT_TURN: f64 = 0.1;
-/// A correction of more than this is followed by another one, even where the gap is then within
-/// rounding: what it leaves, its square or so, has the same sign in every loop of a chain and would
-/// add up. The sines in between need not be exact to the last bit.
+/// Largest last correction \[rad\]. After a larger one Newton–Raphson goes on even where the gap
+/// is within rounding: the error left, about its square, has the same sign in every loop of a
+/// chain and would add up. The sines in between need not be exact to the last bit.
 const LARGEST_LAST: f64 = 4e-9;
 
-/// A frame turned on to the angle phi: to some eps, for a short turn without a sine.
+/// Returns a frame turned on to the angle phi, to some eps; a short turn takes no sine.
 #[inline(always)]
 fn turned_on(frame: &BodyPose, turn: f64, phi: f64) -> BodyPose {
     if turn.abs() > SHORT_TURN {
@@ -104,7 +106,7 @@ fn turned_on(frame: &BodyPose, turn: f64, phi: f64) -> BodyPose {
 impl Side {
     fn new(mechanism: &Mechanism, parts: &SideParts) -> Self {
         Self {
-            place: compact(parts.body),
+            body: compact(parts.body),
             anchor: Anchor::new(mechanism, parts.anchor),
             s: Vector2::zeros(),
             l: Vector2::zeros(),
@@ -113,25 +115,26 @@ impl Side {
         }
     }
 
-    fn set_parameters(&mut self, at: &Configuration, tubes: &mut Tubes, parts: &SideParts) {
-        self.anchor.set_parameters(at, tubes, parts.anchor);
+    fn set_parameters(&mut self, at: &Configuration, pivots: &mut Pivots, parts: &SideParts) {
+        self.anchor.set_parameters(at, pivots, parts.anchor);
         self.s = at.local(parts.outer).0;
-        tubes.set_pivot(self.place as usize, self.s);
+        pivots.set(self.body as usize, self.s);
         self.l = at.local(parts.inner).0 - self.s;
         self.length = self.l.norm();
     }
 
-    /// The angle at which its link points along `direction`, on the turn nearest to `guess`.
+    /// Returns the angle at which its link points along `direction`, on the turn nearest to
+    /// `guess`.
     fn turned_along(&self, direction: Vector2<f64>, guess: f64) -> f64 {
         let angle = direction.y.atan2(direction.x) - self.l.y.atan2(self.l.x);
         angle + TAU * ((guess - angle) / TAU).round()
     }
 
-    /// How far its angle is expected to turn.
+    /// Returns the turn that the tangent predicts.
     #[inline(always)]
-    fn turn(&self, work: &Work<'_>, advance: Advance) -> f64 {
-        let phi = 3 * self.place as usize + 2;
-        advance.first * work.flow.velocity()[phi] + advance.second * work.flow.acceleration()[phi]
+    fn turn(&self, state: &BlockState<'_>, by: Extrapolation) -> f64 {
+        let phi = 3 * self.body as usize + 2;
+        by.first * state.tangent.velocity()[phi] + by.second * state.tangent.acceleration()[phi]
     }
 
     /// Writes its rates, given those of its outer point and of its angle.
@@ -145,13 +148,13 @@ impl Side {
         omega: f64,
         alpha: f64,
     ) {
-        let place = self.place as usize;
-        let arm = frames[place].rotate(self.s);
+        let body = self.body as usize;
+        let arm = frames[body].rotate(self.s);
         let turned = perp(arm);
         let v = outer.velocity - turned * omega;
         let a = outer.acceleration - turned * alpha + arm * (omega * omega);
-        velocity[3 * place..3 * place + 3].copy_from_slice(&[v.x, v.y, omega]);
-        acceleration[3 * place..3 * place + 3].copy_from_slice(&[a.x, a.y, alpha]);
+        velocity[3 * body..3 * body + 3].copy_from_slice(&[v.x, v.y, omega]);
+        acceleration[3 * body..3 * body + 3].copy_from_slice(&[a.x, a.y, alpha]);
     }
 }
 
@@ -167,69 +170,18 @@ impl RrrDyad {
         }
     }
 
-    pub(super) fn rows(&self) -> &[usize] {
-        &self.parts.rows
-    }
-
-    pub(super) fn columns(&self) -> &[usize] {
-        &self.parts.columns
-    }
-
-    pub(super) fn set_parameters(&mut self, at: &Configuration, tubes: &mut Tubes) {
-        for (side, parts) in self.sides.iter_mut().zip(&self.parts.sides) {
-            side.set_parameters(at, tubes, parts);
-        }
-    }
-
-    /// Predicts both angles, corrects them until the loop closes to rounding, and proves that the
-    /// motion leads there.
-    #[inline(always)]
-    pub(super) fn advance(
-        &mut self,
-        work: &mut Work<'_>,
-        substep: &mut Substep<'_>,
-    ) -> Result<Correction, Rejected> {
-        let [a, b] = &self.sides;
-        let frames = work.at.frames();
-        let (frame_a, frame_b) = (&frames[a.place as usize], &frames[b.place as usize]);
-        for (side, frame) in [(a, frame_a), (b, frame_b)] {
-            let tube = substep.tubes.body_mut(side.place as usize);
-            (tube.cos, tube.sin) = (frame.cos, frame.sin);
-        }
-        let (turn_a, turn_b) = (a.turn(work, substep.advance), b.turn(work, substep.advance));
-        let start = Turned {
-            frames: [
-                turned_on(frame_a, turn_a, frame_a.phi + turn_a),
-                turned_on(frame_b, turn_b, frame_b.phi + turn_b),
-            ],
-            exact: turn_a == 0.0 && turn_b == 0.0,
-        };
-        let before = Before {
-            phi: [frame_a.phi, frame_b.phi],
-            links: [a.link, b.link],
-            determinant: self.determinant,
-        };
-        let found = self.correct(work, start, MAX_ITERATIONS);
-        let found = found.map_err(|_| substep.tubes.break_off())?;
-        self.certify(work, substep.tubes, &before, &found)?;
-        Ok(Correction {
-            regularity: self.regularity(),
-            ..found.correction
-        })
-    }
-
-    /// Newton–Raphson on the two angles. The angles accepted are those of exact sines and
-    /// cosines, so that nothing depends on how they were reached.
+    /// Solves for the two angles by Newton–Raphson. The accepted sines and cosines are those of the
+    /// accepted angles, so that the result does not depend on the way there.
     #[inline(always)]
     fn correct(
         &mut self,
-        work: &mut Work<'_>,
+        state: &mut BlockState<'_>,
         mut now: Turned,
         max_iterations: u32,
     ) -> Result<Found, Rejected> {
         let [a, b] = &mut self.sides;
-        let frames = work.at.frames_mut();
-        let (outer_a, outer_b) = (a.anchor.place(frames), b.anchor.place(frames));
+        let frames = state.at.frames_mut();
+        let (outer_a, outer_b) = (a.anchor.split_point(frames), b.anchor.split_point(frames));
         let base = outer_a.from(outer_b);
         let reach = outer_a.reach_from(outer_b);
         let mut correction = Correction::default();
@@ -248,11 +200,11 @@ impl RrrDyad {
             let closed = open <= AT_ROUNDING * rounding
                 || (open <= STALLED * rounding && open >= 0.5 * last_gap);
             if closed && now.exact {
-                frames[a.place as usize] = BodyPose {
+                frames[a.body as usize] = BodyPose {
                     origin: outer_a.origin + (outer_a.arm - frame_a.rotate(a.s)),
                     ..*frame_a
                 };
-                frames[b.place as usize] = BodyPose {
+                frames[b.body as usize] = BodyPose {
                     origin: outer_b.origin + (outer_b.arm - frame_b.rotate(b.s)),
                     ..*frame_b
                 };
@@ -292,10 +244,10 @@ impl RrrDyad {
         }
     }
 
-    /// Closes the loop from these angles.
+    /// Closes the loop by Newton–Raphson from these angles.
     pub(in crate::kinematics) fn close_from(
         &mut self,
-        work: &mut Work<'_>,
+        state: &mut BlockState<'_>,
         phi: [f64; 2],
         max_iterations: u32,
     ) -> Result<Correction, Rejected> {
@@ -303,141 +255,91 @@ impl RrrDyad {
             frames: phi.map(BodyPose::turned),
             exact: true,
         };
-        Ok(self.correct(work, start, max_iterations)?.correction)
+        Ok(self.correct(state, start, max_iterations)?.correction)
     }
 
-    /// Closes the loop from where its bodies are.
-    pub(in crate::kinematics) fn close(
-        &mut self,
-        work: &mut Work<'_>,
-        max_iterations: u32,
-    ) -> Result<Correction, Rejected> {
-        let phi = [0, 1].map(|k| work.at.frames()[self.sides[k].place as usize].phi);
-        self.close_from(work, phi, max_iterations)
-    }
-
-    /// Notes the links and the determinant at the pose.
-    pub(super) fn factorise(&mut self, work: &Work<'_>) -> Result<(), Rejected> {
-        for side in &mut self.sides {
-            side.link = work.at.frames()[side.place as usize].rotate(side.l);
-        }
-        self.determinant = self.sides[0].link.perp(&self.sides[1].link);
-        if self.determinant == 0.0 || !self.determinant.is_finite() {
-            return Err(Rejected);
-        }
-        Ok(())
-    }
-
-    /// Ṗ_a + omega_a perp(d_a) = Ṗ_b + omega_b perp(d_b), and the same once more derived.
+    /// Returns the sine of the angle between the links.
     #[inline(always)]
-    pub(super) fn solve_rates(&self, work: &mut Work<'_>) {
-        let [a, b] = &self.sides;
-        let frames = work.at.frames();
-        let (velocity, acceleration) = work.flow.both_mut();
-        let outer_a = a.anchor.rates(frames, velocity, acceleration);
-        let outer_b = b.anchor.rates(frames, velocity, acceleration);
-        let inverse = -1.0 / self.determinant;
-        let v = outer_a.velocity - outer_b.velocity;
-        let omega_a = v.dot(&b.link) * inverse;
-        let omega_b = v.dot(&a.link) * inverse;
-        let w = outer_a.acceleration - outer_b.acceleration - a.link * (omega_a * omega_a)
-            + b.link * (omega_b * omega_b);
-        let alpha_a = w.dot(&b.link) * inverse;
-        let alpha_b = w.dot(&a.link) * inverse;
-        a.set_rates(frames, velocity, acceleration, outer_a, omega_a, alpha_a);
-        b.set_rates(frames, velocity, acceleration, outer_b, omega_b, alpha_b);
-    }
-
-    /// The sine of the angle between the links.
-    #[inline(always)]
-    pub(super) fn regularity(&self) -> f64 {
+    fn sine(&self) -> f64 {
         let [a, b] = &self.sides;
         self.determinant.abs() / (a.length * b.length)
     }
 
-    /// 1 / (‖J‖₁ ‖J⁻¹‖₁), each column of J divided by its link's length: it depends on the angle
-    /// between the links only.
-    pub(super) fn rcond(&self) -> f64 {
-        let [a, b] = [0, 1].map(|k| self.sides[k].link / self.sides[k].length);
-        let norm = a.lp_norm(1).max(b.lp_norm(1));
-        let determinant = a.perp(&b).abs();
-        // The inverse has the rows d_b and d_a over the determinant.
-        let inverse = (a.x.abs() + b.x.abs()).max(a.y.abs() + b.y.abs());
-        let rcond = determinant / (norm * inverse);
-        if rcond.is_finite() { rcond } else { 0.0 }
-    }
-
-    /// The pairs of angles at which the loop closes, nearest the estimates first: the minima of
-    /// Ec. 3.6.9 for r → ∞, which two circles have in two places.
+    /// Returns the two pairs of angles at which the loop closes, nearest the estimates first: the
+    /// minima of Eq. 3.6.9 for r → ∞, where two circles intersect.
     ///
     /// # Errors
     ///
-    /// [`Miss`] if the links do not reach each other.
-    pub(in crate::kinematics) fn ways(
+    /// [`ClosureGap`] if the links do not reach each other.
+    pub(in crate::kinematics) fn branches(
         &self,
-        work: &Work<'_>,
+        state: &BlockState<'_>,
         estimate: &[f64],
-    ) -> Result<[[f64; 2]; 2], Miss> {
-        let reach = self.reach(work);
-        let miss = Miss::new(reach.gap(), reach.distance + reach.longest);
-        if miss.certain {
-            return Err(miss);
+    ) -> Result<[[f64; 2]; 2], ClosureGap> {
+        let reach = self.reach(state);
+        let gap = ClosureGap::new(reach.gap(), reach.distance + reach.longest);
+        if gap.certain {
+            return Err(gap);
         }
-        let size = work.at.size();
-        let mut ways = [(0.0, [0.0; 2]); 2];
-        for (way, side) in ways.iter_mut().zip([1.0, -1.0]) {
-            let links = self.meet(work, estimate, side).ok_or(miss)?;
+        let size = state.at.size();
+        let mut branches = [(0.0, [0.0; 2]); 2];
+        for (branch, side) in branches.iter_mut().zip([1.0, -1.0]) {
+            let links = self.meet(state, estimate, side).ok_or(gap)?;
             for (k, side) in self.sides.iter().enumerate() {
-                let column = 3 * side.place as usize;
+                let column = 3 * side.body as usize;
                 let guess = &estimate[column..column + 3];
                 let phi = side.turned_along(links[k], guess[2]);
-                let point = side.anchor.point(work.at.frames());
+                let point = side.anchor.point(state.at.frames());
                 let (sin, cos) = phi.sin_cos();
                 let origin = point - rotate(cos, sin, side.s);
-                way.0 += ((origin.x - guess[0]) / size).powi(2)
+                branch.0 += ((origin.x - guess[0]) / size).powi(2)
                     + ((origin.y - guess[1]) / size).powi(2)
                     + (phi - guess[2]).powi(2);
-                way.1[k] = phi;
+                branch.1[k] = phi;
             }
         }
         // The first of two that are equally far.
-        if ways[1].0 < ways[0].0 * (1.0 - 1e-9) {
-            ways.swap(0, 1);
+        if branches[1].0 < branches[0].0 * (1.0 - 1e-9) {
+            branches.swap(0, 1);
         }
-        Ok(ways.map(|(_, phi)| phi))
+        Ok(branches.map(|(_, phi)| phi))
     }
 
-    /// How far apart the anchors are and what the links can span.
-    pub(in crate::kinematics) fn reach(&self, work: &Work<'_>) -> Reach {
+    /// Returns the distance of the anchors and the distances that the links can span.
+    pub(in crate::kinematics) fn reach(&self, state: &BlockState<'_>) -> Reach {
         let [a, b] = &self.sides;
-        let frames = work.at.frames();
+        let frames = state.at.frames();
         Reach {
-            distance: b.anchor.place(frames).from(a.anchor.place(frames)).norm(),
+            distance: b
+                .anchor
+                .split_point(frames)
+                .from(a.anchor.split_point(frames))
+                .norm(),
             shortest: (a.length - b.length).abs(),
             longest: a.length + b.length,
         }
     }
 
-    /// Its bodies, and for each the point on what is already found that it is pinned to.
+    /// Returns its bodies, each with its partner on the bodies found before.
     pub(in crate::kinematics) fn ends(&self) -> [(usize, MarkerId); 2] {
         [0, 1].map(|k| (self.parts.sides[k].body, self.parts.sides[k].anchor))
     }
 
-    /// Puts the bodies as near to closing as they come, where the links do not reach each other:
-    /// in line, all of the gap in the joint declared last.
-    pub(in crate::kinematics) fn stretch(&self, work: &mut Work<'_>, estimate: &[f64]) {
+    /// Puts links that do not reach each other in line, where the gap is least, with all of the
+    /// gap in the joint declared last.
+    pub(in crate::kinematics) fn stretch(&self, state: &mut BlockState<'_>, estimate: &[f64]) {
         let [a, b] = &self.sides;
-        let frames = work.at.frames_mut();
+        let frames = state.at.frames_mut();
         let (point_a, point_b) = (a.anchor.point(frames), b.anchor.point(frames));
         let span = point_b - point_a;
         let distance = span.norm();
         let e = if distance > 0.0 {
             span / distance
         } else {
-            let (sin, cos) = estimate[3 * a.place as usize + 2].sin_cos();
+            let (sin, cos) = estimate[3 * a.body as usize + 2].sin_cos();
             Vector2::new(cos, sin)
         };
-        // Too long a way is spanned by both; in too short a one the longer link overshoots.
+        // Both links span too large a distance; in too small a one the longer link overshoots.
         let (along_a, along_b) = if distance > a.length + b.length {
             (e, -e)
         } else if a.length > b.length {
@@ -446,7 +348,7 @@ impl RrrDyad {
             (-e, -e)
         };
         let turned = |side: &Side, along| {
-            let guess = estimate[3 * side.place as usize + 2];
+            let guess = estimate[3 * side.body as usize + 2];
             BodyPose::turned(side.turned_along(along, guess))
         };
         let (frame_a, frame_b) = (turned(a, along_a), turned(b, along_b));
@@ -463,31 +365,39 @@ impl RrrDyad {
         } else {
             point_b
         };
-        frames[a.place as usize] = BodyPose {
+        frames[a.body as usize] = BodyPose {
             origin: outer_a - frame_a.rotate(a.s),
             ..frame_a
         };
-        frames[b.place as usize] = BodyPose {
+        frames[b.body as usize] = BodyPose {
             origin: outer_b - frame_b.rotate(b.s),
             ..frame_b
         };
     }
 
-    /// d_a and d_b where the links meet, on one side of the line between the anchors.
-    fn meet(&self, work: &Work<'_>, estimate: &[f64], side: f64) -> Option<[Vector2<f64>; 2]> {
+    /// Returns d_a and d_b where the links meet, on one side of the line between the anchors.
+    fn meet(
+        &self,
+        state: &BlockState<'_>,
+        estimate: &[f64],
+        side: f64,
+    ) -> Option<[Vector2<f64>; 2]> {
         let [a, b] = &self.sides;
-        let frames = work.at.frames();
-        let span = b.anchor.place(frames).from(a.anchor.place(frames));
+        let frames = state.at.frames();
+        let span = b
+            .anchor
+            .split_point(frames)
+            .from(a.anchor.split_point(frames));
         let distance = span.norm();
         let along = 0.5 * (distance + (a.length - b.length) * (a.length + b.length) / distance);
-        // Negative where the links do not quite reach: that is left to the corrections.
+        // Negative where the links miss by rounding; the corrections decide.
         let across = (a.length - along) * (a.length + along);
         let link = if distance > 0.0 {
             let e = span / distance;
             e * along + perp(e) * (side * across.max(0.0).sqrt())
         } else {
             // Any direction will do where the anchors coincide.
-            let (sin, cos) = estimate[3 * a.place as usize + 2].sin_cos();
+            let (sin, cos) = estimate[3 * a.body as usize + 2].sin_cos();
             rotate(cos, sin, a.l)
         };
         let links = [link, link - span];
@@ -495,21 +405,136 @@ impl RrrDyad {
     }
 }
 
-/// Two bodies at their angles, origins apart.
+impl SolveBlock for RrrDyad {
+    fn rows(&self) -> &[usize] {
+        &self.parts.rows
+    }
+
+    fn columns(&self) -> &[usize] {
+        &self.parts.columns
+    }
+
+    fn set_parameters(&mut self, at: &Configuration, _targets: &Targets, pivots: &mut Pivots) {
+        for (side, parts) in self.sides.iter_mut().zip(&self.parts.sides) {
+            side.set_parameters(at, pivots, parts);
+        }
+    }
+
+    #[inline(always)]
+    fn step(
+        &mut self,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
+    ) -> Result<Correction, Rejected> {
+        let [a, b] = &self.sides;
+        let frames = state.at.frames();
+        let (frame_a, frame_b) = (&frames[a.body as usize], &frames[b.body as usize]);
+        for (side, frame) in [(a, frame_a), (b, frame_b)] {
+            let bound = step.bounds.body_mut(side.body as usize);
+            (bound.cos, bound.sin) = (frame.cos, frame.sin);
+        }
+        let (turn_a, turn_b) = (
+            a.turn(state, step.extrapolation),
+            b.turn(state, step.extrapolation),
+        );
+        let start = Turned {
+            frames: [
+                turned_on(frame_a, turn_a, frame_a.phi + turn_a),
+                turned_on(frame_b, turn_b, frame_b.phi + turn_b),
+            ],
+            exact: turn_a == 0.0 && turn_b == 0.0,
+        };
+        let before = Before {
+            phi: [frame_a.phi, frame_b.phi],
+            links: [a.link, b.link],
+            determinant: self.determinant,
+        };
+        let found = self.correct(state, start, MAX_ITERATIONS);
+        let found = found.map_err(|_| step.bounds.reject())?;
+        self.certify(state, step.bounds, &before, &found)?;
+        Ok(Correction {
+            regularity: self.sine(),
+            ..found.correction
+        })
+    }
+
+    fn close(
+        &mut self,
+        state: &mut BlockState<'_>,
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        let phi = [0, 1].map(|k| state.at.frames()[self.sides[k].body as usize].phi);
+        self.close_from(state, phi, max_iterations)
+    }
+
+    /// Notes the links and the determinant.
+    fn factorise(&mut self, state: &mut BlockState<'_>) -> Result<(), Rejected> {
+        for side in &mut self.sides {
+            side.link = state.at.frames()[side.body as usize].rotate(side.l);
+        }
+        self.determinant = self.sides[0].link.perp(&self.sides[1].link);
+        if self.determinant == 0.0 || !self.determinant.is_finite() {
+            return Err(Rejected);
+        }
+        Ok(())
+    }
+
+    /// Solves Ṗ_a + omega_a perp(d_a) = Ṗ_b + omega_b perp(d_b) and its derivative in time.
+    #[inline(always)]
+    fn solve_rates(&mut self, state: &mut BlockState<'_>, _drivers: &[Jet]) {
+        let [a, b] = &self.sides;
+        let frames = state.at.frames();
+        let (velocity, acceleration) = state.tangent.both_mut();
+        let outer_a = a.anchor.rates(frames, velocity, acceleration);
+        let outer_b = b.anchor.rates(frames, velocity, acceleration);
+        let inverse = -1.0 / self.determinant;
+        let v = outer_a.velocity - outer_b.velocity;
+        let omega_a = v.dot(&b.link) * inverse;
+        let omega_b = v.dot(&a.link) * inverse;
+        let w = outer_a.acceleration - outer_b.acceleration - a.link * (omega_a * omega_a)
+            + b.link * (omega_b * omega_b);
+        let alpha_a = w.dot(&b.link) * inverse;
+        let alpha_b = w.dot(&a.link) * inverse;
+        a.set_rates(frames, velocity, acceleration, outer_a, omega_a, alpha_a);
+        b.set_rates(frames, velocity, acceleration, outer_b, omega_b, alpha_b);
+    }
+
+    /// Returns 1 / (‖J‖₁ ‖J⁻¹‖₁), each column of J divided by its link's length: it depends on the
+    /// angle between the links alone.
+    fn rcond(&mut self) -> f64 {
+        let [a, b] = [0, 1].map(|k| self.sides[k].link / self.sides[k].length);
+        let norm = a.lp_norm(1).max(b.lp_norm(1));
+        let determinant = a.perp(&b).abs();
+        // The inverse has the rows d_b and d_a over the determinant.
+        let inverse = (a.x.abs() + b.x.abs()).max(a.y.abs() + b.y.abs());
+        let rcond = determinant / (norm * inverse);
+        if rcond.is_finite() { rcond } else { 0.0 }
+    }
+
+    fn regularity(&self) -> f64 {
+        self.sine()
+    }
+
+    fn transmission(&self) -> Option<f64> {
+        Some(self.sine())
+    }
+}
+
+/// Two frames at their angles; their origins are not set.
 struct Turned {
     frames: [BodyPose; 2],
     /// Whether sines and cosines are exact.
     exact: bool,
 }
 
-/// Where Newton ended.
+/// The result of Newton–Raphson.
 struct Found {
     correction: Correction,
-    /// What the loop is left open by, at the most \[m\].
+    /// Bound of the gap that is left \[m\].
     open: f64,
 }
 
-/// Where a sub-step started; the tubes have cosines and sines.
+/// The start of a sub-step; the chord bounds hold its sines and cosines.
 struct Before {
     phi: [f64; 2],
     links: [Vector2<f64>; 2],

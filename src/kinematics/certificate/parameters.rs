@@ -1,21 +1,22 @@
-//! How far parameters on their way move the numbers in the equations during a sub-step.
+//! Bounds of the numbers in the equations while parameters move.
 
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{System, Target, Targets};
 use crate::mechanism::{Expression, Interval, Jet3, MarkerId};
 
-/// While parameters move, equations are written down with their values at the end of a sub-step.
-/// This is how far each number in them may differ from that on the way.
+/// Bounds of the difference of each number in the equations from its value at the end of a sub-step,
+/// over the whole sub-step.
 #[derive(Debug)]
 pub(in crate::kinematics) struct ParameterBounds {
+    /// Whether parameters move.
     pub(in crate::kinematics) moving: bool,
     /// All parameters over the sub-step, as functions of s.
     pub(in crate::kinematics) parameters: Vec<Jet3<Interval>>,
-    /// One a marker: of s \[m\], and of its angle \[rad\].
+    /// Bounds of s of each marker \[m\], and of its angle \[rad\].
     positions: Vec<f64>,
     angles: Vec<f64>,
-    /// What each row is held at, zero for drivers \[m or rad\].
+    /// Bounds of the target of each row, zero for drivers \[m or rad\].
     constants: Vec<f64>,
 }
 
@@ -32,26 +33,23 @@ impl ParameterBounds {
         }
     }
 
-    pub(super) fn of_moving(&self) -> Option<&Self> {
-        self.moving.then_some(self)
-    }
-
-    /// How far the marker's point may differ, in its body's frame \[m\].
+    /// Bounds the difference of a marker's point, in its body's frame \[m\].
     pub(in crate::kinematics) fn position(&self, marker: MarkerId) -> f64 {
         self.positions[marker.index()]
     }
 
-    /// How far the marker's angle may differ \[rad\].
+    /// Bounds the difference of a marker's angle \[rad\].
     pub(in crate::kinematics) fn angle(&self, marker: MarkerId) -> f64 {
         self.angles[marker.index()]
     }
 
-    /// How far what a row is held at may differ; zero for a driver's.
+    /// Bounds the difference of a row's target; zero for a driver's.
     pub(in crate::kinematics) fn constant(&self, row: usize) -> f64 {
         self.constants[row]
     }
 
-    /// Bounds how far the numbers in the equations may differ from those in force.
+    /// Bounds all numbers over a part of `path`, at whose end the values in force are. Returns false
+    /// if a number is not bounded.
     #[inline(never)]
     pub(in crate::kinematics) fn bound(
         &mut self,
@@ -63,8 +61,8 @@ impl ParameterBounds {
     ) -> bool {
         let mechanism = system.mechanism();
         let value = |s: f64, from: f64, to: f64| if s < 1.0 { from + s * (to - from) } else { to };
-        let ways = path.from.iter().zip(&path.to);
-        for (parameter, (&from, &to)) in self.parameters.iter_mut().zip(ways) {
+        let branches = path.from.iter().zip(&path.to);
+        for (parameter, (&from, &to)) in self.parameters.iter_mut().zip(branches) {
             let ends = [value(start, from, to), value(end, from, to)];
             let range = Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
             *parameter = Jet3::linear(range, Interval::point(to - from));

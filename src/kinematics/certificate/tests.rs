@@ -1,4 +1,4 @@
-//! The true motion stays within the tubes, and steps of any size keep to it.
+//! The true motion stays within the bounds, and steps of any size keep to it.
 
 mod paths;
 
@@ -44,7 +44,7 @@ fn piece(path: &Path, mechanism: &Mechanism, [from, to]: [f64; 2]) -> Path {
     piece
 }
 
-/// How near the true motion comes to the tubes' walls: one on a wall.
+/// How near the true motion comes to the bounds' walls: one on a wall.
 #[derive(Clone, Copy, Debug, Default)]
 struct Filled {
     angles: f64,
@@ -53,12 +53,12 @@ struct Filled {
 
 /// The pivot of a body in the pose `q`.
 fn pivot(solver: &Solver, body: usize, q: &[f64]) -> Vector2<f64> {
-    let s = solver.tubes.pivot(body);
+    let s = solver.model.plan.pivots.get(body);
     Vector2::new(q[3 * body], q[3 * body + 1]) + Rotation2::new(q[3 * body + 2]) * s
 }
 
 /// Asserts that the motion along `path` from `home`, which `solver` has made in one sub-step,
-/// stays within the tubes, `other` going by small steps.
+/// stays within the bounds, `other` going by small steps.
 fn check_inside(
     solver: &Solver,
     other: &mut Solver,
@@ -68,16 +68,18 @@ fn check_inside(
 ) -> Filled {
     let mechanism = solver.mechanism();
     let bodies = mechanism.bodies.len();
-    let end = &solver.pose.q;
+    let end = &solver.pose().q;
+    let bounds = &solver.tracker.bounds;
+    let deviation = |column| bounds.deviation(column, &solver.model.plan.pivots);
     let mut filled = Filled::default();
     other.restore(home);
     for look in 1..LOOKS {
         let [before, s] = [look - 1, look].map(|k| f64::from(k) / f64::from(LOOKS));
         let piece = piece(path, mechanism, [before, s]);
-        if let Err(blocked) = other.follow(&piece) {
+        if let Err(blocked) = other.track(&piece) {
             panic!("{what}: certified, but blocked at {s}: {blocked:?}");
         }
-        let q = &other.pose.q;
+        let q = &other.pose().q;
         let look_at = |off: f64, radius: f64, of: &str, filled: &mut f64| {
             assert!(
                 off <= radius + ROUNDING,
@@ -87,24 +89,29 @@ fn check_inside(
         };
         for column in 0..q.len() {
             let straight = home.q[column] + s * (end[column] - home.q[column]);
-            let of = solver.system.describe_unknown(column) + &format!(" ({column})");
-            let (off, radius) = ((q[column] - straight).abs(), solver.tubes.radius(column));
+            let of = solver.system().describe_unknown(column) + &format!(" ({column})");
+            let (off, radius) = ((q[column] - straight).abs(), deviation(column));
             look_at(off, radius, &of, &mut filled.angles);
         }
         for body in 0..bodies {
             let [from, to] = [&home.q, end].map(|q| pivot(solver, body, q));
             let off = (pivot(solver, body, q) - (from + (to - from) * s)).norm();
             let of = format!("pivot of {}", mechanism.bodies[body].name);
-            look_at(off, solver.tubes.body(body).stray, &of, &mut filled.points);
+            look_at(
+                off,
+                bounds.body(body).point_deviation,
+                &of,
+                &mut filled.points,
+            );
         }
     }
     filled
 }
 
 /// Follows `path` if it can be certified at once, else the first part of it that can, and
-/// asserts that the tubes hold the motion. Returns that part, and how the tubes were filled.
+/// asserts that the bounds hold the motion. Returns that part, and how the bounds were filled.
 fn check_path(solver: &mut Solver, other: &mut Solver, path: &Path, what: &str) -> (f64, Filled) {
-    let mut home = solver.pose.clone();
+    let mut home = solver.pose().clone();
     solver.save(&mut home);
     let mut s = 1.0;
     while s > 1e-3 {
@@ -114,7 +121,7 @@ fn check_path(solver: &mut Solver, other: &mut Solver, path: &Path, what: &str) 
             substeps: 1,
             checked: 0,
             ..
-        }) = solver.follow(&path)
+        }) = solver.track(&path)
         {
             let filled = check_inside(solver, other, &home, &path, what);
             return (s, filled);
@@ -128,11 +135,16 @@ fn check_path(solver: &mut Solver, other: &mut Solver, path: &Path, what: &str) 
 /// A path on which each input driver moves by its part of `by`.
 fn move_drivers(solver: &Solver, by: f64) -> Path {
     let mut path = Path::new(solver.mechanism());
-    path.start = solver.pose.time;
+    path.start = solver.pose().time;
     path.duration = by.abs();
-    path.from.copy_from_slice(&solver.pose.parameters);
-    path.to.copy_from_slice(&solver.pose.parameters);
-    for (k, (curve, now)) in path.curves.iter_mut().zip(&solver.pose.drivers).enumerate() {
+    path.from.copy_from_slice(&solver.pose().parameters);
+    path.to.copy_from_slice(&solver.pose().parameters);
+    for (k, (curve, now)) in path
+        .curves
+        .iter_mut()
+        .zip(&solver.pose().drivers)
+        .enumerate()
+    {
         if let Curve::Input {
             position,
             jump,
@@ -150,14 +162,14 @@ fn move_drivers(solver: &Solver, by: f64) -> Path {
 }
 
 /// Steps of all sizes from several places of the motion. Returns the largest step certified, and
-/// the fullest tube.
+/// the fullest bound.
 fn sweep(source: &Source, sizes: &[f64], places: u32) -> (f64, Filled) {
     let what = source.name();
     let (mut solver, _) = assembled(source);
     let (mut other, _) = assembled(source);
     let (mut largest, mut fullest) = (0.0_f64, Filled::default());
     for _ in 0..places {
-        let home = solver.pose.clone();
+        let home = solver.pose().clone();
         for &by in sizes {
             solver.restore(&home);
             let path = move_drivers(&solver, by);
@@ -169,7 +181,7 @@ fn sweep(source: &Source, sizes: &[f64], places: u32) -> (f64, Filled) {
         solver.restore(&home);
         let path = move_drivers(&solver, 0.37 * sizes[0]);
         // A dead point ends the way; where it ended is as good a place to look.
-        let _ = solver.follow(&path);
+        let _ = solver.track(&path);
     }
     (largest, fullest)
 }
@@ -210,7 +222,7 @@ fn every_shipped_mechanism_stays_in_its_tubes() {
     }
 }
 
-/// A tube much wider than its motion would shorten sub-steps for nothing: where it is put to the
+/// A bound much wider than its motion would shorten sub-steps for nothing: where it is put to the
 /// test most, the motion comes near the walls.
 #[test]
 fn tubes_are_not_much_wider_than_they_have_to_be() {
@@ -252,21 +264,21 @@ fn large_lifts_stay_in_their_tubes() {
     let source = Source::new("lift", scissor_lift(CELLS));
     let (mut solver, _) = assembled(&source);
     let (mut other, _) = assembled(&source);
-    let mut home = solver.pose.clone();
+    let mut home = solver.pose().clone();
     let mut relied = 0;
     for (steps, by) in [(40, 4e-4), (10, 1e-5), (30, -5e-4), (3, 0.05), (20, 1e-3)] {
         for step in 0..steps {
             solver.save(&mut home);
             let path = move_drivers(&solver, by);
             let what = format!("step {step} by {by}");
-            let progress = solver.follow(&path).expect(&what);
+            let progress = solver.track(&path).expect(&what);
             assert!(progress.checked > 0, "{what}");
-            relied += u32::from(solver.tubes.relied_on_box);
+            relied += u32::from(solver.tracker.bounds.reused);
             if progress.substeps == 1 && step % 6 == 2 {
                 check_inside(&solver, &mut other, &home, &path, &what);
             }
-            let angle = bar_angle(CELLS, solver.pose.drivers[0]);
-            let found = solver.pose.q[3 * (2 * CELLS - 2) + 2];
+            let angle = bar_angle(CELLS, solver.pose().drivers[0]);
+            let found = solver.pose().q[3 * (2 * CELLS - 2) + 2];
             assert!((found - angle).abs() < ROUNDING, "{what}: {found} {angle}");
         }
     }
@@ -299,7 +311,7 @@ fn moving_parameters_stay_in_their_tubes() {
         let (mut solver, _) = assembled(&source);
         let (mut other, _) = assembled(&source);
         let mechanism = std::sync::Arc::clone(solver.mechanism());
-        let home = solver.pose.clone();
+        let home = solver.pose().clone();
         for (index, parameter) in mechanism.parameters.iter().enumerate() {
             if parameter.derived {
                 continue;
@@ -339,15 +351,15 @@ fn motions_stay_near_their_chords() {
         let mut most_filled = 0.0_f64;
         for step in 0..40 {
             let mut path = Path::new(solver.mechanism());
-            path.start = solver.pose.time;
+            path.start = solver.pose().time;
             path.duration = 0.001 + 0.0025 * f64::from(step % 10);
-            let from = solver.pose.drivers[0];
-            let progress = solver.follow(&path).expect("a pendulum turns freely");
+            let from = solver.pose().drivers[0];
+            let progress = solver.track(&path).expect("a pendulum turns freely");
             if progress.substeps > 1 {
                 continue;
             }
-            let to = solver.pose.drivers[0];
-            let radius = solver.tubes.drivers[0];
+            let to = solver.pose().drivers[0];
+            let radius = solver.tracker.bounds.drivers[0];
             for look in 0..=20 {
                 let s = f64::from(look) / 20.0;
                 let u = solver.motion(DriverId(0), path.time(s)).value;
@@ -370,13 +382,13 @@ fn the_crank_of_the_four_bar_turns_far_in_one_substep() {
     let (mut solver, _) = assembled(&source);
     let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
     for _ in 0..24 {
-        let home = solver.pose.clone();
+        let home = solver.pose().clone();
         let reaches = |solver: &mut Solver, by: f64| {
             solver.restore(&home);
             let mut path = move_drivers(solver, by);
             path.duration = 0.0;
             solver
-                .follow(&path)
+                .track(&path)
                 .is_ok_and(|progress| progress.substeps == 1)
         };
         let (mut low, mut high) = (0.0, 3.0);
@@ -392,7 +404,7 @@ fn the_crank_of_the_four_bar_turns_far_in_one_substep() {
         most = most.max(low);
         solver.restore(&home);
         let path = move_drivers(&solver, std::f64::consts::TAU / 24.0);
-        solver.follow(&path).expect("the crank turns fully");
+        solver.track(&path).expect("the crank turns fully");
     }
     assert!(least > 0.87 && most < 2.5, "{least} {most}");
 }

@@ -1,95 +1,151 @@
-//! The tracker of a path: chooses the length of each sub-step and carries the mechanism along.
+//! The tracker: chooses the length of each sub-step and carries the mechanism along the path.
 
+use std::sync::Arc;
+
+use super::driver_bounds::bound_drivers;
 use super::outcome::{Blocked, Progress, Reason};
+use crate::kinematics::Error;
+use crate::kinematics::block::{BlockState, Crossing, Extrapolation};
+use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::error::OpenJoint;
-use crate::kinematics::path::Path;
-use crate::kinematics::singular::{Careful, NEAR};
-use crate::kinematics::solver::Solver;
-use crate::mechanism::Jet;
+use crate::kinematics::model::Model;
+use crate::kinematics::newton::{Correction, Rejected};
+use crate::kinematics::path::{Path, PathDrivers};
+use crate::kinematics::redundancy;
+use crate::kinematics::singular::{self, CROSSING_END, DriverLimit, NEAR};
+use crate::kinematics::state::{State, UNIT_RATE};
+use crate::kinematics::system::System;
+use crate::mechanism::{DriverId, Jet};
 
-/// Some thousand turns; a path that asks for more is a slip, and the host waits.
+/// Most sub-steps of a path: some thousand turns.
 const MOST_SUBSTEPS: u32 = 100_000;
-/// Drivers that still move by more than this in such a sub-step \[m or rad\] tell nothing of what
-/// is ahead: the path is too long.
-const TELLS_NOTHING: f64 = 1e-6;
-/// A value that makes no mechanism this near on the path is what it has come to.
+/// A motion that stops while a driver still moves by more than this per sub-step \[m or rad\] asks
+/// for too long a path.
+const LARGEST_LAST_MOVE: f64 = 1e-6;
+/// An invalid value within this part of the path ahead is reported as the cause of a stop.
 const JUST_AHEAD: f64 = 1e-9;
-/// A sub-step that fails is shortened to no less than this part, one that nothing is known of to
-/// half: what the certificate tells of a much too long one is not to be relied on.
-const SHORTEN: f64 = 0.1;
-const HALVE: f64 = 0.5;
-/// A sub-step follows one that succeeded at no more than this many times its length.
-const LENGTHEN: f64 = 4.0;
-/// What a sub-step is chosen shorter by than the certificate of another one suggests.
+/// Least ratio of a sub-step to the rejected one before it: the certificate of a much too long
+/// sub-step gives no reliable ratio.
+const LEAST_RATIO: f64 = 0.1;
+/// Ratio of a sub-step to the rejected one before it, without a ratio from the certificate.
+const HALF: f64 = 0.5;
+/// Largest ratio of a sub-step to the accepted one before it.
+const LARGEST_RATIO: f64 = 4.0;
+/// Safety factor on the length that the certificate of another sub-step suggests.
 const ROOM: f64 = 0.85;
-/// A sub-step of this part of the path that still fails means that the path is blocked.
+/// A path is blocked where a sub-step of this part of it is rejected.
 const SMALLEST_SUBSTEP: f64 = 1e-12;
-/// The same for the first sub-step: away from a dead point, from as near as the way there ended.
-/// From there on the motion slows down as it has come on.
+/// The same for the first sub-step, which may lead away from a dead point, from as near as the
+/// motion came to it. The motion slows down there as it has come on.
 const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
 
-impl Solver {
-    /// Moves the mechanism along `path`, at whose start it must stand. Change points on the way are
-    /// crossed on the smooth continuation of the motion. Allocates nothing, unless a part of the
-    /// mechanism comes near a singular position.
+/// The storage for tracking paths.
+#[derive(Debug)]
+pub(in crate::kinematics) struct PathTracker {
+    drivers: PathDrivers,
+    pub(in crate::kinematics) bounds: StepBounds,
+    /// The change points passed on the path tracked last.
+    crossed: Vec<Arc<Crossing>>,
+}
+
+impl PathTracker {
+    /// Makes the storage.
+    pub(in crate::kinematics) fn new(system: &System) -> Self {
+        Self {
+            drivers: PathDrivers::new(system.mechanism()),
+            bounds: StepBounds::new(system),
+            crossed: Vec::new(),
+        }
+    }
+
+    /// Returns the change points that the last path passed, in order.
+    pub(in crate::kinematics) fn crossed(&self) -> &[Arc<Crossing>] {
+        &self.crossed
+    }
+
+    /// Moves the mechanism along `path`, at whose start its pose is. Allocates nothing, unless a
+    /// block comes near a singular position.
     ///
     /// # Errors
     ///
-    /// [`Blocked`] if the end cannot be reached on the continuous motion. The mechanism then
-    /// stands at the last pose reached on the way, which is a valid one.
-    pub fn follow(&mut self, path: &Path) -> Result<Progress, Blocked> {
-        let mut walk = Walk {
-            solver: self,
+    /// [`Blocked`] if the end cannot be reached on the continuous motion; the pose is then the
+    /// last one reached.
+    pub(in crate::kinematics) fn track(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        path: &Path,
+    ) -> Result<Progress, Blocked> {
+        let mut run = Run {
+            model,
+            state,
+            drivers: &mut self.drivers,
+            bounds: &mut self.bounds,
+            crossed: &mut self.crossed,
             path,
             s: 0.0,
-            substep: 1.0,
-            careful: None,
+            length: 1.0,
+            limit: None,
             opened: None,
-            crawls: false,
+            is_last_attempt: false,
             progress: Progress::default(),
         };
-        match walk.run() {
-            Ok(()) => Ok(walk.progress),
+        match run.run() {
+            Ok(()) => Ok(run.progress),
             Err(reason) => Err(Blocked {
-                s: walk.s,
+                s: run.s,
                 reason,
-                progress: walk.progress,
+                progress: run.progress,
             }),
         }
     }
 }
 
-/// A mechanism on its way along a path.
-struct Walk<'a> {
-    solver: &'a mut Solver,
+/// A mechanism on a path.
+struct Run<'a> {
+    model: &'a mut Model,
+    state: &'a mut State,
+    drivers: &'a mut PathDrivers,
+    bounds: &'a mut StepBounds,
+    crossed: &'a mut Vec<Arc<Crossing>>,
     path: &'a Path,
-    /// Where it stands.
+    /// The place on the path where the mechanism is.
     s: f64,
-    /// How long a sub-step to try.
-    substep: f64,
-    /// How far that may go because of what is ahead.
-    careful: Option<Careful>,
-    /// What a redundant constraint would have been open by, and where.
+    /// Length of the next sub-step.
+    length: f64,
+    /// Limit of the next sub-step in front of a position that cannot be passed.
+    limit: Option<DriverLimit>,
+    /// A redundant constraint that was found open, and the place on the path.
     opened: Option<(f64, OpenJoint)>,
-    /// Whether the last sub-step was as small as one may be.
-    crawls: bool,
+    /// Whether the last sub-step had the smallest length.
+    is_last_attempt: bool,
     progress: Progress,
 }
 
-/// Where a sub-step is to end.
+/// The end of a sub-step.
 #[derive(Clone, Copy)]
 struct Goal {
     s: f64,
-    /// Whether something on the path is there, without which it would have been further on.
+    /// Whether the path alone, not the length of the sub-step, decides it.
     cut_short: bool,
 }
 
-impl Walk<'_> {
+/// The cause of a rejected sub-step.
+enum Failure {
+    /// Newton–Raphson did not converge, or the certificate failed.
+    NotCertified,
+    /// No mechanism exists for a value at the end.
+    Value(Error),
+    /// A redundant constraint is open at the end.
+    Contradiction(OpenJoint),
+}
+
+impl Run<'_> {
     /// Goes to the end of the path.
     ///
     /// # Errors
     ///
-    /// Why it went no further than `s`.
+    /// The cause of a stop at `s`.
     fn run(&mut self) -> Result<(), Reason> {
         self.set_out()?;
         self.look_ahead()?;
@@ -97,108 +153,214 @@ impl Walk<'_> {
             let smallest = (0.01 * self.s).clamp(SMALLEST_FIRST_SUBSTEP, SMALLEST_SUBSTEP);
             self.prepare(smallest)?;
             let start = self.s;
-            let cut_short = self.advance(smallest)?;
+            let cut_short = self.step(smallest)?;
             self.opened.take_if(|(place, _)| *place <= self.s);
-            self.progress.crossings += self.solver.note_crossings();
             self.look_ahead()?;
             if self.s < 1.0 {
-                let suggested = self.solver.lengthened(self.s - start);
-                // What was cut short was possible as well.
-                let possible = if cut_short { self.substep } else { 0.0 };
-                self.substep = suggested.max(possible);
+                let suggested = self.lengthened(self.s - start);
+                // A sub-step that was cut short would have been possible at its full length.
+                let possible = if cut_short { self.length } else { 0.0 };
+                self.length = suggested.max(possible);
             }
         }
         Ok(())
     }
 
-    /// Makes sure that the solver stands at the start of the path.
+    /// Makes sure that the mechanism is at the start of the path.
     fn set_out(&mut self) -> Result<(), Reason> {
-        let Self { solver, path, .. } = self;
-        solver.crossed.clear();
-        solver.parameters_move = path.moves_parameters();
-        if solver.parameters_move && !solver.pose.crossings.is_empty() {
-            // A crossing is one for these parameters.
-            solver.release_crossings();
-            solver.stand_at_pose();
+        self.crossed.clear();
+        self.drivers.parameters_move = self.path.moves_parameters();
+        if self.drivers.parameters_move && !self.state.pose.crossings.is_empty() {
+            // A crossing holds for the parameters of the pose only.
+            self.state.release_crossings(self.model);
+            self.state.move_to_pose(&self.model.system);
         }
-        solver.refresh().map_err(|_| Reason::Lost)?;
-        solver.pose.time = path.time(0.0);
-        solver.drive(path, 0.0);
+        self.state.refresh(self.model).map_err(|_| Reason::Lost)?;
+        self.state.pose.time = self.path.time(0.0);
+        self.evaluate_drivers(0.0);
+        self.drivers.arrive();
         Ok(())
     }
 
-    /// Takes over the crossings of change points that are near where the mechanism stands.
+    /// Adds the crossings of change points near the pose.
     ///
     /// # Errors
     ///
-    /// What cannot be passed is right ahead.
+    /// A position right ahead that cannot be passed.
     fn look_ahead(&mut self) -> Result<(), Reason> {
-        let Self { solver, path, .. } = self;
-        self.careful = if solver.regularity < NEAR && !solver.parameters_move {
-            let taken = solver.take_crossings(path, self.s);
-            taken.map_err(Reason::Singular)?
-        } else {
-            None
-        };
+        self.limit = None;
+        if self.state.regularity < NEAR && !self.drivers.parameters_move {
+            let limit = singular::look_ahead(
+                self.model,
+                self.state,
+                &self.drivers.here,
+                self.path,
+                self.s,
+            );
+            self.limit = limit.map_err(Reason::Singular)?;
+        }
         Ok(())
     }
 
-    /// Gets ready for the next sub-step, from where the mechanism stands.
+    /// Prepares the next sub-step from the pose.
     ///
     /// # Errors
     ///
-    /// There is none, `smallest` being the least that is worth trying.
+    /// The cause of a stop, if a sub-step of the length `smallest` was tried already.
     fn prepare(&mut self, smallest: f64) -> Result<(), Reason> {
-        let solver = &mut *self.solver;
-        if !solver.pose.crossings.is_empty() {
-            solver.leave_crossings();
+        if !self.state.pose.crossings.is_empty() {
+            singular::leave_crossings(self.model, self.state, &self.drivers.here);
         }
-        solver.set_origin();
+        self.solve_tangent();
         if self.progress.substeps >= MOST_SUBSTEPS {
             return Err(Reason::TooLong);
         }
-        // What is too small to go on with is tried once more, to tell what is in the way.
-        let small = self.substep < smallest;
-        if small {
+        let too_small = self.length < smallest;
+        if too_small {
             let reason = self.reason_to_stop();
-            if self.crawls || matches!(reason, Reason::Singular(_)) {
+            if self.is_last_attempt || matches!(reason, Reason::Singular(_)) {
                 return Err(reason);
             }
-            self.substep = smallest;
+            self.length = smallest;
         }
-        self.crawls = small;
+        self.is_last_attempt = too_small;
         Ok(())
     }
 
-    /// Takes a sub-step, shortened until one succeeds. Returns whether something on the path cut
-    /// it short.
+    /// Takes one sub-step: predicts, corrects and certifies its end, then accepts it or tries a
+    /// shorter one. Returns whether the path cut it short.
     ///
     /// # Errors
     ///
-    /// Not even one of length `smallest` does.
-    fn advance(&mut self, smallest: f64) -> Result<bool, Reason> {
-        // Between its points a motion given by a table tells at its ends where it has been.
-        let most = self.path.next_point(self.s, &self.solver.motions);
+    /// The cause of a stop, if a sub-step of the length `smallest` is rejected.
+    fn step(&mut self, smallest: f64) -> Result<bool, Reason> {
+        // A motion given by a table is bounded between its points only.
+        let most = self.path.next_point(self.s, &self.state.motions);
         loop {
             let goal = self.goal(most);
             self.progress.substeps = self.progress.substeps.saturating_add(1);
-            let part = [self.s, goal.s];
-            let reached = self.solver.try_substep(self.path, part, &mut self.progress);
-            if reached == Ok(true) {
-                self.s = goal.s;
-                return Ok(goal.cut_short);
+            match self.try_step(goal.s) {
+                Ok(correction) => {
+                    self.accept(goal.s, correction);
+                    return Ok(goal.cut_short);
+                }
+                Err(failure) => {
+                    self.return_to_pose();
+                    self.shorten(failure, goal.s, smallest)?;
+                }
             }
-            self.shorten(reached, goal.s, smallest)?;
         }
     }
 
-    /// Where the next sub-step has to end, no further than `most`.
+    /// Predicts, corrects and certifies the end of a sub-step. The pose stays as it is; all that is
+    /// derived from it goes to the end, or anywhere in case of a failure.
+    fn try_step(&mut self, end: f64) -> Result<Correction, Failure> {
+        // Proofs that hold for several steps serve undivided steps: the division of a longer one
+        // depends on its own proofs alone.
+        let may_reuse = self.s <= 0.0 && end >= 1.0 && !self.drivers.parameters_move;
+        let mut reached = self.try_step_with(end, may_reuse);
+        if matches!(reached, Err(Failure::NotCertified)) && self.bounds.reused {
+            self.return_to_pose();
+            reached = self.try_step_with(end, false);
+        }
+        let correction = reached?;
+        match redundancy::opened(self.model, self.state) {
+            Some(joint) => Err(Failure::Contradiction(joint)),
+            None => Ok(correction),
+        }
+    }
+
+    /// Tries a sub-step with or without proofs that hold for several steps.
+    fn try_step_with(&mut self, end: f64, may_reuse: bool) -> Result<Correction, Failure> {
+        self.set_values(end).map_err(Failure::Value)?;
+        let part = [self.s, end];
+        let Model { system, plan, .. } = &mut *self.model;
+        let state = &mut *self.state;
+        self.bounds.begin(may_reuse);
+        if !bound_drivers(system, state, self.drivers, self.path, part, self.bounds) {
+            return Err(Failure::NotCertified);
+        }
+        let extrapolation = extrapolation(&self.drivers.here, end - self.s);
+        let unit_rates = state.has_single_driver().then_some(&UNIT_RATE[..]);
+        let mut block_state = BlockState {
+            system,
+            targets: &state.targets,
+            drivers: &self.drivers.values,
+            at: &mut state.at,
+            tangent: &mut state.tangent,
+        };
+        plan.step(
+            &mut block_state,
+            extrapolation,
+            &state.pose.q,
+            self.bounds,
+            unit_rates,
+        )
+        .map_err(|Rejected| Failure::NotCertified)
+    }
+
+    /// Makes the end of a sub-step the pose.
+    fn accept(&mut self, end: f64, correction: Correction) {
+        let pose = &mut self.state.pose;
+        pose.time = self.path.time(end);
+        std::mem::swap(&mut pose.drivers, &mut self.drivers.values);
+        if self.drivers.parameters_move {
+            self.state.accept_parameters(&self.drivers.parameters);
+        }
+        self.state.accept_bodies();
+        self.state.regularity = correction.regularity;
+        self.note_crossings();
+        self.drivers.arrive();
+        self.s = end;
+        let progress = &mut self.progress;
+        progress.iterations = progress.iterations.saturating_add(correction.iterations);
+        progress.checked = progress.checked.saturating_add(self.bounds.checked.into());
+    }
+
+    /// Derives bodies, parameters and tangent from the pose again.
+    fn return_to_pose(&mut self) {
+        self.state.return_to_pose(self.model);
+        self.state
+            .refresh(self.model)
+            .expect("the pose was regular when it was reached");
+        self.solve_tangent();
+    }
+
+    /// Solves the tangent of the path at the pose; with a single driver it is known already.
+    fn solve_tangent(&mut self) {
+        if !self.state.has_single_driver() {
+            let Model { system, plan, .. } = &mut *self.model;
+            plan.solve_rates(&mut self.state.block_state(system), &self.drivers.here);
+        }
+    }
+
+    /// Evaluates the drivers at s.
+    fn evaluate_drivers(&mut self, s: f64) {
+        let mechanism = self.model.system.mechanism();
+        self.drivers
+            .evaluate(mechanism, self.path, s, &self.state.motions);
+    }
+
+    /// Evaluates the drivers at s and puts the parameters at s in force.
+    ///
+    /// # Errors
+    ///
+    /// A value for which no mechanism exists.
+    fn set_values(&mut self, s: f64) -> Result<(), Error> {
+        self.evaluate_drivers(s);
+        if self.drivers.parameters_move {
+            self.state
+                .try_parameters(self.model, &self.drivers.parameters)?;
+        }
+        self.model.system.check_drivers(&self.drivers.values)
+    }
+
+    /// Returns the end of the next sub-step, no further than `most`.
     fn goal(&mut self, most: f64) -> Goal {
-        let Self { solver, path, .. } = self;
         let start = self.s;
-        let mut goal = if start + self.substep < most {
+        let mut goal = if start + self.length < most {
             Goal {
-                s: start + self.substep,
+                s: start + self.length,
                 cut_short: false,
             }
         } else {
@@ -207,92 +369,159 @@ impl Walk<'_> {
                 cut_short: true,
             }
         };
-        if let Some(careful) = self.careful {
-            let end = solver.within_way(careful, start, goal.s);
+        if let Some(limit) = self.limit {
+            let end = self.end_within(limit.driver, limit.way, goal.s);
             goal.cut_short &= end >= goal.s;
             goal.s = end;
         }
-        if !solver.pose.crossings.is_empty() {
-            let end = solver.within_crossings(path, start, goal.s);
+        if !self.state.pose.crossings.is_empty() {
+            let end = self.end_within_crossings(goal.s);
             goal.cut_short |= end < goal.s;
             goal.s = end;
         }
         goal
     }
 
-    /// Returns to the start of a sub-step that failed, and chooses a shorter one or other rows.
+    /// Returns an end of the sub-step, no further than `end`, up to which a driver moves by `most`
+    /// or less.
+    fn end_within(&self, driver: DriverId, most: f64, mut end: f64) -> f64 {
+        let from = self.drivers.here[driver.index()];
+        let way = |h: f64| h * (from.first().abs() + 0.5 * h * from.second().abs());
+        while way(end - self.s) > most {
+            end = self.s + 0.5 * (end - self.s);
+        }
+        end
+    }
+
+    /// Returns the place where a sub-step to `end` first leaves a crossing; `end` if it leaves
+    /// none.
+    fn end_within_crossings(&mut self, mut end: f64) -> f64 {
+        for index in 0..self.state.pose.crossings.len() {
+            let crossing = Arc::clone(&self.state.pose.crossings[index]);
+            let driver = crossing.driver.index();
+            // No further than from one end of the crossing to the other.
+            end = self.end_within(crossing.driver, 2.0 * crossing.half_width, end);
+            let (mut inside, mut outside) = (self.s, end);
+            let mut place = |s: f64| {
+                self.evaluate_drivers(s);
+                crossing.place(self.drivers.ahead[driver].value).abs()
+            };
+            if place(end) <= 1.0 {
+                continue;
+            }
+            // Bisection ends at the end of the crossing.
+            for _ in 0..100 {
+                let middle = 0.5 * (inside + outside);
+                let there = place(middle);
+                if there <= 1.0 {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+                if (1.0 - 0.5 * CROSSING_END..=1.0).contains(&there) {
+                    break;
+                }
+            }
+            end = inside;
+        }
+        end
+    }
+
+    /// Notes the change points between the start of the sub-step and the pose.
+    fn note_crossings(&mut self) {
+        for crossing in &self.state.pose.crossings {
+            let driver = crossing.driver.index();
+            let before = self.drivers.here[driver].value - crossing.center;
+            let now = self.state.pose.drivers[driver] - crossing.center;
+            // A change point counts when it is reached, not when the motion sets out from it.
+            if before != 0.0 && before * now <= 0.0 {
+                self.progress.crossings += 1;
+                self.crossed.push(Arc::clone(crossing));
+            }
+        }
+    }
+
+    /// Chooses a shorter sub-step, or other rows, after one to `end` was rejected.
     ///
     /// # Errors
     ///
-    /// That would be shorter than `smallest`.
-    fn shorten(
-        &mut self,
-        failed: Result<bool, Reason>,
-        end: f64,
-        smallest: f64,
-    ) -> Result<(), Reason> {
-        let Self { solver, path, .. } = self;
-        solver.stand_at(path, self.s);
-        if let Err(Reason::Contradiction(joint)) = &failed {
+    /// The cause of a stop, if that would be shorter than `smallest`.
+    fn shorten(&mut self, failure: Failure, end: f64, smallest: f64) -> Result<(), Reason> {
+        if let Failure::Contradiction(joint) = &failure {
             self.opened.get_or_insert_with(|| (end, joint.clone()));
         }
-        if solver.change_rows() {
-            solver.stand_at(path, self.s);
+        if redundancy::change_rows(self.model, self.state) {
+            self.return_to_pose();
             return Ok(());
         }
-        self.substep = match failed {
-            // The rows that are solved have nothing against it.
-            Err(Reason::Contradiction(_)) => HALVE * (end - self.s),
-            _ => solver.shortened(end - self.s),
+        self.length = match failure {
+            // The certificate concerns the rows that are solved.
+            Failure::Contradiction(_) => HALF * (end - self.s),
+            Failure::NotCertified | Failure::Value(_) => self.shortened(end - self.s),
         };
-        if self.substep >= smallest {
+        if self.length >= smallest {
             return Ok(());
         }
-        match (failed, self.opened.take()) {
-            // Next to a singular position nothing holds to rounding.
-            (Err(Reason::Contradiction(_)), Some((_, joint))) if !solver.is_nearly_singular() => {
+        match (failure, self.opened.take()) {
+            // Next to a singular position no row holds to rounding.
+            (Failure::Contradiction(_), Some((_, joint)))
+                if !redundancy::is_nearly_singular(self.model, self.state) =>
+            {
                 Err(Reason::Contradiction(joint))
             }
-            (Err(Reason::Value(error)), _) => Err(Reason::Value(error)),
+            (Failure::Value(error), _) => Err(Reason::Value(error)),
             _ => Err(self.reason_to_stop()),
         }
     }
 
-    /// Why not even the present sub-step leads on from where the mechanism stands.
+    /// Returns the cause of a stop at the pose.
     fn reason_to_stop(&mut self) -> Reason {
-        let Self { solver, path, .. } = self;
-        if let Some(end) = solver.find_end(path, self.s) {
+        if !self.drivers.parameters_move
+            && let Some(end) = singular::find_end(self.model, self.state, self.path, self.s)
+        {
             return Reason::Singular(end);
         }
-        // Steps may become ever shorter in front of a value that makes no mechanism.
-        let ahead = solver.set_path(path, (self.s + JUST_AHEAD).min(1.0));
-        solver.stand_at(path, self.s);
+        // Sub-steps may become ever shorter in front of an invalid value.
+        let ahead = self.set_values((self.s + JUST_AHEAD).min(1.0));
+        self.return_to_pose();
         if let Err(error) = ahead {
             return Reason::Value(error);
         }
-        // However small a part of the path it is.
-        let far = |driver: &Jet| (self.substep * driver.first()).abs() > TELLS_NOTHING;
-        if solver.origin_drivers.iter().any(far) {
+        let moves = |driver: &Jet| (self.length * driver.first()).abs() > LARGEST_LAST_MOVE;
+        if self.drivers.here.iter().any(moves) {
             Reason::TooLong
         } else {
             Reason::Lost
         }
     }
-}
 
-impl Solver {
-    /// How long to try instead of a sub-step of length `h` that failed.
+    /// Returns the length to try after a sub-step of length `h` was rejected.
     fn shortened(&self, h: f64) -> f64 {
-        let load = self.tubes.load();
-        if load.is_finite() && load > 1.0 {
-            h * (ROOM / load.sqrt()).max(SHORTEN)
+        let ratio = self.bounds.step_ratio();
+        if ratio.is_finite() && ratio > 1.0 {
+            h * (ROOM / ratio.sqrt()).max(LEAST_RATIO)
         } else {
-            h * HALVE
+            h * HALF
         }
     }
 
-    /// How long to try after a sub-step of length `h` that succeeded.
+    /// Returns the length to try after a sub-step of length `h` was accepted.
     fn lengthened(&self, h: f64) -> f64 {
-        h * (ROOM / self.tubes.load().sqrt()).min(LENGTHEN)
+        h * (ROOM / self.bounds.step_ratio().sqrt()).min(LARGEST_RATIO)
+    }
+}
+
+/// Returns the step along the tangent for the part `h` of the path: q + h q′ + ½ h² q″, where with
+/// a single driver q′ = q_u u′ and q″ = q_u u″ + q_uu u′².
+fn extrapolation(drivers: &[Jet], h: f64) -> Extrapolation {
+    match drivers {
+        [u] => Extrapolation {
+            first: h * (u.first() + 0.5 * h * u.second()),
+            second: 0.5 * (h * u.first()).powi(2),
+        },
+        _ => Extrapolation {
+            first: h,
+            second: 0.5 * h * h,
+        },
     }
 }

@@ -17,7 +17,7 @@ pub(in crate::kinematics) type Row = Vec<(usize, f64)>;
 /// The rows kept so far, as a product L U of a unit lower triangle and rows in echelon form.
 #[derive(Clone, Debug)]
 pub(in crate::kinematics) struct Echelon {
-    kept: Vec<Reduced>,
+    kept: Vec<ReducedRow>,
     /// The kept row that has its pivot in each column.
     pivot_in: Vec<Option<usize>>,
     /// How many rows to come contain each column.
@@ -28,7 +28,7 @@ pub(in crate::kinematics) struct Echelon {
 
 /// A row after reduction.
 #[derive(Clone, Debug)]
-pub(in crate::kinematics) struct Reduced {
+pub(in crate::kinematics) struct ReducedRow {
     /// Which row it is.
     pub(in crate::kinematics) row: usize,
     /// The largest entry that is left of it.
@@ -59,7 +59,7 @@ impl Echelon {
     }
 
     /// The rows kept, in the order in which they came.
-    pub(in crate::kinematics) fn kept(&self) -> &[Reduced] {
+    pub(in crate::kinematics) fn kept(&self) -> &[ReducedRow] {
         &self.kept
     }
 
@@ -69,7 +69,7 @@ impl Echelon {
         row: usize,
         entries: &Row,
         at_least: f64,
-    ) -> Option<Reduced> {
+    ) -> Option<ReducedRow> {
         for &(column, _) in entries {
             self.to_come[column] = self.to_come[column].saturating_sub(1);
         }
@@ -85,7 +85,7 @@ impl Echelon {
     }
 
     /// What the rows kept leave of a row.
-    pub(in crate::kinematics) fn reduce(&mut self, row: usize, entries: &Row) -> Reduced {
+    pub(in crate::kinematics) fn reduce(&mut self, row: usize, entries: &Row) -> ReducedRow {
         let work = &mut self.work;
         let mut touched: BTreeSet<usize> = BTreeSet::new();
         let mut pending: BTreeSet<usize> = BTreeSet::new();
@@ -97,7 +97,7 @@ impl Echelon {
         let mut lower = Vec::new();
         // What is left of a kept row has no entry at the pivots of those before it.
         while let Some(before) = pending.pop_first() {
-            let Reduced { pivot, upper, .. } = &self.kept[before];
+            let ReducedRow { pivot, upper, .. } = &self.kept[before];
             let factor = work[*pivot] / value_at(upper, *pivot);
             if factor == 0.0 {
                 continue;
@@ -125,7 +125,7 @@ impl Echelon {
             let fewer = self.to_come[*a].cmp(&self.to_come[*b]);
             fewer.then(y.abs().total_cmp(&x.abs()))
         });
-        Reduced {
+        ReducedRow {
             row,
             remainder,
             pivot: pivot.map_or(usize::MAX, |(column, _)| *column),
@@ -138,7 +138,7 @@ impl Echelon {
     /// `least` times the largest are rounding.
     pub(in crate::kinematics) fn combination(
         &self,
-        dependent: &Reduced,
+        dependent: &ReducedRow,
         least: f64,
     ) -> Vec<(usize, f64)> {
         // Row k of the matrix is U_k + Σ L_ki U_i, the dependent one Σ l_k U_k: λ L = l.
@@ -174,7 +174,7 @@ impl Echelon {
         for &(column, value) in free {
             vector[column] = value;
         }
-        for Reduced { pivot, upper, .. } in self.kept.iter().rev() {
+        for ReducedRow { pivot, upper, .. } in self.kept.iter().rev() {
             let others = upper.iter().filter(|(column, _)| column != pivot);
             let sum: f64 = others.map(|(column, value)| value * vector[*column]).sum();
             vector[*pivot] = -sum / value_at(upper, *pivot);

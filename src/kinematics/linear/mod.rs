@@ -14,7 +14,7 @@ mod sparse;
 
 pub(super) use condition::Condition;
 pub(super) use dense::DenseLu;
-pub(super) use echelon::{Echelon, Reduced, Row};
+pub(super) use echelon::{Echelon, ReducedRow, Row};
 pub(super) use factors::Factors;
 pub(super) use lu::Lu;
 pub(super) use norm::nan_or_larger;

@@ -1,15 +1,17 @@
-//! The path over one step of everything that moves a mechanism from outside.
+//! The path over one step of all that moves a mechanism from outside.
 
+mod drivers;
 mod motions;
 mod rates;
 
 use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism};
 
+pub(super) use drivers::PathDrivers;
 pub(super) use motions::Motions;
 pub use rates::Rates;
 
-/// How time, parameters and drivers go from one communication point to the next, as functions
-/// of s, which runs from 0 to 1.
+/// Time, parameters and drivers from one communication point to the next, as functions of s from
+/// 0 to 1.
 ///
 /// Time and parameters run straight. A driver runs along its [`Curve`].
 #[derive(Clone, Debug)]
@@ -20,17 +22,17 @@ pub struct Path {
     pub duration: f64,
     /// Parameters at s = 0 \[SI\].
     pub from: Vec<f64>,
-    /// Parameters at s = 1 \[SI\]. On the way the derived ones follow the others.
+    /// Parameters at s = 1 \[SI\]. In between, the derived ones follow the others.
     pub to: Vec<f64>,
-    /// One a driver.
+    /// One curve per driver.
     pub curves: Vec<Curve>,
 }
 
-/// How one driver runs along a [`Path`]. Lengths in metres, angles in radians.
+/// The course of one driver along a [`Path`]. Lengths in metres, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Curve {
-    /// position + velocity τ + acceleration τ²/2 with τ = s · duration, plus what is left of a
-    /// jump at the start: (1 − s) · jump. Held inputs have neither velocity nor acceleration.
+    /// position + velocity τ + acceleration τ²/2 with τ = s · duration, and the rest of a jump at
+    /// the start, (1 − s) · jump. Held inputs have neither velocity nor acceleration.
     Input {
         /// Value of the polynomial at s = 0.
         position: f64,
@@ -45,63 +47,78 @@ pub enum Curve {
     Motion,
 }
 
+impl Curve {
+    /// Returns a held input at `position`, reached straight from the value `now`.
+    #[must_use]
+    pub fn held(position: f64, now: f64) -> Self {
+        Self::Input {
+            position,
+            velocity: 0.0,
+            acceleration: 0.0,
+            jump: now - position,
+        }
+    }
+}
+
 impl Path {
-    /// A path on which nothing moves yet.
+    /// Returns a path on which nothing moves, at the file's own values.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
         let parameters = mechanism.default_parameters();
-        let curves = mechanism
-            .drivers
-            .iter()
-            .map(|driver| match driver.source {
-                DriverSource::Input { start } => Curve::Input {
-                    position: start,
-                    velocity: 0.0,
-                    acceleration: 0.0,
-                    jump: 0.0,
-                },
-                DriverSource::Motion(_) => Curve::Motion,
-            })
-            .collect();
+        let drivers = mechanism.drivers.iter();
+        let curves = drivers.map(|driver| match driver.source {
+            DriverSource::Input { start } => Curve::held(start, start),
+            DriverSource::Motion(_) => Curve::Motion,
+        });
         Self {
             start: mechanism.simulation.start,
             duration: 0.0,
             from: parameters.clone(),
             to: parameters,
-            curves,
+            curves: curves.collect(),
         }
     }
 
-    /// Whether the parameters differ between the two ends.
+    /// Returns whether the parameters differ between the two ends.
     #[must_use]
     pub fn moves_parameters(&self) -> bool {
         self.from != self.to
     }
 
-    /// Whether any driver runs along a prescribed motion.
+    /// Returns whether any driver runs along a prescribed motion.
     #[must_use]
     pub fn has_motions(&self) -> bool {
         self.curves.contains(&Curve::Motion)
     }
 
-    /// Time at s.
+    /// Returns the time at s.
     #[must_use]
     pub fn time(&self, s: f64) -> f64 {
         self.start + s * self.duration
     }
 
-    /// The first s after `s` at which a motion begins another piece, or the end of the path.
-    pub(in crate::kinematics) fn next_point(&self, s: f64, motions: &Motions) -> f64 {
+    /// Returns the drivers' values at the end.
+    #[must_use]
+    pub fn drivers_at_end(&self, mechanism: &Mechanism) -> Vec<f64> {
+        let mut motions = Motions::new(mechanism);
+        motions.set_parameters(|p| Jet::constant(self.to[p.index()]));
+        let mut drivers = vec![Jet::constant(0.0); self.curves.len()];
+        self.drivers(1.0, &motions, &mut drivers);
+        drivers.iter().map(|driver| driver.value).collect()
+    }
+
+    /// Returns the first s after `s` at which a motion begins another piece, or the end of the path.
+    pub(super) fn next_point(&self, s: f64, motions: &Motions) -> f64 {
         if self.duration <= 0.0 {
             return 1.0;
         }
-        // A point so near has been reached up to rounding.
+        // A point within this distance is reached up to rounding.
         let after = self.time(s + 1e-9);
         ((motions.next_point(after) - self.start) / self.duration).min(1.0)
     }
 
     /// Writes the parameters at s with their derivatives with respect to s.
-    pub(in crate::kinematics) fn parameters(&self, mechanism: &Mechanism, s: f64, out: &mut [Jet]) {
+    pub(super) fn parameters(&self, mechanism: &Mechanism, s: f64, out: &mut [Jet]) {
         for ((out, from), to) in out.iter_mut().zip(&self.from).zip(&self.to) {
             // Exact at both ends.
             let value = if s < 1.0 { from + s * (to - from) } else { *to };
@@ -112,7 +129,7 @@ impl Path {
 
     /// Writes the drivers' values at s with their derivatives with respect to s; `motions` are
     /// those for the parameters at s.
-    pub(in crate::kinematics) fn drivers(&self, s: f64, motions: &Motions, out: &mut [Jet]) {
+    pub(super) fn drivers(&self, s: f64, motions: &Motions, out: &mut [Jet]) {
         let h = self.duration;
         let t = Jet::linear(self.time(s), h);
         for ((driver, curve), out) in self.curves.iter().enumerate().zip(out) {

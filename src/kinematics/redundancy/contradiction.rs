@@ -1,147 +1,139 @@
-//! What is wrong with a mechanism that does not close on all its rows.
+//! The explanation of a mechanism that does not close on all its rows.
 
-use super::closing::Closing;
-use super::rank::DEPENDENT;
+use super::closure::find_start;
+use super::rank::{DEPENDENT, constraint_rows, find_freedom, jacobian_rows};
+use crate::kinematics::Element;
+use crate::kinematics::assembly::closing::{Closing, close_on, is_small};
+use crate::kinematics::assembly::gaps::open_joints;
 use crate::kinematics::assembly::least_squares::STARTS;
+use crate::kinematics::assembly::nearest::search_at_once;
+use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
-use crate::kinematics::{Element, Error, OpenJoint, Solver, Verdict};
+use crate::kinematics::model::Model;
+use crate::kinematics::state::State;
 
 /// An element with less than this part of the largest residual has no part in the gap.
 const TAKES_PART: f64 = 1e-3;
-/// Elements are left out one by one to find the smallest set that cannot be satisfied, unless
-/// they are more than this, in a mechanism that is not small.
+/// Most elements in a large mechanism of which a smallest contradictory set is looked for, by
+/// leaving them out one by one.
 const MOST_ELEMENTS: usize = 12;
-/// How much more than an element left open all others count when the gap is gathered in it.
+/// Weight of all other elements when the gap is gathered in one.
 const HOLD_CLOSED: f64 = 1e3;
 
-impl Solver {
-    /// The verdict on a mechanism that stands at a nearest pose, where its rows are open by up to
-    /// `gap`, scaled.
-    pub(super) fn explain_open(&mut self, gap: f64, estimate: &[f64]) -> Error {
-        if !gap.is_finite() {
-            return Error::NotFinite {
-                what: "an equation of the mechanism".to_owned(),
-            };
-        }
-        let all: Vec<_> = (0..self.system.equations().len()).collect();
-        let mut open = self.elements_open(&all, gap);
-        // Drivers too many ask for what the constraints, closed by themselves, do not give.
-        let constraints = self.constraint_rows();
-        let without_drivers = self.close_on(&constraints, estimate);
-        if without_drivers.is_none()
-            && let Err(error) = self.find_freedom()
-        {
-            return error;
-        }
-        if let Some(gap) = without_drivers {
-            open = self.elements_open(&constraints, gap);
-        }
-        if self.close_on(&self.rows_of(&open), estimate).is_none() {
-            open = self.elements_open(&all, 0.0);
-        }
-        if self.is_small() || open.len() <= MOST_ELEMENTS {
-            // Of two that stand in for each other the one declared first stays.
-            for element in open.clone().into_iter().rev() {
-                let others: Vec<_> = open.iter().copied().filter(|e| *e != element).collect();
-                if self.close_on(&self.rows_of(&others), estimate).is_some() {
-                    open = others;
-                }
+/// Explains why a mechanism does not close. It is at a nearest pose, where its rows are open by up
+/// to `gap`, scaled.
+pub(super) fn explain_open(
+    model: &mut Model,
+    state: &mut State,
+    gap: f64,
+    estimate: &[f64],
+) -> Error {
+    if !gap.is_finite() {
+        return Error::NotFinite {
+            what: "an equation of the mechanism".to_owned(),
+        };
+    }
+    let all: Vec<_> = (0..model.system.equations().len()).collect();
+    let mut open = elements_open(model, state, &all, gap);
+    // Excess drivers ask for a motion that the constraints, closed by themselves, do not give.
+    let constraints = constraint_rows(&model.system);
+    let without_drivers = close_on(&model.system, state, &constraints, estimate);
+    if without_drivers.is_none()
+        && let Err(error) = find_freedom(model, state)
+    {
+        return error;
+    }
+    let system = &model.system;
+    if let Some(gap) = without_drivers {
+        open = elements_open(model, state, &constraints, gap);
+    }
+    if close_on(system, state, &system.rows_of(&open), estimate).is_none() {
+        open = elements_open(model, state, &all, 0.0);
+    }
+    if is_small(system) || open.len() <= MOST_ELEMENTS {
+        // Of two elements that stand in for each other the one declared first stays.
+        for element in open.clone().into_iter().rev() {
+            let others: Vec<_> = open.iter().copied().filter(|e| *e != element).collect();
+            if close_on(system, state, &system.rows_of(&others), estimate).is_some() {
+                open = others;
             }
         }
-        let rows = self.rows_of(&open);
-        let mechanism = self.system.mechanism();
-        let names = |elements: &[Element]| {
-            let names = elements.iter().map(|element| element.describe(mechanism));
-            names.collect::<Vec<_>>()
-        };
-        let elements = names(&open);
-        // People look for one joint that does not meet: the one declared last.
-        let is_driver = |element: &Element| matches!(element, Element::Driver(_));
-        let last = open.iter().rfind(|element| !is_driver(element));
-        let Some(&last) = last.or(open.last()) else {
-            return self.not_found(Vec::new());
-        };
-        let rows_of_last = self.rows_of(&[last]);
-        open.retain(|element| *element != last);
-        let others = self.rows_of(&open);
-        self.close_on(&others, estimate);
-        let contradict = self.depend_on(&rows_of_last, &others);
-        self.close_on(&rows, estimate);
-        let weight = |row: usize| {
-            if rows_of_last.contains(&row) {
-                1.0
-            } else {
-                HOLD_CLOSED
+    }
+    let rows = system.rows_of(&open);
+    let names = open.iter();
+    let elements = names.map(|element| element.describe(system.mechanism()));
+    let elements: Vec<_> = elements.collect();
+    // People look for one joint that does not meet: the one declared last.
+    let is_driver = |element: &Element| matches!(element, Element::Driver(_));
+    let last = open.iter().rfind(|element| !is_driver(element));
+    let Some(&last) = last.or(open.last()) else {
+        return not_found(model, state, Vec::new());
+    };
+    let rows_of_last = system.rows_of(&[last]);
+    open.retain(|element| *element != last);
+    let others = system.rows_of(&open);
+    close_on(system, state, &others, estimate);
+    let contradict = depend_on(model, state, &rows_of_last, &others);
+    close_on(system, state, &rows, estimate);
+    let weight = |row: usize| {
+        if rows_of_last.contains(&row) {
+            1.0
+        } else {
+            HOLD_CLOSED
+        }
+    };
+    let mut closing = Closing::new(system, &rows).weigh(weight);
+    let gap = closing.close(&mut state.block_state(system)).unwrap_or(0.0);
+    let gathered = open_joints(model, state, &rows_of_last, gap);
+    let gathered = gathered.into_iter().next().map(|(_, joint)| joint);
+    match gathered {
+        Some(open) if contradict => Error::Contradiction { elements, open },
+        gathered => match find_start(model, state, estimate) {
+            // A mechanism impossible with fewer rows is impossible with all.
+            Some(failure) if failure.proved => {
+                let error = search_at_once(model, state, failure, estimate).err();
+                let open = gathered.into_iter().collect();
+                error.unwrap_or_else(|| not_found(model, state, open))
             }
-        };
-        let mut closing = Closing::new(&self.system, &rows).weigh(weight);
-        let gap = closing.close(&mut self.work().1).unwrap_or(0.0);
-        let gathered = self.open_joints(&rows_of_last, gap);
-        let gathered = gathered.into_iter().next().map(|(_, joint)| joint);
-        match gathered {
-            Some(open) if contradict => Error::Contradiction { elements, open },
-            gathered => match self.find_start(estimate) {
-                // What is impossible with fewer rows is so with all.
-                Some(deadlock) if deadlock.proved => {
-                    let proof = self.search_at_once(deadlock, estimate);
-                    let open = gathered.into_iter().collect();
-                    proof.err().unwrap_or_else(|| self.not_found(open))
-                }
-                _ => self.not_found(gathered.into_iter().collect()),
-            },
-        }
+            _ => not_found(model, state, gathered.into_iter().collect()),
+        },
     }
+}
 
-    /// The verdict on a mechanism that stands at the nearest pose found.
-    fn not_found(&self, open: Vec<OpenJoint>) -> Error {
-        let mut nearest = vec![0.0; self.system.unknowns()];
-        self.at.copy_pose(&mut nearest);
-        Error::NotAssembled {
-            verdict: Verdict::NotFound { starts: STARTS },
-            open,
-            nearest,
-        }
+/// Returns the error for a mechanism without a proof, at the nearest pose found.
+fn not_found(model: &Model, state: &State, open: Vec<OpenJoint>) -> Error {
+    let mut nearest = vec![0.0; model.system.unknowns()];
+    state.at.copy_pose(&mut nearest);
+    Error::NotAssembled {
+        verdict: Verdict::NotFound { starts: STARTS },
+        open,
+        nearest,
     }
+}
 
-    /// The elements with a noticeable part of a largest residual where the mechanism is.
-    fn elements_open(&self, rows: &[usize], largest: f64) -> Vec<Element> {
-        let mut elements: Vec<_> = rows
-            .iter()
-            .filter(|&&row| {
-                let Self {
-                    system,
-                    at,
-                    targets,
-                    pose,
-                    ..
-                } = self;
-                let value = system.evaluate_row(row, at, targets, &pose.drivers, |_, _| {});
-                value.value.abs() >= TAKES_PART * largest
-            })
-            .map(|&row| self.system.equations()[row].element)
-            .collect();
-        elements.sort_unstable();
-        elements.dedup();
-        elements
-    }
+/// Returns the elements with a noticeable part of a largest residual.
+fn elements_open(model: &Model, state: &State, rows: &[usize], largest: f64) -> Vec<Element> {
+    let system = &model.system;
+    let rows = rows.iter().filter(|&&row| {
+        let value = state.row_value(system, row);
+        value.value.abs() >= TAKES_PART * largest
+    });
+    let mut elements: Vec<_> = rows.map(|&row| system.equations()[row].element).collect();
+    elements.sort_unstable();
+    elements.dedup();
+    elements
+}
 
-    fn rows_of(&self, elements: &[Element]) -> Vec<usize> {
-        let equations = self.system.equations().iter().enumerate();
-        let theirs = equations.filter(|(_, e)| elements.contains(&e.element));
-        theirs.map(|(row, _)| row).collect()
+/// Returns whether some of these rows depend on the others, on which the mechanism is closed. A
+/// loop that is too short does not close, but could if it were longer; rows that depend on the
+/// others have no say whatever.
+fn depend_on(model: &Model, state: &State, rows: &[usize], others: &[usize]) -> bool {
+    let all = jacobian_rows(model, state);
+    let mut echelon = Echelon::new(model.system.unknowns(), &all);
+    for &row in others {
+        echelon.offer(row, &all[row], DEPENDENT);
     }
-
-    /// Whether some of these rows depend on the others where the mechanism is, which is closed on
-    /// the others. A loop that is too short does not close, but could were it longer; what
-    /// depends on the others has no say whatever.
-    fn depend_on(&mut self, rows: &[usize], others: &[usize]) -> bool {
-        let all = self.rows_here();
-        let mut echelon = Echelon::new(self.system.unknowns(), &all);
-        for &row in others {
-            echelon.offer(row, &all[row], DEPENDENT);
-        }
-        let offered = rows.iter();
-        let left_out = offered.filter_map(|&row| echelon.offer(row, &all[row], DEPENDENT));
-        left_out.count() > 0
-    }
+    let offered = rows.iter();
+    let left_out = offered.filter_map(|&row| echelon.offer(row, &all[row], DEPENDENT));
+    left_out.count() > 0
 }

@@ -1,217 +1,295 @@
-//! Degrees of freedom, by rank: what the constraints leave free, what drivers drive of it, and
-//! which constraints say nothing new.
+//! Degrees of freedom, by rank: the motions that the constraints leave free, those that drivers
+//! drive, and the constraints that are redundant.
 
-use super::closing::Closing;
-use crate::kinematics::linear::{Echelon, Reduced, Row};
-use crate::kinematics::system::Target;
-use crate::kinematics::{Element, Error, Solver};
+use crate::kinematics::Element;
+use crate::kinematics::assembly::closing::Closing;
+use crate::kinematics::assembly::least_squares::{Part, SMALL_PART};
+use crate::kinematics::error::Error;
+use crate::kinematics::linear::{Echelon, ReducedRow, Row};
+use crate::kinematics::model::Model;
+use crate::kinematics::state::State;
+use crate::kinematics::system::{System, Target};
 use crate::mechanism::CoordinateKind;
 
 /// A row of which no more than this is left, scaled, depends on the others. A singular position
-/// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] away from it
-/// leaves some 1e-2.
+/// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] from it leaves some
+/// 1e-2.
 pub(super) const DEPENDENT: f64 = 1e-6;
-/// How far the mechanism is moved to tell what depends here only, in radians and characteristic
-/// lengths: enough for rank to show, not so far that it is another mechanism.
-pub(super) const AWAY: f64 = 0.03;
+/// Distance to the place that tells redundancy from a singular position, in radians and
+/// characteristic lengths: enough for rank to show, not so far that it is another mechanism.
+const AWAY: f64 = 0.03;
 /// A factor in a combination of rows below this part of the largest is rounding.
 const TAKES_PART: f64 = 1e-6;
 
 /// Ranks at one pose.
 struct Ranks {
-    /// Of the constraints.
+    /// Rank of the constraints.
     constraints: usize,
-    /// The constraints kept, then the drivers that these leave free to choose.
+    /// The independent constraints, then the drivers that are independent of these.
     echelon: Echelon,
     /// Constraints that depend on earlier ones.
     redundant: Vec<usize>,
     /// Drivers that depend on constraints and earlier drivers.
-    excess: Vec<Reduced>,
+    excess: Vec<ReducedRow>,
 }
 
-impl Solver {
-    /// Compares what the constraints leave free with what the drivers drive, where the mechanism
-    /// is closed and a little away from there. Returns the redundant rows.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Structure`] if something is free or more is driven than is free,
-    /// [`Error::Singular`] if the constraints lose rank here but let nothing move.
-    pub(super) fn find_freedom(&mut self) -> Result<Vec<usize>, Error> {
-        let unknowns = self.system.unknowns();
-        let mut home = vec![0.0; unknowns];
-        self.at.copy_pose(&mut home);
-        let here = self.ranks();
-        let leaves_motion = here.constraints < unknowns;
-        let mut away = Vec::new();
-        if leaves_motion {
-            away = self.ranks_with_drivers_moved(&home);
-            let is_full = |ranks: &Ranks| ranks.echelon.kept().len() == unknowns;
-            if !away.iter().any(is_full) {
-                away.extend(self.ranks_along_constraints(&home));
-            }
-            self.at.set_pose(self.system.mechanism(), &home);
-            if away.is_empty() {
-                return Err(self.singular_position());
-            }
+/// Compares the motions that the constraints leave free with those that the drivers drive, where
+/// the mechanism is closed and a little away from there. Returns the redundant rows.
+///
+/// # Errors
+///
+/// [`Error::Structure`] if something is free or more is driven than is free, [`Error::Singular`]
+/// if the constraints lose rank here but let nothing move.
+pub(super) fn find_freedom(model: &mut Model, state: &mut State) -> Result<Vec<usize>, Error> {
+    let unknowns = model.system.unknowns();
+    let mut home = vec![0.0; unknowns];
+    state.at.copy_pose(&mut home);
+    let here = ranks(model, state);
+    let leaves_motion = here.constraints < unknowns;
+    let mut away = Vec::new();
+    if leaves_motion {
+        away = ranks_with_drivers_moved(model, state, &home);
+        let is_full = |ranks: &Ranks| ranks.echelon.kept().len() == unknowns;
+        if !away.iter().any(is_full) {
+            away.extend(ranks_along_constraints(model, state, &home));
         }
-        let rank = |ranks: &Ranks| (ranks.echelon.kept().len(), ranks.constraints);
-        let generic = away.into_iter().max_by_key(rank).unwrap_or(here);
-        self.judge(&generic)?;
-        Ok(generic.redundant)
-    }
-
-    /// Ranks where the drivers have moved a little, both ways, as far as the mechanism closes
-    /// there. Drivers that are too many hold each other.
-    fn ranks_with_drivers_moved(&mut self, home: &[f64]) -> Vec<Ranks> {
-        let drivers = self.pose.drivers.clone();
-        let all: Vec<_> = (0..self.system.equations().len()).collect();
-        let mut closing = Closing::new(&self.system, &all);
-        let mut found = Vec::new();
-        for sense in [AWAY, -AWAY] {
-            if drivers.is_empty() {
-                break;
-            }
-            self.at.set_pose(self.system.mechanism(), home);
-            let moved = drivers.iter().zip(&self.system.mechanism().drivers);
-            let moved = moved.enumerate().map(|(k, (value, driver))| {
-                let scale = match driver.coordinate.kind {
-                    CoordinateKind::Angle => 1.0,
-                    _ => self.at.size(),
-                };
-                value + sense * scale * mixture(k)
-            });
-            self.pose.drivers = moved.collect();
-            if closing.close(&mut self.work().1).is_none() {
-                found.push(self.ranks());
-            }
-        }
-        self.pose.drivers = drivers;
-        found
-    }
-
-    /// Ranks a little way along what the constraints leave free, both ways.
-    fn ranks_along_constraints(&mut self, home: &[f64]) -> Vec<Ranks> {
-        self.at.set_pose(self.system.mechanism(), home);
-        let way = self.way_out();
-        let constraints = self.constraint_rows();
-        let mut closing = Closing::new(&self.system, &constraints);
-        let mut found = Vec::new();
-        for sense in [AWAY, -AWAY] {
-            if self.move_away(home, &way, sense, &mut closing) {
-                found.push(self.ranks());
-            }
-        }
-        found
-    }
-
-    /// The verdict on drivers that are too few, too many or on the wrong things.
-    fn judge(&self, ranks: &Ranks) -> Result<(), Error> {
-        let mechanism = self.system.mechanism();
-        let freedom = self.system.unknowns() - ranks.constraints;
-        let free = self.system.unknowns() - ranks.echelon.kept().len();
-        if free == 0 && ranks.excess.is_empty() {
-            return Ok(());
-        }
-        let mut excess: Vec<Element> = Vec::new();
-        for left_out in &ranks.excess {
-            let equations = self.system.equations();
-            let element = |row: usize| equations[row].element;
-            let others = ranks.echelon.combination(left_out, TAKES_PART);
-            let mut set: Vec<_> = others.into_iter().map(|(row, _)| element(row)).collect();
-            let is_driver = |element: &Element| matches!(element, Element::Driver(_));
-            if set.iter().any(is_driver) {
-                // Drivers that exclude each other: the joints only pass it on.
-                set.retain(is_driver);
-            }
-            set.push(element(left_out.row));
-            excess.extend(set);
-        }
-        excess.sort_unstable();
-        excess.dedup();
-        Err(Error::Structure {
-            freedom,
-            drivers: mechanism.drivers.len(),
-            free,
-            loose: self.moved_by(&ranks.echelon),
-            excess: excess
-                .into_iter()
-                .map(|element| element.describe(mechanism))
-                .collect(),
-        })
-    }
-
-    /// Ranks where the mechanism is.
-    fn ranks(&mut self) -> Ranks {
-        let rows = self.rows_here();
-        let mut echelon = Echelon::new(self.system.unknowns(), &rows);
-        let mut redundant = Vec::new();
-        let mut excess = Vec::new();
-        let mut constraints = 0;
-        // The drivers' rows come last.
-        for (row, entries) in rows.iter().enumerate() {
-            let is_driver = matches!(self.system.equations()[row].target, Target::Driver(_));
-            if !is_driver {
-                constraints += 1;
-            }
-            match echelon.offer(row, entries, DEPENDENT) {
-                None => {}
-                Some(left_out) if is_driver => excess.push(left_out),
-                Some(_) => redundant.push(row),
-            }
-        }
-        Ranks {
-            constraints: constraints - redundant.len(),
-            echelon,
-            redundant,
-            excess,
+        state.at.set_pose(model.system.mechanism(), &home);
+        if away.is_empty() {
+            return Err(singular_position(model, state));
         }
     }
+    let rank = |ranks: &Ranks| (ranks.echelon.kept().len(), ranks.constraints);
+    let generic = away.into_iter().max_by_key(rank).unwrap_or(here);
+    judge(&model.system, &generic)?;
+    Ok(generic.redundant)
+}
 
-    /// A direction in which the constraints let the mechanism move where it is, scaled; of
-    /// several a mixture of all.
-    fn way_out(&mut self) -> Vec<f64> {
-        let rows: Vec<Row> = self.rows_here();
-        let mut echelon = Echelon::new(self.system.unknowns(), &rows);
-        for row in self.constraint_rows() {
-            echelon.offer(row, &rows[row], DEPENDENT);
+/// Returns the ranks where the drivers have moved a little, both ways, as far as the mechanism
+/// closes there. Excess drivers hold each other.
+fn ranks_with_drivers_moved(model: &Model, state: &mut State, home: &[f64]) -> Vec<Ranks> {
+    let drivers = state.pose.drivers.clone();
+    let all: Vec<_> = (0..model.system.equations().len()).collect();
+    let mut closing = Closing::new(&model.system, &all);
+    let mut found = Vec::new();
+    for sense in [AWAY, -AWAY] {
+        if drivers.is_empty() {
+            break;
         }
-        let free = echelon.free().into_iter().enumerate();
-        let all: Vec<_> = free.map(|(k, column)| (column, mixture(k))).collect();
-        echelon.null_vector(&all)
+        state.at.set_pose(model.system.mechanism(), home);
+        let moved = drivers.iter().zip(&model.system.mechanism().drivers);
+        let moved = moved.enumerate().map(|(k, (value, driver))| {
+            let scale = match driver.coordinate.kind {
+                CoordinateKind::Angle => 1.0,
+                _ => state.at.size(),
+            };
+            value + sense * scale * mixture(k)
+        });
+        state.pose.drivers = moved.collect();
+        if closing
+            .close(&mut state.block_state(&model.system))
+            .is_none()
+        {
+            found.push(ranks(model, state));
+        }
     }
+    state.pose.drivers = drivers;
+    found
+}
 
-    /// Moves from `home` along a direction and closes on the constraints. False if that leads
-    /// nowhere.
-    fn move_away(&mut self, home: &[f64], way: &[f64], by: f64, closing: &mut Closing) -> bool {
-        let size = self.at.size();
-        let scale: Vec<_> = (0..home.len())
-            .map(|column| self.system.column_scale(column, size))
+/// Returns the ranks a little way along a motion that the constraints leave free, both ways.
+fn ranks_along_constraints(model: &Model, state: &mut State, home: &[f64]) -> Vec<Ranks> {
+    let system = &model.system;
+    state.at.set_pose(system.mechanism(), home);
+    let motion = free_motion(model, state);
+    let mut closing = Closing::new(system, &constraint_rows(system));
+    let mut found = Vec::new();
+    let size = state.at.size();
+    let scale = |column: usize| system.column_scale(column, size);
+    for sense in [AWAY, -AWAY] {
+        let moved = home.iter().zip(&motion).enumerate();
+        let q: Vec<_> = moved
+            .map(|(column, (q, rate))| q + sense * rate * scale(column))
             .collect();
-        let steps = way.iter().zip(&scale).map(|(way, scale)| by * way * scale);
-        let q: Vec<_> = home.iter().zip(steps).map(|(q, step)| q + step).collect();
-        self.at.set_pose(self.system.mechanism(), &q);
-        let (_, mut work) = self.work();
-        if closing.close(&mut work).is_some() {
-            return false;
+        state.at.set_pose(system.mechanism(), &q);
+        if closing.close(&mut state.block_state(system)).is_some() {
+            continue;
         }
-        let moved = (0..home.len())
-            .map(|k| (self.at.coordinate(k) - home[k]).abs() / scale[k])
-            .fold(0.0, f64::max);
-        moved > 0.1 * AWAY
+        let moves = home.iter().enumerate();
+        let moved = moves.map(|(k, home)| (state.at.coordinate(k) - home).abs() / scale(k));
+        if moved.fold(0.0, f64::max) > 0.1 * AWAY {
+            found.push(ranks(model, state));
+        }
     }
+    found
+}
 
-    /// The rows that no driver moves.
-    pub(super) fn constraint_rows(&self) -> Vec<usize> {
-        let equations = self.system.equations().iter().enumerate();
-        let held = equations.filter(|(_, e)| matches!(e.target, Target::Constant(_)));
-        held.map(|(row, _)| row).collect()
+/// Judges drivers that are too few, too many or on the wrong coordinates.
+fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
+    let mechanism = system.mechanism();
+    let freedom = system.unknowns() - ranks.constraints;
+    let free = system.unknowns() - ranks.echelon.kept().len();
+    if free == 0 && ranks.excess.is_empty() {
+        return Ok(());
+    }
+    let mut excess: Vec<Element> = Vec::new();
+    for left_out in &ranks.excess {
+        let equations = system.equations();
+        let element = |row: usize| equations[row].element;
+        let others = ranks.echelon.combination(left_out, TAKES_PART);
+        let mut set: Vec<_> = others.into_iter().map(|(row, _)| element(row)).collect();
+        let is_driver = |element: &Element| matches!(element, Element::Driver(_));
+        if set.iter().any(is_driver) {
+            // Drivers that exclude each other; the joints only transmit it.
+            set.retain(is_driver);
+        }
+        set.push(element(left_out.row));
+        excess.extend(set);
+    }
+    excess.sort_unstable();
+    excess.dedup();
+    Err(Error::Structure {
+        freedom,
+        drivers: mechanism.drivers.len(),
+        free,
+        loose: moved_by(system, &ranks.echelon),
+        excess: excess
+            .into_iter()
+            .map(|element| element.describe(mechanism))
+            .collect(),
+    })
+}
+
+/// Returns the ranks at the present places of the bodies.
+fn ranks(model: &Model, state: &State) -> Ranks {
+    let rows = jacobian_rows(model, state);
+    let mut echelon = Echelon::new(model.system.unknowns(), &rows);
+    let mut redundant = Vec::new();
+    let mut excess = Vec::new();
+    let mut constraints = 0;
+    // The drivers' rows come last.
+    for (row, entries) in rows.iter().enumerate() {
+        let is_driver = matches!(model.system.equations()[row].target, Target::Driver(_));
+        if !is_driver {
+            constraints += 1;
+        }
+        match echelon.offer(row, entries, DEPENDENT) {
+            None => {}
+            Some(left_out) if is_driver => excess.push(left_out),
+            Some(_) => redundant.push(row),
+        }
+    }
+    Ranks {
+        constraints: constraints - redundant.len(),
+        echelon,
+        redundant,
+        excess,
     }
 }
 
-/// A factor for the k-th of several motions, so that they do not cancel: from a half to one and a
-/// half, spread evenly by the golden ratio.
-pub(super) fn mixture(k: usize) -> f64 {
+/// Returns a motion that the constraints leave free at the present places of the bodies, scaled;
+/// of several a mixture of all.
+fn free_motion(model: &Model, state: &State) -> Vec<f64> {
+    let rows = jacobian_rows(model, state);
+    let mut echelon = Echelon::new(model.system.unknowns(), &rows);
+    for row in constraint_rows(&model.system) {
+        echelon.offer(row, &rows[row], DEPENDENT);
+    }
+    let free = echelon.free().into_iter().enumerate();
+    let all: Vec<_> = free.map(|(k, column)| (column, mixture(k))).collect();
+    echelon.null_vector(&all)
+}
+
+/// Returns the rows that no driver moves.
+pub(super) fn constraint_rows(system: &System) -> Vec<usize> {
+    let equations = system.equations().iter().enumerate();
+    let held = equations.filter(|(_, e)| matches!(e.target, Target::Constant(_)));
+    held.map(|(row, _)| row).collect()
+}
+
+/// Returns all rows, the drivers' first.
+pub(super) fn drivers_first(system: &System) -> Vec<usize> {
+    let equations = system.equations();
+    let mut rows: Vec<_> = (0..equations.len()).collect();
+    rows.sort_by_key(|&row| matches!(equations[row].target, Target::Constant(_)));
+    rows
+}
+
+/// Returns the Jacobian by rows at the present places of the bodies, scaled.
+pub(super) fn jacobian_rows(model: &Model, state: &State) -> Vec<Row> {
+    let rows = 0..model.system.equations().len();
+    rows.map(|row| state.jacobian_row(&model.system, row))
+        .collect()
+}
+
+/// Explains a pose at which the rows all together lose rank: names the bodies that can move there
+/// though no driver does.
+pub(super) fn singular_position(model: &Model, state: &mut State) -> Error {
+    let system = &model.system;
+    let rows = jacobian_rows(model, state);
+    let order = drivers_first(system);
+    let eliminate = |least: f64| {
+        let mut echelon = Echelon::new(system.unknowns(), &rows);
+        for &row in &order {
+            echelon.offer(row, &rows[row], least);
+        }
+        echelon
+    };
+    let mut echelon = eliminate(DEPENDENT);
+    let mut rcond = 0.0;
+    if echelon.free().is_empty() {
+        // Nearly singular: without the weakest row.
+        rcond = weakest(&echelon);
+        echelon = eliminate(rcond);
+    }
+    if rows.len() <= SMALL_PART {
+        let unknowns: Vec<_> = (0..system.unknowns()).collect();
+        let part = Part::new(&order, &unknowns);
+        let (_, jacobian) = part.equations(&state.block_state(system));
+        let singular = jacobian.singular_values();
+        rcond = singular.min() / singular.max();
+    }
+    Error::Singular {
+        rcond,
+        bodies: moved_by(system, &echelon),
+    }
+}
+
+/// Returns the names of the bodies that move in the motions left by the rows of `echelon`.
+fn moved_by(system: &System, echelon: &Echelon) -> Vec<String> {
+    /// A part of the largest motion that is not rounding.
+    const MOVES: f64 = 1e-5;
+    /// More motions than this are looked at in mixtures of all of them, several times: a
+    /// coincidence in which motions cancel does not come twice.
+    const FEW: usize = 64;
+    const MIXTURES: usize = 8;
+    let free = echelon.free();
+    let mixtures = if free.len() <= FEW { 0 } else { MIXTURES };
+    let single = free.iter().take_while(|_| mixtures == 0);
+    let single = single.map(|&column| vec![(column, 1.0)]);
+    let mixed = (0..mixtures).map(|which| {
+        let parts = free.iter().enumerate();
+        let parts = parts.map(|(k, &column)| (column, mixture(MIXTURES * k + which)));
+        parts.collect()
+    });
+    let mut largest = vec![0.0; system.unknowns()];
+    for motion in single.chain(mixed) {
+        let vector = echelon.null_vector(&motion);
+        for (largest, value) in largest.iter_mut().zip(vector) {
+            *largest = f64::max(*largest, value.abs());
+        }
+    }
+    system.describe_moved(largest.into_iter().enumerate(), MOVES)
+}
+
+/// Returns the least that is left of a row of `echelon`.
+pub(super) fn weakest(echelon: &Echelon) -> f64 {
+    let left = echelon.kept().iter().map(|kept| kept.remainder);
+    left.fold(1.0, f64::min)
+}
+
+/// Returns a factor for the k-th of several motions, so that they do not cancel: from a half to
+/// one and a half, spread evenly by the golden ratio.
+fn mixture(k: usize) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     0.5 + (GOLDEN * (k + 1) as f64).fract()
 }

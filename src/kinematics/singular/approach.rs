@@ -1,10 +1,11 @@
-//! The approach to a singular position, of which a user is warned.
+//! The warning of a singular position.
 
 use std::fmt;
 
-use super::{LARGEST_BLOCK, NEAR};
+use super::near::{LARGEST_BLOCK, NEAR, block_jacobian, bodies_of};
 use crate::kinematics::error::in_line;
-use crate::kinematics::solver::Solver;
+use crate::kinematics::model::Model;
+use crate::kinematics::state::State;
 
 /// A mechanism that has come near a singular position.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,9 +17,9 @@ pub struct Approach {
 }
 
 /// A reciprocal condition below this is worth a warning: links are in line to less than a tenth
-/// of a degree, and what drives them moves some thousand times as slowly as they do.
+/// of a degree, and their driver moves some thousand times as slowly as they do.
 const WARNED: f64 = 1e-3;
-/// Above this the mechanism is away again, and the next approach another one.
+/// Above this the mechanism is away again, and the next approach is another one.
 const AWAY: f64 = 1e-2;
 
 impl fmt::Display for Approach {
@@ -32,52 +33,53 @@ impl fmt::Display for Approach {
     }
 }
 
-impl Solver {
-    /// Whether the mechanism, at the end of a path, has come near a singular position since
-    /// `near` was last false, which is true from then on until it is away again. Next to a change
-    /// point that is crossed there is nothing to warn of. Away from all of them it costs a
-    /// comparison.
-    pub fn approach(&mut self, near: &mut bool) -> Option<Approach> {
-        if !self.pose.crossings.is_empty() || (!*near && self.regularity >= NEAR) {
-            return None;
-        }
-        let rcond = self.rcond();
-        if rcond > AWAY {
-            *near = false;
-        }
-        if *near || rcond >= WARNED {
-            return None;
-        }
-        *near = true;
-        Some(Approach {
-            rcond,
-            bodies: self.weakest_bodies(),
-        })
+/// Returns the approach to a singular position, if the mechanism has come near one since `near`
+/// was last false; `near` is true from then on until the mechanism is away again. Next to a change
+/// point that is crossed there is no warning. Away from singular positions it costs a comparison.
+pub(in crate::kinematics) fn approach(
+    model: &mut Model,
+    state: &mut State,
+    near: &mut bool,
+) -> Option<Approach> {
+    if !state.pose.crossings.is_empty() || (!*near && state.regularity >= NEAR) {
+        return None;
     }
+    let rcond = state.rcond(model);
+    if rcond > AWAY {
+        *near = false;
+    }
+    if *near || rcond >= WARNED {
+        return None;
+    }
+    *near = true;
+    Some(Approach {
+        rcond,
+        bodies: weakest_bodies(model, state),
+    })
+}
 
-    /// The bodies of the kernel that is nearest to a singular position, those that its weakest
-    /// direction moves if that can be found.
-    pub(super) fn weakest_bodies(&mut self) -> Vec<String> {
-        let mut weakest = (f64::INFINITY, 0);
-        for (index, kernel) in self.plan.kernels.iter_mut().enumerate() {
-            let rcond = kernel.rcond();
-            if rcond < weakest.0 {
-                weakest = (rcond, index);
-            }
+/// Returns the bodies of the block that is nearest to a singular position: those that its weakest
+/// direction moves, if the block is small.
+fn weakest_bodies(model: &mut Model, state: &State) -> Vec<String> {
+    let mut weakest = (f64::INFINITY, 0);
+    for (index, block) in model.plan.blocks.iter_mut().enumerate() {
+        let rcond = block.rcond();
+        if rcond < weakest.0 {
+            weakest = (rcond, index);
         }
-        let Some(kernel) = self.plan.kernels.get(weakest.1) else {
-            return Vec::new();
-        };
-        let columns = kernel.columns();
-        let mut free = vec![1.0; columns.len()];
-        if columns.len() <= LARGEST_BLOCK {
-            let svd = self.block_jacobian(weakest.1).svd(false, true);
-            if let Some(right) = svd.v_t {
-                let least = right.row(right.nrows() - 1);
-                let largest = least.amax();
-                free = least.iter().map(|value| value / largest).collect();
-            }
-        }
-        self.bodies_of(columns, &free)
     }
+    let Some(block) = model.plan.blocks.get(weakest.1) else {
+        return Vec::new();
+    };
+    let columns = block.columns();
+    let mut free = vec![1.0; columns.len()];
+    if columns.len() <= LARGEST_BLOCK {
+        let svd = block_jacobian(model, state, weakest.1).svd(false, true);
+        if let Some(right) = svd.v_t {
+            let least = right.row(right.nrows() - 1);
+            let largest = least.amax();
+            free = least.iter().map(|value| value / largest).collect();
+        }
+    }
+    bodies_of(&model.system, columns, &free)
 }

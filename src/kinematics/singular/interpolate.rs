@@ -1,54 +1,54 @@
-//! The motion through a change point, interpolated across it.
+//! The motion through a change point, interpolated between its two sides.
 
 use super::locate::Finding;
-use super::reduced::Reduced;
-use crate::kinematics::block::{Crossing, Kernel};
+use super::reduced::ReducedEquation;
+use crate::kinematics::block::Crossing;
 use crate::mechanism::DriverId;
 
-/// How far to either side of the point a crossing reaches at first, and its least reach, as turn
-/// of the fastest body or its way in characteristic lengths. At the distance δ plain Newton has
+/// Distance from the point to either end of a crossing at first, and the least one, as turn of the
+/// fastest body or its way in characteristic lengths. Newton–Raphson at the distance δ gives
 /// accelerations to some eps/δ³, 1e-10 at 0.01.
 const REACH: f64 = 0.02;
 const LEAST_REACH: f64 = 0.004;
-/// The interpolated motion has to meet the point found by itself so well that accelerations are
-/// right to this part, velocities being one.
+/// Largest error of an acceleration at the change point, which is known independently, for
+/// velocities of one.
 const INTERPOLATED: f64 = 1e-6;
-/// How far a prediction may be off, as part of the distance between both motions.
+/// Largest error of a prediction, as part of the distance between both motions.
 const OFF: f64 = 0.25;
-/// A side on which the equation is flatter than this is not regular.
+/// Least slope of the equation on a regular side.
 const FLAT: f64 = 1e-5;
 
-/// The crossing of a block at whose change point `finding` stands; `None` if the motion
-/// cannot be shown to go on beyond it.
+/// Makes the crossing of a block whose change point is in `finding`; `None` if the motion cannot
+/// be shown to go on beyond it.
 pub(super) fn crossing_of(
-    block: &mut Reduced<'_>,
+    equation: &mut ReducedEquation<'_>,
     finding: Finding,
-    kernel: usize,
+    block: usize,
     driver: DriverId,
 ) -> Option<Crossing> {
     let Finding::Crossing(point, [slope, other]) = finding else {
         return None;
     };
     let velocity = &point.tangents[1] + slope * &point.tangents[0];
-    let speed = block.scaled_speed(&velocity);
+    let speed = equation.scaled_speed(&velocity);
     let free = &point.tangents[0] / point.tangents[0].amax();
     let mut reach = REACH;
     while reach >= LEAST_REACH {
         let half_width = reach / speed;
         let ends = [-half_width, half_width].map(|off| {
             let slopes = [slope, other];
-            End::find(block, [point.alpha, point.tau], off, slopes)
+            End::find(equation, [point.alpha, point.tau], off, slopes)
         });
         if let [Some(before), Some(behind)] = ends {
             let crossing = Crossing {
-                kernel,
+                block,
                 driver,
                 center: point.tau,
                 half_width,
                 coefficients: interpolate(&before, &behind, half_width),
                 free: free.iter().copied().collect(),
             };
-            let error = error_at_center(&crossing, block, &point.z, &velocity, speed);
+            let error = error_at_center(&crossing, equation, &point.z, &velocity, speed);
             if error <= INTERPOLATED {
                 return Some(crossing);
             }
@@ -58,17 +58,17 @@ pub(super) fn crossing_of(
     None
 }
 
-/// By how much the interpolated motion misses the point and the tangent there, as the error
-/// of an acceleration: (1 − x²)³, the shape of the error, bends by 6 at its top.
+/// Returns the error of the interpolated motion at the point and of its tangent there, as an error
+/// of the acceleration: (1 − x²)³, the shape of the error, bends by 6 at its top.
 fn error_at_center(
     crossing: &Crossing,
-    block: &Reduced<'_>,
+    equation: &ReducedEquation<'_>,
     z: &[f64],
     velocity: &nalgebra::DVector<f64>,
     speed: f64,
 ) -> f64 {
-    let unit = block.unscaled(&nalgebra::DVector::repeat(z.len(), 1.0));
-    let velocity = block.unscaled(velocity);
+    let unit = equation.unscaled(&nalgebra::DVector::repeat(z.len(), 1.0));
+    let velocity = equation.unscaled(velocity);
     let width = crossing.half_width * speed;
     let errors = (0..z.len()).map(|k| {
         let [value, first, _] = crossing.evaluate(k, crossing.center);
@@ -86,11 +86,11 @@ struct End {
 }
 
 impl End {
-    /// The pose on the motion of slope `slope` at the distance `off` from the point: Newton's
-    /// method on ε from where the tangent leads. It has to stay near, compared with the distance
-    /// of the motion of slope `other`, and to leave in the direction in which it came.
+    /// Finds the pose on the motion of slope `slope` at the distance `off` from the point, by
+    /// Newton's method on ε from the tangent. The pose has to stay near, compared with the distance
+    /// of the motion of slope `other`, and its own slope has to be nearer to `slope`.
     fn find(
-        block: &mut Reduced<'_>,
+        equation: &mut ReducedEquation<'_>,
         [alpha, tau]: [f64; 2],
         off: f64,
         [slope, other]: [f64; 2],
@@ -100,25 +100,25 @@ impl End {
         let apart = if other.is_finite() {
             ((slope - other) * off).abs()
         } else {
-            off.abs() * block.speed
+            off.abs() * equation.speed
         };
         let mut alpha = expected;
         let mut last = f64::INFINITY;
         for _ in 0..10 {
-            let sheet = block.sheet(alpha, tau)?;
-            let step = -sheet.epsilon / sheet.first[0];
+            let point = equation.solve(alpha, tau)?;
+            let step = -point.epsilon / point.first[0];
             alpha += step;
             let astray = (alpha - expected).abs();
             if astray.is_nan() || astray > OFF * apart {
                 return None;
             }
             if step.abs() <= 1e-15 || (step.abs() < 1e-9 && step.abs() >= 0.5 * last) {
-                let own = -sheet.first[1] / sheet.first[0];
-                let kept = sheet.first[0].abs() >= FLAT
+                let own = -point.first[1] / point.first[0];
+                let kept = point.first[0].abs() >= FLAT
                     && (!other.is_finite() || (own - slope).abs() < (own - other).abs());
                 return kept.then(|| Self {
-                    rates: block.rates(&sheet),
-                    z: sheet.z,
+                    rates: equation.rates(&point),
+                    z: point.z,
                 });
             }
             last = step.abs();
@@ -127,7 +127,7 @@ impl End {
     }
 }
 
-/// The polynomials of fifth degree with values and derivatives of both ends.
+/// Returns the polynomials of fifth degree with values and derivatives of both ends.
 fn interpolate(before: &End, behind: &End, half_width: f64) -> Vec<[f64; 6]> {
     let half = |a: f64, b: f64| (0.5 * (b + a), 0.5 * (b - a));
     (0..before.z.len())
@@ -150,16 +150,4 @@ fn interpolate(before: &End, behind: &End, half_width: f64) -> Vec<[f64; 6]> {
             [a0, a1, a2, a3, a4, a5]
         })
         .collect()
-}
-
-/// Takes a kernel out of the order of solution and puts what `make` makes of it in its place.
-pub(super) fn replace(
-    kernels: &mut Vec<Kernel>,
-    place: usize,
-    make: impl FnOnce(Kernel) -> Kernel,
-) {
-    let kernel = kernels.swap_remove(place);
-    kernels.push(make(kernel));
-    let last = kernels.len() - 1;
-    kernels.swap(place, last);
 }

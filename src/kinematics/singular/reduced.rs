@@ -1,31 +1,31 @@
-//! The equations of one block near a singular position, reduced to one function of two numbers.
+//! The reduced equation: the equations of one block near a singular position as one function of two
+//! numbers.
 //!
-//! Let F(z, p(τ)) = 0 be the block's equations, z its unknowns, p what it reads, which runs with
-//! the parameter τ of a line. Where the Jacobian J = ∂F/∂z has lost one rank,
+//! Let F(z, p(τ)) = 0 be the block's equations, z its unknowns, and p the unknowns that it reads,
+//! which run with the parameter τ of a line. Where the Jacobian J = ∂F/∂z has lost one rank,
 //!
 //! F(z, p(τ)) + ε b = 0, c · (z − z⁰) = α
 //!
 //! still determines z and ε for given α and τ (Lyapunov and Schmidt): bordered by b and c the
-//! Jacobian is regular. The mechanism's poses are where ε(α, τ) = 0, so that all there is to know
-//! of the singular position is in the first derivatives of ε and in the second, which are those of
-//! the solver notes with the opposite sign: with ψᵀJ ∥ cᵀ, ψ · b = 1 and the tangents
+//! Jacobian is regular. The mechanism's poses are where ε(α, τ) = 0, so that the first and second
+//! derivatives of ε describe the singular position. With ψᵀJ ∥ cᵀ, ψ · b = 1 and the tangents
 //! V₁ = (∂z/∂α, 0), V₂ = (∂z/∂τ, p′)
 //!
 //! ε_αα = −ψᵀF″\[V₁, V₁\], ε_ατ = −ψᵀF″\[V₁, V₂\], ε_ττ = −ψᵀ(F″\[V₂, V₂\] + F_p p″).
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use crate::kinematics::block::{Kernel, Work};
+use crate::kinematics::block::{BlockSolver, BlockState};
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::Gradient;
+use crate::kinematics::model::Model;
 use crate::kinematics::newton::MAX_ITERATIONS;
-use crate::kinematics::path::Motions;
-use crate::kinematics::path::Rates;
-use crate::kinematics::system::{System, Target, Targets};
-use crate::kinematics::{Path, Pose};
+use crate::kinematics::path::{Motions, Path, Rates};
+use crate::kinematics::state::State;
+use crate::kinematics::system::{System, Targets};
 use crate::mechanism::{DriverId, Jet};
 
-/// What the drivers run along.
+/// The line along which the drivers run.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Line<'a> {
     /// The values of one driver, all others being held; τ is its value.
@@ -49,46 +49,47 @@ impl Line<'_> {
     }
 }
 
-/// Newton's corrections on a block from a place that is near.
+/// Most Newton corrections of a block from a near place.
 const MAX_CORRECTIONS: usize = 20;
-/// A correction this large, in radians and characteristic lengths, has left the neighbourhood.
+/// Largest correction, in radians and characteristic lengths; a larger one has left the
+/// neighbourhood.
 const LARGEST_STEP: f64 = 0.5;
 
-/// A block with all that it reads.
-pub(super) struct Reduced<'a> {
+/// The reduced equation of a block.
+pub(super) struct ReducedEquation<'a> {
     system: &'a System,
     targets: &'a Targets,
     motions: &'a Motions,
     line: Line<'a>,
-    /// What finds the unknowns that the block reads.
-    before: &'a mut [Kernel],
+    /// The blocks before it, which find the unknowns that it reads.
+    before: &'a mut [BlockSolver],
     rows: Vec<usize>,
     pub(super) columns: Vec<usize>,
-    /// Place of each unknown of the mechanism in the block.
+    /// Index of each unknown of the mechanism in the block.
     place_of: Vec<Option<usize>>,
-    /// Metres or radians that a scaled unknown of one stands for.
+    /// Scale factor of each unknown \[m or rad\].
     scales: Vec<f64>,
     at: Configuration,
-    /// Rates along the line of what the block reads; elsewhere zero.
-    flow: Rates,
+    /// Rates along the line of the unknowns before the block; elsewhere zero.
+    tangent: Rates,
     held: Vec<f64>,
     jets: Vec<Jet>,
     drivers: Vec<f64>,
-    /// Where it started: τ, the pose there, and its rates along the line.
+    /// The start: τ, the pose there, and its rates along the line.
     pub(super) start: f64,
     origin: Vec<f64>,
-    origin_flow: Rates,
+    origin_tangent: Rates,
     /// z⁰, and the bordering vectors, all scaled.
     b: DVector<f64>,
     c: DVector<f64>,
-    /// The present ε, from which the next one is found.
+    /// ε at the last place.
     epsilon: f64,
-    /// How fast scaled unknowns run with τ at the start, those that the block reads included.
+    /// The largest scaled rate with τ at the start, of the unknowns before the block, too.
     pub(super) speed: f64,
 }
 
 /// The reduced equation at one place.
-pub(super) struct Sheet {
+pub(super) struct ReducedPoint {
     pub(super) alpha: f64,
     pub(super) tau: f64,
     /// ε, its first derivatives in α and τ, and its second in αα, ατ, ττ.
@@ -99,35 +100,31 @@ pub(super) struct Sheet {
     pub(super) tangents: [DVector<f64>; 2],
     /// The block's unknowns.
     pub(super) z: Vec<f64>,
-    /// Rows of the block: F_p p″ along the line.
+    /// F_p p″ along the line, one entry per row of the block.
     bend: DVector<f64>,
     bordered: LU<f64, Dyn, Dyn>,
 }
 
-/// The parts of a solver that the reduction works with.
-pub(super) struct Ground<'a> {
-    pub(super) system: &'a System,
-    pub(super) targets: &'a Targets,
-    pub(super) motions: &'a Motions,
-    pub(super) at: &'a Configuration,
-    pub(super) pose: &'a Pose,
-    /// The kernels up to and including that of the block.
-    pub(super) kernels: &'a mut [Kernel],
-}
-
-impl<'a> Reduced<'a> {
-    /// The block of the last of `ground.kernels`, from the pose, which is at `start` of the line.
-    /// `None` where the block is regular beyond doubt or nothing can be said.
-    pub(super) fn new(ground: Ground<'a>, line: Line<'a>, start: f64) -> Option<Self> {
-        let Ground {
-            system,
+impl<'a> ReducedEquation<'a> {
+    /// Reduces the equations of a block from the pose, which is at `start` of the line. `None`
+    /// where the block is regular beyond doubt or has no bordered solution.
+    pub(super) fn new(
+        model: &'a mut Model,
+        state: &'a State,
+        block: usize,
+        line: Line<'a>,
+        start: f64,
+    ) -> Option<Self> {
+        let State {
+            pose,
+            at,
             targets,
             motions,
-            at,
-            pose,
-            kernels,
-        } = ground;
-        let (block, before) = kernels.split_last_mut()?;
+            ..
+        } = state;
+        let Model { system, plan, .. } = model;
+        let system = &*system;
+        let (block, before) = plan.blocks[..=block].split_last_mut()?;
         let columns = block.columns().to_vec();
         let mut place_of = vec![None; system.unknowns()];
         for (place, &column) in columns.iter().enumerate() {
@@ -149,32 +146,32 @@ impl<'a> Reduced<'a> {
             columns,
             place_of,
             at: at.clone(),
-            flow: Rates::new(system.unknowns()),
+            tangent: Rates::new(system.unknowns()),
             held: pose.drivers.clone(),
             jets: vec![Jet::constant(0.0); pose.drivers.len()],
             drivers: pose.drivers.clone(),
             start,
             origin: pose.q.clone(),
-            origin_flow: Rates::new(system.unknowns()),
+            origin_tangent: Rates::new(system.unknowns()),
             b: DVector::zeros(order),
             c: DVector::zeros(order),
             epsilon: 0.0,
             speed: 0.0,
         };
-        reduced.stand_before(start)?;
-        reduced.origin_flow = reduced.flow.clone();
+        reduced.move_before(start)?;
+        reduced.origin_tangent = reduced.tangent.clone();
         reduced.border()?;
-        let sheet = reduced.sheet(0.0, start)?;
-        reduced.speed = reduced.scaled_speed(&sheet.tangents[1]);
+        let point = reduced.solve(0.0, start)?;
+        reduced.speed = reduced.scaled_speed(&point.tangents[1]);
         (reduced.speed > 0.0 && reduced.speed.is_finite()).then_some(reduced)
     }
 
-    /// The largest scaled rate of what the block reads and of these rates of its own.
+    /// Returns the largest scaled rate of the unknowns before the block and of these of its own.
     pub(super) fn scaled_speed(&self, own: &DVector<f64>) -> f64 {
         let size = self.at.size();
-        let read = self.before.iter().flat_map(|kernel| kernel.columns());
+        let read = self.before.iter().flat_map(|block| block.columns());
         let read = read.map(|&column| {
-            (self.flow.velocity()[column] / self.system.column_scale(column, size)).abs()
+            (self.tangent.velocity()[column] / self.system.column_scale(column, size)).abs()
         });
         let driven = self.rows.iter().map(|&row| {
             let scale = self.system.equations()[row].row_scale(&self.at);
@@ -203,20 +200,20 @@ impl<'a> Reduced<'a> {
         Some(())
     }
 
-    fn work(&mut self) -> (&mut [Kernel], Work<'_>) {
-        let work = Work {
+    fn state(&mut self) -> (&mut [BlockSolver], BlockState<'_>) {
+        let state = BlockState {
             system: self.system,
             targets: self.targets,
             drivers: &self.drivers,
             at: &mut self.at,
-            flow: &mut self.flow,
+            tangent: &mut self.tangent,
         };
-        (self.before, work)
+        (self.before, state)
     }
 
-    /// Brings all that the block reads to τ: from the pose at the start along tangent and
-    /// curvature there, then corrected.
-    fn stand_before(&mut self, tau: f64) -> Option<()> {
+    /// Moves all blocks before it to τ: along tangent and curvature from the start, then by
+    /// Newton–Raphson.
+    fn move_before(&mut self, tau: f64) -> Option<()> {
         self.line
             .drivers(tau, &self.held, self.motions, &mut self.jets);
         for (value, jet) in self.drivers.iter_mut().zip(&self.jets) {
@@ -227,36 +224,34 @@ impl<'a> Reduced<'a> {
             before,
             at,
             origin,
-            origin_flow,
+            origin_tangent,
             ..
         } = self;
-        for &column in before.iter().flat_map(|kernel| kernel.columns()) {
+        for &column in before.iter().flat_map(|block| block.columns()) {
             let ahead = off
-                * (origin_flow.velocity()[column] + 0.5 * off * origin_flow.acceleration()[column]);
+                * (origin_tangent.velocity()[column]
+                    + 0.5 * off * origin_tangent.acceleration()[column]);
             at.set_coordinate(column, origin[column] + ahead);
         }
         let jets = std::mem::take(&mut self.jets);
-        let (before, mut work) = self.work();
-        let stands = before.iter_mut().all(|kernel| {
-            let closed = kernel.close(&mut work, MAX_ITERATIONS).is_ok()
-                && kernel.factorise(&mut work).is_ok();
+        let (before, mut state) = self.state();
+        let stands = before.iter_mut().all(|block| {
+            let closed = block.close(&mut state, MAX_ITERATIONS).is_ok()
+                && block.factorise(&mut state).is_ok();
             if closed {
-                kernel.solve_rates(&mut work, &jets);
+                block.solve_rates(&mut state, &jets);
             }
             closed
         });
         self.jets = jets;
-        (stands && self.flow.is_finite()).then_some(())
+        (stands && self.tangent.is_finite()).then_some(())
     }
 
     fn driver(&self, row: usize) -> Jet {
-        match self.system.equations()[row].target {
-            Target::Constant(_) => Jet::constant(0.0),
-            Target::Driver(driver) => self.jets[driver.index()],
-        }
+        self.system.equations()[row].target_rates(&self.jets)
     }
 
-    /// F and J, scaled.
+    /// Returns F and J, scaled.
     fn equations(&self) -> (DVector<f64>, DMatrix<f64>) {
         let order = self.rows.len();
         let mut residual = DVector::zeros(order);
@@ -278,7 +273,8 @@ impl<'a> Reduced<'a> {
         (residual, jacobian)
     }
 
-    /// F_p times first and second derivatives along the line of what the block reads, scaled.
+    /// Returns F_p times first and second derivatives along the line of the unknowns before the
+    /// block, scaled.
     fn read_rates(&self) -> [DVector<f64>; 2] {
         let rate = |rates: &[f64], order: fn(Jet) -> f64| {
             DVector::from_iterator(
@@ -296,14 +292,19 @@ impl<'a> Reduced<'a> {
             )
         };
         [
-            rate(self.flow.velocity(), |jet| jet.first()),
-            rate(self.flow.acceleration(), |jet| jet.second()),
+            rate(self.tangent.velocity(), |jet| jet.first()),
+            rate(self.tangent.acceleration(), |jet| jet.second()),
         ]
     }
 
-    /// F″\[V, V\], row by row, for V = (v, w p′).
+    /// Returns F″\[V, V\], one entry per row, for V = (v, w p′).
     fn quadratic(&self, v: &DVector<f64>, w: f64) -> DVector<f64> {
-        let mut rates: Vec<f64> = self.flow.velocity().iter().map(|rate| w * rate).collect();
+        let mut rates: Vec<f64> = self
+            .tangent
+            .velocity()
+            .iter()
+            .map(|rate| w * rate)
+            .collect();
         for ((&column, scale), v) in self.columns.iter().zip(&self.scales).zip(v.iter()) {
             rates[column] = scale * v;
         }
@@ -316,10 +317,10 @@ impl<'a> Reduced<'a> {
         )
     }
 
-    /// Solves the bordered equations for z and ε at (α, τ), from where the block is, and gives
-    /// the derivatives of ε there.
-    pub(super) fn sheet(&mut self, alpha: f64, tau: f64) -> Option<Sheet> {
-        self.stand_before(tau)?;
+    /// Solves the bordered equations for z and ε at (α, τ), from the last place. Returns the
+    /// derivatives of ε there, too.
+    pub(super) fn solve(&mut self, alpha: f64, tau: f64) -> Option<ReducedPoint> {
+        self.move_before(tau)?;
         let order = self.rows.len();
         let mut last = f64::INFINITY;
         for _ in 0..MAX_CORRECTIONS {
@@ -341,8 +342,8 @@ impl<'a> Reduced<'a> {
                 .map(|(&column, scale)| (self.at.coordinate(column) / scale).abs())
                 .fold(1.0, f64::max);
             self.epsilon += step[order];
-            // Where the unknowns cannot follow any more, ε still does: to first order it does
-            // not change with them.
+            // Rounding limits the unknowns before it limits ε, which to first order does not change
+            // with them.
             if length <= 4.0 * f64::EPSILON * largest || (length < 1e-9 && length >= 0.5 * last) {
                 return Some(self.derivatives(alpha, tau, &bordered, lu));
             }
@@ -355,7 +356,7 @@ impl<'a> Reduced<'a> {
         None
     }
 
-    /// Puts the block's unknowns back to where they were at the start.
+    /// Puts the block's unknowns back to the start.
     pub(super) fn return_to_start(&mut self) {
         for &column in &self.columns {
             self.at.set_coordinate(column, self.origin[column]);
@@ -363,7 +364,7 @@ impl<'a> Reduced<'a> {
         self.epsilon = 0.0;
     }
 
-    /// c · (z − z⁰).
+    /// Returns α = c · (z − z⁰).
     fn alpha(&self) -> f64 {
         let moved = self.columns.iter().zip(&self.scales).zip(self.c.iter());
         moved
@@ -392,7 +393,7 @@ impl<'a> Reduced<'a> {
         tau: f64,
         bordered: &DMatrix<f64>,
         lu: LU<f64, Dyn, Dyn>,
-    ) -> Sheet {
+    ) -> ReducedPoint {
         let order = self.rows.len();
         let [read, bend] = self.read_rates();
         let solve = |mut side: DVector<f64>| {
@@ -417,7 +418,7 @@ impl<'a> Reduced<'a> {
         let across = self.quadratic(&tangents[1], 1.0);
         let both = self.quadratic(&(&tangents[0] + &tangents[1]), 1.0);
         let mixed = 0.5 * (both - &along - &across);
-        Sheet {
+        ReducedPoint {
             alpha,
             tau,
             epsilon: self.epsilon,
@@ -438,42 +439,41 @@ impl<'a> Reduced<'a> {
         }
     }
 
-    /// First and second derivative of z along the line on the motion through a regular pose, which
-    /// `sheet` is at and the block stands at, unscaled.
-    pub(super) fn rates(&self, sheet: &Sheet) -> [Vec<f64>; 2] {
+    /// Returns the first and second derivative of z along the line on the motion through the
+    /// regular pose `point`, where the block is, unscaled.
+    pub(super) fn rates(&self, point: &ReducedPoint) -> [Vec<f64>; 2] {
         let order = self.rows.len();
-        let slope = -sheet.first[1] / sheet.first[0];
-        let velocity = &sheet.tangents[1] + slope * &sheet.tangents[0];
-        // J z″ = −F″[T, T] − F_p p″, in the bordered form: what is left over in ε is made up for
-        // along ∂z/∂α.
+        let slope = -point.first[1] / point.first[0];
+        let velocity = &point.tangents[1] + slope * &point.tangents[0];
+        // J z″ = −F″[T, T] − F_p p″ in the bordered form; a step along ∂z/∂α removes the rest in ε.
         let mut side = DVector::zeros(order + 1);
         side.rows_mut(0, order)
-            .copy_from(&-(self.quadratic(&velocity, 1.0) + &sheet.bend));
-        sheet.bordered.solve_mut(&mut side);
-        let bend = -side[order] / sheet.first[0];
-        let acceleration = side.rows(0, order) + bend * &sheet.tangents[0];
+            .copy_from(&-(self.quadratic(&velocity, 1.0) + &point.bend));
+        point.bordered.solve_mut(&mut side);
+        let bend = -side[order] / point.first[0];
+        let acceleration = side.rows(0, order) + bend * &point.tangents[0];
         [velocity, acceleration].map(|rates| self.unscaled(&rates))
     }
 
-    /// Scaled values of the block's unknowns in metres and radians.
+    /// Returns scaled values of the block's unknowns in metres and radians.
     pub(super) fn unscaled(&self, scaled: &DVector<f64>) -> Vec<f64> {
         let unknowns = scaled.iter().zip(&self.scales);
         unknowns.map(|(value, scale)| value * scale).collect()
     }
 
-    /// Singular values of the Jacobian where the block stands, descending.
+    /// Returns the singular values of the Jacobian at the last place, descending.
     pub(super) fn singular_values(&self) -> DVector<f64> {
         self.equations().1.singular_values()
     }
 
-    /// Whether something that the block reads comes from a crossing.
+    /// Returns whether a block before it comes from a crossing.
     pub(super) fn reads_crossings(&self) -> bool {
-        let mut kernels = self.before.iter();
-        kernels.any(|kernel| matches!(kernel, Kernel::Interpolated(_)))
+        let mut blocks = self.before.iter();
+        blocks.any(|block| matches!(block, BlockSolver::InterpolatedBlock(_)))
     }
 
-    /// The largest distance from the origin of a coordinate of the block, scaled, and of what its
-    /// angles read: rounding is this many eps.
+    /// Returns the largest distance of the block's bodies from the origin, scaled, at least one:
+    /// rounding is some eps of it.
     pub(super) fn extent(&self) -> f64 {
         let origin = self.columns.iter().zip(&self.scales);
         origin
@@ -482,14 +482,14 @@ impl<'a> Reduced<'a> {
             .fold(1.0, f64::max)
     }
 
-    /// q where the block and what it reads stand; the other unknowns as they were at the start.
+    /// Returns q at the last place; unknowns behind the block are those of the start.
     pub(super) fn pose(&self) -> Vec<f64> {
         let mut q = self.origin.clone();
         self.at.copy_pose(&mut q);
         q
     }
 
-    /// The drivers' values at the present τ.
+    /// Returns the drivers' values at the last place.
     pub(super) fn drivers(&self) -> &[f64] {
         &self.drivers
     }

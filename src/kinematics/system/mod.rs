@@ -1,4 +1,4 @@
-//! The mechanism as a system of equations Phi(q, t) = 0 (Ec. 3.6.3).
+//! The mechanism as a system of equations Phi(q, t) = 0 (Eq. 3.6.3).
 //!
 //! This is one side of the seam to the linear algebra: here are the equations, their rows and
 //! their scales, and nothing about how a linear system is solved.
@@ -12,10 +12,10 @@ use joint::JointParts;
 
 use crate::kinematics::configuration::{CamProfile, Configuration};
 use crate::kinematics::constraint::{self, Constraint, Dimension, Gradient, Incidence, TurnEffect};
-use crate::kinematics::linear::nan_or_larger;
+use crate::kinematics::linear::{Row, nan_or_larger};
 use crate::kinematics::variation::{Varied, VariedConfiguration};
 use crate::kinematics::{Element, Error};
-use crate::mechanism::{DriverId, Expression, Mechanism, ParameterId};
+use crate::mechanism::{DriverId, Expression, Jet, Mechanism, ParameterId};
 
 /// What c(q) is held at.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ pub struct Equation {
     pub parameters: Vec<ParameterId>,
 }
 
-/// The equations of a mechanism: kinematic constraints (Ec. 3.6.1), then drivers (Ec. 3.6.2).
+/// The equations of a mechanism: kinematic constraints (Eq. 3.6.1), then drivers (Eq. 3.6.2).
 #[derive(Debug)]
 pub struct System {
     mechanism: Arc<Mechanism>,
@@ -147,6 +147,32 @@ impl System {
                 self.joint_parts.unknowns[place].0.describe(&self.mechanism)
             }
         }
+    }
+
+    /// Returns the names of what moves by more than `least` among these unknowns: bodies, and joints
+    /// with unknowns of their own.
+    pub(in crate::kinematics) fn describe_moved(
+        &self,
+        motion: impl Iterator<Item = (usize, f64)>,
+        least: f64,
+    ) -> Vec<String> {
+        let moved = motion.filter(|(_, value)| value.abs() > least);
+        let mut columns: Vec<_> = moved.map(|(column, _)| column).collect();
+        columns.sort_unstable();
+        let mut names: Vec<_> = columns
+            .into_iter()
+            .map(|k| self.describe_unknown(k))
+            .collect();
+        // The unknowns of a body are next to each other.
+        names.dedup();
+        names
+    }
+
+    /// Returns the rows of some elements, ascending.
+    pub(in crate::kinematics) fn rows_of(&self, elements: &[Element]) -> Vec<usize> {
+        let equations = self.equations.iter().enumerate();
+        let theirs = equations.filter(|(_, e)| elements.contains(&e.element));
+        theirs.map(|(row, _)| row).collect()
     }
 
     /// The unknowns and parameters in row `row`, each unknown once, ascending.
@@ -292,7 +318,7 @@ impl System {
     /// rows in metres are divided by the mechanism's size, columns multiplied by
     /// [`column_scale`](Self::column_scale).
     ///
-    /// `entry(column, value)` is called for each entry of the row of the Jacobian (Ec. 3.6.4);
+    /// `entry(column, value)` is called for each entry of the row of the Jacobian (Eq. 3.6.4);
     /// two calls for the same column add up.
     pub(in crate::kinematics) fn evaluate_row(
         &self,
@@ -325,6 +351,25 @@ impl System {
         }
     }
 
+    /// Evaluates row `row` of Phi and writes the entries of its gradient, scaled, each column once.
+    pub(in crate::kinematics) fn sparse_row(
+        &self,
+        row: usize,
+        at: &Configuration,
+        targets: &Targets,
+        drivers: &[f64],
+        entries: &mut Row,
+    ) -> RowValue {
+        entries.clear();
+        self.evaluate_row(row, at, targets, drivers, |column, value| {
+            match entries.iter_mut().find(|(c, _)| *c == column) {
+                Some((_, sum)) => *sum += value,
+                None if value != 0.0 => entries.push((column, value)),
+                None => {}
+            }
+        })
+    }
+
     /// The magnitude of the largest entry of Phi, scaled; NaN if any entry is.
     #[must_use]
     pub fn largest_residual(&self, at: &Configuration, targets: &Targets, drivers: &[f64]) -> f64 {
@@ -342,6 +387,23 @@ impl System {
         column % 3 == 2 || column >= 3 * self.mechanism.bodies.len()
     }
 
+    /// Returns the difference of two values of an unknown, scaled, without whole turns.
+    #[must_use]
+    pub(in crate::kinematics) fn difference(
+        &self,
+        column: usize,
+        size: f64,
+        a: f64,
+        b: f64,
+    ) -> f64 {
+        let difference = (a - b) / self.column_scale(column, size);
+        if self.is_angle(column) {
+            difference - TAU * (difference / TAU).round()
+        } else {
+            difference
+        }
+    }
+
     /// The unknown in metres or radians that a scaled unknown of one stands for.
     #[must_use]
     pub fn column_scale(&self, column: usize, size: f64) -> f64 {
@@ -350,6 +412,14 @@ impl System {
 }
 
 impl Equation {
+    /// Returns the rates of the target, for these rates of the drivers: zero for a constant.
+    pub(in crate::kinematics) fn target_rates(&self, drivers: &[Jet]) -> Jet {
+        match self.target {
+            Target::Constant(_) => Jet::constant(0.0),
+            Target::Driver(driver) => drivers[driver.index()],
+        }
+    }
+
     /// Whether a joint or constraint holds an angle here, at whatever whole turn it was
     /// assembled. A driver's angle counts turns.
     #[must_use]

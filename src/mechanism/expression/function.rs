@@ -4,9 +4,15 @@ use std::f64::consts::PI;
 
 use crate::mechanism::number::{Number, Unary};
 
-/// The constants of the language; `deg`, `mm` and `cm` bring a number to SI units.
-pub(in crate::mechanism) const CONSTANTS: [(&str, f64); 4] =
-    [("pi", PI), ("deg", PI / 180.0), ("mm", 1e-3), ("cm", 1e-2)];
+/// Constants of the language. All but `pi` convert a number to SI units.
+pub(in crate::mechanism) const CONSTANTS: [(&str, f64); 6] = [
+    ("pi", PI),
+    ("deg", PI / 180.0),
+    ("rpm", PI / 30.0),
+    ("mm", 1e-3),
+    ("cm", 1e-2),
+    ("inch", 0.0254),
+];
 
 /// A function of two arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,12 +1,13 @@
 //! Numbers written as expressions over the parameters: parsed once, evaluated often.
 //!
 //! The language is small: numbers (`1`, `.5`, `2.`, `1e-3`), `+ - * / ^` and parentheses, the
-//! constants `pi deg mm cm`, parameters, the functions `sin cos tan asin acos atan atan2 sinh
-//! cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and one variable: time `t`
-//! in a motion, the polar angle `theta` in a cam's profile. Powers bind tighter than a sign and
+//! constants `pi deg rpm mm cm inch`, parameters, the functions `sin cos tan asin acos atan atan2
+//! sinh cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and one variable: time
+//! `t` in a motion, the polar angle `theta` in a cam's profile. Powers bind tighter than a sign and
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod display;
+mod error;
 mod function;
 mod parse;
 mod token;
@@ -14,9 +15,9 @@ mod token;
 #[cfg(test)]
 mod tests;
 
+pub use error::ExpressionError;
 use function::Binary;
 pub(super) use function::{CONSTANTS, function_names};
-pub use parse::ExpressionError;
 pub(super) use parse::Scope;
 
 use super::ParameterId;

@@ -1,8 +1,8 @@
 //! The words of the language: numbers, names and symbols, each with its place.
 
-use super::parse::ExpressionError;
+use super::error::ExpressionError;
 use crate::mechanism::Span;
-use crate::mechanism::names::quoted;
+use crate::mechanism::wording::quoted;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TokenKind<'a> {

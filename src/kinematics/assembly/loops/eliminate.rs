@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::form::{Angle, Closure, Form};
 use super::{Loops, MARGIN};
-use crate::kinematics::block::Work;
+use crate::kinematics::block::BlockState;
 use crate::kinematics::constraint::{Axis, Projection, Relation};
 use crate::mechanism::{Interval, MarkerId, Number};
 
@@ -14,7 +14,7 @@ const SLACK: f64 = 1e-12;
 
 /// Eliminates what it can of a block's unknowns.
 pub(super) struct Builder<'a> {
-    work: &'a Work<'a>,
+    work: &'a BlockState<'a>,
     columns: BTreeSet<usize>,
     /// Those that are not used yet.
     rows: Vec<usize>,
@@ -39,7 +39,7 @@ struct Link {
 
 impl<'a> Builder<'a> {
     /// Nothing is eliminated yet.
-    pub(super) fn new(rows: &[usize], columns: &[usize], work: &'a Work<'a>) -> Self {
+    pub(super) fn new(rows: &[usize], columns: &[usize], work: &'a BlockState<'a>) -> Self {
         Self {
             work,
             columns: columns.iter().copied().collect(),
@@ -159,7 +159,7 @@ impl<'a> Builder<'a> {
     }
 
     fn target(&self, row: usize) -> Interval {
-        let Work {
+        let BlockState {
             system,
             targets,
             drivers,

@@ -1,4 +1,4 @@
-//! All the ways in which a block closes, by bounds over intervals: its angles are divided into
+//! All the branches in which a block closes, by bounds over intervals: its angles are divided into
 //! boxes until each holds no solution, as an equation has a bound that keeps it from zero, or
 //! exactly one, by Krawczyk's test.
 //!
@@ -16,7 +16,7 @@ use eliminate::Builder;
 use form::Closure;
 use nalgebra::DMatrix;
 
-use crate::kinematics::block::Work;
+use crate::kinematics::block::BlockState;
 use crate::mechanism::{Interval, Number};
 
 /// A block of more unknowns has too many angles for boxes.
@@ -35,26 +35,26 @@ const SAME: f64 = 1e-7;
 /// A gap below this, scaled, may be rounding.
 const MARGIN: f64 = 1e-10;
 
-/// The ways in which a block closes.
+/// The branches in which a block closes.
 #[derive(Debug)]
-pub(super) struct AllWays {
+pub(super) struct AllBranches {
     /// The unknowns in the order of the block's columns, near a solution each; all there are.
     /// `None` if that could not be proved.
-    pub(super) ways: Option<Vec<Vec<f64>>>,
+    pub(super) branches: Option<Vec<Vec<f64>>>,
     /// Into how many boxes the angles were divided.
     pub(super) boxes: usize,
 }
 
-/// Finds all ways in which the rows close in the unknowns `columns`. All other unknowns are known
+/// Finds all branches in which the rows close in the unknowns `columns`. All other unknowns are known
 /// in `work`.
-pub(super) fn all_ways(
+pub(super) fn all_branches(
     rows: &[usize],
     columns: &[usize],
-    work: &Work<'_>,
+    work: &BlockState<'_>,
     estimate: &[f64],
-) -> AllWays {
-    let unknown = AllWays {
-        ways: None,
+) -> AllBranches {
+    let unknown = AllBranches {
+        branches: None,
         boxes: 0,
     };
     let bodies = work.system.mechanism().bodies.len();
@@ -67,11 +67,11 @@ pub(super) fn all_ways(
         return unknown;
     };
     let (solutions, boxes) = loops.solve();
-    let ways = solutions.and_then(|solutions| {
+    let branches = solutions.and_then(|solutions| {
         let at = |angles: &Vec<f64>| builder.unknowns(columns, &loops.kept, angles, estimate);
         solutions.iter().map(at).collect()
     });
-    AllWays { ways, boxes }
+    AllBranches { branches, boxes }
 }
 
 /// The equations of a block in its torn angles.

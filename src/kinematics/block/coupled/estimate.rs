@@ -1,75 +1,79 @@
-//! What stands in for the certificate of blocks whose inverse is too large to be written down.
+//! The estimate that replaces the certificate of a block whose inverse is too large to be written
+//! down.
 //!
-//! Here A(s) is the inverse of the Jacobian on the chord itself, so that K holds what the Jacobian
-//! changes by within the radii alone, which are of second order in the sub-step. How it changes
-//! along the chord only tells how much larger A(s) may be than A = J⁻¹ at the end of the sub-step:
+//! Here A(s) is the inverse of the Jacobian on the chord itself, so that K holds only the change of
+//! the Jacobian within the radii, which are of second order in the sub-step. Its change along the
+//! chord only tells how much larger A(s) may be than A = J⁻¹ at the end of the sub-step:
 //!
 //! > |A(s) x| ≤ |A x| / (1 − c) with c ≥ |A (J(z̄(s)) − J)|, in the largest norm.
 //!
 //! The links of a long row of loops all turn alike: their changes in A J have signs and cancel,
-//! while bounds of them would add up with the square of the row's length. So c is taken from the
-//! Jacobian itself where that differs most, at the far end of the chord, and what the chord leaves
-//! the rows open by from their values in its middle. One radius r serves all unknowns, and the
+//! while bounds of them would add up with the square of the row's length. So c comes from the
+//! Jacobian itself where it differs most, at the far end of the chord, and the values of the rows
+//! on the chord come from their values in its middle. One radius r serves all unknowns, and the
 //! test is
 //!
-//! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all else that is open).
+//! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all other bounds of the rows).
 //!
-//! Norms are estimated from below and one place stands for the whole way, so what they give is
-//! taken larger by [`MARGIN`], and the sub-step is *checked*.
+//! Norms are estimated from below and one place stands for the whole chord; the factor [`MARGIN`]
+//! makes up for that, and the sub-step is *checked*.
 
-use super::Coupled;
-use super::proof::{Estimate, LARGEST_CONTRACTION, MOST_TRIES, Proof, ROOM, STRICTLY};
-use crate::kinematics::block::work::{Substep, Work};
+use super::CoupledBlock;
+use super::contraction::{
+    ContractionTest, Estimate, LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY,
+};
+use crate::kinematics::block::step::{BlockState, Step};
 use crate::kinematics::linear::{Factors, nan_or_larger};
 use crate::kinematics::newton::STALLED;
 use crate::kinematics::system::Target;
 
-/// What estimates are taken larger by.
+/// Safety factor on estimates.
 const MARGIN: f64 = 2.0;
 
-/// How the test was passed.
+/// The result of a test that was passed.
 pub(super) struct Passed {
-    /// r, and what the test makes of it, both scaled.
+    /// r, and the radius of the motion around the chord, both scaled.
     pub(super) radius: f64,
     pub(super) next: f64,
-    /// c and the norm of K together.
+    /// The sum of c and the norm of K.
     pub(super) contraction: f64,
 }
 
-impl Coupled {
-    /// Looks for a radius that passes the test and leaves it in `next`. Returns c and the norm of
-    /// K together. The bodies go from the end of the sub-step, where the block is factorised, to
-    /// its middle.
+impl CoupledBlock {
+    /// Looks for a radius that passes the test and leaves it in `next`. Returns the sum of c and
+    /// the norm of K. Moves the bodies from the end of the sub-step, where the block is factorised,
+    /// to its middle.
     ///
     /// # Errors
     ///
-    /// There is none; with c and the norm of K, if they are known.
+    /// Without such a radius the sum of c and the norm of K, if they are known.
     pub(super) fn estimate_radii(
         &mut self,
-        work: &mut Work<'_>,
-        substep: &mut Substep<'_>,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
     ) -> Result<f64, Option<f64>> {
-        substep.tubes.checked = true;
-        self.lay_chord(work, substep);
-        self.stand_on_chord(work, substep, 0.0);
-        self.evaluate_rows(work);
+        step.bounds.checked = true;
+        self.lay_chord(state, step);
+        self.move_to_chord(state, step, 0.0);
+        self.evaluate_rows(state);
         let drift = self.drift();
-        let passed = self.test_chord(work, substep, [drift, 0.0], ROOM)?;
-        self.proof.next.fill(passed.next);
+        let passed = self.test_chord(state, step, [drift, 0.0], ROOM)?;
+        self.test.next.fill(passed.next);
         Ok(passed.contraction)
     }
 
-    /// The test for the chord in `substep`, to whose middle the bodies go. `drift` is the norm of A
-    /// times what the Jacobian differs by at its far end, `astray` how far off the motion that end
-    /// may be, scaled; the radius tried first is `room` times what the chord is off.
+    /// Tests the chord of `step` and moves the bodies to its middle. `drift` is the norm of A times
+    /// the change of the Jacobian at the far end of the chord, `astray` a bound of the distance of
+    /// that end from the motion, scaled; the first trial radius is `room` times the distance of
+    /// the chord from the motion.
     ///
     /// # Errors
     ///
-    /// It is not passed; with c and the norm of K, if they are known.
+    /// If the test fails, the sum of c and the norm of K, if they are known.
     pub(super) fn test_chord(
         &mut self,
-        work: &mut Work<'_>,
-        substep: &mut Substep<'_>,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
         [drift, astray]: [f64; 2],
         room: f64,
     ) -> Result<Passed, Option<f64>> {
@@ -80,10 +84,10 @@ impl Coupled {
         if drift >= LARGEST_CONTRACTION {
             return Err(Some(drift));
         }
-        self.stand_on_chord(work, substep, 0.5);
-        self.evaluate_rows(work);
-        let proof = &mut *self.proof;
-        for (slack, rounding) in proof.slack.iter_mut().zip(&proof.row) {
+        self.move_to_chord(state, step, 0.5);
+        self.evaluate_rows(state);
+        let test = &mut *self.test;
+        for (slack, rounding) in test.slack.iter_mut().zip(&test.row) {
             *slack += rounding;
         }
         let larger = 1.0 / (1.0 - drift);
@@ -91,7 +95,7 @@ impl Coupled {
         let mut radius = room * gap + f64::EPSILON;
         let mut last = None;
         for _ in 0..MOST_TRIES {
-            let [open, change] = self.bend_around(work, substep, radius).ok_or(last)?;
+            let [open, change] = self.bend_around(state, step, radius).ok_or(last)?;
             let next = gap + larger * (open + change);
             let contraction = drift + larger * change / radius;
             if contraction.is_nan() {
@@ -113,107 +117,101 @@ impl Coupled {
         Err(Some(1.0))
     }
 
-    /// Evaluates the rows at the pose in `work`, leaving alone what is factorised; what rounding
-    /// may have left of them goes to `row`.
-    pub(super) fn evaluate_rows(&mut self, work: &Work<'_>) {
-        let Self { block, proof, .. } = self;
-        let Proof {
+    /// Evaluates the rows at the pose in `state` without touching the factors; bounds of their
+    /// rounding go to `row`.
+    pub(super) fn evaluate_rows(&mut self, state: &BlockState<'_>) {
+        let Self {
+            equations, test, ..
+        } = self;
+        let ContractionTest {
             middle,
             estimate: Estimate { gap, .. },
             row: rounding,
             ..
-        } = &mut **proof;
-        block.evaluate(work, middle, |local, value| {
-            let target = &work.system.equations()[block.rows[local]].target;
+        } = &mut **test;
+        equations.evaluate(state, middle, |local, value| {
+            let target = &state.system.equations()[equations.rows[local]].target;
             gap[local] = match target {
                 Target::Constant(_) => value.value,
-                // Its driver is at the end; `bend_around` has it.
+                // The driver is at its end; `bend_around` adds its chord.
                 Target::Driver(_) => 0.0,
             };
-            // What it leaves of the rows at both ends of a chord.
+            // The rounding of the rows at both ends of a chord.
             rounding[local] = 2.0 * STALLED * value.rounding;
         });
     }
 
-    /// Moves all unknowns of the rows to a place on the chord in `substep`, from 0 to 1.
-    pub(super) fn stand_on_chord(&self, work: &mut Work<'_>, substep: &Substep<'_>, s: f64) {
-        for &column in self.block.columns.iter().chain(&self.proof.known) {
-            let place = substep.from[column] + s * substep.tubes.chord[column];
-            work.at.set_coordinate(column, place);
-        }
-    }
-
-    /// The norm of A times what the Jacobian differs by where the rows were evaluated last.
+    /// Returns the norm of A times the change of the Jacobian where the rows were evaluated last.
     pub(super) fn drift(&mut self) -> f64 {
-        let Proof {
+        let ContractionTest {
             condition,
             middle,
             estimate: Estimate { drift, .. },
             ..
-        } = &mut *self.proof;
+        } = &mut *self.test;
         drift.clear();
         drift.extend(middle.lu.differences(&self.jacobian.lu));
         condition.largest_row_of_product(&mut self.jacobian.lu, drift)
     }
 
-    /// The largest component of A F, with F where the rows were evaluated.
+    /// Returns the largest component of A F where the rows were evaluated last.
     pub(super) fn farthest(&mut self) -> f64 {
-        let gap = &mut self.proof.estimate.gap;
+        let gap = &mut self.test.estimate.gap;
         self.jacobian.lu.solve(gap);
         gap.iter()
             .fold(0.0, |most, value| nan_or_larger(most, value.abs()))
     }
 
-    /// The largest components of |A| times what rows are open by apart from F in the middle, and
-    /// of |A| times what their gradients change by within this radius, times the radius.
+    /// Returns bounds of |A| times the values of the rows apart from F in the middle, and of |A|
+    /// times the change of their gradients within this radius, times the radius.
     fn bend_around(
         &mut self,
-        work: &Work<'_>,
-        substep: &mut Substep<'_>,
+        state: &BlockState<'_>,
+        step: &mut Step<'_>,
         radius: f64,
     ) -> Option<[f64; 2]> {
         let Self {
-            block,
-            proof,
+            equations,
+            test,
             jacobian,
             ..
         } = self;
-        let tubes = &mut *substep.tubes;
-        let size = work.at.size();
-        let scale = |column: usize| work.system.column_scale(column, size);
-        for &column in &block.columns {
-            tubes.region[column] = radius * scale(column);
+        let bounds = &mut *step.bounds;
+        let size = state.at.size();
+        let scale = |column: usize| state.system.column_scale(column, size);
+        for &column in &equations.columns {
+            bounds.region[column] = radius * scale(column);
         }
-        for (&column, radius) in proof.known.iter().zip(&proof.known_radii) {
-            tubes.region[column] = radius * scale(column);
+        for (&column, radius) in test.known.iter().zip(&test.known_radii) {
+            bounds.region[column] = radius * scale(column);
         }
-        for local in 0..block.rows.len() {
-            let bend = block.bend(local, work, tubes)?;
-            let (mut open, mut change) = (proof.slack[local], 0.0);
-            if let Target::Driver(driver) = work.system.equations()[block.rows[local]].target {
-                open += 0.125 * bend.along + tubes.drivers[driver.index()] * bend.row_scale;
+        for local in 0..equations.rows.len() {
+            let bend = equations.bend(local, state, bounds)?;
+            let (mut open, mut change) = (test.slack[local], 0.0);
+            if let Target::Driver(driver) = state.system.equations()[equations.rows[local]].target {
+                open += 0.125 * bend.along + bounds.drivers[driver.index()] * bend.row_scale;
             }
             for (column, value) in bend.changes() {
                 let value = value * scale(column);
-                if block.own(column).is_some() {
+                if equations.own(column).is_some() {
                     change += value * radius;
-                } else if let Ok(place) = proof.known.binary_search(&column) {
-                    open += value * proof.known_radii[place];
+                } else if let Ok(place) = test.known.binary_search(&column) {
+                    open += value * test.known_radii[place];
                 }
             }
-            (proof.open[local], proof.row[local]) = (open, change);
+            (test.open[local], test.row[local]) = (open, change);
         }
-        for &(local, column, value) in &proof.middle.upstream {
-            if let Ok(place) = proof.known.binary_search(&column) {
-                proof.open[local] += value.abs() * proof.known_radii[place];
+        for &(local, column, value) in &test.middle.upstream {
+            if let Ok(place) = test.known.binary_search(&column) {
+                test.open[local] += value.abs() * test.known_radii[place];
             }
         }
-        let Proof {
+        let ContractionTest {
             condition,
             open,
             row,
             ..
-        } = &mut **proof;
+        } = &mut **test;
         let lu = &mut jacobian.lu;
         Some([&*open, &*row].map(|b| MARGIN * condition.largest_row(lu, b)))
     }

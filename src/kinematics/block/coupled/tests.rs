@@ -1,17 +1,18 @@
-//! What takes the place of the proof for large blocks accepts no step onto another branch.
+//! The estimate for large blocks accepts no step onto another branch.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::kinematics::block::{Advance, Kernel, Substep, Work};
+use crate::kinematics::block::{BlockSolver, BlockState, Extrapolation, SolveBlock, Step};
+use crate::kinematics::certificate::{Pivots, StepBounds};
 use crate::kinematics::reference::assembled;
 use crate::kinematics::reference::generated::{BAR, scissor_lift};
 use crate::kinematics::solver::Solver;
 use crate::mechanism::Source;
 
-/// So many that the one block has more than 32 torn unknowns.
+/// Number of cells with which the one block has more than 32 torn unknowns.
 const CELLS: usize = 20;
 
-/// A lift whose bars stand at ±`theta` to the ground: a cell with −1 is folded down.
+/// Returns q of a lift whose bars are at ±`theta` to the ground; a cell with −1 is folded down.
 fn pose(theta: f64, signs: &[f64; CELLS]) -> Vec<f64> {
     let mut y = 0.0;
     let mut q = Vec::new();
@@ -23,50 +24,49 @@ fn pose(theta: f64, signs: &[f64; CELLS]) -> Vec<f64> {
     q
 }
 
-/// The height of its end.
+/// Returns the height of its end.
 fn height(theta: f64, signs: &[f64; CELLS]) -> f64 {
     signs.iter().sum::<f64>() * BAR * theta.sin()
 }
 
-/// Whether a sub-step from one root of the equations to another one is accepted.
+/// Returns whether a sub-step from one root of the equations to another one is accepted.
 fn accepts(solver: &mut Solver, from: (f64, &[f64; CELLS]), to: (f64, &[f64; CELLS])) -> bool {
     let ends = [from, to].map(|(theta, signs)| (pose(theta, signs), height(theta, signs)));
     let [(start, low), (end, high)] = ends;
-    solver.pose.q.copy_from_slice(&start);
-    solver.pose.drivers[0] = low;
-    solver.stand_at_pose();
-    solver.next_drivers[0] = high;
-    solver.tubes.begin(false);
-    solver.tubes.drivers[0] = f64::EPSILON * (low + high);
-    let mut work = Work {
-        system: &solver.system,
-        targets: &solver.targets,
-        drivers: &solver.next_drivers,
-        at: &mut solver.at,
-        flow: &mut solver.flow,
+    let Solver { model, state, .. } = solver;
+    state.pose.q.copy_from_slice(&start);
+    state.pose.drivers[0] = low;
+    state.move_to_pose(&model.system);
+    let mut bounds = StepBounds::new(&model.system);
+    bounds.begin(false);
+    bounds.drivers[0] = f64::EPSILON * (low + high);
+    let mut state = BlockState {
+        drivers: &[high],
+        ..state.block_state(&model.system)
     };
-    let mut substep = Substep {
-        advance: Advance {
+    let mut step = Step {
+        extrapolation: Extrapolation {
             first: 0.0,
             second: 0.0,
         },
         from: &start,
-        tubes: &mut solver.tubes,
+        pivots: &Pivots::new(2 * CELLS),
+        bounds: &mut bounds,
     };
-    let mut kernels = solver.plan.kernels.iter_mut();
-    let large = kernels.find_map(|kernel| match kernel {
-        Kernel::Coupled(kernel) if kernel.proof.inverse.is_empty() => Some(kernel),
+    let mut blocks = model.plan.blocks.iter_mut();
+    let large = blocks.find_map(|block| match block {
+        BlockSolver::CoupledBlock(block) if block.test.inverse.is_empty() => Some(block),
         _ => None,
     });
     let large = large.expect("all bars are in one block");
-    large.note_start(&mut work, &mut substep);
-    work.at.set_pose(work.system.mechanism(), &end);
-    large.factorise(&work).expect("the end is regular");
+    large.note_start(&mut state, &mut step);
+    state.at.set_pose(state.system.mechanism(), &end);
+    large.factorise(&mut state).expect("the end is regular");
     assert!(large.excess < 100.0, "the end is a root");
-    large.certify(&mut work, &mut substep).is_ok()
+    large.certify(&mut state, &mut step).is_ok()
 }
 
-/// Where a sub-step leads.
+/// The branch to which a sub-step leads.
 #[derive(Clone, Copy, PartialEq)]
 enum Branch {
     Same,

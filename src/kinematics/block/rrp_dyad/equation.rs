@@ -1,20 +1,20 @@
-//! The equation of a slide in the angle of a, and where the bodies are for an angle.
+//! The equation in the angle of a, and the poses of the bodies for an angle.
 
 use nalgebra::Vector2;
 
 use super::{Line, Point, RrpDyad, Second};
-use crate::kinematics::block::Work;
-use crate::kinematics::block::anchor::Place;
+use crate::kinematics::block::anchor::SplitPoint;
+use crate::kinematics::block::step::BlockState;
 use crate::kinematics::configuration::BodyPose;
 
-/// What is known before the angle of a is.
+/// The numbers that are known before the angle of a.
 pub(super) struct Known {
     /// The revolute of a.
-    pub(super) point: Place,
-    /// b, all but its origin if that depends on the angle; ground where there is none.
+    pub(super) point: SplitPoint,
+    /// The frame of b without its origin if that depends on the angle; ground if there is no b.
     pub(super) second: BodyPose,
-    /// For a parallel b: its revolute, and by how much it is turned against a.
-    pub(super) second_point: Place,
+    /// For a parallel b: its revolute, and its angle from a.
+    pub(super) second_point: SplitPoint,
     pub(super) second_turn: f64,
     /// The known part of P_j − P_i.
     pub(super) still: Vector2<f64>,
@@ -22,17 +22,17 @@ pub(super) struct Known {
     /// g in a's frame.
     pub(super) g: Vector2<f64>,
     pub(super) kappa: f64,
-    /// What the rounding of f comes from besides the angle.
+    /// Magnitude of the numbers in f besides the angle: its rounding is some eps of it.
     pub(super) reach: f64,
 }
 
 impl RrpDyad {
-    /// Gathers what is known.
+    /// Gathers the known numbers.
     #[inline(always)]
-    pub(super) fn known(&self, work: &Work<'_>) -> Known {
-        let frames = work.at.frames();
-        let point = self.anchor.place(frames);
-        let target = |row: usize| work.system.target(row, work.targets, work.drivers);
+    pub(super) fn known(&self, state: &BlockState<'_>) -> Known {
+        let frames = state.at.frames();
+        let point = self.anchor.split_point(frames);
+        let target = |row: usize| state.system.target(row, state.targets, state.drivers);
         let held = |sense: f64, row: usize| sense * target(row);
         let mut known = Known {
             point,
@@ -57,13 +57,13 @@ impl RrpDyad {
                     link = *l;
                 }
                 Second::Parallel { anchor, zero, .. } => {
-                    known.second_point = anchor.place(frames);
+                    known.second_point = anchor.split_point(frames);
                     known.second_turn = held(b.sense, b.row) + zero;
                 }
             }
         }
         let part = |point: &Point| match *point {
-            Point::Known(anchor) => (anchor.place(frames), Vector2::zeros()),
+            Point::Known(anchor) => (anchor.split_point(frames), Vector2::zeros()),
             Point::First(arm) => (known.point, arm),
             Point::Carried(arm) => (known.point.plus(known.second.rotate(arm)), link),
             Point::Parallel(arm) => (known.second_point, arm),
@@ -88,7 +88,7 @@ impl RrpDyad {
         known
     }
 
-    /// Puts both bodies where they belong for an angle of a.
+    /// Puts both bodies at their poses for an angle of a.
     #[inline(always)]
     pub(super) fn put(&self, frames: &mut [BodyPose], known: &Known, first: BodyPose) {
         let first = BodyPose {
@@ -97,22 +97,22 @@ impl RrpDyad {
         };
         match &self.second {
             Second::None => {}
-            Second::Carried { place, l, s, .. } => {
+            Second::Carried { body, l, s, .. } => {
                 let arm = first.rotate(*l) - known.second.rotate(*s);
                 let origin = known.point.plus(arm).point();
-                frames[*place as usize] = BodyPose {
+                frames[*body as usize] = BodyPose {
                     origin,
                     ..known.second
                 };
             }
-            Second::Parallel { place, s, .. } => {
+            Second::Parallel { body, s, .. } => {
                 let second = BodyPose::turned(first.phi + known.second_turn);
-                frames[*place as usize] = BodyPose {
+                frames[*body as usize] = BodyPose {
                     origin: known.second_point.plus(-second.rotate(*s)).point(),
                     ..second
                 };
             }
         }
-        frames[self.place as usize] = first;
+        frames[self.body as usize] = first;
     }
 }

@@ -1,30 +1,31 @@
-//! What of a slide follows from the parameters.
+//! The numbers of the block that follow from the parameters.
 
 use nalgebra::Vector2;
 
 use super::{Line, Point, RrpDyad, Second};
-use crate::kinematics::certificate::Tubes;
+use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::{self, BodyPose, Configuration, perp};
 use crate::kinematics::constraint::{Axis, Projection};
 use crate::kinematics::system::Targets;
 
 impl RrpDyad {
-    pub(in crate::kinematics::block) fn set_parameters(
+    /// Takes over all that depends on the parameters alone.
+    pub(super) fn take_over_parameters(
         &mut self,
         at: &Configuration,
         targets: &Targets,
-        tubes: &mut Tubes,
+        pivots: &mut Pivots,
     ) {
         let parts = &self.parts;
-        self.anchor.set_parameters(at, tubes, parts.anchor);
+        self.anchor.set_parameters(at, pivots, parts.anchor);
         self.s = at.local(parts.pin).0;
-        tubes.set_pivot(parts.body, self.s);
+        pivots.set(parts.body, self.s);
         let mut between = BodyPose::turned(0.0);
         let mut inner = Vector2::zeros();
         if let Some(b) = &parts.second {
             let offset = at.local(b.reference).1 - at.local(b.angle).1;
             inner = at.local(b.pin).0;
-            tubes.set_pivot(b.body, inner);
+            pivots.set(b.body, inner);
             match &mut self.second {
                 Second::None => {}
                 Second::Carried { zero, l, s, .. } => {
@@ -35,10 +36,10 @@ impl RrpDyad {
                 Second::Parallel {
                     anchor, zero, s, ..
                 } => {
-                    anchor.set_parameters(at, tubes, b.partner);
+                    anchor.set_parameters(at, pivots, b.partner);
                     *zero = offset;
                     *s = inner;
-                    // Without whole turns, which are no part of the parameters.
+                    // Without whole turns: they do not belong to the parameters.
                     between = BodyPose::turned(offset + b.sense * targets.constant(b.row));
                 }
             }
@@ -52,7 +53,7 @@ impl RrpDyad {
         for (point, marker) in self.points.iter_mut().zip([from, to]) {
             let s = at.local(marker).0;
             match point {
-                Point::Known(anchor) => anchor.set_parameters(at, tubes, marker),
+                Point::Known(anchor) => anchor.set_parameters(at, pivots, marker),
                 Point::First(arm) => *arm = s - self.s,
                 Point::Carried(arm) => *arm = s - inner,
                 Point::Parallel(arm) => *arm = between.rotate(s - inner),

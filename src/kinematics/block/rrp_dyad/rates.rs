@@ -1,58 +1,54 @@
-//! Velocities and accelerations of a slide.
+//! Velocities and accelerations of the block.
 
 use nalgebra::Vector2;
 
 use super::{Line, Point, RrpDyad, Second};
-use crate::kinematics::block::Work;
 use crate::kinematics::block::anchor::Moving;
+use crate::kinematics::block::step::BlockState;
 use crate::kinematics::configuration::perp;
-use crate::kinematics::system::Target;
 use crate::mechanism::Jet;
 
 impl RrpDyad {
-    /// ḟ and f̈ for a resting angle of a, the slope making up for them.
-    pub(in crate::kinematics::block) fn solve_rates(&self, work: &mut Work<'_>, drivers: &[Jet]) {
-        let frames = work.at.frames();
-        let (velocity, acceleration) = work.flow.both_mut();
-        let driver = |row: usize| match work.system.equations()[row].target {
-            Target::Constant(_) => Jet::constant(0.0),
-            Target::Driver(driver) => drivers[driver.index()],
-        };
-        let first = &frames[self.place as usize];
+    /// Solves omega and alpha of body a from ḟ = 0 and f̈ = 0, and writes the rates of both bodies.
+    pub(super) fn solve_angles(&self, state: &mut BlockState<'_>, drivers: &[Jet]) {
+        let frames = state.at.frames();
+        let (velocity, acceleration) = state.tangent.both_mut();
+        let driver = |row: usize| state.system.equations()[row].target_rates(drivers);
+        let first = &frames[self.body as usize];
         let outer = self.anchor.rates(frames, velocity, acceleration);
-        // Of b: its frame, the rates of its own angle where that is known, and its revolute.
+        // The frame of b, the rates of its angle where that is known, and its revolute.
         let (mut b, mut spin, mut pinned) = (first, Spin::default(), outer);
-        let mut second = self.anchor.place(frames);
+        let mut second = self.anchor.split_point(frames);
         if let Some(parts) = &self.parts.second {
             let held = driver(parts.row);
             match &self.second {
                 Second::None => {}
                 Second::Carried {
-                    place, reference, ..
+                    body, reference, ..
                 } => {
-                    b = &frames[*place as usize];
+                    b = &frames[*body as usize];
                     spin = Spin::of(*reference, velocity, acceleration);
                     spin.omega += parts.sense * held.first();
                     spin.alpha += parts.sense * held.second();
                 }
-                Second::Parallel { place, anchor, .. } => {
-                    b = &frames[*place as usize];
+                Second::Parallel { body, anchor, .. } => {
+                    b = &frames[*body as usize];
                     pinned = anchor.rates(frames, velocity, acceleration);
-                    second = anchor.place(frames);
+                    second = anchor.split_point(frames);
                 }
             }
         }
-        // The known part of a point; what turns with a is left out.
+        // The known part of a point, without the part that turns with a.
         let still = |point: &Point| match *point {
             Point::Known(anchor) => {
                 let moving = anchor.rates(frames, velocity, acceleration);
-                (anchor.place(frames), moving)
+                (anchor.split_point(frames), moving)
             }
-            Point::First(_) => (self.anchor.place(frames), outer),
+            Point::First(_) => (self.anchor.split_point(frames), outer),
             Point::Carried(arm) => {
                 let arm = b.rotate(arm);
                 let moving = spin.carry(outer, arm);
-                (self.anchor.place(frames).plus(arm), moving)
+                (self.anchor.split_point(frames).plus(arm), moving)
             }
             Point::Parallel(_) => (second, pinned),
         };
@@ -99,15 +95,15 @@ impl RrpDyad {
         };
         match &self.second {
             Second::None => {}
-            Second::Carried { place, l, s, .. } => {
+            Second::Carried { body, l, s, .. } => {
                 let inner = own.carry(outer, first.rotate(*l));
-                write(*place as usize, spin, inner, b.rotate(*s));
+                write(*body as usize, spin, inner, b.rotate(*s));
             }
-            Second::Parallel { place, s, .. } => {
-                write(*place as usize, own, pinned, b.rotate(*s));
+            Second::Parallel { body, s, .. } => {
+                write(*body as usize, own, pinned, b.rotate(*s));
             }
         }
-        write(self.place as usize, own, outer, first.rotate(self.s));
+        write(self.body as usize, own, outer, first.rotate(self.s));
     }
 }
 
@@ -119,7 +115,7 @@ struct Spin {
 }
 
 impl Spin {
-    /// That of a body, none for ground.
+    /// Returns the spin of a body, zero for ground.
     fn of(body: Option<usize>, velocity: &[f64], acceleration: &[f64]) -> Self {
         body.map_or_else(Self::default, |body| Self {
             omega: velocity[3 * body + 2],
@@ -127,7 +123,7 @@ impl Spin {
         })
     }
 
-    /// The rates of a point that is `arm` away from a moving one.
+    /// Returns the rates of a point at the distance `arm` from a moving point.
     fn carry(self, from: Moving, arm: Vector2<f64>) -> Moving {
         Moving {
             velocity: from.velocity + perp(arm) * self.omega,

@@ -13,7 +13,7 @@
 //! g being how far the chord leaves the loop open. It closes at both ends; in the middle each
 //! vector that turns by Δ is longer than the mean of its ends by (1 / cos(Δ/2) − 1) of it. These
 //! add up with their directions, so that links that turn alike leave nothing. Elsewhere the gap
-//! is at most that in the middle and what the third derivative adds to a parabola.
+//! is at most the one in the middle plus the effect of the third derivative on a parabola.
 //!
 //! An anchor whose body's angle is uncertain by ρ, with the lever a from the body's pivot, opens
 //! the loop in a known direction, which makes r_a = ρ |a × d_b| / det. Along the chord this is a
@@ -23,35 +23,36 @@
 //! > max R + (|a| l_b Δψ² + max R · l_a l_b Δμ²) / (8 det),
 //!
 //! ψ and μ being those angles. A parallelogram, where a and d_b are parallel to each other,
-//! passes an uncertainty on as it is, however many follow each other; the direction not heeded,
-//! each would enlarge it.
+//! passes an uncertainty on unchanged, however long the row of parallelograms; without the
+//! direction each of them would enlarge it.
 //!
-//! While parameters move, the chord is that of the links in force at the end, from which those on
-//! the way differ by their slips: once on the way, once where the chord starts.
+//! While parameters move, the chord is that of the links in force at the end. The links on the way
+//! differ from them by the parameter bounds, which count twice: on the way and at the start.
 
 use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
-use super::{Before, Found, RrrDyad, Work, larger};
-use crate::kinematics::certificate::{Gap, Tubes, sagitta};
+use super::{Before, Found, RrrDyad};
+use crate::kinematics::block::anchor::larger;
+use crate::kinematics::block::step::BlockState;
+use crate::kinematics::certificate::{Gap, StepBounds, sagitta};
 use crate::kinematics::configuration::rotate;
 use crate::kinematics::newton::Rejected;
 
-/// In which direction an uncertain angle opens the loop is not asked where it adds no more than
-/// this part to the gap.
+/// An uncertain angle that adds no more than this part to the gap is added without its direction.
 const NEGLIGIBLE: f64 = 0.01;
 
-/// By how much a vector that turns by `turn` from `from` to `to` is off the middle between them
-/// on its way, up to terms of fourth order.
+/// Returns the distance of a vector that turns by `turn` from `from` to `to` from the middle
+/// between them, up to terms of fourth order.
 #[inline(always)]
 fn bulge(from: Vector2<f64>, to: Vector2<f64>, turn: f64) -> Vector2<f64> {
     (from + to) * (0.5 * sagitta(turn))
 }
 
-/// How far such a vector of this length is off the parabola through its ends and its middle: the
-/// third derivative, divided by six, times the largest s (s − ½) (s − 1), which is √3/36. Besides,
-/// what [`bulge`] leaves out, l (1 − cos x (1 + x²/2)) ≤ l x⁴/4 with x = Δ/2.
+/// Bounds the distance of such a vector of this length from the parabola through its ends and its
+/// middle: the third derivative, divided by six, times the largest s (s − ½) (s − 1), which is
+/// √3/36; and the terms that [`bulge`] leaves out, l (1 − cos x (1 + x²/2)) ≤ l x⁴/4 with x = Δ/2.
 #[inline(always)]
 fn beyond_parabola(length: f64, turn: f64) -> f64 {
     const PARABOLA: f64 = 0.008_02;
@@ -60,47 +61,47 @@ fn beyond_parabola(length: f64, turn: f64) -> f64 {
 }
 
 impl RrrDyad {
-    /// Proves that one motion joins the two ends of a sub-step, and writes its tube.
+    /// Proves that one motion joins the two ends of a sub-step, and writes its chord bounds.
     ///
     /// # Errors
     ///
-    /// There is no such proof.
+    /// [`Rejected`] without such a proof.
     #[inline(always)]
     pub(super) fn certify(
         &self,
-        work: &Work<'_>,
-        tubes: &mut Tubes,
+        state: &BlockState<'_>,
+        bounds: &mut StepBounds,
         before: &Before,
         found: &Found,
     ) -> Result<(), Rejected> {
         let [a, b] = &self.sides;
-        let frames = work.at.frames();
+        let frames = state.at.frames();
         let turns = [
-            frames[a.place as usize].phi - before.phi[0],
-            frames[b.place as usize].phi - before.phi[1],
+            frames[a.body as usize].phi - before.phi[0],
+            frames[b.body as usize].phi - before.phi[1],
         ];
         let (mut before_links, mut before_determinant) = (before.links, before.determinant);
         let mut gap = 2.0 * found.open;
-        let mut strays = [0.0; 2];
-        // How far the links may differ from those in force.
+        let mut deviations = [0.0; 2];
+        // Bounds of the change of the links by moving parameters.
         let mut slack = [0.0; 2];
-        if let Some(slips) = tubes.slips() {
+        if let Some(parameters) = bounds.moving_parameters() {
             // The loop at the start with the lengths in force now.
             before_links = [a, b].map(|side| {
-                let tube = tubes.body(side.place as usize);
-                rotate(tube.cos, tube.sin, side.l)
+                let bound = bounds.body(side.body as usize);
+                rotate(bound.cos, bound.sin, side.l)
             });
             before_determinant = before_links[0].perp(&before_links[1]);
             for (k, parts) in self.parts.sides.iter().enumerate() {
-                let [outer, inner] = [parts.outer, parts.inner].map(|m| slips.position(m));
-                strays[k] = 2.0 * (outer + slips.position(parts.anchor));
+                let [outer, inner] = [parts.outer, parts.inner].map(|m| parameters.position(m));
+                deviations[k] = 2.0 * (outer + parameters.position(parts.anchor));
                 slack[k] = outer + inner;
-                gap += strays[k] + 2.0 * inner;
+                gap += deviations[k] + 2.0 * inner;
             }
         }
         let spread = turns[1] - turns[0];
         if !(before_determinant * self.determinant > 0.0 && spread.abs() < PI) {
-            return Err(tubes.break_off());
+            return Err(bounds.reject());
         }
         let inverses = [before_determinant, self.determinant].map(|det| 1.0 / det.abs());
         let inverse = larger(inverses[0], inverses[1]);
@@ -112,31 +113,31 @@ impl RrrDyad {
         let mut middle =
             bulge(links[0][0], links[1][0], turns[0]) - bulge(links[0][1], links[1][1], turns[1]);
         gap += beyond_parabola(a.length, turns[0]) + beyond_parabola(b.length, turns[1]);
-        // What comes from the angles that the anchors turn with.
+        // The effect of the uncertain angles of the bodies that carry the anchors.
         let mut turned = [0.0; 2];
         for (k, side) in self.sides.iter().enumerate() {
-            let Some((tube, length)) = side.anchor.carried(tubes) else {
+            let Some((bound, length)) = side.anchor.carrier(bounds) else {
                 continue;
             };
-            let levers = side.anchor.levers(tube, frames);
-            let lever = bulge(levers[0], levers[1], tube.turn);
+            let levers = side.anchor.levers(bound, frames);
+            let lever = bulge(levers[0], levers[1], bound.turn);
             middle += if k == 0 { lever } else { -lever };
-            let swung = length * tube.radius;
-            strays[k] += tube.stray + length * sagitta(tube.turn) + swung;
-            gap += tube.stray + beyond_parabola(length, tube.turn);
+            let swung = length * bound.angle_deviation;
+            deviations[k] += bound.point_deviation + length * sagitta(bound.turn) + swung;
+            gap += bound.point_deviation + beyond_parabola(length, bound.turn);
             if swung <= NEGLIGIBLE * gap {
                 gap += swung;
                 continue;
             }
-            gap += 0.5 * swung * tube.radius;
+            gap += 0.5 * swung * bound.angle_deviation;
             for (k, turned) in turned.iter_mut().enumerate() {
                 let other = 1 - k;
                 let ratios =
                     [0, 1].map(|end| levers[end].perp(&links[end][other]).abs() * inverses[end]);
                 let ratio = larger(ratios[0], ratios[1]);
-                let bend = length * lengths[other] * sagitta(turns[other] - tube.turn)
+                let bend = length * lengths[other] * sagitta(turns[other] - bound.turn)
                     + ratio * product * sagitta(spread);
-                *turned += (ratio + bend * inverse) * tube.radius;
+                *turned += (ratio + bend * inverse) * bound.angle_deviation;
             }
         }
 
@@ -151,12 +152,12 @@ impl RrrDyad {
             square += lengths[k] * reach[k] * reach[k];
         }
         let gap = Gap::new(gap, linear, square);
-        tubes.bear(gap.load)?;
+        bounds.require(gap.step_ratio)?;
         for (k, side) in self.sides.iter().enumerate() {
-            let tube = tubes.body_mut(side.place as usize);
-            tube.turn = turns[k];
-            tube.radius = turned[k] + reach[k] * gap.value;
-            tube.stray = strays[k];
+            let bound = bounds.body_mut(side.body as usize);
+            bound.turn = turns[k];
+            bound.angle_deviation = turned[k] + reach[k] * gap.value;
+            bound.point_deviation = deviations[k];
         }
         Ok(())
     }

@@ -34,9 +34,9 @@ fn step() -> impl Strategy<Value = Step> {
 }
 
 fn lay(solver: &Solver, path: &mut Path, targets: &[f64]) {
-    path.start = solver.pose.time;
+    path.start = solver.pose().time;
     path.duration = 0.0;
-    let drivers = targets.iter().zip(&solver.pose.drivers);
+    let drivers = targets.iter().zip(&solver.pose().drivers);
     for (curve, (target, now)) in path.curves.iter_mut().zip(drivers) {
         *curve = Curve::Input {
             position: *target,
@@ -66,8 +66,8 @@ fn follow_both(
     let mut path = Path::new(solver.mechanism());
     let mut met = Met::default();
     for step in steps {
-        let from = solver.pose.drivers.clone();
-        other.restore(&solver.pose.clone());
+        let from = solver.pose().drivers.clone();
+        other.restore(&solver.pose().clone());
         let mut targets = from.clone();
         for (k, target) in targets.iter_mut().enumerate() {
             *target += scale * step.way * if k % 2 == 0 { 1.0 } else { step.share };
@@ -83,15 +83,15 @@ fn follow_both(
                 .map(|(a, b)| a + s * (b - a))
                 .collect();
             lay(other, &mut path, &now);
-            if other.follow(&path).is_err() {
+            if other.track(&path).is_err() {
                 blocked = true;
                 break;
             }
             regular &= other.rcond() > REGULAR;
         }
         lay(solver, &mut path, &targets);
-        let home = solver.pose.clone();
-        let large = solver.follow(&path);
+        let home = solver.pose().clone();
+        let large = solver.track(&path);
         met.steps += 1;
         match large {
             Ok(progress) => {
@@ -102,7 +102,7 @@ fn follow_both(
                 met.substeps += progress.substeps;
                 // Both are at rounding, times the condition; turns make it larger.
                 let tolerance = 1e-9 / other.rcond().max(1e-4);
-                for (large, tiny) in solver.pose.q.iter().zip(&other.pose.q) {
+                for (large, tiny) in solver.pose().q.iter().zip(&other.pose().q) {
                     assert!(
                         (large - tiny).abs() < tolerance,
                         "{what}: {step:?} from {from:?}"
@@ -210,7 +210,7 @@ proptest! {
         );
         let (mut solver, mut path) = assembled(&Source::new("four-bar", &text));
         for step in steps {
-            let now = solver.pose.drivers[0];
+            let now = solver.pose().drivers[0];
             let target = now + step.way;
             // The distance is extreme at the ends and where crank and base are in line.
             let [low, high] = [now.min(target), now.max(target)];
@@ -221,13 +221,13 @@ proptest! {
                 open |= !closes(distance(angle), 0.0);
                 near |= !closes(distance(angle), 1e-10);
             }
-            let home = solver.pose.clone();
+            let home = solver.pose().clone();
             lay(&solver, &mut path, &[target]);
-            match solver.follow(&path) {
+            match solver.track(&path) {
                 Ok(progress) => {
                     prop_assert!(!open || near, "passed a dead point: {step:?} from {now}");
                     let away = exact(target);
-                    for (found, exact) in [solver.pose.q[5], solver.pose.q[8]].iter().zip(away) {
+                    for (found, exact) in [solver.pose().q[5], solver.pose().q[8]].iter().zip(away) {
                         let off = (found - exact) / TAU;
                         // The closed form loses half of its digits at a limit.
                         prop_assert!((off - off.round()).abs() < 1e-6, "{step:?} from {now}");

@@ -1,0 +1,55 @@
+//! The joints, constraints and drivers that stay open at a pose.
+
+use crate::kinematics::constraint::Dimension;
+use crate::kinematics::element::Element;
+use crate::kinematics::error::OpenJoint;
+use crate::kinematics::model::Model;
+use crate::kinematics::state::State;
+
+/// Returns the joints, constraints and drivers of these rows with a noticeable part of the largest
+/// scaled residual, at the present places of the bodies.
+pub(in crate::kinematics) fn open_joints(
+    model: &Model,
+    state: &State,
+    rows: &[usize],
+    largest: f64,
+) -> Vec<(Element, OpenJoint)> {
+    let system = &model.system;
+    let least = 0.01 * largest;
+    let mut open: Vec<(Element, OpenJoint)> = Vec::new();
+    for &row in rows {
+        let equation = &system.equations()[row];
+        let target = system.target(row, &state.targets, &state.pose.drivers);
+        let error = (equation.constraint.value(&state.at) - target).abs();
+        let (gap, angle) = match equation.constraint.dimension() {
+            Dimension::Length => (error, 0.0),
+            Dimension::Angle if error > least => (0.0, error),
+            Dimension::Angle => continue,
+        };
+        match open.last_mut() {
+            Some((element, joint)) if *element == equation.element => {
+                joint.gap = joint.gap.hypot(gap);
+                joint.angle = joint.angle.max(angle);
+            }
+            _ => open.push((
+                equation.element,
+                OpenJoint {
+                    element: String::new(),
+                    gap,
+                    angle,
+                },
+            )),
+        }
+    }
+    open.retain_mut(|(element, joint)| {
+        if joint.gap <= least * state.at.size() {
+            joint.gap = 0.0;
+        }
+        let kept = joint.gap.max(joint.angle) > 0.0;
+        if kept {
+            joint.element = element.describe(system.mechanism());
+        }
+        kept
+    });
+    open
+}

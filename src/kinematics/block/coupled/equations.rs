@@ -1,0 +1,175 @@
+//! The rows of a block, their Jacobian and the bounds of their bend.
+
+use std::sync::Arc;
+
+use crate::kinematics::block::elimination::EliminationOrder;
+use crate::kinematics::block::step::BlockState;
+use crate::kinematics::certificate::StepBounds;
+use crate::kinematics::constraint::{Gradient, Region};
+use crate::kinematics::linear::{Factors, Lu};
+use crate::kinematics::system::RowValue;
+
+/// Most entries of a row: those of three bodies and of an unknown of its own.
+pub(super) const ENTRIES: usize = 10;
+
+/// The block that finds an unknown, and the index of the unknown in that block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::kinematics::block) struct ColumnOwner {
+    pub(super) block: usize,
+    local: usize,
+}
+
+/// Returns the owner of each of `unknowns`; `orders` has the index and the order of each block.
+pub(in crate::kinematics::block) fn column_owners<'a>(
+    unknowns: usize,
+    orders: impl Iterator<Item = (usize, &'a EliminationOrder)>,
+) -> Arc<[ColumnOwner]> {
+    let none = ColumnOwner {
+        block: usize::MAX,
+        local: 0,
+    };
+    let mut owners = vec![none; unknowns];
+    for (block, order) in orders {
+        for (local, &column) in order.columns.iter().enumerate() {
+            owners[column] = ColumnOwner { block, local };
+        }
+    }
+    owners.into()
+}
+
+/// The rows that have to be solved together, and the unknowns that they are solved for.
+#[derive(Debug)]
+pub(super) struct BlockEquations {
+    /// Index of the block in the order of solution.
+    index: usize,
+    pub(super) rows: Vec<usize>,
+    pub(super) columns: Vec<usize>,
+    owners: Arc<[ColumnOwner]>,
+}
+
+/// The gradients of a block's rows, scaled by [`System::evaluate_row`].
+///
+/// [`System::evaluate_row`]: crate::kinematics::system::System::evaluate_row
+#[derive(Debug)]
+pub(super) struct Jacobian {
+    /// The matrix of the block's own unknowns, or its factors.
+    pub(super) lu: Lu,
+    /// Entries at unknowns of earlier blocks: row of the block, column, value.
+    pub(super) upstream: Vec<(usize, usize, f64)>,
+}
+
+/// The bend of a row in a region, scaled as the row is.
+pub(super) struct Bend {
+    /// Bound of its second derivative along the chord.
+    pub(super) along: f64,
+    /// Scale factor of the row.
+    pub(super) row_scale: f64,
+    change: Gradient,
+}
+
+impl BlockEquations {
+    pub(super) fn new(
+        index: usize,
+        rows: Vec<usize>,
+        columns: Vec<usize>,
+        owners: Arc<[ColumnOwner]>,
+    ) -> Self {
+        Self {
+            index,
+            rows,
+            columns,
+            owners,
+        }
+    }
+
+    /// Returns the index of an unknown in the block; `None` if an earlier block finds it.
+    pub(super) fn own(&self, column: usize) -> Option<usize> {
+        let owner = self.owners[column];
+        (owner.block == self.index).then_some(owner.local)
+    }
+
+    /// Evaluates the rows at the pose in `state`, each value going to `found`, and their Jacobian,
+    /// not yet factorised.
+    pub(super) fn evaluate(
+        &self,
+        state: &BlockState<'_>,
+        jacobian: &mut Jacobian,
+        mut found: impl FnMut(usize, RowValue),
+    ) {
+        let Jacobian { lu, upstream } = jacobian;
+        lu.clear();
+        upstream.clear();
+        for (local, &row) in self.rows.iter().enumerate() {
+            let value = state.evaluate_row(row, |column, value| match self.own(column) {
+                Some(own) => lu.add(local, own, value),
+                None if value != 0.0 => upstream.push((local, column, value)),
+                None => {}
+            });
+            found(local, value);
+        }
+    }
+
+    /// Bounds the bend of a row in the region of `bounds` around the pose in `state`, and along
+    /// their chord ([`Constraint::bend`]). `None` if the row is not smooth there.
+    ///
+    /// [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
+    pub(super) fn bend(
+        &self,
+        local: usize,
+        state: &BlockState<'_>,
+        bounds: &StepBounds,
+    ) -> Option<Bend> {
+        let equation = &state.system.equations()[self.rows[local]];
+        let row_scale = equation.row_scale(state.at);
+        let region = Region {
+            radii: &bounds.region,
+        };
+        let mut change = Gradient::new();
+        let along = equation
+            .constraint
+            .bend(state.at, &region, &bounds.chord, &mut change)?;
+        Some(Bend {
+            along: along * row_scale,
+            row_scale,
+            change,
+        })
+    }
+}
+
+impl Jacobian {
+    pub(super) fn new(lu: Lu) -> Self {
+        Self {
+            upstream: Vec::with_capacity(ENTRIES * lu.order()),
+            lu,
+        }
+    }
+
+    /// Writes the inverse by rows; `unit` is work space.
+    pub(super) fn invert(&mut self, inverse: &mut [f64], unit: &mut [f64]) {
+        let order = unit.len();
+        for column in 0..order {
+            unit.fill(0.0);
+            unit[column] = 1.0;
+            self.lu.solve(unit);
+            for (row, value) in unit.iter().enumerate() {
+                inverse[row * order + column] = *value;
+            }
+        }
+    }
+
+    /// Returns the product of a vector, one entry per row, with the gradients at an unknown of an
+    /// earlier block.
+    pub(super) fn upstream_product(&self, rows: &[f64], column: usize) -> f64 {
+        let entries = self.upstream.iter().filter(|entry| entry.1 == column);
+        entries.map(|(local, _, value)| rows[*local] * value).sum()
+    }
+}
+
+impl Bend {
+    /// Returns bounds of the change of the gradient's entries: column and value, the columns in
+    /// radians and metres.
+    pub(super) fn changes(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let entries = self.change.entries();
+        entries.map(|(column, value)| (column, value * self.row_scale))
+    }
+}

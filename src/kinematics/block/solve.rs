@@ -1,0 +1,96 @@
+//! The interface of block solvers.
+
+use super::step::{BlockState, Step};
+use crate::kinematics::certificate::Pivots;
+use crate::kinematics::configuration::Configuration;
+use crate::kinematics::newton::{Correction, Rejected};
+use crate::kinematics::system::Targets;
+use crate::mechanism::Jet;
+
+/// The solver of one block of equations.
+pub(in crate::kinematics) trait SolveBlock:
+    std::fmt::Debug + Send + Sync
+{
+    /// Returns the rows of Phi that it satisfies.
+    fn rows(&self) -> &[usize];
+
+    /// Returns the unknowns that it finds, as many as rows.
+    fn columns(&self) -> &[usize];
+
+    /// Takes over all that depends on the parameters alone, and sets the pivots of its bodies.
+    /// Allocates nothing.
+    fn set_parameters(&mut self, at: &Configuration, targets: &Targets, pivots: &mut Pivots) {
+        let _ = (at, targets, pivots);
+    }
+
+    /// Predicts the unknowns at the end of a sub-step, corrects them, and proves that one motion
+    /// joins both ends. Starts from the pose at which it is factorised, and leaves it factorised
+    /// at the new one. Allocates nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] if Newton–Raphson does not converge or the proof fails.
+    fn step(
+        &mut self,
+        state: &mut BlockState<'_>,
+        step: &mut Step<'_>,
+    ) -> Result<Correction, Rejected>;
+
+    /// Solves its rows by Newton–Raphson from where the bodies are; the blocks before it are
+    /// solved.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] without convergence in `max_iterations`.
+    fn close(
+        &mut self,
+        state: &mut BlockState<'_>,
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected>;
+
+    /// Factorises its Jacobian at the pose in `state`.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] where the Jacobian is singular to the last bit.
+    fn factorise(&mut self, state: &mut BlockState<'_>) -> Result<(), Rejected> {
+        let _ = state;
+        Ok(())
+    }
+
+    /// Writes the rates of its unknowns for these rates of the drivers (`first` and `second` of
+    /// each), by Eq. 3.6.10 and 3.6.11, at the pose at which it is factorised.
+    fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]);
+
+    /// Returns the scaled reciprocal condition of its Jacobian: 1 is best, 0 singular.
+    fn rcond(&mut self) -> f64 {
+        1.0
+    }
+
+    /// Returns a cheap measure of regularity; see [`Correction::regularity`].
+    fn regularity(&self) -> f64 {
+        1.0
+    }
+
+    /// Returns the sine of its transmission angle, if it has one.
+    fn transmission(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns whether its matrix keeps pivots from one factorisation to the next.
+    fn keeps_pivots(&self) -> bool {
+        false
+    }
+
+    /// Chooses the pivots that it keeps at the pose in `state`; where that is singular, the next
+    /// factorisation chooses them.
+    fn choose_pivots(&mut self, state: &mut BlockState<'_>) {
+        let _ = state;
+    }
+
+    /// Forgets the pivots that it keeps.
+    fn forget_pivots(&mut self) {}
+
+    /// Forgets the proofs that hold for several steps.
+    fn forget_proofs(&mut self) {}
+}

@@ -1,0 +1,118 @@
+//! Bounds of the deviation of drivers from their chords during a sub-step.
+
+use crate::kinematics::certificate::StepBounds;
+use crate::kinematics::path::{Curve, Path, PathDrivers};
+use crate::kinematics::state::State;
+use crate::kinematics::system::System;
+use crate::mechanism::{DriverId, Interval, Jet3, ParameterId};
+
+/// Largest deviation of a prescribed motion that is not smooth, in radians and characteristic
+/// lengths; a motion that jumps by more is refused where it jumps.
+const LARGEST_JUMP: f64 = 0.1;
+
+/// Bounds drivers and parameters over a part of `path`, at whose end the drivers ahead and the
+/// parameters in force are. Returns false without a bound: a motion jumps, or a number is not
+/// bounded.
+pub(super) fn bound_drivers(
+    system: &System,
+    state: &State,
+    drivers: &PathDrivers,
+    path: &Path,
+    part: [f64; 2],
+    bounds: &mut StepBounds,
+) -> bool {
+    bounds.parameters.moving = drivers.parameters_move;
+    if drivers.parameters_move
+        && !bounds
+            .parameters
+            .bound(system, &state.at, &state.targets, path, part)
+    {
+        return false;
+    }
+    let [start, end] = part;
+    for (index, curve) in path.curves.iter().enumerate() {
+        let ends = [state.pose.drivers[index], drivers.values[index]];
+        let rounding = f64::EPSILON * (ends[0].abs() + ends[1].abs());
+        let deviation = match curve {
+            // The second derivative is constant.
+            Curve::Input { .. } => {
+                let second = drivers.ahead[index].second();
+                Some(0.125 * (end - start).powi(2) * second.abs())
+            }
+            Curve::Motion => {
+                let motion = Motion {
+                    driver: DriverId(index),
+                    ends,
+                    second: [drivers.here[index].second(), drivers.ahead[index].second()],
+                    moves: drivers.parameters_move,
+                };
+                motion.deviation(state, path, part, bounds)
+            }
+        };
+        let Some(deviation) = deviation else {
+            return false;
+        };
+        bounds.drivers[index] = deviation + rounding;
+    }
+    true
+}
+
+/// A prescribed motion over a sub-step.
+struct Motion {
+    driver: DriverId,
+    /// Its values at both ends.
+    ends: [f64; 2],
+    /// Its second derivatives with respect to s there.
+    second: [f64; 2],
+    /// Whether parameters move.
+    moves: bool,
+}
+
+impl Motion {
+    /// Bounds the deviation from the straight line between the ends.
+    // Its stack of operands is no part of steps without motions.
+    #[inline(never)]
+    fn deviation(
+        &self,
+        state: &State,
+        path: &Path,
+        [start, end]: [f64; 2],
+        bounds: &mut StepBounds,
+    ) -> Option<f64> {
+        let motions = &state.motions;
+        let [begin, stop] = [path.time(start), path.time(end)];
+        let duration = stop - begin;
+        let range = if self.moves {
+            let t = Jet3::linear(Interval::new(begin, stop), Interval::point(path.duration));
+            let parameters = &bounds.parameters.parameters;
+            let range = motions.enclose(self.driver, t, &|p: ParameterId| parameters[p.index()]);
+            if range.is_none() {
+                // A table whose points move; its second derivative is known at both ends.
+                bounds.checked = true;
+                let most = 2.0 * self.second[1].abs().max(self.second[0].abs());
+                return Some(0.125 * (end - start).powi(2) * most);
+            }
+            range?
+        } else {
+            if duration == 0.0 {
+                return Some(0.0);
+            }
+            if let Some(most) = motions.curvature(self.driver, begin, stop) {
+                return Some(0.125 * duration * duration * most);
+            }
+            let t = Jet3::fixed(Interval::new(begin, stop));
+            let parameters = &state.pose.parameters;
+            let parameter = |p: ParameterId| Jet3::constant(parameters[p.index()]);
+            motions.enclose(self.driver, t, &parameter)?
+        };
+        let second = range.second().magnitude();
+        if self.moves && second.is_finite() {
+            return Some(0.125 * (end - start).powi(2) * second);
+        }
+        // Not smooth: between the least and the largest value.
+        let [from, to] = self.ends;
+        let Interval { low, high } = range.value;
+        let deviation = (high - from.min(to)).max(from.max(to) - low);
+        (deviation <= LARGEST_JUMP * state.at.size().min(1.0)).then_some(deviation)
+    }
+}

@@ -1,0 +1,97 @@
+//! Closing a mechanism on all its rows, which may be more than enough.
+
+use super::rank::{drivers_first, jacobian_rows};
+use crate::kinematics::assembly::closing::{Closing, close_on, is_small};
+use crate::kinematics::assembly::least_squares::{Part, SMALL_PART};
+use crate::kinematics::assembly::search::{NoBranch, search};
+use crate::kinematics::linear::Echelon;
+use crate::kinematics::model::Model;
+use crate::kinematics::newton::SINGULAR;
+use crate::kinematics::state::State;
+use crate::kinematics::structure::Structure;
+use crate::kinematics::system::Target;
+
+/// A block with a smaller scaled residual is closed well enough to look for superfluous rows; in
+/// a singular block rows are known to the square root of it.
+const CLOSED: f64 = 1e-6;
+
+/// Closes the mechanism on all rows. Returns `None` if they are satisfied, otherwise the largest
+/// scaled residual of the nearest pose found, where the bodies then are.
+pub(super) fn close_on_all(model: &mut Model, state: &mut State, estimate: &[f64]) -> Option<f64> {
+    let all: Vec<_> = (0..model.system.equations().len()).collect();
+    if !is_small(&model.system) {
+        // Too many unknowns for a minimisation to go far: most blocks close by themselves.
+        find_start(model, state, estimate);
+        Closing::new(&model.system, &all).close(&mut state.block_state(&model.system))?;
+    }
+    close_on(&model.system, state, &all, estimate)
+}
+
+/// Assembles block by block on rows that can be paired with unknowns, the drivers' first, then in
+/// the order of declaration. In a block that does not close it leaves out a row that the others
+/// make superfluous, and others get their turn. Returns the failure if no pose is found.
+pub(super) fn find_start(
+    model: &mut Model,
+    state: &mut State,
+    estimate: &[f64],
+) -> Option<NoBranch> {
+    let mut left_out = Vec::new();
+    loop {
+        let order = drivers_first(&model.system).into_iter();
+        let order = order.filter(|row| !left_out.contains(row));
+        model.redundant.now = Structure::left_over(&model.system, order)?;
+        state.compile(model);
+        state.at.set_pose(model.system.mechanism(), estimate);
+        let failure = search(model, state, estimate).err();
+        let block = match &failure {
+            Some(failure) => failure.block,
+            // Rows that depend on each other may close by chance.
+            None => {
+                let mut blocks = model.plan.blocks.iter_mut();
+                blocks.position(|block| block.rcond() < SINGULAR)?
+            }
+        };
+        match superfluous_in(model, state, block, estimate) {
+            Some(row) => left_out.push(row),
+            None => return failure,
+        }
+    }
+}
+
+/// Returns the last row of a block that the others make superfluous where it closes, behind those
+/// before it; `None` if there is none, or the block does not close or is large.
+fn superfluous_in(
+    model: &Model,
+    state: &mut State,
+    block: usize,
+    estimate: &[f64],
+) -> Option<usize> {
+    let block = &model.plan.blocks[block];
+    let part = Part::new(block.rows(), block.columns());
+    if part.unknowns() > SMALL_PART {
+        return None;
+    }
+    let columns = block.columns();
+    let mut block_state = state.block_state(&model.system);
+    part.start(&mut block_state, estimate, 0);
+    part.minimise_growing(&mut block_state);
+    if part.equations(&block_state).0.amax() > CLOSED {
+        return None;
+    }
+    let mut rows = jacobian_rows(model, state);
+    for row in &mut rows {
+        row.retain(|(column, _)| columns.contains(column));
+    }
+    let own = part.rows.iter().map(|&row| &rows[row]);
+    let mut echelon = Echelon::new(model.system.unknowns(), own);
+    let is_driver = |row: &usize| {
+        let target = &model.system.equations()[*row].target;
+        matches!(target, Target::Driver(_))
+    };
+    let (drivers, others): (Vec<_>, Vec<_>) = part.rows.iter().partition(|row| is_driver(row));
+    let order = drivers.into_iter().chain(others);
+    order.fold(None, |last, row| {
+        let left_out = echelon.offer(row, &rows[row], CLOSED.sqrt());
+        left_out.map(|left_out| left_out.row).or(last)
+    })
+}

@@ -1,0 +1,122 @@
+//! The crossings of a pose.
+
+use std::sync::Arc;
+
+use super::near::bodies_of;
+use crate::kinematics::block::{BlockPlan, Crossing, SEAM};
+use crate::kinematics::error::in_line;
+use crate::kinematics::model::Model;
+use crate::kinematics::newton::MAX_ITERATIONS;
+use crate::kinematics::state::{Pose, State};
+use crate::mechanism::Jet;
+
+/// Largest distance of q from a crossing of the pose.
+const ON: f64 = 1e-9;
+/// The part of a crossing next to its end that counts as the end.
+pub(in crate::kinematics) const CROSSING_END: f64 = 1e-6;
+
+/// Returns the bodies that line up at a change point.
+pub(in crate::kinematics) fn bodies_in_line(model: &Model, crossing: &Crossing) -> Vec<String> {
+    let columns = model.plan.blocks[crossing.block].columns();
+    bodies_of(&model.system, columns, &crossing.free)
+}
+
+/// Returns the message for a change point that was passed.
+pub(in crate::kinematics) fn describe_crossing(model: &Model, crossing: &Crossing) -> String {
+    let driver = &model.system.mechanism().drivers[crossing.driver.index()];
+    format!(
+        "change point passed on the smooth motion, with driver `{}` at {}: {} there",
+        driver.name,
+        driver.coordinate.kind.show(crossing.center),
+        in_line(&bodies_in_line(model, crossing), "")
+    )
+}
+
+/// Returns whether this mechanism could have come to the crossings of a pose that was read from
+/// outside, and q lies on them.
+pub(in crate::kinematics) fn admits_crossings(model: &Model, pose: &Pose) -> bool {
+    let mut blocks: Vec<_> = pose.crossings.iter().map(|c| c.block).collect();
+    blocks.sort_unstable();
+    blocks.dedup();
+    blocks.len() == pose.crossings.len()
+        && pose.crossings.iter().all(|crossing| {
+            let Some(block) = model.plan.blocks.get(crossing.block) else {
+                return false;
+            };
+            let columns = block.columns();
+            let Some(driver) = model.only_driver(crossing.block) else {
+                return false;
+            };
+            let value = pose.drivers[driver.index()];
+            crossing.driver == driver
+                && crossing.half_width > 0.0
+                && crossing.place(value).abs() <= SEAM
+                && crossing.coefficients.len() == columns.len()
+                && crossing.free.len() == columns.len()
+                && columns.iter().enumerate().all(|(local, &column)| {
+                    let [there, ..] = crossing.evaluate(local, value);
+                    (there - pose.q[column]).abs() <= ON * (1.0 + there.abs())
+                })
+        })
+}
+
+/// Lets a block's unknowns come from a crossing that the pose is within, and closes the blocks
+/// behind it; if they do not close, the pose stays as it was.
+pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Crossing) {
+    if crossing
+        .place(state.pose.drivers[crossing.driver.index()])
+        .abs()
+        >= 1.0 - CROSSING_END
+    {
+        return;
+    }
+    let first = crossing.block;
+    state.add_crossing(model, &Arc::new(crossing));
+    state.move_to_pose(&model.system);
+    let Model {
+        system,
+        plan: BlockPlan { blocks, .. },
+        ..
+    } = &mut *model;
+    let mut block_state = state.block_state(system);
+    let closed = blocks[first..]
+        .iter_mut()
+        .all(|block| block.close(&mut block_state, MAX_ITERATIONS).is_ok());
+    if closed {
+        state.accept_bodies();
+    } else {
+        let last = state.pose.crossings.len() - 1;
+        state.remove_crossing(model, last);
+        state.move_to_pose(&model.system);
+    }
+}
+
+/// Removes the crossings at whose end the drivers, with these derivatives along the path, lead out
+/// of them.
+pub(in crate::kinematics) fn leave_crossings(
+    model: &mut Model,
+    state: &mut State,
+    drivers: &[Jet],
+) {
+    let mut left = false;
+    for index in (0..state.pose.crossings.len()).rev() {
+        let crossing = &state.pose.crossings[index];
+        let driver = crossing.driver.index();
+        let place = crossing.place(state.pose.drivers[driver]);
+        let jet = drivers[driver];
+        let direction = if jet.first() == 0.0 {
+            jet.second()
+        } else {
+            jet.first()
+        };
+        if place.abs() >= 1.0 - CROSSING_END && direction * place > 0.0 {
+            state.remove_crossing(model, index);
+            left = true;
+        }
+    }
+    if left {
+        state.move_to_pose(&model.system);
+        // The ends of a crossing are regular.
+        let _ = state.refresh(model);
+    }
+}

@@ -1,0 +1,262 @@
+//! The change points near a pose, and the singular position that stops the motion along a path.
+
+use std::fmt;
+
+use nalgebra::DVector;
+
+use super::crossings::enter_crossing;
+use super::interpolate::crossing_of;
+use super::locate::{Finding, ROUNDING, SingularKind, find};
+use super::near::{NEAR, block_jacobian, bodies_of, near_singular};
+use super::reduced::{Line, ReducedEquation};
+use crate::kinematics::error::in_line;
+use crate::kinematics::model::Model;
+use crate::kinematics::path::Path;
+use crate::kinematics::redundancy::may_cross;
+use crate::kinematics::state::State;
+use crate::mechanism::{DriverId, Jet};
+
+/// Distance within which a change point is looked for, in radians and characteristic lengths of
+/// the fastest unknown.
+const REACH: f64 = 0.25;
+/// The same for the position that stops the motion: near a dead point everything runs fast.
+const REACH_TO_END: f64 = 0.5;
+/// A motion is stopped within this distance of a position that it cannot pass.
+const STOPPED: f64 = 0.02;
+/// A singular position at most this far behind the current place on the path counts as reached.
+const JUST_BEHIND: f64 = 1e-9;
+/// Blocks whose regularities differ by less than this factor are near to singular for one and the
+/// same reason.
+const SAME_ORDER: f64 = 100.0;
+/// Singular values below this part of the largest count as lost in front of a singular position,
+/// to which the mechanism has come within some 1e-12 of its way.
+const LOST: f64 = 1e-4;
+
+/// A singular position on the way of a motion, located to rounding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SingularPoint {
+    /// Its kind.
+    pub kind: SingularKind,
+    /// Its place on the path; beyond one if the path ends before it.
+    pub s: f64,
+    /// The values of all drivers there: the limit \[m or rad\].
+    pub drivers: Vec<f64>,
+    /// q there, as far as the block and those that it reads determine it.
+    pub q: Vec<f64>,
+    /// The null vector of the Jacobian there over all of q, zero outside of the block, scaled so
+    /// that metres and radians compare and the largest entry is one: the motion that is free, or
+    /// infinitely fast.
+    pub free: Vec<f64>,
+    /// The bodies that line up: those that the null vector moves.
+    pub bodies: Vec<String>,
+}
+
+impl fmt::Display for SingularPoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, where {}", self.kind, in_line(&self.bodies, ""))
+    }
+}
+
+/// A limit of the next sub-step in front of a position that cannot be passed.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::kinematics) struct DriverLimit {
+    pub(in crate::kinematics) driver: DriverId,
+    /// The largest change of the driver \[m or rad\].
+    pub(in crate::kinematics) way: f64,
+}
+
+/// Adds the crossings of change points near the pose. Returns the limit of the next sub-step in
+/// front of a position that cannot be passed; the mechanism is at `s` of the path, with these
+/// derivatives of the drivers along it. Allocates where something may be near.
+///
+/// # Errors
+///
+/// A position that cannot be passed, right ahead.
+pub(in crate::kinematics) fn look_ahead(
+    model: &mut Model,
+    state: &mut State,
+    drivers: &[Jet],
+    path: &Path,
+    s: f64,
+) -> Result<Option<DriverLimit>, Box<SingularPoint>> {
+    let ahead = enter_near_crossings(model, state, Some(drivers));
+    let Some(Ahead {
+        block,
+        limit,
+        is_next,
+    }) = ahead
+    else {
+        return Ok(None);
+    };
+    if is_next {
+        let point = singular_point(model, state, path, s, block);
+        return_to_regular_pose(model, state);
+        if let Some(point) = point {
+            return Err(Box::new(point));
+        }
+    }
+    Ok(Some(limit))
+}
+
+/// Adds the crossings of change points near the pose, at which all blocks are factorised.
+pub(in crate::kinematics) fn settle(model: &mut Model, state: &mut State) {
+    if state.regularity < NEAR {
+        enter_near_crossings(model, state, None);
+    }
+}
+
+/// A position ahead that cannot be passed.
+struct Ahead {
+    block: usize,
+    limit: DriverLimit,
+    /// Whether it is so near that the motion stops here.
+    is_next: bool,
+}
+
+/// Adds the crossings of change points near the pose. Returns the first position that drivers with
+/// these derivatives run into and cannot pass.
+fn enter_near_crossings(
+    model: &mut Model,
+    state: &mut State,
+    drivers: Option<&[Jet]>,
+) -> Option<Ahead> {
+    if !may_cross(model, state) {
+        return None;
+    }
+    let near = near_singular(model);
+    let mut ahead = None;
+    for &block in &near {
+        let Some(driver) = model.only_driver(block) else {
+            continue;
+        };
+        let value = state.pose.drivers[driver.index()];
+        let direction = drivers.map_or(0.0, |drivers| drivers[driver.index()].first());
+        let line = Line::Driver(driver);
+        let Some(mut equation) = ReducedEquation::new(model, state, block, line, value) else {
+            continue;
+        };
+        let finding = find(&mut equation, REACH);
+        if let Finding::End(kind, point) = &finding
+            && *kind != SingularKind::DeadPoint
+            && (point.tau - value) * direction > 0.0
+        {
+            let way = (point.tau - value).abs();
+            ahead.get_or_insert(Ahead {
+                block,
+                limit: DriverLimit {
+                    driver,
+                    // Closer to it than to anything behind the mechanism.
+                    way: 0.75 * way,
+                },
+                is_next: way * equation.speed < STOPPED,
+            });
+        }
+        if let Some(crossing) = crossing_of(&mut equation, finding, block, driver) {
+            enter_crossing(model, state, crossing);
+        }
+    }
+    if !near.is_empty() {
+        return_to_regular_pose(model, state);
+    }
+    ahead
+}
+
+/// Brings the plan back to the pose, after blocks have been elsewhere.
+fn return_to_regular_pose(model: &mut Model, state: &mut State) {
+    state.move_to_pose(&model.system);
+    // The pose was regular when it was reached.
+    let _ = state.refresh(model);
+}
+
+/// Returns the position that stops the motion along a path, at whose `s` the mechanism is; `None`
+/// if no singular position was found: the motion jumps, or a block is too large.
+pub(in crate::kinematics) fn find_end(
+    model: &mut Model,
+    state: &mut State,
+    path: &Path,
+    s: f64,
+) -> Option<Box<SingularPoint>> {
+    let mut near = near_singular(model);
+    let regularity = |block: usize| model.plan.blocks[block].regularity();
+    // A block that reads one that runs ever faster is as near to singular as that one.
+    let least = near.iter().map(|&block| regularity(block));
+    let least = least.fold(f64::INFINITY, f64::min);
+    near.retain(|&block| regularity(block) <= SAME_ORDER * least);
+    let located = near
+        .iter()
+        .find_map(|&block| singular_point(model, state, path, s, block));
+    return_to_regular_pose(model, state);
+    let found = located.or_else(|| {
+        near.iter()
+            .find_map(|&block| loss_of_ranks(model, state, s, block))
+    });
+    found.map(Box::new)
+}
+
+/// Returns the singular position of a block ahead on a path.
+fn singular_point(
+    model: &mut Model,
+    state: &State,
+    path: &Path,
+    s: f64,
+    block: usize,
+) -> Option<SingularPoint> {
+    let mut equation = ReducedEquation::new(model, state, block, Line::Path(path), s)?;
+    let (kind, point) = match find(&mut equation, REACH_TO_END) {
+        Finding::End(kind, point) => (kind, point),
+        Finding::Crossing(point, _) => (SingularKind::ChangePoint, point),
+        Finding::Nothing => return None,
+    };
+    // Rounding may overshoot the point by as much as the residual can resolve: Newton–Raphson
+    // accepts a residual that has stopped falling at a hundred times its rounding.
+    let behind = s - point.tau;
+    if behind > JUST_BEHIND && behind * point.first[1].abs() > 4.0 * ROUNDING {
+        return None;
+    }
+    let (q, drivers) = (equation.pose(), equation.drivers().to_vec());
+    Some(SingularPoint {
+        drivers,
+        q,
+        ..point_at_pose(model, state, block, kind, point.tau, &point.tangents[0])
+    })
+}
+
+/// Returns a singular position of more than one rank, at which the search for others fails, as the
+/// pose at which the mechanism has stopped in front of it.
+fn loss_of_ranks(model: &Model, state: &State, s: f64, block: usize) -> Option<SingularPoint> {
+    let svd = block_jacobian(model, state, block).svd(false, true);
+    let values = &svd.singular_values;
+    // In descending order.
+    let last_but_one = values.len().checked_sub(2)?;
+    if values[last_but_one] > LOST * values[0] {
+        return None;
+    }
+    let free = svd.v_t?.row(last_but_one + 1).transpose();
+    let kind = SingularKind::HigherRank;
+    Some(point_at_pose(model, state, block, kind, s, &free))
+}
+
+/// Returns the singular point at the pose, with a null vector of a block.
+fn point_at_pose(
+    model: &Model,
+    state: &State,
+    block: usize,
+    kind: SingularKind,
+    s: f64,
+    free: &DVector<f64>,
+) -> SingularPoint {
+    let columns = model.plan.blocks[block].columns();
+    let free = free / free[free.icamax()];
+    let mut over_all = vec![0.0; state.pose.q.len()];
+    for (&column, value) in columns.iter().zip(free.iter()) {
+        over_all[column] = *value;
+    }
+    SingularPoint {
+        kind,
+        s,
+        drivers: state.pose.drivers.clone(),
+        q: state.pose.q.clone(),
+        bodies: bodies_of(&model.system, columns, free.as_slice()),
+        free: over_all,
+    }
+}

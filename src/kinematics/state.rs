@@ -1,0 +1,355 @@
+//! The state of a mechanism: the pose, and all that is derived from it.
+
+use std::sync::Arc;
+
+use super::block::{BlockState, Crossing};
+use super::configuration::Configuration;
+use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity};
+use super::error::Error;
+use super::linear::Row;
+use super::model::Model;
+use super::newton::Rejected;
+use super::path::{Motions, Path, Rates};
+use super::system::{RowValue, System, Targets};
+use crate::mechanism::{DriverId, Jet, MarkerId};
+
+/// The pose of a mechanism: all that decides where it is and how it goes on from there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    /// Time \[s\].
+    pub time: f64,
+    /// All parameters, derived ones included \[SI\].
+    pub parameters: Vec<f64>,
+    /// The values u of all drivers \[m or rad\].
+    pub drivers: Vec<f64>,
+    /// Generalized coordinates, \[m, m, rad\] for each body, then the joint unknowns.
+    pub q: Vec<f64>,
+    /// Whole turns of the angle rows, one per row of the system.
+    pub turns: Vec<i32>,
+    /// The change points near which the mechanism is, none as a rule.
+    pub crossings: Vec<Arc<Crossing>>,
+}
+
+impl Pose {
+    /// Copies another pose of the same mechanism. Allocates only for crossings.
+    pub(in crate::kinematics) fn copy_from(&mut self, other: &Self) {
+        self.crossings.clone_from(&other.crossings);
+        self.copy_place(other);
+    }
+
+    /// Copies all but the crossings.
+    fn copy_place(&mut self, other: &Self) {
+        self.time = other.time;
+        self.parameters.copy_from_slice(&other.parameters);
+        self.drivers.copy_from_slice(&other.drivers);
+        self.q.copy_from_slice(&other.q);
+        self.turns.copy_from_slice(&other.turns);
+    }
+}
+
+/// The pose of a mechanism with all that is derived from it. A search for another pose changes what
+/// is derived and leaves the pose alone; [`return_to_pose`](Self::return_to_pose) derives it again.
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) pose: Pose,
+    /// The bodies, at the pose outside of a search for another one.
+    pub(super) at: Configuration,
+    pub(super) targets: Targets,
+    /// The prescribed motions with the parameters in force.
+    pub(super) motions: Motions,
+    /// Rates of q: with a single driver the derivatives in its value, from which all others
+    /// follow; otherwise those along a path.
+    pub(super) tangent: Rates,
+    /// The least regularity of all blocks, which are factorised at the pose.
+    pub(super) regularity: f64,
+    /// Whether the parameters in force are those of the pose.
+    has_parameters: bool,
+    /// Whether the plan is factorised at the pose and, with a single driver, `tangent` belongs to
+    /// it.
+    factorised: bool,
+    /// Rates of the drivers for which rates of q are solved.
+    driver_rates: Vec<Jet>,
+}
+
+/// The error of rates at a singular pose.
+pub(super) const SINGULAR_HERE: Error = Error::Singular {
+    rcond: 0.0,
+    bodies: Vec::new(),
+};
+
+/// The rates of a single driver with respect to its own value.
+pub(super) const UNIT_RATE: [Jet; 1] = [Jet::new(0.0, [1.0, 0.0])];
+
+impl State {
+    /// Makes the storage; there is no pose yet.
+    pub(super) fn new(system: &System) -> Self {
+        let mechanism = system.mechanism();
+        let drivers = mechanism.drivers.len();
+        let path = Path::new(mechanism);
+        Self {
+            pose: Pose {
+                time: path.start,
+                parameters: path.from,
+                drivers: vec![0.0; drivers],
+                q: vec![0.0; system.unknowns()],
+                turns: vec![0; system.equations().len()],
+                crossings: Vec::new(),
+            },
+            at: system.configuration(),
+            targets: system.targets(),
+            motions: Motions::new(mechanism),
+            tangent: Rates::new(system.unknowns()),
+            regularity: 0.0,
+            has_parameters: false,
+            factorised: false,
+            driver_rates: vec![Jet::constant(0.0); drivers],
+        }
+    }
+
+    /// Returns the mechanism as block solvers see it.
+    pub(super) fn block_state<'a>(&'a mut self, system: &'a System) -> BlockState<'a> {
+        BlockState {
+            system,
+            targets: &self.targets,
+            drivers: &self.pose.drivers,
+            at: &mut self.at,
+            tangent: &mut self.tangent,
+        }
+    }
+
+    /// Returns whether one driver alone moves the mechanism.
+    pub(super) fn has_single_driver(&self) -> bool {
+        self.pose.drivers.len() == 1
+    }
+
+    /// Puts parameters in force that are not those of the pose.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`System::set_parameters`].
+    pub(super) fn try_parameters(
+        &mut self,
+        model: &mut Model,
+        parameters: &[f64],
+    ) -> Result<(), Error> {
+        self.has_parameters = false;
+        let Model { system, plan, .. } = model;
+        system.set_parameters(parameters, &mut self.at, &mut self.targets)?;
+        plan.set_parameters(system, &self.at, &self.targets);
+        self.motions
+            .set_parameters(|p| Jet::constant(parameters[p.index()]));
+        Ok(())
+    }
+
+    /// Makes parameters those of the pose and puts them in force.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`System::set_parameters`].
+    pub(super) fn set_parameters(
+        &mut self,
+        model: &mut Model,
+        parameters: &[f64],
+    ) -> Result<(), Error> {
+        self.try_parameters(model, parameters)?;
+        self.accept_parameters(parameters);
+        Ok(())
+    }
+
+    /// Makes the parameters in force those of the pose.
+    pub(super) fn accept_parameters(&mut self, parameters: &[f64]) {
+        self.pose.parameters.copy_from_slice(parameters);
+        self.has_parameters = true;
+    }
+
+    /// Makes the present places of the bodies those of the pose.
+    pub(super) fn accept_bodies(&mut self) {
+        self.at.copy_pose(&mut self.pose.q);
+    }
+
+    /// Derives the parameters in force and the bodies from the pose again.
+    pub(super) fn return_to_pose(&mut self, model: &mut Model) {
+        if !self.has_parameters {
+            let parameters = std::mem::take(&mut self.pose.parameters);
+            let set = self.try_parameters(model, &parameters);
+            set.expect("the parameters of a pose were valid when it was found");
+            self.pose.parameters = parameters;
+            self.has_parameters = true;
+        }
+        self.move_to_pose(&model.system);
+    }
+
+    /// Moves the bodies to the pose.
+    pub(super) fn move_to_pose(&mut self, system: &System) {
+        self.factorised = false;
+        self.at.set_pose(system.mechanism(), &self.pose.q);
+    }
+
+    /// Factorises the plan at the pose and, with a single driver, solves the tangent there, unless
+    /// both are up to date.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where a Jacobian is singular to the last bit.
+    pub(super) fn refresh(&mut self, model: &mut Model) -> Result<(), Error> {
+        if !self.factorised {
+            let single = self.has_single_driver();
+            let Model { system, plan, .. } = model;
+            let mut state = self.block_state(system);
+            plan.factorise(&mut state)
+                .map_err(|Rejected| SINGULAR_HERE)?;
+            if single {
+                plan.solve_rates(&mut state, &UNIT_RATE);
+            }
+            self.regularity = plan.regularity();
+            self.factorised = true;
+        }
+        Ok(())
+    }
+
+    /// Notes that the plan is not factorised at the pose.
+    pub(super) fn invalidate(&mut self) {
+        self.factorised = false;
+    }
+
+    /// Compiles the plan again, for the rows that the model has now.
+    pub(super) fn compile(&mut self, model: &mut Model) {
+        model.compile(&self.at, &self.targets);
+        self.factorised = false;
+    }
+
+    /// Goes to a pose that this mechanism was at. Crossings belong to the rows of the first pose,
+    /// which are then in use again.
+    pub(super) fn restore(&mut self, model: &mut Model, pose: &Pose) {
+        self.has_parameters &= self.pose.parameters == pose.parameters;
+        self.release_crossings(model);
+        self.pose.copy_place(pose);
+        self.targets.turns.copy_from_slice(&self.pose.turns);
+        self.return_to_pose(model);
+        if !pose.crossings.is_empty() && model.redundant.return_to_first() {
+            self.compile(model);
+        }
+        for crossing in &pose.crossings {
+            self.add_crossing(model, crossing);
+        }
+        model.plan.forget_proofs();
+    }
+
+    /// Lets the unknowns of a block come from a crossing, which becomes one of the pose.
+    pub(super) fn add_crossing(&mut self, model: &mut Model, crossing: &Arc<Crossing>) {
+        model.plan.interpolate(crossing);
+        self.pose.crossings.push(Arc::clone(crossing));
+    }
+
+    /// Removes the crossing with this index from the pose.
+    pub(super) fn remove_crossing(&mut self, model: &mut Model, index: usize) {
+        let crossing = self.pose.crossings.remove(index);
+        model.plan.release(crossing.block);
+    }
+
+    /// Removes all crossings from the pose.
+    pub(super) fn release_crossings(&mut self, model: &mut Model) {
+        while let Some(crossing) = self.pose.crossings.pop() {
+            model.plan.release(crossing.block);
+        }
+    }
+
+    /// Evaluates a row of Phi at the present places of the bodies.
+    pub(super) fn row_value(&self, system: &System, row: usize) -> RowValue {
+        system.evaluate_row(row, &self.at, &self.targets, &self.pose.drivers, |_, _| {})
+    }
+
+    /// Returns the entries of a row of the Jacobian at the present places of the bodies, scaled.
+    pub(super) fn jacobian_row(&self, system: &System, row: usize) -> Row {
+        let mut entries = Row::new();
+        system.sparse_row(
+            row,
+            &self.at,
+            &self.targets,
+            &self.pose.drivers,
+            &mut entries,
+        );
+        entries
+    }
+
+    /// Returns the largest scaled residual of Phi at the pose.
+    pub(super) fn residual(&self, system: &System) -> f64 {
+        system.largest_residual(&self.at, &self.targets, &self.pose.drivers)
+    }
+
+    /// Returns the scaled reciprocal condition at the pose, of the block nearest to a singular
+    /// position; zero where it is singular.
+    pub(super) fn rcond(&mut self, model: &mut Model) -> f64 {
+        match self.refresh(model) {
+            Ok(()) => model.plan.rcond(),
+            Err(_) => 0.0,
+        }
+    }
+
+    /// Solves the rates of q at the pose for these rates of the drivers.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where the pose is singular, [`Error::NoMotion`] for rates of a driver
+    /// that are not finite.
+    pub(super) fn solve_rates(
+        &mut self,
+        model: &mut Model,
+        driver: impl Fn(DriverId) -> Jet,
+        rates: &mut Rates,
+    ) -> Result<(), Error> {
+        self.refresh(model)?;
+        let finite = if self.has_single_driver() {
+            let [first, second] = driver(DriverId(0)).derivatives;
+            self.tangent.run(first, second, rates)
+        } else {
+            for (index, jet) in self.driver_rates.iter_mut().enumerate() {
+                *jet = driver(DriverId(index));
+            }
+            let mut state = BlockState {
+                system: &model.system,
+                targets: &self.targets,
+                drivers: &self.pose.drivers,
+                at: &mut self.at,
+                tangent: rates,
+            };
+            model.plan.solve_rates(&mut state, &self.driver_rates);
+            rates.is_finite()
+        };
+        if finite {
+            Ok(())
+        } else {
+            Err(self.explain_rates(&model.system, driver))
+        }
+    }
+
+    /// Returns value, rate and acceleration of a measure at the pose.
+    pub(super) fn measure(&self, measure: &dyn Constraint, rates: &Rates) -> Jet {
+        let mut gradient = Gradient::new();
+        measure.gradient(&self.at, &mut gradient);
+        let (q_dot, q_ddot) = (rates.velocity(), rates.acceleration());
+        let velocity = gradient.dot(q_dot);
+        let acceleration = gradient.dot(q_ddot) + measure.quadratic(&self.at, q_dot);
+        Jet::new(measure.value(&self.at), [velocity, acceleration])
+    }
+
+    /// Returns point, velocity and acceleration of a marker: the x component, then the y component.
+    pub(super) fn marker(&self, marker: MarkerId, rates: &Rates) -> [Jet; 2] {
+        let marker = self.at.marker(marker);
+        let velocity = point_velocity(marker, rates.velocity());
+        let acceleration = point_acceleration(marker, rates.velocity(), rates.acceleration());
+        [0, 1].map(|k| Jet::new(marker.point[k], [velocity[k], acceleration[k]]))
+    }
+
+    /// Returns the cause of rates that are not finite.
+    #[cold]
+    fn explain_rates(&self, system: &System, driver: impl Fn(DriverId) -> Jet) -> Error {
+        let mut drivers = (0..self.pose.drivers.len()).map(DriverId);
+        let endless =
+            drivers.find(|&id| !driver(id).derivatives.iter().all(|rate| rate.is_finite()));
+        endless.map_or(SINGULAR_HERE, |id| Error::NoMotion {
+            driver: system.describe_driver(id),
+            quantity: "velocity or acceleration",
+        })
+    }
+}

@@ -1,0 +1,167 @@
+//! Ground, the moving bodies and their markers.
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::names::NameTable;
+use crate::mechanism::reserved::BODY_QUANTITIES;
+use crate::mechanism::wording::quoted;
+use crate::mechanism::{Body, BodyId, Expression, Marker, MarkerId, Unit};
+
+use super::context::Context;
+#[cfg(feature = "cli")]
+use super::kind::NAME;
+use super::kind::{Array, Entry, Fields, Item, Kind, Text, schema};
+use super::number::{ANGLE, LENGTH, NUMBER, Number, POINT, Quantity};
+use super::table::{Field, table};
+
+table! {
+    /// The body that never moves; its frame is the global one.
+    struct GroundKeys<'a> {
+        /// Frames fixed on ground.
+        markers: Vec<(Entry<'a>, Option<Frame>)> = Frames,
+    }
+
+    /// A rigid body that moves.
+    struct BodyKeys<'a> {
+        /// Frames fixed on the body.
+        markers: Vec<(Entry<'a>, Option<Frame>)> = Frames,
+        /// Start of the search for the assembled pose [m, m, rad]; zeros if left out.
+        estimate: [Quantity; 3] = Array::new("[x, y, phi]", [LENGTH, LENGTH, ANGLE]),
+        /// Mass.
+        mass: Quantity = NUMBER.in_unit(Unit::KILOGRAM).positive(),
+        /// Moment of inertia about the centre of mass.
+        inertia: Quantity = NUMBER.in_unit(Unit::KILOGRAM_METRE_SQUARED).not_negative(),
+        /// Centre of mass in the body's frame.
+        center: [Quantity; 2] = POINT,
+        /// Description in one line.
+        description: String = Text,
+    }
+}
+
+/// x, y \[m\] and angle \[rad\] of a marker in the frame of its body.
+type Frame = [Expression; 3];
+
+/// Markers by their names.
+struct Frames;
+
+impl Frames {
+    const SHORT: Array<Number, 2> = Array::new("[x, y]` or `[x, y, angle]", [LENGTH; 2]);
+    const LONG: Array<Number, 3> = Array::new("[x, y, angle]", [LENGTH, LENGTH, ANGLE]);
+}
+
+impl<'a> Kind<'a> for Frames {
+    type Value = Vec<(Entry<'a>, Option<Frame>)>;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Self::Value> {
+        let entries = context.entries(item)?.into_iter();
+        let mut frame = |entry: Entry<'a>| {
+            let marker = Item {
+                key: entry.key,
+                value: entry.value,
+                ..*item
+            };
+            let length = entry
+                .value
+                .get_ref()
+                .as_array()
+                .map_or(0, |items| items.len());
+            if length == 3 {
+                let frame = Self::LONG.read(context, &marker)?;
+                return Some(frame.map(|q| q.expression));
+            }
+            let [x, y] = Self::SHORT.read(context, &marker)?.map(|q| q.expression);
+            Some([x, y, Expression::constant(0.0)])
+        };
+        Some(entries.map(|entry| (entry, frame(entry))).collect())
+    }
+
+    schema! {
+        {
+            "type": "object",
+            "propertyNames": { "pattern": NAME, "not": { "enum": BODY_QUANTITIES } },
+            "additionalProperties": {
+                "description": "[x, y] or [x, y, angle] in the body's frame [m, m, rad].",
+                "anyOf": [Self::SHORT.schema(), Self::LONG.schema()],
+            },
+        }
+    }
+}
+
+impl<'a> Context<'a> {
+    /// Reads ground and the bodies; declares their markers, those of ground first.
+    pub(super) fn bodies(
+        &mut self,
+        ground: Option<&Fields<'a>>,
+        entries: &Field<Vec<Entry<'a>>>,
+    ) -> (Vec<Body>, Vec<Marker>) {
+        // A value that is no table has been reported.
+        let readable = entries.key.is_none() || entries.value.is_some();
+        if readable && entries.items().is_empty() {
+            let place = entries.key.clone().unwrap_or(0..0);
+            self.error(code::NO_BODIES, place, "the mechanism has no bodies")
+                .suggest("add one: `[bodies.crank]`");
+        }
+        let mut markers = Vec::new();
+        let ground = ground.and_then(|ground| self.table::<GroundKeys<'a>>(ground).markers.value);
+        self.declare_markers(None, ground, &mut markers);
+        let mut bodies = Vec::new();
+        for (index, entry) in entries.items().iter().enumerate() {
+            let first = self.carriers.len();
+            let mut keys = self.entry::<BodyKeys<'a>>(*entry, "body");
+            let frames = keys.as_mut().and_then(|keys| keys.markers.value.take());
+            self.declare_markers(Some(BodyId(index)), frames, &mut markers);
+            let ids = (first..self.carriers.len()).map(MarkerId).collect();
+            bodies.extend(keys.map(|keys| self.body(*entry, keys, ids)));
+        }
+        (bodies, markers)
+    }
+
+    fn body(&mut self, entry: Entry<'a>, keys: BodyKeys<'a>, markers: Vec<MarkerId>) -> Body {
+        let of_mass = [("inertia", &keys.inertia.key), ("center", &keys.center.key)];
+        for (name, key) in of_mass {
+            if let (None, Some(span)) = (&keys.mass.key, key) {
+                let subject = &keys.owner.subject;
+                let message = format!("`{name}` of {subject} has no effect without `mass`");
+                self.warn(code::MISSING_MASS, span.clone(), message);
+            }
+        }
+        let estimate = keys.estimate.expressions();
+        Body {
+            name: entry.name().to_owned(),
+            description: keys.description.value.unwrap_or_default(),
+            markers,
+            estimate: estimate.unwrap_or_else(|| [0.0; 3].map(Expression::constant)),
+            mass: keys.mass.expression(),
+            inertia: keys.inertia.expression(),
+            center: keys.center.expressions(),
+        }
+    }
+
+    /// Declares the markers of a body, of ground if it is `None`.
+    fn declare_markers(
+        &mut self,
+        carrier: Option<BodyId>,
+        frames: Option<Vec<(Entry<'a>, Option<Frame>)>>,
+        markers: &mut Vec<Marker>,
+    ) {
+        let mut table = NameTable::new();
+        for (entry, frame) in frames.unwrap_or_default() {
+            let name = entry.name();
+            self.check_name(entry, "marker");
+            if BODY_QUANTITIES.contains(&name) {
+                let message = format!("{} is a quantity of the body itself", quoted(name));
+                self.error(code::RESERVED_NAME, entry.key.span(), message);
+            }
+            table.insert(name, MarkerId(self.carriers.len()));
+            let owner = self.carrier_name(carrier);
+            self.owners.entry(name).or_insert(owner);
+            self.carriers.push(carrier);
+            markers.extend(frame.map(|[x, y, angle]| Marker {
+                name: name.to_owned(),
+                body: carrier,
+                position: [x, y],
+                angle,
+            }));
+        }
+        self.markers.push(table);
+    }
+}

@@ -1,0 +1,160 @@
+//! State of reading a file: the names and values known so far, and the problems found.
+
+use std::collections::HashMap;
+
+use toml::de::DeValue;
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::names::NameTable;
+use crate::mechanism::syntax::{self, Value};
+use crate::mechanism::{
+    BodyId, Diagnostic, MarkerId, ParameterId, Severity, Source, Span, TableFile,
+};
+
+/// Most problems that are shown; the others are counted. A file of garbage would make a million.
+const MAX_PROBLEMS: usize = 100;
+
+/// Name of the body that never moves.
+pub(super) const GROUND: &str = "ground";
+
+/// State of reading one file.
+pub(super) struct Context<'a> {
+    pub(super) source: &'a Source,
+    problems: Vec<Diagnostic>,
+    /// Number of problems that are not shown, and the last of them.
+    omitted: (usize, Option<Diagnostic>),
+    /// Whether one of the problems is an error.
+    pub(super) failed: bool,
+    pub(super) parameters: NameTable<'a, ParameterId>,
+    /// The file's value of each parameter, `None` before it is computed and if it is wrong.
+    pub(super) parameter_values: Vec<Option<f64>>,
+    /// Whether anything uses each parameter.
+    pub(super) parameters_used: Vec<bool>,
+    /// Moving bodies.
+    pub(super) bodies: NameTable<'a, BodyId>,
+    pub(super) body_names: Vec<&'a str>,
+    /// Markers of ground, then of each body.
+    pub(super) markers: Vec<NameTable<'a, MarkerId>>,
+    /// Body of each marker, `None` for ground.
+    pub(super) carriers: Vec<Option<BodyId>>,
+    /// Name of the first body, or `ground`, that has a marker of this name.
+    pub(super) owners: HashMap<&'a str, &'a str>,
+    /// CSV files read so far.
+    pub(super) table_files: Vec<TableFile>,
+    /// Numbers taken from them, for the canonical form.
+    pub(super) file_tables: String,
+}
+
+impl<'a> Context<'a> {
+    pub(super) fn new(source: &'a Source) -> Self {
+        Self {
+            source,
+            problems: Vec::new(),
+            omitted: (0, None),
+            failed: false,
+            parameters: NameTable::new(),
+            parameter_values: Vec::new(),
+            parameters_used: Vec::new(),
+            bodies: NameTable::new(),
+            body_names: Vec::new(),
+            markers: Vec::new(),
+            carriers: Vec::new(),
+            owners: HashMap::new(),
+            table_files: Vec::new(),
+            file_tables: String::new(),
+        }
+    }
+
+    /// Adds a problem; returns it, so that labels and help can be added.
+    pub(super) fn report(&mut self, problem: Diagnostic) -> &mut Diagnostic {
+        self.failed |= problem.severity == Severity::Error;
+        if self.problems.len() < MAX_PROBLEMS {
+            self.problems.push(problem);
+            return self.problems.last_mut().expect("a problem was added");
+        }
+        self.omitted.0 += 1;
+        self.omitted.1.insert(problem)
+    }
+
+    pub(super) fn error(
+        &mut self,
+        code: &'static str,
+        span: Span,
+        message: impl Into<String>,
+    ) -> &mut Diagnostic {
+        self.report(Diagnostic::error(code, message).label(span, ""))
+    }
+
+    pub(super) fn warn(
+        &mut self,
+        code: &'static str,
+        span: Span,
+        message: impl Into<String>,
+    ) -> &mut Diagnostic {
+        self.report(Diagnostic::warning(code, message).label(span, ""))
+    }
+
+    /// Returns the problems in the order of the file, those without a place first; the last one
+    /// counts those not shown.
+    pub(super) fn into_problems(mut self) -> Vec<Diagnostic> {
+        self.problems
+            .sort_by_key(|problem| problem.labels.first().map(|label| label.span.start));
+        if self.omitted.0 > 0 {
+            let message = format!("{} more problems are not shown", self.omitted.0);
+            let mut problem = Diagnostic::warning(code::TOO_MANY_PROBLEMS, message);
+            if self.failed {
+                problem.severity = Severity::Error;
+            }
+            self.problems.push(problem);
+        }
+        self.problems
+    }
+
+    pub(super) fn wrong_type(&mut self, value: &Value<'_>, expected: &str) {
+        let found = match value.get_ref() {
+            DeValue::Array(items) if expected.starts_with("an array") => match items.len() {
+                1 => "one of 1 item".to_owned(),
+                length => format!("one of {length} items"),
+            },
+            other => syntax::kind(other).to_owned(),
+        };
+        let message = format!("expected {expected}, found {found}");
+        self.error(code::WRONG_TYPE, value.span(), message);
+    }
+
+    pub(super) fn text(&mut self, value: &'a Value<'a>) -> Option<&'a str> {
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(value, "a string");
+        }
+        text
+    }
+
+    /// Returns the items of an array.
+    pub(super) fn items(
+        &mut self,
+        value: &'a Value<'a>,
+        expected: &str,
+    ) -> Option<&'a [Value<'a>]> {
+        let items = value.get_ref().as_array();
+        if items.is_none() {
+            self.wrong_type(value, expected);
+        }
+        Some(items?)
+    }
+
+    /// Whether these parameters have values.
+    pub(super) fn knows(&self, mut parameters: impl Iterator<Item = ParameterId>) -> bool {
+        parameters.all(|id| self.parameter_values[id.index()].is_some())
+    }
+
+    /// Returns the file's value of a parameter that [has one](Self::knows), otherwise 0.
+    pub(super) fn known_value(&self, id: ParameterId) -> f64 {
+        self.parameter_values[id.index()].unwrap_or(0.0)
+    }
+
+    /// Returns the name of a body, of ground if it is `None`.
+    pub(super) fn carrier_name(&self, carrier: Option<BodyId>) -> &'a str {
+        carrier.map_or(GROUND, |body| self.body_names[body.index()])
+    }
+}

@@ -1,0 +1,108 @@
+//! Coordinates between two markers, and the constraints and measures made of them.
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::{Constraint, Coordinate, CoordinateKind, MarkerId, Measure};
+
+use super::context::Context;
+use super::kind::{Entry, Text, Word};
+use super::number::{Limit, NUMBER, Quantity};
+use super::reference::{MARKERS, MarkerName, MarkerPair};
+use super::table::table;
+
+table! {
+    /// A coordinate between two markers.
+    struct CoordinateKeys<'a> {
+        /// Quantity measured from marker i to marker j.
+        #[required("\"angle\"")]
+        coordinate: CoordinateKind = COORDINATE,
+        /// Markers i and j, on different bodies: j is measured as seen from i.
+        #[required(MARKERS)]
+        markers: [MarkerId; 2] = MarkerPair,
+        /// Marker on whose axes x or y is measured; marker i if left out.
+        axes: MarkerId = MarkerName,
+    }
+
+    /// A coordinate held at a value.
+    struct ConstraintKeys<'a> {
+        /// Value at which the coordinate is held [m or rad].
+        #[required("0")]
+        value: Quantity = NUMBER,
+        /// Description in one line.
+        description: String = Text,
+    }
+
+    /// A coordinate that is an output, with its velocity and acceleration.
+    struct MeasureKeys<'a> {
+        /// Description in one line.
+        description: String = Text,
+    }
+}
+
+const COORDINATE: Word<CoordinateKind> = Word::new("coordinate", code::UNKNOWN_COORDINATE, || {
+    vec![
+        ("angle", CoordinateKind::Angle),
+        ("x", CoordinateKind::X),
+        ("y", CoordinateKind::Y),
+        ("distance", CoordinateKind::Distance),
+    ]
+});
+
+impl<'a> Context<'a> {
+    pub(super) fn constraint(&mut self, entry: Entry<'a>) -> Option<Constraint> {
+        let (coordinate, keys) =
+            self.entry::<(CoordinateKeys<'a>, ConstraintKeys<'a>)>(entry, "constraint")?;
+        let coordinate = self.coordinate(coordinate)?;
+        let value = keys.value.value?;
+        self.check_coordinate_value(coordinate.kind, &value, "a distance");
+        Some(Constraint {
+            name: entry.name().to_owned(),
+            description: keys.description.value.unwrap_or_default(),
+            coordinate,
+            value: value.expression,
+        })
+    }
+
+    pub(super) fn measure(&mut self, entry: Entry<'a>) -> Option<Measure> {
+        let (coordinate, keys) =
+            self.entry::<(CoordinateKeys<'a>, MeasureKeys<'a>)>(entry, "measure")?;
+        Some(Measure {
+            name: entry.name().to_owned(),
+            description: keys.description.value.unwrap_or_default(),
+            coordinate: self.coordinate(coordinate)?,
+        })
+    }
+
+    pub(super) fn coordinate(&mut self, keys: CoordinateKeys<'a>) -> Option<Coordinate> {
+        let kind = keys.coordinate.value;
+        let has_axes = kind.is_none_or(CoordinateKind::has_axes);
+        if let Some(span) = keys.axes.key.clone().filter(|_| !has_axes) {
+            let subject = keys.owner.subject;
+            let message = format!("{subject} has `axes`, but is neither an `x` nor a `y`");
+            self.error(code::UNKNOWN_KEY, span, message)
+                .suggest("an angle or a distance is the same on any axes");
+        }
+        let [from, to] = keys.markers.value?;
+        Some(Coordinate {
+            kind: kind?,
+            from,
+            to,
+            axes: keys.axes.or(from)?,
+        })
+    }
+
+    /// Reports a distance that is not positive, and warns of an angle that looks like degrees.
+    pub(super) fn check_coordinate_value(
+        &mut self,
+        kind: CoordinateKind,
+        value: &Quantity,
+        subject: &str,
+    ) {
+        match kind {
+            CoordinateKind::Angle => self.warn_of_degrees(value),
+            CoordinateKind::Distance => {
+                self.check_limit(Limit::Positive, value, subject);
+            }
+            CoordinateKind::X | CoordinateKind::Y => {}
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! `cam`: a follower on the contour of a cam.
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::read::context::Context;
+#[cfg(feature = "cli")]
+use crate::mechanism::read::kind::Described;
+use crate::mechanism::read::kind::{Item, Kind, Word, schema};
+#[cfg(feature = "cli")]
+use crate::mechanism::read::number::NUMBER;
+use crate::mechanism::read::number::{LENGTH, Quantity};
+use crate::mechanism::read::points::PointKeys;
+use crate::mechanism::{
+    CamFollower, JointKind, Profile, ProfileError, ProfileInForce, Span, Variable,
+};
+
+use super::joint_type;
+
+joint_type! {
+    "cam" => |keys, context| context.cam(keys);
+
+    /// A follower, which has marker j, on the contour of a cam, which has marker i.
+    struct Cam<'a> {
+        /// Part of the follower that touches the cam.
+        #[required("\"roller\"")]
+        follower: Follower = FOLLOWER,
+        /// Radius of the roller.
+        radius: Quantity = LENGTH.positive(),
+        /// Polar radius of the contour [m]: an expression in theta, or points.
+        #[required("\"0.04 + 0.01*(1 - cos(theta))\"")]
+        profile: Profile = Contour,
+    }
+}
+
+#[derive(Clone, Copy)]
+pub(super) enum Follower {
+    Knife,
+    Roller,
+    Flat,
+}
+
+const FOLLOWER: Word<Follower> = Word::new("follower", code::ILLEGAL_VALUE, || {
+    vec![
+        ("knife", Follower::Knife),
+        ("roller", Follower::Roller),
+        ("flat", Follower::Flat),
+    ]
+});
+
+/// Contour of a cam.
+struct Contour;
+
+impl<'a> Kind<'a> for Contour {
+    type Value = Profile;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Profile> {
+        let profile = if item.value.get_ref().is_table() {
+            let fields = context.fields(item.span(), item.value, "the profile".to_owned())?;
+            let keys = context.table::<PointKeys<'a>>(&fields);
+            context.contour_table(keys)?
+        } else {
+            Profile::Expression(context.expression(item.value, Some(Variable::PolarAngle))?)
+        };
+        context.check_contour(&profile, item.span())?;
+        Some(profile)
+    }
+
+    schema! {{ "anyOf": [NUMBER.schema(), PointKeys::schema()] }}
+}
+
+impl<'a> Context<'a> {
+    fn cam(&mut self, keys: Cam<'a>) -> Option<JointKind> {
+        let follower = keys.follower.value?;
+        match (follower, keys.radius.key.clone()) {
+            (Follower::Roller, None) => self.missing_key(&keys.owner, "radius", "0.01"),
+            (Follower::Knife | Follower::Flat, Some(span)) => {
+                let message = format!("{} has `radius`, but no roller", keys.owner.subject);
+                self.error(code::UNKNOWN_KEY, span, message)
+                    .suggest("only `follower = \"roller\"` has a radius");
+            }
+            _ => {}
+        }
+        let follower = match follower {
+            Follower::Knife => CamFollower::Knife,
+            Follower::Flat => CamFollower::Flat,
+            Follower::Roller => CamFollower::Roller {
+                radius: keys.radius.expression()?,
+            },
+        };
+        Some(JointKind::Cam {
+            follower,
+            profile: keys.profile.value?,
+        })
+    }
+
+    fn contour_table(&mut self, keys: PointKeys<'a>) -> Option<Profile> {
+        let place = keys.owner.place.clone();
+        let mut points = self.points(keys)?;
+        self.check_ordinates_positive(&points, "the radius of a contour")?;
+        self.close_turn(&mut points)?;
+        if points.table.points.len() < 3 {
+            let message = "a closed contour has three points at least";
+            self.error(code::BAD_TABLE, place, message);
+            return None;
+        }
+        Some(Profile::Table(points.table))
+    }
+
+    /// Refuses a profile that is no contour with the file's parameters.
+    fn check_contour(&mut self, profile: &Profile, span: Span) -> Option<()> {
+        if !self.knows(profile.parameters()) {
+            return Some(());
+        }
+        let mut in_force = ProfileInForce::new(profile, self.parameter_values.len());
+        let error = in_force
+            .set_parameters(|id| self.known_value(id))
+            .and_then(|()| in_force.check_smoothness())
+            .err();
+        let Some(error) = error else {
+            return Some(());
+        };
+        let message = error.to_string();
+        let problem = self.error(code::BAD_PROFILE, span, message);
+        if let ProfileError::Open { .. } | ProfileError::Corner { .. } = error {
+            problem.suggest(
+                "a contour goes once round without corners: use `theta` in sines and cosines of \
+                 whole multiples, or give points",
+            );
+        }
+        None
+    }
+}

@@ -1,0 +1,30 @@
+//! `gear`: two wheels in mesh.
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::read::kind::Flag;
+use crate::mechanism::read::number::Quantity;
+use crate::mechanism::read::reference::CarrierName;
+use crate::mechanism::{BodyId, JointKind};
+
+use super::{joint_type, wheels};
+
+joint_type! {
+    "gear" => |keys, _| Some(JointKind::Gear {
+        sizes: wheels::sizes(keys.radii, keys.teeth)?,
+        internal: keys.internal.or(false)?,
+        carrier: keys.carrier.or(None)?,
+    });
+
+    /// Two toothed wheels in mesh; the directions of the two markers are the wheels' phase.
+    #[one_of(radii, teeth, code::WHEEL_SIZES, wheels::HELP)]
+    struct Gear<'a> {
+        /// Radii of the pitch circles of i and j.
+        radii: [Quantity; 2] = wheels::RADII,
+        /// Numbers of teeth of i and j.
+        teeth: [Quantity; 2] = wheels::TEETH,
+        /// Whether one wheel runs inside the other, a ring.
+        internal: bool = Flag,
+        /// Body that carries both pivots; ground if left out.
+        carrier: Option<BodyId> = CarrierName,
+    }
+}

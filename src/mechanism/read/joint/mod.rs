@@ -1,0 +1,131 @@
+//! Joints: a file per type, which declares the type's keys and reads them.
+
+mod belt;
+mod cam;
+mod gear;
+mod link;
+mod rack_and_pinion;
+mod revolute;
+mod revolute_translational;
+mod slot;
+mod translational;
+mod weld;
+mod wheels;
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::{Joint, JointKind, MarkerId};
+
+use super::context::Context;
+use super::kind::{Described, Entry, Fields, Text, Word};
+use super::reference::{MARKERS, MarkerPair};
+use super::table::{Keys, table};
+
+table! {
+    /// A joint between two bodies.
+    struct JointKeys<'a> {
+        /// Type of the joint.
+        #[required("\"revolute\"")]
+        r#type: &'static JointType = JOINT_TYPE,
+        /// Markers i and j, on different bodies.
+        #[required(MARKERS)]
+        markers: [MarkerId; 2] = MarkerPair,
+        /// Description in one line.
+        description: String = Text,
+    }
+}
+
+/// Type of joint as the file knows it.
+pub(super) struct JointType {
+    /// Name under `type`.
+    name: &'static str,
+    /// Reads the keys of the type.
+    read: for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<JointKind>,
+    #[cfg(feature = "cli")]
+    schema: fn() -> serde_json::Value,
+}
+
+/// Declares a type of joint: its name, its keys besides those of every joint, and the joint that
+/// they make.
+macro_rules! joint_type {
+    (
+        $name:literal => $kind:expr;
+        $(#[$($attribute:tt)+])+
+        struct $keys:ident<$life:lifetime> { $($key:tt)* }
+    ) => {
+        $crate::mechanism::read::table::table! {
+            $(#[$($attribute)+])+
+            struct $keys<$life> { $($key)* }
+        }
+
+        pub(super) static TYPE: $crate::mechanism::read::joint::JointType = $crate::mechanism::read::joint::JointType {
+            name: $name,
+            read: |context, fields| {
+                let kind: for<$life> fn($keys<$life>, &mut $crate::mechanism::read::context::Context<$life>) -> _ = $kind;
+                kind(context.further::<$crate::mechanism::read::joint::JointKeys<'_>, $keys<'_>>(fields), context)
+            },
+            #[cfg(feature = "cli")]
+            schema: <($crate::mechanism::read::joint::JointKeys<'_>, $keys<'_>) as $crate::mechanism::read::kind::Described>::schema,
+        };
+    };
+}
+
+use joint_type;
+
+/// Every type of joint; a new one is a file and a line here.
+static JOINT_TYPES: [&JointType; 10] = [
+    &revolute::TYPE,
+    &translational::TYPE,
+    &slot::TYPE,
+    &link::TYPE,
+    &revolute_translational::TYPE,
+    &weld::TYPE,
+    &gear::TYPE,
+    &belt::TYPE,
+    &rack_and_pinion::TYPE,
+    &cam::TYPE,
+];
+
+const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT_TYPE, || {
+    JOINT_TYPES
+        .map(|joint_type| (joint_type.name, joint_type))
+        .to_vec()
+});
+
+impl<'a> Context<'a> {
+    pub(super) fn joint(&mut self, entry: Entry<'a>) -> Option<Joint> {
+        let fields = self.entry_fields(entry, "joint")?;
+        // The keys of an unknown type are unknown too.
+        let common = JointKeys::read(self, &fields);
+        let kind = (common.r#type.value?.read)(self, &fields);
+        let [from, to] = common.markers.value?;
+        Some(Joint {
+            name: entry.name().to_owned(),
+            description: common.description.value.unwrap_or_default(),
+            kind: kind?,
+            from,
+            to,
+        })
+    }
+}
+
+/// A joint in the JSON Schema: for each type its keys.
+pub(super) struct AnyJoint;
+
+impl Described for AnyJoint {
+    #[cfg(feature = "cli")]
+    fn schema() -> serde_json::Value {
+        use serde_json::json;
+        let mut joint = JointKeys::schema();
+        let branches = JOINT_TYPES.iter().map(|joint_type| {
+            let mut keys = (joint_type.schema)();
+            // The choice of types stands outside of the branches.
+            keys["properties"]["type"] = json!(true);
+            json!({ "if": { "properties": { "type": { "const": joint_type.name } } }, "then": keys })
+        });
+        joint["allOf"] = branches.collect();
+        // Each branch has the other keys, and knows those of its type.
+        joint["properties"] = json!({ "type": joint["properties"]["type"] });
+        joint["additionalProperties"] = json!(true);
+        joint
+    }
+}

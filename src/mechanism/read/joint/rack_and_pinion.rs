@@ -1,0 +1,28 @@
+//! `rack_and_pinion`: a pinion that rolls on a rack.
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::read::kind::Word;
+use crate::mechanism::read::number::{LENGTH, Quantity};
+use crate::mechanism::{JointKind, RackSide};
+
+use super::joint_type;
+
+joint_type! {
+    "rack_and_pinion" => |keys, _| Some(JointKind::RackAndPinion {
+        radius: keys.radius.expression()?,
+        side: keys.side.or(RackSide::Above)?,
+    });
+
+    /// A pinion, which has marker i, rolls along the x-axis of marker j, the rack.
+    struct RackAndPinion<'a> {
+        /// Radius of the pinion's pitch circle.
+        #[required("0.05")]
+        radius: Quantity = LENGTH.positive(),
+        /// Side of the rack on which the pinion is, the rack's y-axis pointing up.
+        side: RackSide = SIDE,
+    }
+}
+
+const SIDE: Word<RackSide> = Word::new("side", code::ILLEGAL_VALUE, || {
+    vec![("above", RackSide::Above), ("below", RackSide::Below)]
+});

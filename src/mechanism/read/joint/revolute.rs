@@ -1,0 +1,12 @@
+//! `revolute`: a pin.
+
+use crate::mechanism::JointKind;
+
+use super::joint_type;
+
+joint_type! {
+    "revolute" => |_, _| Some(JointKind::Revolute);
+
+    /// A pin: the two points coincide.
+    struct Revolute<'a> {}
+}

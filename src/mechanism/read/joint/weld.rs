@@ -1,0 +1,12 @@
+//! `weld`: a rigid connection.
+
+use crate::mechanism::JointKind;
+
+use super::joint_type;
+
+joint_type! {
+    "weld" => |_, _| Some(JointKind::Weld);
+
+    /// A rigid connection: the two frames coincide.
+    struct Weld<'a> {}
+}

@@ -1,0 +1,151 @@
+//! Reader of mechanism files: from the TOML document to the mechanism, with all problems.
+//!
+//! Each table of the file is declared once, by [`table::table`]: its keys, their kinds, which of
+//! them are required, and their meaning. Reading, the messages about keys and the JSON Schema
+//! follow from the declarations. A kind of value ([`kind::Kind`]) knows how it is read and what
+//! its schema is.
+//!
+//! | to add | do |
+//! |---|---|
+//! | a key | a line in the declaration of its table; the compiler then asks for its use |
+//! | a joint | a file in `joint`, and its line in `joint/mod.rs` |
+//! | a coordinate | a word in `coordinate.rs` |
+//!
+//! Names are declared first, then the parameters get their values, then all else is read. An
+//! unreadable value leaves one error; what refers to it adds no other.
+
+mod body;
+mod context;
+mod coordinate;
+mod driver;
+mod joint;
+mod kind;
+mod limits;
+mod motion;
+mod names;
+mod number;
+mod parameter;
+mod points;
+mod reference;
+mod root;
+mod settings;
+mod table;
+mod usage;
+
+#[cfg(test)]
+mod tests;
+
+use context::Context;
+use kind::{Entry, Fields};
+use root::Root;
+use table::Field;
+
+use super::{Diagnostic, Mechanism, Source, syntax};
+
+impl Mechanism {
+    /// Reads a mechanism file; returns the warnings with the mechanism.
+    ///
+    /// # Errors
+    ///
+    /// All errors and warnings, in the order of the file; after a syntax error only that.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use biela::mechanism::{Mechanism, Source};
+    ///
+    /// let source = Source::new("pendulum.toml", r#"
+    ///     format = 1
+    ///     name = "pendulum"
+    ///     ground.markers = { O = [0, 0] }
+    ///     bodies.rod.markers = { O = ["-0.5*length", 0] }
+    ///     parameters.length = 0.8
+    ///     joints.O = { type = "revolute", markers = ["ground.O", "rod.O"] }
+    ///     drivers.swing = { coordinate = "angle", markers = ["ground.O", "rodd.O"], start = 0 }
+    /// "#);
+    /// let problems = Mechanism::parse(&source).unwrap_err();
+    /// assert_eq!(
+    ///     problems[0].one_line(&source),
+    ///     "pendulum.toml:8:69: error: no body `rodd`; did you mean `rod`?"
+    /// );
+    /// ```
+    pub fn parse(source: &Source) -> Result<(Self, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let (document, duplicates) = syntax::parse(source).map_err(|error| vec![error])?;
+        let mut context = Context::new(source);
+        for duplicate in duplicates {
+            context.report(duplicate);
+        }
+        let mechanism = context.mechanism(&document);
+        let failed = context.failed;
+        let problems = context.into_problems();
+        match mechanism {
+            Some(mechanism) if !failed => Ok((mechanism, problems)),
+            _ => Err(problems),
+        }
+    }
+
+    /// Returns a JSON Schema (2020-12) of mechanism files, by which editors complete and check
+    /// them.
+    ///
+    /// It knows keys, types, units and choices. Only [`parse`](Self::parse) finds problems that
+    /// depend on several places, such as a name that does not exist.
+    #[cfg(feature = "cli")]
+    #[must_use]
+    pub fn schema() -> serde_json::Value {
+        root::schema()
+    }
+}
+
+impl<'a> Context<'a> {
+    /// Reads the mechanism, which is incomplete after an error; `None` in another format.
+    fn mechanism(&mut self, document: &'a syntax::Table<'a>) -> Option<Mechanism> {
+        let file = Fields {
+            table: document,
+            place: 0..0,
+            subject: "the file".to_owned(),
+        };
+        let root = self.table::<Root<'a>>(&file);
+        if root.format.key.is_some() {
+            root.format.value?;
+        }
+        self.declare(&root);
+        let (parameters, derivation_order) = self.parameters(root.parameters.items());
+        let simulation = self.simulation(root.simulation.value.as_ref());
+        let (bodies, markers) = self.bodies(root.ground.value.as_ref(), &root.bodies);
+        let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
+        let mechanism = Mechanism {
+            name: root.name.value.unwrap_or_default(),
+            description: root.description.value.unwrap_or_default(),
+            author: root.author.value,
+            version: root.version.value,
+            license: root.license.value,
+            copyright: root.copyright.value,
+            parameters,
+            derivation_order,
+            bodies,
+            markers,
+            joints: self.each(&root.joints, Self::joint),
+            constraints: self.each(&root.constraints, Self::constraint),
+            drivers: self.each(&root.drivers, driver),
+            measures: self.each(&root.measures, Self::measure),
+            outputs: self.outputs(root.outputs.value.as_ref()),
+            simulation,
+            canonical: syntax::canonical(document) + &self.file_tables,
+            table_files: std::mem::take(&mut self.table_files),
+        };
+        if !self.failed {
+            self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
+        }
+        Some(mechanism)
+    }
+
+    /// Reads each of the entries that can be read.
+    fn each<T>(
+        &mut self,
+        entries: &Field<Vec<Entry<'a>>>,
+        read: impl Fn(&mut Self, Entry<'a>) -> Option<T>,
+    ) -> Vec<T> {
+        let entries = entries.items().iter();
+        entries.filter_map(|entry| read(self, *entry)).collect()
+    }
+}

@@ -1,0 +1,164 @@
+//! Prescribed motions: expressions of time, and tables.
+
+use toml::de::DeValue;
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::motion::not_finite;
+use crate::mechanism::wording::shown;
+use crate::mechanism::{
+    CoordinateKind, Ends, Interpolation, Jet, Law, Motion, MotionInForce, MotionTable, Span,
+    Variable,
+};
+
+use super::context::Context;
+#[cfg(feature = "cli")]
+use super::kind::Described;
+use super::kind::{Item, Kind, Word, schema};
+#[cfg(feature = "cli")]
+use super::number::NUMBER;
+use super::points::{PointKeys, PointTable};
+use super::table::table;
+
+table! {
+    /// A motion through points.
+    struct MotionKeys<'a> {
+        /// Way from each point to the next; a spline if left out.
+        law: Interpolation = LAW,
+        /// Motion before the first point and after the last; clamped if left out.
+        ends: Ends = ENDS,
+    }
+}
+
+const LAW: Word<Interpolation> = Word::new("motion law", code::ILLEGAL_VALUE, || {
+    vec![
+        ("spline", Interpolation::Spline),
+        ("polynomial_345", Interpolation::Law(Law::Polynomial345)),
+        ("polynomial_4567", Interpolation::Law(Law::Polynomial4567)),
+        ("cycloidal", Interpolation::Law(Law::Cycloidal)),
+        ("harmonic", Interpolation::Law(Law::Harmonic)),
+        ("modified_sine", Interpolation::Law(Law::ModifiedSine)),
+        (
+            "modified_trapezoidal",
+            Interpolation::Law(Law::ModifiedTrapezoidal),
+        ),
+        ("trapezoidal", Interpolation::Law(Law::Trapezoidal)),
+    ]
+});
+
+const ENDS: Word<Ends> = Word::new("kind of ends", code::ILLEGAL_VALUE, || {
+    vec![
+        ("clamped", Ends::Clamped),
+        ("natural", Ends::Natural),
+        ("periodic", Ends::Periodic),
+    ]
+});
+
+/// Motion of a driver as a function of time.
+pub(super) struct PrescribedMotion;
+
+/// Motion before it is checked for its coordinate.
+pub(super) struct ReadMotion {
+    motion: Motion,
+    /// Points of a table.
+    points: Option<PointTable>,
+    span: Span,
+}
+
+impl<'a> Kind<'a> for PrescribedMotion {
+    type Value = ReadMotion;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<ReadMotion> {
+        let mut points = None;
+        let not_a_motion = match item.value.get_ref() {
+            DeValue::Array(_) => Some("an array of points is no motion by itself"),
+            DeValue::String(text) if text.ends_with(".csv") => {
+                Some("the name of a file is no motion by itself")
+            }
+            _ => None,
+        };
+        if let Some(message) = not_a_motion {
+            context
+                .error(code::WRONG_TYPE, item.span(), message)
+                .suggest(
+                    "expected `motion = \"10*deg*t\"`, `motion = { table = [[0, 0], [1, 2]] }` or \
+                 `motion = { file = \"a.csv\" }`",
+                );
+            return None;
+        }
+        let motion = if item.value.get_ref().is_table() {
+            let fields = context.fields(item.span(), item.value, "the motion".to_owned())?;
+            let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
+            Motion::Table(context.motion_table(keys, &mut points)?)
+        } else {
+            Motion::Expression(context.expression(item.value, Some(Variable::Time))?)
+        };
+        Some(ReadMotion {
+            motion,
+            points,
+            span: item.span(),
+        })
+    }
+
+    schema! {{ "anyOf": [NUMBER.schema(), <(PointKeys<'_>, MotionKeys<'_>)>::schema()] }}
+}
+
+impl<'a> Context<'a> {
+    fn motion_table(
+        &mut self,
+        (point_keys, keys): (PointKeys<'a>, MotionKeys<'a>),
+        points: &mut Option<PointTable>,
+    ) -> Option<MotionTable> {
+        let ends_place = keys.ends.span.clone();
+        let interpolation = keys.law.or(Interpolation::Spline);
+        let ends = keys.ends.or(Ends::Clamped);
+        if let (Some(Interpolation::Law(_)), Some(Ends::Natural)) = (interpolation, ends) {
+            let message = "only a spline has natural ends";
+            self.error(code::ILLEGAL_VALUE, ends_place, message)
+                .suggest("the other laws come to rest at each point");
+            return None;
+        }
+        let points = points.insert(self.points(point_keys)?);
+        Some(MotionTable {
+            table: points.table.clone(),
+            interpolation: interpolation?,
+            ends: ends?,
+        })
+    }
+
+    /// Refuses a motion whose value or rates at the start time are not finite, and a distance
+    /// that is not positive there or in the table.
+    pub(super) fn check_motion(
+        &mut self,
+        read: ReadMotion,
+        kind: Option<CoordinateKind>,
+        start_time: f64,
+    ) -> Option<Motion> {
+        let ReadMotion {
+            motion,
+            points,
+            span,
+        } = read;
+        let is_distance = kind == Some(CoordinateKind::Distance);
+        if let Some(points) = points.filter(|_| is_distance) {
+            self.check_ordinates_positive(&points, "a distance")?;
+        }
+        if !self.knows(motion.parameters()) {
+            return Some(motion);
+        }
+        let mut in_force = MotionInForce::new(&motion, self.parameter_values.len());
+        in_force.set_parameters(|id| Jet::constant(self.known_value(id)));
+        let start = in_force.evaluate(Jet::variable(start_time));
+        if let Some(what) = not_finite(start) {
+            self.not_finite(span, &format!("at t = {}, {what}", shown(start_time)));
+            return None;
+        }
+        if is_distance && start.value <= 0.0 {
+            let message = format!(
+                "a distance, at the start time too, must be positive, is {}",
+                shown(start.value)
+            );
+            self.error(code::ILLEGAL_VALUE, span, message);
+        }
+        Some(motion)
+    }
+}

@@ -1,0 +1,74 @@
+//! Declaration of the names in the file, before anything refers to them.
+
+use std::collections::HashMap;
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::names::is_legal;
+use crate::mechanism::reserved::is_taken;
+use crate::mechanism::wording::quoted;
+use crate::mechanism::{BodyId, Diagnostic, ParameterId, Span};
+
+use super::context::Context;
+use super::kind::Entry;
+use super::root::Root;
+
+impl<'a> Context<'a> {
+    /// Declares parameters and bodies; reports illegal, taken and repeated names.
+    pub(super) fn declare(&mut self, root: &Root<'a>) {
+        self.check_shared_names(root);
+        let parameters = root.parameters.items().iter().map(Entry::name);
+        self.parameters = parameters.zip((0..).map(ParameterId)).collect();
+        self.parameter_values = vec![None; root.parameters.items().len()];
+        self.parameters_used = vec![false; root.parameters.items().len()];
+        self.body_names = root.bodies.items().iter().map(Entry::name).collect();
+        let bodies = self.body_names.iter().copied();
+        self.bodies = bodies.zip((0..).map(BodyId)).collect();
+    }
+
+    /// Checks the names that become FMI variables or their prefixes.
+    fn check_shared_names(&mut self, root: &Root<'a>) {
+        let sections = [
+            ("parameter", &root.parameters),
+            ("body", &root.bodies),
+            ("joint", &root.joints),
+            ("constraint", &root.constraints),
+            ("driver", &root.drivers),
+            ("measure", &root.measures),
+        ];
+        let entries = sections
+            .iter()
+            .flat_map(|(noun, section)| section.items().iter().map(|entry| (*noun, *entry)));
+        let mut all: Vec<(&str, Entry<'a>)> = entries.collect();
+        all.sort_by_key(|(_, entry)| entry.key.span().start);
+        let mut earlier: HashMap<&str, (&str, Span)> = HashMap::new();
+        for (noun, entry) in all {
+            let (name, span) = (entry.name(), entry.key.span());
+            if self.check_name(entry, noun) && is_taken(name) {
+                let message = format!("the name {} is taken by the language", quoted(name));
+                self.error(code::RESERVED_NAME, span.clone(), message);
+            }
+            let Some((first_noun, first_span)) = earlier.get(name) else {
+                earlier.insert(name, (noun, span));
+                continue;
+            };
+            let message = format!("the {noun} {} has the name of a {first_noun}", quoted(name));
+            self.report(
+                Diagnostic::error(code::DUPLICATE_NAME, message)
+                    .label(span, "")
+                    .label(first_span.clone(), format!("the {first_noun}")),
+            )
+            .suggest("all these share one name space");
+        }
+    }
+
+    /// Returns whether a name is legal; reports it otherwise.
+    pub(super) fn check_name(&mut self, entry: Entry<'a>, noun: &str) -> bool {
+        let legal = is_legal(entry.name());
+        if !legal {
+            let message = format!("illegal name {} of a {noun}", quoted(entry.name()));
+            self.error(code::ILLEGAL_NAME, entry.key.span(), message)
+                .suggest("a letter, then letters, digits and `_`");
+        }
+        legal
+    }
+}

@@ -1,0 +1,217 @@
+//! Numbers: a TOML number or an expression string, in the SI unit that its key has.
+
+use std::f64::consts::TAU;
+
+use toml::de::DeValue;
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::expression::Scope;
+use crate::mechanism::syntax::{self, Value};
+use crate::mechanism::wording::{quoted, shown};
+use crate::mechanism::{Expression, Jet, Span, Unit, Variable};
+
+use super::context::Context;
+use super::kind::{Array, Item, Kind, schema};
+
+/// Number of the file: an expression, with its value for the file's parameters.
+pub(super) struct Quantity {
+    pub(super) expression: Expression,
+    /// Finite; `None` if it uses a parameter that has no value, or is not computed yet.
+    pub(super) value: Option<f64>,
+    pub(super) span: Span,
+}
+
+/// Number or expression over the parameters, computed for the file's parameters.
+#[derive(Clone, Copy)]
+pub(super) struct Number {
+    /// Unit, `None` if it depends on other keys.
+    unit: Option<Unit>,
+    limit: Limit,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Limit {
+    None,
+    Positive,
+    NotNegative,
+}
+
+/// Number in a unit that depends on other keys.
+pub(super) const NUMBER: Number = Number {
+    unit: None,
+    limit: Limit::None,
+};
+pub(super) const RATIO: Number = NUMBER.in_unit(Unit::ONE);
+pub(super) const LENGTH: Number = NUMBER.in_unit(Unit::METRE);
+pub(super) const ANGLE: Number = NUMBER.in_unit(Unit::RADIAN);
+pub(super) const TIME: Number = NUMBER.in_unit(Unit::SECOND);
+/// Components `[x, y]` of a point.
+pub(super) const POINT: Array<Number, 2> = Array::new("[x, y]", [LENGTH; 2]);
+
+impl Number {
+    pub(super) const fn in_unit(self, unit: Unit) -> Self {
+        Self {
+            unit: Some(unit),
+            ..self
+        }
+    }
+
+    pub(super) const fn positive(self) -> Self {
+        Self {
+            limit: Limit::Positive,
+            ..self
+        }
+    }
+
+    pub(super) const fn not_negative(self) -> Self {
+        Self {
+            limit: Limit::NotNegative,
+            ..self
+        }
+    }
+}
+
+impl<'a> Kind<'a> for Number {
+    type Value = Quantity;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Quantity> {
+        let mut quantity = context.formula(item.value)?;
+        context.evaluate(&mut quantity)?;
+        if self.unit == Some(Unit::RADIAN) {
+            context.warn_of_degrees(&quantity);
+        }
+        let subject = format!("`{}`", item.key.get_ref());
+        context.check_limit(self.limit, &quantity, &subject);
+        Some(quantity)
+    }
+
+    schema! {
+        number => match number.limit {
+            Limit::None => serde_json::json!({ "$ref": "#/$defs/number" }),
+            Limit::Positive => serde_json::json!({ "$ref": "#/$defs/number", "exclusiveMinimum": 0 }),
+            Limit::NotNegative => serde_json::json!({ "$ref": "#/$defs/number", "minimum": 0 }),
+        }
+    }
+
+    #[cfg(feature = "cli")]
+    fn unit(&self) -> Option<&'static str> {
+        self.unit.map(|unit| unit.name)
+    }
+}
+
+/// Number or expression over the parameters, not computed yet.
+pub(super) struct Formula;
+
+impl<'a> Kind<'a> for Formula {
+    type Value = Quantity;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Quantity> {
+        context.formula(item.value)
+    }
+
+    schema! { NUMBER.schema() }
+}
+
+impl<'a> Context<'a> {
+    /// Reads a number or an expression over the parameters.
+    pub(super) fn formula(&mut self, value: &'a Value<'a>) -> Option<Quantity> {
+        Some(Quantity {
+            expression: self.expression(value, None)?,
+            value: None,
+            span: value.span(),
+        })
+    }
+
+    /// Computes a quantity's value for the file's parameters; `None` if it is not finite, which
+    /// is reported.
+    pub(super) fn evaluate(&mut self, quantity: &mut Quantity) -> Option<()> {
+        if !self.knows(quantity.expression.parameters()) {
+            return Some(());
+        }
+        let parameter = |id| Jet::constant(self.known_value(id));
+        let value = quantity
+            .expression
+            .evaluate(&parameter, Jet::constant(0.0))
+            .value;
+        if !value.is_finite() {
+            self.not_finite(quantity.span.clone(), "the value");
+            return None;
+        }
+        quantity.value = Some(value);
+        Some(())
+    }
+
+    pub(super) fn not_finite(&mut self, span: Span, what: &str) {
+        let text = self.source.text().get(span.clone()).unwrap_or_default();
+        let text = quoted(text.trim_matches(['"', '\'']));
+        let message = format!("{what} of {text} is not finite with the file's parameters");
+        self.error(code::NOT_FINITE, span, message);
+    }
+
+    /// Reads a number or an expression over the parameters and a `variable`.
+    pub(super) fn expression(
+        &mut self,
+        value: &'a Value<'a>,
+        variable: Option<Variable>,
+    ) -> Option<Expression> {
+        if let Some(number) = syntax::number(value.get_ref()) {
+            if number.is_finite() {
+                return Some(Expression::constant(number));
+            }
+            self.error(code::NOT_FINITE, value.span(), "the number is not finite");
+            return None;
+        }
+        let DeValue::String(text) = value.get_ref() else {
+            self.wrong_type(value, "a number or an expression string");
+            return None;
+        };
+        let scope = Scope {
+            parameters: &self.parameters,
+            variable,
+        };
+        match Expression::parse(text, scope) {
+            Ok(expression) => {
+                for id in expression.parameters() {
+                    self.parameters_used[id.index()] = true;
+                }
+                Some(expression)
+            }
+            Err(error) => {
+                let span = syntax::part_span(self.source, value.span(), text, error.span);
+                self.error(code::BAD_EXPRESSION, span, error.message).help = error.help;
+                None
+            }
+        }
+    }
+
+    /// Returns `None` if a value is beyond a limit, which is reported.
+    pub(super) fn check_limit(
+        &mut self,
+        limit: Limit,
+        quantity: &Quantity,
+        subject: &str,
+    ) -> Option<()> {
+        let value = quantity.value?;
+        let demand = match limit {
+            Limit::Positive if value <= 0.0 => "be positive",
+            Limit::NotNegative if value < 0.0 => "not be negative",
+            _ => return Some(()),
+        };
+        let message = format!("{subject} must {demand}, is {}", shown(value));
+        self.error(code::ILLEGAL_VALUE, quantity.span.clone(), message);
+        None
+    }
+
+    /// Warns of an angle that is a bare number of more than a turn: it looks like degrees.
+    pub(super) fn warn_of_degrees(&mut self, angle: &Quantity) {
+        let text = self.source.text().get(angle.span.clone());
+        // The author of an expression has thought of the unit.
+        let bare = text.filter(|text| !text.starts_with(['"', '\'']));
+        if let Some((text, value)) = bare.zip(angle.value).filter(|(_, value)| value.abs() > TAU) {
+            let (number, degrees) = (shown(value), value.to_degrees());
+            let message = format!("an angle of {number} rad is {degrees:.1} deg");
+            self.warn(code::LARGE_ANGLE, angle.span.clone(), message)
+                .suggest(format!("degrees are written `\"{text}*deg\"`"));
+        }
+    }
+}

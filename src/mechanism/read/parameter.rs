@@ -1,0 +1,284 @@
+//! The parameters: their attributes, their order of derivation and their values.
+
+use std::collections::HashSet;
+
+use petgraph::algo::kosaraju_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::expression::CONSTANTS;
+use crate::mechanism::syntax;
+use crate::mechanism::wording::{either, quoted};
+use crate::mechanism::{Diagnostic, DisplayUnit, Expression, Parameter, ParameterId, Unit};
+
+use super::context::Context;
+use super::kind::{Described, Entry, Flag, Item, Kind, Text, Word, schema};
+#[cfg(feature = "cli")]
+use super::number::NUMBER;
+use super::number::{Formula, Quantity};
+use super::table::{Field, table};
+
+table! {
+    /// A parameter with attributes.
+    struct ParameterKeys<'a> {
+        /// Value in the SI unit; an expression over other parameters makes it a derived parameter.
+        #[required("0.1")]
+        value: Quantity = Formula,
+        /// SI unit of the value.
+        unit: Unit = SiUnit,
+        /// Unit in which hosts show the value.
+        display: DisplayUnit = DISPLAY_UNIT,
+        /// Smallest permitted value.
+        min: Quantity = Formula,
+        /// Largest permitted value.
+        max: Quantity = Formula,
+        /// Whether the value may change between steps.
+        tunable: bool = Flag,
+        /// Description in one line.
+        description: String = Text,
+    }
+}
+
+/// A parameter: a number, or a table with its attributes.
+pub(super) struct AnyParameter;
+
+impl Described for AnyParameter {
+    #[cfg(feature = "cli")]
+    fn schema() -> serde_json::Value {
+        serde_json::json!({ "anyOf": [NUMBER.schema(), ParameterKeys::schema()] })
+    }
+}
+
+const UNIT: Word<Unit> = Word::new("unit", code::UNKNOWN_UNIT, || {
+    Unit::ALL.map(|unit| (unit.name, unit)).to_vec()
+});
+
+const DISPLAY_UNIT: Word<DisplayUnit> = Word::new("display unit", code::UNKNOWN_UNIT, || {
+    DisplayUnit::ALL.map(|unit| (unit.name, unit)).to_vec()
+});
+
+/// SI unit; of a display unit the message says how to use it.
+struct SiUnit;
+
+impl<'a> Kind<'a> for SiUnit {
+    type Value = Unit;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Unit> {
+        let Some(display) = item.value.get_ref().as_str().and_then(DisplayUnit::by_name) else {
+            return UNIT.read(context, item);
+        };
+        let name = display.name;
+        let mut units = Unit::ALL.iter();
+        let si = units.find(|unit| unit.dimension == display.dimension)?.name;
+        // The author of `value = 50, unit = "mm"` means millimetres.
+        let value = item.fields.table.get("value");
+        let number = value.filter(|value| syntax::number(value.get_ref()).is_some());
+        let number = number.and_then(|value| context.source.text().get(value.span()));
+        let constant = name.split('/').next();
+        let constant = constant.filter(|name| CONSTANTS.iter().any(|(known, _)| known == name));
+        let value = match (number, constant) {
+            (Some(number), Some(constant)) => format!("value = \"{number}*{constant}\", "),
+            _ => String::new(),
+        };
+        let message = format!("`{name}` is not an SI unit");
+        context
+            .error(code::UNKNOWN_UNIT, item.span(), message)
+            .suggest(format!(
+                "values are SI: `{value}unit = \"{si}\", display = \"{name}\"`"
+            ));
+        None
+    }
+
+    schema! { UNIT.schema() }
+}
+
+/// Most parameters of a cycle that its message names and marks.
+const MAX_SHOWN_IN_CYCLE: usize = 8;
+
+/// Parameter before all parameters have their values.
+struct Draft<'a> {
+    entry: Entry<'a>,
+    value: Option<Quantity>,
+    /// Attributes, if the parameter is a table.
+    keys: Option<ParameterKeys<'a>>,
+}
+
+impl Draft<'_> {
+    /// Returns the indices of the parameters that the value uses.
+    fn uses(&self) -> impl Iterator<Item = usize> {
+        let expressions = self.value.iter().map(|value| &value.expression);
+        expressions
+            .flat_map(Expression::parameters)
+            .map(ParameterId::index)
+    }
+}
+
+impl<'a> Context<'a> {
+    /// Reads the parameters and computes their values. Returns with them the derived ones, each
+    /// after those it uses.
+    pub(super) fn parameters(
+        &mut self,
+        entries: &[Entry<'a>],
+    ) -> (Vec<Parameter>, Vec<ParameterId>) {
+        let mut drafts: Vec<Draft<'a>> = entries.iter().map(|entry| self.draft(*entry)).collect();
+        let order = self.derivation_order(&drafts);
+        for index in &order {
+            if let Some(value) = &mut drafts[*index].value {
+                self.evaluate(value);
+                self.parameter_values[*index] = value.value;
+            }
+        }
+        let is_derived = |index: &usize| drafts[*index].uses().next().is_some();
+        let derived = order
+            .into_iter()
+            .filter(is_derived)
+            .map(ParameterId)
+            .collect();
+        let drafts = drafts.into_iter();
+        (
+            drafts.filter_map(|draft| self.parameter(draft)).collect(),
+            derived,
+        )
+    }
+
+    fn draft(&mut self, entry: Entry<'a>) -> Draft<'a> {
+        let mut keys = None;
+        let value = if entry.value.get_ref().is_table() {
+            keys = self.entry::<ParameterKeys<'a>>(entry, "parameter");
+            keys.as_mut().and_then(|keys| keys.value.value.take())
+        } else {
+            self.formula(entry.value)
+        };
+        Draft { entry, value, keys }
+    }
+
+    /// Returns the parameters in an order in which each comes after those it uses, without those
+    /// of cycles, which are reported.
+    fn derivation_order(&mut self, drafts: &[Draft<'a>]) -> Vec<usize> {
+        let mut graph: DiGraph<(), (), usize> = DiGraph::default();
+        for _ in drafts {
+            graph.add_node(());
+        }
+        for (user, draft) in drafts.iter().enumerate() {
+            for used in draft.uses() {
+                graph.add_edge(NodeIndex::new(user), NodeIndex::new(used), ());
+            }
+        }
+        let mut order = Vec::with_capacity(drafts.len());
+        // Strongly connected components come after those that they use.
+        for component in kosaraju_scc(&graph) {
+            let members: Vec<usize> = component.iter().map(|node| node.index()).collect();
+            match *members {
+                [only] if drafts[only].uses().all(|used| used != only) => order.push(only),
+                _ => self.report_cycle(drafts, &members),
+            }
+        }
+        order
+    }
+
+    /// Reports one cycle among parameters of which each depends on each other one.
+    fn report_cycle(&mut self, drafts: &[Draft<'a>], members: &[usize]) {
+        let members: HashSet<usize> = members.iter().copied().collect();
+        let next = |index: usize| drafts[index].uses().find(|used| members.contains(used));
+        let mut seen = HashSet::new();
+        let mut at = members.iter().copied().min().unwrap_or(0);
+        while seen.insert(at) {
+            at = next(at).expect("a parameter of a cycle uses another one of it");
+        }
+        let around = std::iter::successors(Some(at), |index| next(*index));
+        let rest = around.skip(1).take_while(|index| *index != at);
+        let mut cycle: Vec<usize> = std::iter::once(at).chain(rest).collect();
+        // It starts at the parameter that comes first in the file.
+        let first = (0..cycle.len()).min_by_key(|at| cycle[*at]).unwrap_or(0);
+        cycle.rotate_left(first);
+        let name = |index: usize| quoted(drafts[index].entry.name());
+        let shown = &cycle[..cycle.len().min(MAX_SHOWN_IN_CYCLE)];
+        let mut names: Vec<String> = shown.iter().map(|index| name(*index)).collect();
+        if shown.len() < cycle.len() {
+            names.push(format!("… ({} more)", cycle.len() - shown.len()));
+        }
+        names.push(name(cycle[0]));
+        let message = if cycle.len() == 1 {
+            format!("the parameter {} uses itself", names[0])
+        } else {
+            format!("the parameters use one another: {}", names.join(" → "))
+        };
+        let mut problem = Diagnostic::error(code::PARAMETER_CYCLE, message);
+        for (place, index) in shown.iter().enumerate() {
+            let used = cycle[(place + 1) % cycle.len()];
+            let value = drafts[*index].value.as_ref();
+            let span = value.map_or(0..0, |value| value.span.clone());
+            problem = problem.label(span, format!("uses {}", name(used)));
+        }
+        self.report(problem);
+    }
+
+    /// Reads the attributes of a parameter, for which all parameters must have their values.
+    fn parameter(&mut self, draft: Draft<'a>) -> Option<Parameter> {
+        let value = draft.value.as_ref();
+        let mut parameter = Parameter {
+            name: draft.entry.name().to_owned(),
+            description: String::new(),
+            derived: draft.uses().next().is_some(),
+            expression: Expression::constant(0.0),
+            default: 0.0,
+            tunable: false,
+            unit: None,
+            min: None,
+            max: None,
+        };
+        if let Some(keys) = draft.keys {
+            parameter.tunable = self.tunable(&keys.tunable, &parameter);
+            parameter.unit = self.unit(keys.unit, keys.display, &keys.owner.subject);
+            let name = quoted(&parameter.name);
+            [parameter.min, parameter.max] =
+                self.limits([keys.min, keys.max], (&name, value), parameter.unit);
+            parameter.description = keys.description.value.unwrap_or_default();
+        }
+        let value = draft.value?;
+        parameter.default = value.value?;
+        parameter.expression = value.expression;
+        Some(parameter)
+    }
+
+    fn tunable(&mut self, field: &Field<bool>, parameter: &Parameter) -> bool {
+        let tunable = field.value.unwrap_or(false);
+        if tunable && parameter.derived {
+            let name = quoted(&parameter.name);
+            let message = format!("{name} is derived from other parameters and cannot be set");
+            self.error(code::NOT_TUNABLE, field.span.clone(), message)
+                .suggest("make those parameters tunable");
+        }
+        tunable
+    }
+
+    /// Returns the unit with the display unit, which must have its dimension.
+    fn unit(
+        &mut self,
+        unit: Field<Unit>,
+        display: Field<DisplayUnit>,
+        subject: &str,
+    ) -> Option<Unit> {
+        if display.key.is_some() && unit.key.is_none() {
+            let message = format!("{subject} has a `display` unit but no `unit`");
+            self.error(code::WRONG_DISPLAY_UNIT, display.span, message)
+                .suggest("add the SI unit of its value: `unit = \"m\"`");
+            return None;
+        }
+        let (unit, display_span) = (unit.value?, display.span);
+        let Some(display) = display.value else {
+            return Some(unit);
+        };
+        if display.dimension != unit.dimension {
+            let fitting: Vec<&str> = unit.display_units().map(|unit| unit.name).collect();
+            let help = match fitting.as_slice() {
+                [] => "leave `display` out".to_owned(),
+                fitting => format!("expected {}", either(fitting)),
+            };
+            let message = format!("`{}` is no unit for showing `{}`", display.name, unit.name);
+            self.error(code::WRONG_DISPLAY_UNIT, display_span, message)
+                .suggest(help);
+        }
+        Some(unit.shown_in(display))
+    }
+}

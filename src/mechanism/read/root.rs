@@ -1,0 +1,147 @@
+//! The file as a whole: its format, its name and its sections.
+
+use std::marker::PhantomData;
+
+use crate::mechanism::diagnostic::code;
+#[cfg(feature = "cli")]
+use crate::mechanism::names::C_KEYWORDS;
+use crate::mechanism::names::{is_c_identifier, is_device};
+use crate::mechanism::syntax;
+use crate::mechanism::wording::quoted;
+
+use super::body::{BodyKeys, GroundKeys};
+use super::context::Context;
+use super::coordinate::{ConstraintKeys, CoordinateKeys, MeasureKeys};
+use super::driver::DriverKeys;
+use super::joint::AnyJoint;
+#[cfg(feature = "cli")]
+use super::kind::Described;
+use super::kind::{Entry, Fields, Item, Kind, Named, Section, Text, schema};
+use super::parameter::AnyParameter;
+use super::settings::{OutputKeys, SimulationKeys};
+use super::table::table;
+
+table! {
+    /// A planar mechanism for biela.
+    struct Root<'a> {
+        /// Version of the file format.
+        #[required("1")]
+        format: () = Format,
+        /// FMI modelName and modelIdentifier: a C identifier.
+        #[required("\"my_mechanism\"")]
+        name: String = ModelName,
+        /// Description in one line.
+        description: String = Text,
+        /// Author of the mechanism, for the FMU.
+        author: String = Text,
+        /// Version of the mechanism, for the FMU.
+        version: String = Text,
+        /// Licence of the mechanism, for the FMU.
+        license: String = Text,
+        /// Copyright of the mechanism, for the FMU.
+        copyright: String = Text,
+        /// Numbers that can be changed in the FMU without a new export.
+        parameters: Vec<Entry<'a>> = Named(PhantomData::<AnyParameter>),
+        /// The body that never moves.
+        ground: Fields<'a> = Section(PhantomData::<GroundKeys<'static>>),
+        /// The rigid bodies that move.
+        bodies: Vec<Entry<'a>> = Named(PhantomData::<BodyKeys<'static>>),
+        /// Joints between bodies.
+        joints: Vec<Entry<'a>> = Named(PhantomData::<AnyJoint>),
+        /// Coordinates held at values.
+        constraints: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, ConstraintKeys<'static>)>),
+        /// Coordinates that are driven.
+        drivers: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, DriverKeys<'static>)>),
+        /// Coordinates that are outputs.
+        measures: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, MeasureKeys<'static>)>),
+        /// Outputs of the FMU.
+        outputs: Fields<'a> = Section(PhantomData::<OutputKeys<'static>>),
+        /// Default experiment.
+        simulation: Fields<'a> = Section(PhantomData::<SimulationKeys<'static>>),
+    }
+}
+
+/// Version of the file format: 1.
+pub(super) struct Format;
+
+impl<'a> Kind<'a> for Format {
+    type Value = ();
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<()> {
+        if syntax::number(item.value.get_ref()) == Some(1.0) {
+            return Some(());
+        }
+        let message = "this format of the file is not known";
+        context
+            .error(code::UNKNOWN_FORMAT, item.span(), message)
+            .suggest("expected `format = 1`");
+        None
+    }
+
+    schema! {{ "const": 1 }}
+}
+
+/// Pattern of names for which [`is_device`] holds.
+#[cfg(feature = "cli")]
+const DEVICE: &str =
+    "^([Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]|([Cc][Oo][Mm]|[Ll][Pp][Tt])[0-9])$";
+
+/// Name of the mechanism.
+pub(super) struct ModelName;
+
+impl<'a> Kind<'a> for ModelName {
+    type Value = String;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<String> {
+        let name = context.text(item.value)?;
+        let name_of = |what| format!("the mechanism's name {} is {what}", quoted(name));
+        if !is_c_identifier(name) {
+            let message = name_of("not a C identifier");
+            context.error(code::ILLEGAL_NAME, item.span(), message).suggest(
+                "letters, digits and `_`, not starting with a digit, and no word of the C language",
+            );
+            return None;
+        }
+        if is_device(name) {
+            let message = name_of("the name of a device on Windows");
+            let help = format!("no file there can have it; expected for example `{name}_1`");
+            context
+                .error(code::ILLEGAL_NAME, item.span(), message)
+                .suggest(help);
+            return None;
+        }
+        Some(name.to_owned())
+    }
+
+    schema! {
+        {
+            "type": "string",
+            "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
+            "not": { "anyOf": [{ "enum": C_KEYWORDS.as_slice() }, { "pattern": DEVICE }] },
+        }
+    }
+}
+
+/// Returns the JSON Schema of mechanism files.
+#[cfg(feature = "cli")]
+pub(super) fn schema() -> serde_json::Value {
+    use serde_json::json;
+    let mut schema = Root::schema();
+    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    schema["title"] = json!("biela mechanism, format 1");
+    schema["$defs"] = json!({
+        "number": {
+            "description": "A number in SI units (m, rad, s, kg), or an expression over the parameters such as \"60*deg\".",
+            "type": ["number", "string"],
+        },
+        "marker": {
+            "description": "A marker as body.marker; ground is a body here.",
+            "type": "string",
+            "pattern": r"^[A-Za-z][A-Za-z0-9_]*\.[A-Za-z][A-Za-z0-9_]*$",
+        },
+    });
+    // The reader reports missing bodies and an empty section alike.
+    schema["required"] = json!(["format", "name", "bodies"]);
+    schema["properties"]["bodies"]["minProperties"] = json!(1);
+    schema
+}

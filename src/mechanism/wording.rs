@@ -1,0 +1,111 @@
+//! Wording of messages: names in back quotes and numbers of few digits.
+
+/// Longest piece of the file that a message repeats, in characters.
+const MAX_QUOTED_LENGTH: usize = 60;
+
+/// Significant digits of a number in a message.
+const DIGITS: usize = 6;
+
+/// Digits with which no two numbers look alike.
+const ALL_DIGITS: usize = 17;
+
+/// Returns "`a`, `b` or `c`".
+pub(super) fn either(candidates: &[&str]) -> String {
+    let Some((last, first)) = candidates.split_last() else {
+        return "nothing".to_owned();
+    };
+    if first.is_empty() {
+        return quoted(last);
+    }
+    let first: Vec<String> = first.iter().map(|candidate| quoted(candidate)).collect();
+    format!("{} or {}", first.join(", "), quoted(last))
+}
+
+/// Returns a number with six digits at most.
+pub(crate) fn shown(number: f64) -> String {
+    shown_with(number, DIGITS)
+}
+
+/// Returns two numbers with as many digits as tell them apart, six if that is enough.
+pub(super) fn shown_apart(a: f64, b: f64) -> [String; 2] {
+    let shown = |digits| [a, b].map(|number| shown_with(number, digits));
+    let different = |digits: &usize| shown(*digits)[0] != shown(*digits)[1];
+    let digits = (DIGITS..=ALL_DIGITS).find(different);
+    shown(digits.unwrap_or(DIGITS))
+}
+
+fn shown_with(number: f64, digits: usize) -> String {
+    let rounded = format!("{number:.*e}", digits - 1)
+        .parse()
+        .unwrap_or(number);
+    if rounded == 0.0 || (1e-4..1e7).contains(&f64::abs(rounded)) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// Returns a piece of the file in back quotes, on one line, cut where it is very long.
+pub(crate) fn quoted(text: &str) -> String {
+    let mut shown: String = text
+        .chars()
+        .take(MAX_QUOTED_LENGTH)
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect();
+    if text.chars().nth(MAX_QUOTED_LENGTH).is_some() {
+        shown.push('…');
+    }
+    format!("`{shown}`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_six_digits_and_no_rows_of_zeros() {
+        let numbers = [
+            0.0,
+            1.0,
+            -0.25,
+            1e-6,
+            1e300,
+            0.1 + 0.2,
+            123_456.789,
+            -2.0 / 3.0,
+        ];
+        let numbers = numbers.map(shown);
+        assert_eq!(
+            numbers,
+            [
+                "0",
+                "1",
+                "-0.25",
+                "1e-6",
+                "1e300",
+                "0.3",
+                "123457",
+                "-0.666667"
+            ]
+        );
+        assert_eq!([f64::NAN, f64::INFINITY].map(shown), ["NaN", "inf"]);
+    }
+
+    #[test]
+    fn different_numbers_look_different() {
+        assert_eq!(shown_apart(0.1, 0.2), ["0.1", "0.2"]);
+        assert_eq!(shown_apart(0.1, 0.100_000_04), ["0.1", "0.10000004"]);
+        assert_eq!(
+            shown_apart(1.0, 1.0_f64.next_up()),
+            ["1", "1.0000000000000002"]
+        );
+        assert_eq!(shown_apart(1.0, 1.0), ["1", "1"]);
+    }
+
+    #[test]
+    fn quotes_stay_on_one_line() {
+        assert_eq!(quoted("a\nb"), "`a\u{fffd}b`");
+        assert!(quoted(&"y".repeat(100)).ends_with("y…`"));
+        assert_eq!(either(&["a", "b", "c"]), "`a`, `b` or `c`");
+    }
+}
