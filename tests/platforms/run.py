@@ -5,7 +5,7 @@ them on Linux, as a Windows program under Wine, and as an ARM program under QEMU
 Linux's Python and in a Python for Windows under Wine. All get the same requests: motions, a dead
 point, calls to be refused; the statuses and the messages must be the same, the numbers to the last
 few bits. The program for Windows is used under Wine. Libraries for macOS are inspected. Results go
-into docs/platforms.md.
+into docs/platforms.md, with what was not tried for want of a library or a wheel.
 
     .venv/bin/python tests/platforms/run.py [--no-docs]
 """
@@ -35,6 +35,7 @@ PROGRAM = Path(os.environ.get("BIELA_BIN", ROOT / "target/release/biela"))
 # The C library of Debian 11, where scripts/test_platforms.sh could get it.
 OLD_SYSTEM = WORK / "debian-11"
 
+PLATFORMS = ("linux64", "win64", "darwin64", "aarch64-linux", "aarch64-darwin")
 MECHANISMS = ("four_bar", "cam_roller", "platform_3rpr", "tlv")
 STEPS, SIZE = 200, 0.005
 
@@ -210,71 +211,83 @@ def compare_fmpy(ours, reference, difference):
 # The page
 
 
-def write_page(libraries, runs):
-    """Puts the two tables in the page, between their marks."""
+def write_page(libraries, runs, missing):
+    """Puts the tables in the page, between their marks, and what was not tried."""
     page = PAGE.read_text(encoding="utf-8")
-    tables = {
+    parts = {
         "libraries": ["| library | size | needs |", "|---|---|---|", *(f"| `{n}` | {s} | {w} |" for n, s, w in libraries)],
         "runs": ["| host | FMUs | numbers, beside C host on Linux |", "|---|---|---|", *(f"| {h} | {f} | {d} |" for h, f, d in runs)],
+        "missing": [f"Not tried in this run: {'; '.join(missing)}."] if missing else [],
     }
-    for name, lines in tables.items():
+    for name, lines in parts.items():
         mark = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.S)
         expect(mark.search(page), f"{PAGE} has no marks for {name}")
-        text = "\n".join(lines)
-        page = mark.sub(lambda found, text=text: f"{found[1]}{text}\n{found[2]}", page)
+        text = "".join(line + "\n" for line in lines)
+        page = mark.sub(lambda found, text=text: f"{found[1]}{text}{found[2]}", page)
     PAGE.write_text(page, encoding="utf-8")
     print(f"wrote {PAGE.relative_to(ROOT)}")
 
 
 def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
-    libraries = []
+    libraries, runs, missing = [], [], []
     for library in sorted(LIBRARIES.glob("*/biela.*")):
         libraries.append((str(library.relative_to(LIBRARIES)), *inspect(library)))
         print("inspected", *libraries[-1], flush=True)
+    built = {library.parent.name for library in LIBRARIES.glob("*/biela.*")}
+    expect("linux64" in built, "there are no libraries: run `make runtimes` first")
+    missing += [f"the library `{name}`, which was not built" for name in PLATFORMS if name not in built]
     print(f"loading takes {loading_time(LIBRARIES / 'linux64/biela.so'):.2f} ms", flush=True)
-    expect(len(libraries) >= 3, "run `make runtimes` first")
     fmus = [export(name) for name in MECHANISMS]
     names = ", ".join(f.name for f in fmus)
-    reference = linux(fmus)
-    print(f"C host on Linux: {sum(s for _, s in reference.values()):.1f} s", flush=True)
-    runs = [("C host, Linux x86-64", names, "the reference")]
 
-    def record(host, results):
+    def record(host, fmus, difference, beside=""):
+        runs.append((host, ", ".join(f.name for f in fmus), f"{beside}{difference}"))
+        print(f"{host}: {difference}", flush=True)
+
+    # In the C host.
+    reference = linux(fmus)
+    runs.append(("C host, Linux x86-64", names, "the reference"))
+
+    def record_host(host, results):
         difference = Difference()
         for name, (lines, _) in results.items():
             compare(f"{host}, {name}", lines, reference[name][0], difference)
-        runs.append((host, names, str(difference)))
-        print(f"{host}: {difference}", flush=True)
+        record(host, fmus, difference)
 
     if OLD_SYSTEM.is_dir():
         results, version = old_linux(fmus)
-        record(f"C host, Linux x86-64 with glibc {version}", results)
+        record_host(f"C host, Linux x86-64 with glibc {version}", results)
     else:
-        print("no older C library here: not tried", flush=True)
-    record("C host, Linux ARM (QEMU)", arm(fmus))
-    record("C host, Windows x86-64 (Wine)", windows(fmus))
+        missing.append("an older C library, which is not at hand")
+    if "aarch64-linux" in built:
+        record_host("C host, Linux ARM (QEMU)", arm(fmus))
+    if "win64" in built:
+        record_host("C host, Windows x86-64 (Wine)", windows(fmus))
 
-    def record_fmpy(host, fmus, ours, reference):
-        difference = Difference()
-        compare_fmpy(ours, reference, difference)
-        runs.append((host, ", ".join(f.name for f in fmus), f"beside FMPy on Linux: {difference}"))
-        print(f"{host}: {difference}", flush=True)
+        # In FMPy.
+        def record_fmpy(host, fmus):
+            difference = Difference()
+            compare_fmpy(fmpy(fmus, python, "Z:"), fmpy(fmus, [sys.executable]), difference)
+            record(host, fmus, difference, "beside FMPy on Linux: ")
 
-    python = ["wine", windows_python()]
-    plain = fmpy(fmus, [sys.executable])
-    runs.append(("FMPy, Linux x86-64", names, "the reference of FMPy"))
-    record_fmpy("FMPy in Python for Windows (Wine)", fmus, fmpy(fmus, python, "Z:"), plain)
-    ours, expected, archive = use_program(windows_program(), PROGRAM, python[1])
-    difference = Difference()
-    difference.add(ours, expected)
-    difference.check("biela.exe run")
-    runs.append(("`biela.exe run` (Wine)", "four_bar", f"beside `biela run` on Linux: {difference}"))
-    print(f"biela.exe: {difference}", flush=True)
-    exported = [Fmu("first", archive, FOLDER, "")]
-    record_fmpy("its export, in FMPy for Windows (Wine)", exported, fmpy(exported, python, "Z:"), fmpy(exported, [sys.executable]))
+        python = ["wine", windows_python()]
+        record_fmpy("FMPy in Python for Windows (Wine)", fmus)
+        program = windows_program()
+        if program:
+            ours, expected, archive = use_program(program, PROGRAM, python[1])
+            difference = Difference()
+            difference.add(ours, expected)
+            difference.check("biela.exe run")
+            exported = [Fmu("first", archive, FOLDER, "")]
+            record("`biela.exe run` (Wine)", exported, difference, "beside `biela run` on Linux: ")
+            record_fmpy("export of `biela.exe`, in FMPy for Windows (Wine)", exported)
+        else:
+            missing.append("`biela.exe`, of which there is no wheel")
+    for what in missing:
+        print(f"not tried: {what}", flush=True)
     if "--no-docs" not in sys.argv:
-        write_page(libraries, runs)
+        write_page(libraries, runs, missing)
 
 
 if __name__ == "__main__":
