@@ -30,6 +30,8 @@ pub struct Direction {
     pub drivers: Vec<Jet>,
     /// Changes of all parameters; those of derived ones are not read.
     pub parameters: Vec<f64>,
+    /// Change of the time, for prescribed motions.
+    pub time: f64,
 }
 
 /// How a motion changes along a direction.
@@ -104,7 +106,7 @@ impl State {
         mechanism.derive_parameters(&mut parameters);
         let parameter = |p: ParameterId| parameters[p.index()];
 
-        let time = Varied::variable(Dual::constant(self.pose.time));
+        let time = Varied::variable(Dual::new(self.pose.time, [direction.time]));
         let drivers = mechanism.drivers.iter().enumerate();
         let drivers: Vec<_> = drivers
             .map(|(index, driver)| match driver.motion() {
