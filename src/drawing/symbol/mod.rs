@@ -114,6 +114,7 @@ symbols! { composer, ends:
         belt::compose(composer, ends, sizes, *crossed);
     rack: Rack, JointKind::RackAndPinion { radius, side } =>
         rack::compose(composer, ends, radius, *side);
+    track: Track, JointKind::Rolling { radius, .. } => track::compose(composer, ends, radius);
     cam: Cam, JointKind::Cam { follower, profile } =>
         cam::compose(composer, ends, follower, profile);
     knife: Knife;
