@@ -7,7 +7,7 @@ use clap::Args;
 use super::error::Error;
 use super::output::write;
 use super::stdout::STDOUT;
-use crate::mechanism;
+use crate::mechanism::Mechanism;
 
 /// Print a JSON Schema (2020-12) of mechanism files; editors complete and check files with it.
 ///
@@ -29,7 +29,7 @@ pub(super) struct Schema {
 
 impl Schema {
     pub(super) fn run(self) -> Result<(), Error> {
-        let text = format!("{:#}\n", mechanism::schema());
+        let text = format!("{:#}\n", Mechanism::schema());
         write(&self.output, text.as_bytes())
     }
 }

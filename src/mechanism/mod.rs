@@ -40,12 +40,10 @@ pub(crate) use motion::not_finite;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 #[cfg(feature = "cli")]
 pub(crate) use names::help;
+pub use names::is_identifier;
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::Parameter;
 pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
-pub use read::is_identifier;
-#[cfg(feature = "cli")]
-pub use read::schema;
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 #[cfg(feature = "cli")]

@@ -33,6 +33,27 @@ pub(super) fn is_device(name: &str) -> bool {
     ["con", "prn", "aux", "nul"].iter().any(is) || ["com", "lpt"].iter().any(is_port)
 }
 
+/// Words of C11 that are no identifiers. `_Bool` and its like are not written by accident.
+pub(super) const C_KEYWORDS: [&str; 34] = [
+    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
+    "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
+    "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
+    "union", "unsigned", "void", "volatile", "while",
+];
+
+/// Whether a mechanism may have this name: a C identifier that is no device of Windows.
+#[must_use]
+pub fn is_identifier(name: &str) -> bool {
+    is_c_identifier(name) && !is_device(name)
+}
+
+/// Whether `name` is an identifier of the C language and none of its words.
+pub(super) fn is_c_identifier(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        && !C_KEYWORDS.contains(&name)
+}
+
 /// Names with their meanings, and a bounded number of suggestions for wrong ones.
 #[derive(Debug)]
 pub(super) struct NameTable<'a, T> {

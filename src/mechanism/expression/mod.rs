@@ -7,6 +7,7 @@
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod display;
+mod error;
 mod function;
 mod parse;
 mod token;
@@ -14,9 +15,9 @@ mod token;
 #[cfg(test)]
 mod tests;
 
+pub use error::ExpressionError;
 use function::Binary;
 pub(super) use function::{CONSTANTS, function_names};
-pub use parse::ExpressionError;
 pub(super) use parse::Scope;
 
 use super::ParameterId;

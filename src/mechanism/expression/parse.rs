@@ -1,5 +1,6 @@
 //! From text to expression: a Pratt parser that says where an error is.
 
+use super::error::ExpressionError;
 use super::function::{CONSTANTS, FUNCTIONS, Function};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
@@ -10,33 +11,6 @@ use crate::mechanism::{ParameterId, Span};
 /// Depth of the parser's own recursion: parentheses, signs, powers and operators within one
 /// another.
 const MAX_DEPTH: usize = 128;
-
-/// What is wrong with the text of an expression.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-pub struct ExpressionError {
-    /// What is wrong.
-    pub message: String,
-    /// Where, in bytes of the text.
-    pub span: Span,
-    /// What would be right, if that can be told.
-    pub help: Option<String>,
-}
-
-impl ExpressionError {
-    pub(super) fn new(span: Span, message: impl Into<String>) -> Self {
-        Self {
-            message: message.into(),
-            span,
-            help: None,
-        }
-    }
-
-    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
-        self
-    }
-}
 
 /// The names that an expression may use.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! The words of the language: numbers, names and symbols, each with its place.
 
-use super::parse::ExpressionError;
+use super::error::ExpressionError;
 use crate::mechanism::Span;
 use crate::mechanism::wording::quoted;
 

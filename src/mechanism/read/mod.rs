@@ -40,10 +40,6 @@ use kind::{Entry, Fields};
 use root::Root;
 use table::Field;
 
-pub use root::is_identifier;
-#[cfg(feature = "cli")]
-pub use root::schema;
-
 use super::{Diagnostic, Mechanism, Source, syntax};
 
 impl Mechanism {
@@ -86,6 +82,17 @@ impl Mechanism {
             Some(mechanism) if !failed => Ok((mechanism, problems)),
             _ => Err(problems),
         }
+    }
+
+    /// Returns a JSON Schema (2020-12) of mechanism files, by which editors complete and check
+    /// them.
+    ///
+    /// It knows keys, types, units and choices. Only [`parse`](Self::parse) finds problems that
+    /// depend on several places, such as a name that does not exist.
+    #[cfg(feature = "cli")]
+    #[must_use]
+    pub fn schema() -> serde_json::Value {
+        root::schema()
     }
 }
 

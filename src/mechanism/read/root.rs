@@ -3,7 +3,9 @@
 use std::marker::PhantomData;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::names::is_device;
+#[cfg(feature = "cli")]
+use crate::mechanism::names::C_KEYWORDS;
+use crate::mechanism::names::{is_c_identifier, is_device};
 use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
 
@@ -79,26 +81,6 @@ impl<'a> Kind<'a> for Format {
     schema! {{ "const": 1 }}
 }
 
-/// Words of C11 that are no identifiers. `_Bool` and its like are not written by accident.
-const C_KEYWORDS: [&str; 34] = [
-    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
-    "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
-    "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
-    "union", "unsigned", "void", "volatile", "while",
-];
-
-/// Whether a mechanism may have this name: a C identifier that is no device of Windows.
-#[must_use]
-pub fn is_identifier(name: &str) -> bool {
-    is_c_identifier(name) && !is_device(name)
-}
-
-fn is_c_identifier(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
-        && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        && !C_KEYWORDS.contains(&name)
-}
-
 /// Pattern of names for which [`is_device`] holds.
 #[cfg(feature = "cli")]
 const DEVICE: &str =
@@ -140,13 +122,9 @@ impl<'a> Kind<'a> for ModelName {
     }
 }
 
-/// Returns a JSON Schema (2020-12) of mechanism files, by which editors complete and check them.
-///
-/// It knows keys, types, units and choices. Only the reader knows what depends on several places,
-/// such as whether a name stands for anything.
+/// Returns the JSON Schema of mechanism files.
 #[cfg(feature = "cli")]
-#[must_use]
-pub fn schema() -> serde_json::Value {
+pub(super) fn schema() -> serde_json::Value {
     use serde_json::json;
     let mut schema = Root::schema();
     schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");

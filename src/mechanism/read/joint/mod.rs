@@ -58,14 +58,14 @@ macro_rules! joint_type {
             struct $keys<$life> { $($key)* }
         }
 
-        pub(super) static TYPE: super::JointType = super::JointType {
+        pub(super) static TYPE: $crate::mechanism::read::joint::JointType = $crate::mechanism::read::joint::JointType {
             name: $name,
             read: |context, fields| {
-                let kind: for<$life> fn($keys<$life>, &mut super::Context<$life>) -> _ = $kind;
-                kind(context.further::<super::JointKeys<'_>, $keys<'_>>(fields), context)
+                let kind: for<$life> fn($keys<$life>, &mut $crate::mechanism::read::context::Context<$life>) -> _ = $kind;
+                kind(context.further::<$crate::mechanism::read::joint::JointKeys<'_>, $keys<'_>>(fields), context)
             },
             #[cfg(feature = "cli")]
-            schema: <(super::JointKeys<'_>, $keys<'_>) as super::Described>::schema,
+            schema: <($crate::mechanism::read::joint::JointKeys<'_>, $keys<'_>) as $crate::mechanism::read::kind::Described>::schema,
         };
     };
 }
