@@ -59,6 +59,18 @@ pub(super) trait Shape {
     }
 }
 
+/// Returns the rectangle around everything that some symbols draw to scale at a pose \[m\].
+pub(super) fn bounds<'a>(symbols: impl IntoIterator<Item = &'a Symbol>, q: &[f64]) -> Bounds {
+    let mut bounds = Bounds::NONE;
+    for symbol in symbols {
+        for Disc { center, radius } in symbol.shape().extent() {
+            let size = Point::repeat(2.0 * radius);
+            bounds.join(&Bounds::about(center.placed(q).point, size));
+        }
+    }
+    bounds
+}
+
 macro_rules! symbols {
     ($composer:ident, $ends:ident:
      $($module:ident: $name:ident $(, $joint:pat => $compose:expr)*;)+) => {

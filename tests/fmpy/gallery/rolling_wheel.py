@@ -1,4 +1,4 @@
-"""Rolling wheel: the angle is the way divided by the radius, the rim draws a cycloid."""
+"""Rolling wheel: the way is the angle times the radius, the rim draws a cycloid."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ RADIUS = 0.300
 
 
 def truth(_time, drivers):
-    u = drivers["travel"]
-    centre = u + 1j * RADIUS
-    phi = -1 / RADIUS * u
+    phi = drivers["turn"]
+    centre = 1j * RADIUS - RADIUS * phi
     return (
         body("wheel", centre, phi)
         | point("wheel.rim", centre - 1j * Taylor.polar(RADIUS, phi))
@@ -22,6 +21,6 @@ def truth(_time, drivers):
 
 CASE = Case(
     source="closed form: cycloid",
-    drivers=lambda time: {"travel": RADIUS * one_turn(0)(time)},
+    drivers=lambda time: {"turn": one_turn(0)(time)},
     truth=truth,
 )
