@@ -68,6 +68,54 @@ fn each_bad_file_is_answered_as_reviewed() {
 }
 
 #[test]
+fn slips_of_syntax_are_answered_as_reviewed() {
+    let slips = [
+        "mass = 45*deg",
+        "crank = { start = 60deg, mass = 1 }",
+        "crank = { start = 30° }",
+        "crank = { O = [0, 0], A = [length, 0] }",
+        "crank = { O = [0, 0], A = [max(a, b)/2, 0] }",
+        "crank = { coordinate = angle, start = 0 }",
+        "mass = 0.5 kg",
+        "mass = 0,05",
+        "crank = { start = 0,05 }",
+        "point = [0,05, 1]",
+        "mass = .5",
+        "mass = 05",
+        "mass =",
+        "tunable = True",
+        "name = “bad”",
+        r#"crank = { coordinate = "angle, markers = ["ground.O", "crank.O"], start = 0 }"#,
+        r#"crank = { coordinate = angle", markers = ["ground.O", "crank.O"], start = 0 }"#,
+        r#"crank = { O = ["length, 0], A = [0, 1] }"#,
+        "crank = { O = ['length, 0] }",
+        "crank = { O = [0, 0], A = [0.1, 0 }",
+        "crank = { O = [0, 0], A = [0.1, 0]",
+        "crank = { O = [0, 0] A = [0.1, 0] }",
+        "crank = { O: [0, 0] }",
+        "mass 0.5",
+        "mass = 0.5; inertia = 2",
+        "[bodies.crank",
+        "// a comment",
+    ];
+    let answers = slips.map(|slip| {
+        let source = Source::new(
+            "slip.toml",
+            format!(
+                "format = 1
+{slip}
+"
+            ),
+        );
+        render(&source, &diagnostics(&source), false)
+    });
+    insta::assert_snapshot!(answers.join(
+        "
+"
+    ));
+}
+
+#[test]
 fn each_code_has_a_file() {
     let stems: BTreeSet<String> = files("tests/diagnostics")
         .into_iter()

@@ -29,6 +29,7 @@ mod source;
 mod spline;
 mod syntax;
 mod table;
+mod toml_error;
 mod wording;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};

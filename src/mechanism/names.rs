@@ -12,7 +12,7 @@ const MAX_SUGGESTIONS: u32 = 100;
 const MAX_SUGGESTED_LENGTH: usize = 64;
 
 /// Most names that a message lists.
-const MAX_LISTED: usize = 16;
+const MAX_LISTED: usize = 20;
 
 /// Whether `name` matches `[A-Za-z][A-Za-z0-9_]*`.
 ///

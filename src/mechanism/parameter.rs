@@ -2,22 +2,22 @@
 
 use super::{Expression, Mechanism, Number, Unit};
 
-/// A named number that can be changed without exporting again, or one derived from such.
+/// Named number that can be changed without exporting again, or is derived from such numbers.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     /// Name, unique among all named things of the mechanism.
     pub name: String,
     /// One line for people, empty if the file gives none.
     pub description: String,
-    /// Its value as the file gives it.
+    /// Value as the file gives it.
     pub expression: Expression,
-    /// The file's value \[SI\].
+    /// Value in the file \[SI\].
     pub default: f64,
-    /// Whether its value uses another parameter: such a one cannot be set.
+    /// Whether its value uses another parameter: it cannot be set then.
     pub derived: bool,
     /// Whether it may change between steps.
     pub tunable: bool,
-    /// Unit, for the FMU's description and for labels; values are SI all the same.
+    /// Unit for the FMU's description and for labels; values are SI in any case.
     pub unit: Option<Unit>,
     /// Smallest permitted value \[SI\].
     pub min: Option<f64>,
@@ -26,13 +26,13 @@ pub struct Parameter {
 }
 
 impl Mechanism {
-    /// The file's value of every parameter, in parameter order.
+    /// Returns the file's values of all parameters, in parameter order.
     #[must_use]
     pub fn default_parameters(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.default).collect()
     }
 
-    /// Brings the derived parameters in line with the others. Allocates nothing.
+    /// Computes the derived parameters from the others. Allocates nothing.
     ///
     /// `values` is as long as [`Mechanism::parameters`]. A derivation that leaves its domain gives
     /// a value that is not finite. On [`Jet`](super::Jet)s it carries derivatives along.

@@ -15,7 +15,7 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// The parameters that it uses; one may come twice.
+    /// Returns the parameters that it uses; one may come twice.
     pub fn parameters(&self) -> Box<dyn Iterator<Item = ParameterId> + '_> {
         match self {
             Self::Expression(expression) => Box::new(expression.parameters()),
@@ -34,7 +34,7 @@ pub enum ProfileError {
         degrees(*.theta)
     )]
     NotFinite {
-        /// Where \[rad\].
+        /// Polar angle \[rad\].
         theta: f64,
     },
     /// The radius is not positive somewhere.
@@ -43,7 +43,7 @@ pub enum ProfileError {
         degrees(*.theta)
     )]
     NotPositive {
-        /// Where \[rad\].
+        /// Polar angle \[rad\].
         theta: f64,
         /// R \[m\].
         radius: f64,
@@ -61,7 +61,7 @@ pub enum ProfileError {
     /// The slope jumps, or the radius.
     #[error("the contour has a corner at theta = {} deg", degrees(*.theta))]
     Corner {
-        /// Where \[rad\].
+        /// Polar angle \[rad\].
         theta: f64,
     },
     /// The angles of a table do not rise within one turn.
@@ -79,9 +79,9 @@ fn degrees(theta: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct ProfileInForce {
     curve: Curve,
-    /// The values of all parameters.
+    /// Values of all parameters.
     parameters: Vec<f64>,
-    /// Those that the profile uses.
+    /// Parameters that the profile uses.
     used: Vec<ParameterId>,
     /// Whether the parameters make a contour.
     valid: bool,
@@ -97,21 +97,20 @@ enum Curve {
     },
 }
 
-/// In how many places a whole contour is looked at.
+/// Number of samples of a whole contour.
 const SAMPLES: u32 = 720;
-/// Where a contour closes, radius and derivatives have to meet up to this part of the radius.
+/// Largest gap where a contour closes, in radius and derivatives \[radii\].
 const SEAM: f64 = 1e-9;
-/// A range that cannot be shown to be smooth is divided down to this width \[rad\].
+/// Width down to which a range that cannot be shown to be smooth is divided \[rad\].
 const CORNER_WIDTH: f64 = 1e-7;
-/// Across that width no smooth contour changes by more, in radii and radii per radian: its
-/// second derivative would have to exceed a thousand radii.
+/// Largest change of a smooth contour across that width, in radii and radii per radian: more takes
+/// a second derivative of over a thousand radii.
 const CORNER_JUMP: f64 = 1e-4;
-/// So many ranges are divided at the most; a contour that needs more is looked at as coarsely as
-/// it comes.
+/// Largest number of ranges that are divided; a contour that needs more is examined less finely.
 const MOST_LOOKS: u32 = 20_000;
 
 impl ProfileInForce {
-    /// The profile for parameters still to be given, `parameters` of them.
+    /// Makes the profile for `parameters` parameters, whose values are set later.
     #[must_use]
     pub fn new(profile: &Profile, parameters: usize) -> Self {
         let curve = match profile {
@@ -129,11 +128,11 @@ impl ProfileInForce {
         }
     }
 
-    /// Takes over parameter values.
+    /// Sets the parameter values.
     ///
     /// # Errors
     ///
-    /// They make no contour. The profile is without use until others are set.
+    /// They make no contour. The profile is not usable until others are set.
     pub fn set_parameters(
         &mut self,
         parameter: impl Fn(ParameterId) -> f64,
@@ -162,7 +161,7 @@ impl ProfileInForce {
         Ok(())
     }
 
-    /// Looks at the contour all round, and at its seam.
+    /// Checks samples of the whole contour, and its seam.
     fn check(&self) -> Result<(), ProfileError> {
         for theta in Self::sample_angles() {
             let radius = self.radius(theta);
@@ -193,8 +192,8 @@ impl ProfileInForce {
         }
     }
 
-    /// Looks for corners: places where the radius or its slope jumps. Looks closely where the
-    /// contour cannot be shown to be smooth.
+    /// Searches for corners: places where the radius or its slope jumps. Divides the ranges in
+    /// which the contour cannot be shown to be smooth.
     ///
     /// # Errors
     ///
@@ -230,10 +229,10 @@ impl ProfileInForce {
         }
     }
 
-    /// R and its first three derivatives at a polar angle, of any number of turns. Allocates
-    /// nothing.
+    /// Returns R and its first three derivatives at a polar angle, of any number of turns.
+    /// Allocates nothing.
     ///
-    /// Without meaning for parameters that make no contour.
+    /// The result has no meaning if the parameters make no contour.
     #[must_use]
     pub fn radius(&self, theta: f64) -> Jet3 {
         match &self.curve {
@@ -250,8 +249,8 @@ impl ProfileInForce {
         expression.evaluate(&parameter, Jet3::variable(theta))
     }
 
-    /// Bounds of R and its first three derivatives for polar angles up to `reach` from `theta`.
-    /// `None` where the contour is not smooth there. Allocates nothing.
+    /// Returns bounds of R and its first three derivatives for polar angles up to `reach` from
+    /// `theta`; `None` if the contour is not smooth there. Allocates nothing.
     #[must_use]
     pub fn bounds(&self, theta: f64, reach: f64) -> Option<Jet3<Interval>> {
         match &self.curve {
@@ -273,13 +272,13 @@ impl ProfileInForce {
         }
     }
 
-    /// The polar angles, evenly spread over a turn, at which a whole contour is looked at.
+    /// Returns the polar angles of the samples of a whole contour, evenly spread over a turn.
     pub fn sample_angles() -> impl Iterator<Item = f64> {
         (0..SAMPLES).map(|k| f64::from(k) * (TAU / f64::from(SAMPLES)))
     }
 
-    /// The polar angle among [`sample_angles`](Self::sample_angles) where `cost`, a function of
-    /// angle and radius, is least.
+    /// Returns the polar angle among [`sample_angles`](Self::sample_angles) at which `cost`, a
+    /// function of angle and radius, is least.
     #[must_use]
     pub fn angle_of_least(&self, cost: impl Fn(f64, f64) -> f64) -> f64 {
         let costs =
@@ -290,7 +289,7 @@ impl ProfileInForce {
     }
 }
 
-/// A profile whose parameters change along a direction.
+/// Profile whose parameters change along a direction.
 #[derive(Clone, Debug)]
 pub struct ProfileAlong(CurveAlong);
 
@@ -298,14 +297,14 @@ pub struct ProfileAlong(CurveAlong);
 enum CurveAlong {
     Expression {
         expression: Expression,
-        /// All of them.
+        /// All parameters.
         parameters: Vec<Jet3<Dual>>,
     },
     Spline(Spline<Jet3<Dual>>),
 }
 
 impl ProfileInForce {
-    /// The profile with the parameters in force, for these changes of theirs.
+    /// Returns the profile with the parameters in force and their changes along a direction.
     #[must_use]
     pub fn along(&self, change: impl Fn(ParameterId) -> f64) -> ProfileAlong {
         let parameter =
@@ -332,8 +331,8 @@ impl ProfileInForce {
 }
 
 impl ProfileAlong {
-    /// R and its first three derivatives at a polar angle, of any number of turns, each with its
-    /// change along the direction.
+    /// Returns R and its first three derivatives at a polar angle, of any number of turns, each
+    /// with its change along the direction.
     #[must_use]
     pub fn radius(&self, theta: Dual) -> Jet3<Dual> {
         let from = |start: f64| {
@@ -358,13 +357,13 @@ impl ProfileAlong {
     }
 }
 
-/// The angle in the turn that a closed spline covers.
+/// Returns the angle in the turn that a closed spline covers.
 fn first_turn(spline: &Spline<f64>, theta: f64) -> f64 {
     let start = spline.knots()[0];
     start + (theta - start).rem_euclid(TAU)
 }
 
-/// Value and derivatives of one segment.
+/// Returns value and derivatives of one segment.
 fn cubic(spline: &Spline<f64>, segment: usize, theta: f64) -> Jet3 {
     let [second, third] = spline.curvature_on_segment(segment, theta);
     Jet3::new(
@@ -395,8 +394,8 @@ fn spline_bounds(spline: &Spline<f64>, theta: f64, reach: f64) -> Jet3<Interval>
     bounds
 }
 
-/// On a part of one segment each derivative differs from its value in the middle by the half
-/// width times the bound of the next one.
+/// Returns bounds on a part of one segment: each derivative differs from its value in the middle by
+/// at most half the width times the bound of the next derivative.
 fn segment_bounds(spline: &Spline<f64>, segment: usize, from: f64, to: f64) -> Jet3<Interval> {
     let half = 0.5 * (to - from);
     let middle = cubic(spline, segment, from + half);

@@ -2,7 +2,7 @@
 
 use super::Number;
 
-/// What a spline, and the motion that it stands for, does at its ends.
+/// End conditions of a spline and of its motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// At rest: the slope is zero at both ends, the end values hold outside.
@@ -14,7 +14,7 @@ pub enum Ends {
     Periodic,
 }
 
-/// A cubic spline on plain numbers or on numbers with derivatives.
+/// Cubic spline on plain numbers or on numbers with derivatives.
 ///
 /// Made once for a number of points; [`points_mut`](Self::points_mut) and [`fit`](Self::fit) then
 /// change it without allocating.
@@ -31,7 +31,7 @@ pub struct Spline<N> {
 }
 
 impl<N: Number> Spline<N> {
-    /// A spline through `count` points, at least two, which are still to be given.
+    /// Makes a spline through `count` points, at least two, which are set later.
     #[must_use]
     pub fn new(count: usize, ends: Ends) -> Self {
         assert!(count >= 2, "a spline has two points at least");
@@ -46,18 +46,18 @@ impl<N: Number> Spline<N> {
         }
     }
 
-    /// The abscissas and the ordinates. [`fit`](Self::fit) has to follow a change of them.
+    /// Returns the abscissas and the ordinates. Call [`fit`](Self::fit) after a change.
     pub fn points_mut(&mut self) -> (&mut [N], &mut [N]) {
         (&mut self.knots, &mut self.values)
     }
 
-    /// The abscissas.
+    /// Returns the abscissas.
     #[must_use]
     pub fn knots(&self) -> &[N] {
         &self.knots
     }
 
-    /// The ordinates.
+    /// Returns the ordinates.
     #[must_use]
     pub fn values(&self) -> &[N] {
         &self.values
@@ -123,8 +123,8 @@ impl<N: Number> Spline<N> {
         }
     }
 
-    /// As between ends, but the first row and the last unknown meet in the corners of the matrix:
-    /// the last unknown's column is carried along, the last row eliminated step by step.
+    /// Fits a periodic spline. The matrix has two more entries, in its corners: elimination carries
+    /// the column of the last unknown along and reduces the last row step by step.
     fn fit_periodic(&mut self) {
         let (zero, two, six) = (N::constant(0.0), N::constant(2.0), N::constant(6.0));
         let count = self.knots.len() - 1;
@@ -176,14 +176,14 @@ impl<N: Number> Spline<N> {
         self.moments[count] = self.moments[0];
     }
 
-    /// The segment that contains `x`, which lies between the ends; the nearest outside.
+    /// Returns the segment that contains `x`, the nearest one if `x` is beyond the ends.
     #[must_use]
     pub fn segment(&self, x: f64) -> usize {
         let inner = &self.knots[1..self.knots.len() - 1];
         inner.partition_point(|knot| knot.real() <= x)
     }
 
-    /// The value at `x`, by the cubic of a segment.
+    /// Returns the value at `x`, by the cubic of a segment.
     #[must_use]
     pub fn on_segment(&self, segment: usize, x: N) -> N {
         let k = segment;
@@ -194,7 +194,7 @@ impl<N: Number> Spline<N> {
         a * self.values[k] + b * self.values[k + 1] + bend * width * width / N::constant(6.0)
     }
 
-    /// The first derivative at `x`, by the cubic of a segment.
+    /// Returns the first derivative at `x`, by the cubic of a segment.
     #[must_use]
     pub fn slope_on_segment(&self, segment: usize, x: N) -> N {
         let k = segment;
@@ -206,7 +206,7 @@ impl<N: Number> Spline<N> {
             - sixth * width * (self.moments[k + 1] - self.moments[k])
     }
 
-    /// Second and third derivative at `x`, by the cubic of a segment.
+    /// Returns the second and third derivatives at `x`, by the cubic of a segment.
     #[must_use]
     pub fn curvature_on_segment(&self, segment: usize, x: N) -> [N; 2] {
         let k = segment;

@@ -4,6 +4,8 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::diagnostic::code;
+use super::toml_error::syntax_error;
+use super::wording::quoted;
 use super::{Diagnostic, Source, Span};
 
 /// Key with its place.
@@ -37,14 +39,82 @@ pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Diagnostic>), Dia
     for error in errors {
         let span = error.span().unwrap_or(0..0);
         if error.message() == DUPLICATE_KEY {
-            let key = source.text().get(span.clone()).unwrap_or_default();
-            let message = format!("the key {} stands here twice", super::wording::quoted(key));
-            duplicates.push(Diagnostic::error(code::DUPLICATE_KEY, message).label(span, ""));
+            duplicates.push(span);
         } else {
-            return Err(Diagnostic::error(code::SYNTAX, error.message()).label(span, ""));
+            return Err(syntax_error(source.text(), span, error.message()));
         }
     }
-    Ok((document.into_inner(), duplicates))
+    let document = document.into_inner();
+    let duplicates = duplicates.into_iter().map(|span| {
+        let key = quoted(source.text().get(span.clone()).unwrap_or_default());
+        let first = first_place(&document, source.text(), &span);
+        let problem =
+            Diagnostic::error(code::DUPLICATE_KEY, format!("the key {key} is given twice"))
+                .label(span, "");
+        match first {
+            Some(first) => problem.label(first, "the first one"),
+            None => problem,
+        }
+    });
+    let duplicates = duplicates.collect();
+    Ok((document, duplicates))
+}
+
+/// Returns the place of the first of two equal keys, of which the second is at `second`; `None` if
+/// it cannot be told.
+fn first_place(document: &Table<'_>, text: &str, second: &Span) -> Option<Span> {
+    let line_start = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let name = text.get(second.clone())?;
+    let start = line_start(second.start);
+    let before = text[start..second.start].trim_start();
+    let table = if let Some(table) = inline_table(document, text, second) {
+        table
+    } else if before.starts_with('[') {
+        if let Some(first) = same_header(&text[..start], &format!("{before}{name}")) {
+            return Some(first.end - name.len()..first.end);
+        }
+        descend(document, before.trim_start_matches('['))?
+    } else {
+        let is_header = |line: &&str| line.starts_with('[') && !line.contains(',');
+        let header = text[..start].lines().map(str::trim).rfind(is_header);
+        let header = header.map_or("", |header| header.split(['[', ']']).nth(1).unwrap_or(""));
+        descend(descend(document, header)?, before)?
+    };
+    let (key, _) = table.get_key_value(name.trim_matches(['"', '\'']))?;
+    Some(key.span()).filter(|first| first.end <= second.start)
+}
+
+/// Returns the place of a line's beginning such as `[bodies.crank`, which a bracket closes.
+fn same_header(text: &str, header: &str) -> Option<Span> {
+    let mut end = 0;
+    text.split_inclusive('\n').find_map(|line| {
+        let start = end + line.len() - line.trim_start().len();
+        end += line.len();
+        let rest = line.trim_start().strip_prefix(header)?;
+        rest.trim_start()
+            .starts_with(']')
+            .then(|| start..start + header.len())
+    })
+}
+
+/// Returns the innermost table in braces around a place.
+fn inline_table<'t, 'a>(table: &'t Table<'a>, text: &str, place: &Span) -> Option<&'t Table<'a>> {
+    table.iter().find_map(|(_, value)| {
+        let inner = value.get_ref().as_table()?;
+        let span = value.span();
+        let is_inline = text.get(span.clone())?.starts_with('{');
+        let is_around = is_inline && span.start < place.start && place.end <= span.end;
+        inline_table(inner, text, place).or(is_around.then_some(inner))
+    })
+}
+
+/// Returns the table under a path of keys such as `bodies.crank`.
+fn descend<'t, 'a>(table: &'t Table<'a>, path: &str) -> Option<&'t Table<'a>> {
+    let keys = path
+        .split('.')
+        .map(|key| key.trim().trim_matches(['"', '\'']));
+    keys.filter(|key| !key.is_empty())
+        .try_fold(table, |table, key| table.get(key)?.get_ref().as_table())
 }
 
 /// Returns the type of a value for messages.

@@ -1,4 +1,4 @@
-//! An expression as text.
+//! Text of an expression.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::function::Function;
 use super::{Expression, Operation};
 use crate::mechanism::ParameterId;
 
-/// How tightly the outermost operator of a text binds; an operand that binds less tightly than
+/// Binding strength of the outermost operator of a text. An operand that binds more loosely than
 /// its place demands goes into parentheses.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Binding {
@@ -18,9 +18,9 @@ enum Binding {
 }
 
 impl Expression {
-    /// The expression as text in its own language, with as few parentheses as it takes.
+    /// Returns the expression as text in its own language, with the fewest parentheses.
     ///
-    /// Parsed again, the text gives an equal expression.
+    /// Parsing the text gives an equal expression.
     pub fn display<'a>(
         &'a self,
         parameter_name: impl Fn(ParameterId) -> &'a str,
@@ -38,7 +38,7 @@ impl Expression {
     }
 }
 
-/// The text of an operation on the texts of its operands.
+/// Returns the text of an operation on the texts of its operands.
 fn join<'a>(
     operation: Operation,
     operands: Vec<(String, Binding)>,

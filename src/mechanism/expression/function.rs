@@ -14,7 +14,7 @@ pub(in crate::mechanism) const CONSTANTS: [(&str, f64); 6] = [
     ("inch", 0.0254),
 ];
 
-/// A function of two arguments.
+/// Function of two arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Binary {
     /// `atan2(y, x)`, the angle of the point (x, y).
@@ -36,7 +36,7 @@ pub(super) enum Function {
     Binary(Binary),
 }
 
-/// Every function with its name.
+/// All functions with their names.
 pub(super) const FUNCTIONS: [(&str, Function); 22] = [
     ("sin", Function::Unary(Unary::Sin)),
     ("cos", Function::Unary(Unary::Cos)),
@@ -62,7 +62,7 @@ pub(super) const FUNCTIONS: [(&str, Function); 22] = [
     ("max", Function::Binary(Binary::Max)),
 ];
 
-/// The names of all functions.
+/// Returns the names of all functions.
 pub(in crate::mechanism) fn function_names() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|(name, _)| *name)
 }

@@ -1,4 +1,4 @@
-//! Numbers written as expressions over the parameters: parsed once, evaluated often.
+//! Expressions over the parameters: parsed once, evaluated often.
 //!
 //! The language is small: numbers (`1`, `.5`, `2.`, `1e-3`), `+ - * / ^` and parentheses, the
 //! constants `pi deg rpm mm cm inch`, parameters, the functions `sin cos tan asin acos atan atan2
@@ -10,6 +10,7 @@ mod display;
 mod error;
 mod function;
 mod parse;
+mod polar;
 mod token;
 
 #[cfg(test)]
@@ -23,17 +24,17 @@ pub(super) use parse::Scope;
 use super::ParameterId;
 use super::number::{self, Interval, Jet3, Number, Unary};
 
-/// The variable of an expression, besides the parameters.
+/// Variable of an expression, besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variable {
     /// Time \[s\], `t` in a motion.
     Time,
-    /// The polar angle \[rad\], `theta` in a cam's profile.
+    /// Polar angle \[rad\], `theta` in a cam's profile.
     PolarAngle,
 }
 
 impl Variable {
-    /// The name in the language.
+    /// Returns the name in the language.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -55,11 +56,11 @@ const MAX_STACK: usize = 32;
 pub struct Expression {
     /// Leaves one operand; the parser has checked that never more than [`MAX_STACK`] wait.
     program: Box<[Operation]>,
-    /// The parameters used, ascending, each once.
+    /// Parameters used, ascending, each once.
     parameters: Box<[ParameterId]>,
 }
 
-/// A step of the program. Operands come off a stack, the result goes onto it.
+/// Step of the program. It takes its operands off a stack and puts its result there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Operation {
     Number(f64),
@@ -76,7 +77,7 @@ enum Operation {
 }
 
 impl Operation {
-    /// The number of operands.
+    /// Returns the number of operands.
     fn arity(self) -> usize {
         match self {
             Self::Number(_) | Self::Parameter(_) | Self::Variable(_) => 0,
@@ -118,7 +119,7 @@ impl Operation {
 }
 
 impl Expression {
-    /// An expression that is a plain number.
+    /// Makes an expression that is a plain number.
     #[must_use]
     pub fn constant(value: f64) -> Self {
         Self::new(vec![Operation::Number(value)])
@@ -169,12 +170,12 @@ impl Expression {
         number::enclose(|variable| self.evaluate(&parameter, variable), variable)
     }
 
-    /// The parameters that it uses, ascending, each once.
+    /// Returns the parameters that it uses, ascending, each once.
     pub fn parameters(&self) -> impl Iterator<Item = ParameterId> {
         self.parameters.iter().copied()
     }
 
-    /// The variable that it uses, if any.
+    /// Returns the variable that it uses, if any.
     #[must_use]
     pub fn variable(&self) -> Option<Variable> {
         self.program.iter().find_map(|operation| match operation {
@@ -183,7 +184,7 @@ impl Expression {
         })
     }
 
-    /// The value if it uses neither parameters nor a variable.
+    /// Returns the value if it uses neither parameters nor a variable.
     #[must_use]
     pub fn literal(&self) -> Option<f64> {
         match *self.program {

@@ -1,4 +1,4 @@
-//! From text to expression: a Pratt parser that says where an error is.
+//! Parser of expressions (Pratt), which gives the place of an error.
 
 use super::error::ExpressionError;
 use super::function::{CONSTANTS, FUNCTIONS, Function};
@@ -8,16 +8,15 @@ use crate::mechanism::names::{self, NameTable};
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{ParameterId, Span};
 
-/// Depth of the parser's own recursion: parentheses, signs, powers and operators within one
-/// another.
+/// Largest depth of the parser's recursion: nested parentheses, signs, powers and operators.
 const MAX_DEPTH: usize = 128;
 
-/// The names that an expression may use.
+/// Names that an expression may use.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::mechanism) struct Scope<'a> {
-    /// The parameters.
+    /// Parameters.
     pub(in crate::mechanism) parameters: &'a NameTable<'a, ParameterId>,
-    /// The variable that the expression may use.
+    /// Variable, if the expression may use one.
     pub(in crate::mechanism) variable: Option<Variable>,
 }
 
@@ -26,7 +25,7 @@ impl Expression {
     ///
     /// # Errors
     ///
-    /// The first thing wrong: syntax, an unknown name, nesting too deep, or a constant part that
+    /// First fault of the text: syntax, an unknown name, too deep nesting, or a constant part that
     /// is not a finite number.
     pub(in crate::mechanism) fn parse(
         text: &str,
@@ -45,15 +44,15 @@ impl Expression {
     }
 }
 
-/// How an infix operator binds: it takes a left operand that binds at least as tightly as `left`,
-/// and a right one of at least `right`.
+/// Binding of an infix operator: its left operand binds at least as tightly as `left`, its right
+/// one as `right`.
 struct Infix {
     left: u8,
     right: u8,
     operation: Operation,
 }
 
-/// A sign binds tighter than a product and looser than a power.
+/// Binding of a sign: tighter than a product, looser than a power.
 const SIGN: u8 = 5;
 
 fn infix(kind: TokenKind<'_>) -> Option<Infix> {
@@ -78,12 +77,12 @@ fn infix(kind: TokenKind<'_>) -> Option<Infix> {
 struct Parser<'a> {
     text: &'a str,
     scope: Scope<'a>,
-    /// The next token, not yet taken.
+    /// Next token, not yet taken.
     token: Token<'a>,
-    /// The last token taken.
+    /// Last token taken.
     previous: Option<Token<'a>>,
     program: Vec<Operation>,
-    /// Operands waiting where the program now ends.
+    /// Number of operands that wait at the end of the program.
     height: usize,
     depth: usize,
 }
@@ -110,7 +109,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Parses an operand and all operators after it that bind at least as tightly as `least`;
-    /// returns what that spans.
+    /// returns their place.
     fn parse_operators(&mut self, least: u8) -> Result<Span, ExpressionError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -156,7 +155,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// A constant, a parameter, the variable, or a function with its arguments.
+    /// Parses a constant, a parameter, the variable, or a function with its arguments.
     fn parse_name(&mut self, name: &str, span: Span) -> Result<Span, ExpressionError> {
         let called = self.token.kind == TokenKind::Symbol(b'(');
         let constant = CONSTANTS.iter().find(|(constant, _)| *constant == name);
@@ -229,8 +228,8 @@ impl<'a> Parser<'a> {
         Ok(span)
     }
 
-    /// Appends an operation, the last one of what `span` covers, and computes it at once where
-    /// its operands are constant.
+    /// Appends the last operation of the text at `span`; computes it at once if its operands are
+    /// constant.
     fn emit(&mut self, operation: Operation, span: &Span) -> Result<(), ExpressionError> {
         let arity = operation.arity();
         let operands = self.program.len() - arity;
@@ -279,7 +278,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The error for a token that cannot follow a complete operand.
+    /// Returns the error for a token that cannot follow a complete operand.
     fn missing_operator(&self) -> ExpressionError {
         let found = &self.text[self.token.span()];
         let error = ExpressionError::new(
@@ -303,7 +302,7 @@ impl<'a> Parser<'a> {
         error.help(format!("multiplication is written out: `{left}*{right}`"))
     }
 
-    /// The error for a token where an operand is due.
+    /// Returns the error for a token where an operand is expected.
     fn missing_operand(&self) -> ExpressionError {
         let error = match (self.token.kind, self.previous) {
             (TokenKind::End, Some(previous)) => {
@@ -360,7 +359,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Help for a unit's symbol where it has no place.
+    /// Returns help for a unit's symbol after a number.
     fn unit_help(&self, name: &str) -> Option<String> {
         let is_unit = ["m", "rad", "s", "kg", "N"].contains(&name);
         (is_unit && self.scope.parameters.get(name).is_none())
@@ -376,7 +375,8 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// Help for a function that does not exist: what others call one of ours, or the nearest name.
+/// Returns help for an unknown function: the name of the one that other programs call so, or the
+/// nearest name.
 fn function_help(name: &str) -> Option<String> {
     let ours = match name {
         "log" => return Some("`ln` is the natural logarithm, `log10` the decimal one".to_owned()),

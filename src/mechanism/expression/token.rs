@@ -1,4 +1,4 @@
-//! The words of the language: numbers, names and symbols, each with its place.
+//! Tokens of the language: numbers, names and symbols, each with its place.
 
 use super::error::ExpressionError;
 use crate::mechanism::Span;
@@ -33,7 +33,7 @@ impl Token<'_> {
     }
 }
 
-/// The token that starts at or after byte `from`, a character's boundary.
+/// Returns the token that starts at or after byte `from`, a character's boundary.
 pub(super) fn scan(text: &str, from: usize) -> Result<Token<'_>, ExpressionError> {
     let bytes = text.as_bytes();
     let run = |from: usize, belongs: fn(&u8) -> bool| {
@@ -63,7 +63,7 @@ pub(super) fn scan(text: &str, from: usize) -> Result<Token<'_>, ExpressionError
     Ok(Token { kind, start, end })
 }
 
-/// A number: digits with at most one point, then an exponent if its digits follow.
+/// Scans a number: digits with at most one point, then an exponent if its digits follow.
 fn scan_number(text: &str, start: usize) -> Result<(TokenKind<'_>, usize), ExpressionError> {
     let bytes = text.as_bytes();
     let digits = |from: usize| {

@@ -1,10 +1,10 @@
-//! The standard motion laws of cam and servo design: how a stroke from 0 to 1 runs.
+//! Standard motion laws of cam and servo design: strokes from 0 to 1.
 
 use std::f64::consts::PI;
 
 use crate::mechanism::Number;
 
-/// A motion law: how a driver goes from one value of its table to the next.
+/// Motion law: course of a driver from one value of its table to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
     /// Polynomial 3-4-5: velocity and acceleration are zero at both ends.
@@ -25,7 +25,7 @@ pub enum Law {
 }
 
 impl Law {
-    /// The part of the stroke done after the part `tau` of its time, both from 0 to 1.
+    /// Returns the part of the stroke done after the part `tau` of its time, both from 0 to 1.
     ///
     /// Each law is symmetric: s(τ) + s(1 − τ) = 1.
     pub fn stroke<N: Number>(self, tau: N) -> N {
@@ -36,8 +36,8 @@ impl Law {
         self.first_half(tau)
     }
 
-    /// The largest magnitude of the second derivative of [`stroke`](Self::stroke), from where the
-    /// third is zero: at (1 − 2τ)² = 1/3 and 1/5 for the polynomials.
+    /// Returns the largest magnitude of the second derivative of [`stroke`](Self::stroke). For the
+    /// polynomials the third derivative is zero there, at (1 − 2τ)² = 1/3 and 1/5.
     #[must_use]
     pub fn peak_acceleration(self) -> f64 {
         match self {
@@ -115,7 +115,7 @@ mod tests {
         Law::Trapezoidal,
     ];
 
-    /// Peak velocity of a unit stroke in unit time, at τ = 1/2.
+    /// Returns the peak velocity of a unit stroke in unit time, at τ = 1/2.
     fn peak_velocity(law: Law) -> f64 {
         match law {
             Law::Polynomial345 => 15.0 / 8.0,

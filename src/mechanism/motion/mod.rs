@@ -11,11 +11,11 @@ use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, 
 pub enum Motion {
     /// An expression in `t` and the parameters.
     Expression(Expression),
-    /// Points of the motion, and how it runs through them.
+    /// Points of the motion with their interpolation.
     Table(MotionTable),
 }
 
-/// The number on which it depends which piece of a motion is in force.
+/// Returns the number that decides which piece of a motion is in force.
 fn number<N: Number>(x: N) -> f64 {
     x.real()
 }
@@ -25,13 +25,13 @@ fn number<N: Number>(x: N) -> f64 {
 pub struct MotionTable {
     /// Times \[s\], rising, and values \[m or rad\].
     pub table: Table,
-    /// How it runs from one point to the next.
+    /// Course from one point to the next.
     pub interpolation: Interpolation,
-    /// What it does before the first and after the last point.
+    /// Course before the first and after the last point.
     pub ends: Ends,
 }
 
-/// How a motion runs from one point of its table to the next.
+/// Course of a motion from one point of its table to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// A cubic spline through all points.
@@ -50,7 +50,7 @@ impl Motion {
         }
     }
 
-    /// The parameters that it uses; one may come twice.
+    /// Returns the parameters that it uses; one may come twice.
     pub fn parameters(&self) -> Box<dyn Iterator<Item = ParameterId> + '_> {
         match self {
             Self::Expression(expression) => Box::new(expression.parameters()),
@@ -73,12 +73,12 @@ pub struct MotionInForce<N = Jet> {
     valid: bool,
 }
 
-/// A motion that leaves its chord by no more than an eighth of this may be bounded roughly \[m or
+/// Eight times the distance from its chord below which a rough bound of a motion will do \[m or
 /// rad\].
 const ROUGH: f64 = 1e-5;
 
 impl<N: Number> MotionInForce<N> {
-    /// The motion for parameters still to be given, `parameters` of them.
+    /// Makes the motion for `parameters` parameters, whose values are set later.
     #[must_use]
     pub fn new(motion: &Motion, parameters: usize) -> Self {
         let spline = match motion {
@@ -93,8 +93,8 @@ impl<N: Number> MotionInForce<N> {
         }
     }
 
-    /// Takes over parameter values, with their derivatives with respect to the variable along
-    /// which the motion is to be evaluated.
+    /// Sets the parameter values, with their derivatives with respect to the variable of
+    /// evaluation.
     pub fn set_parameters(&mut self, parameter: impl Fn(ParameterId) -> N) {
         for (index, value) in self.parameters.iter_mut().enumerate() {
             *value = parameter(ParameterId(index));
@@ -109,10 +109,10 @@ impl<N: Number> MotionInForce<N> {
         }
     }
 
-    /// The value and its derivatives at time `t`, itself a function of the variable along which
-    /// the motion is evaluated. Allocates nothing.
+    /// Returns the value and its derivatives at time `t`, itself a function of the variable of
+    /// evaluation. Allocates nothing.
     ///
-    /// At a point of a table the rates are those of what follows. Not finite where an expression
+    /// At a point of a table the rates are those of the next piece. Not finite where an expression
     /// leaves its domain or the times of a table do not rise.
     #[must_use]
     pub fn evaluate(&self, t: N) -> N {
@@ -127,8 +127,8 @@ impl<N: Number> MotionInForce<N> {
 }
 
 impl MotionInForce {
-    /// An upper bound of |d²u/dt²| from `from` to `to`, between which no point of a table lies.
-    /// `None` where the motion cannot be shown to be smooth. Allocates nothing.
+    /// Returns an upper bound of |d²u/dt²| from `from` to `to`, between which no point of a table
+    /// lies. `None` where the motion cannot be shown to be smooth. Allocates nothing.
     #[must_use]
     pub fn curvature(&self, from: f64, to: f64) -> Option<f64> {
         match (&self.motion, &self.spline) {
@@ -151,8 +151,8 @@ impl MotionInForce {
     }
 
     /// Encloses the value over the range of `t` and of the parameters, with derivatives with
-    /// respect to the variable along which these are given; what cannot be said is not finite.
-    /// `None` for a table. Allocates nothing.
+    /// respect to the variable of evaluation; bounds that are not known are not finite. `None` for
+    /// a table. Allocates nothing.
     #[must_use]
     pub fn enclose(
         &self,
@@ -167,7 +167,7 @@ impl MotionInForce {
 }
 
 impl<N: Number> MotionInForce<N> {
-    /// The time of the next point of a table after `t`, where another piece of the motion
+    /// Returns the time of the next point of a table after `t`, where another piece of the motion
     /// begins. Infinite if there is none.
     #[must_use]
     pub fn next_point(&self, t: f64) -> f64 {
@@ -188,8 +188,7 @@ impl<N: Number> MotionInForce<N> {
     }
 }
 
-/// What of a motion, evaluated over time, is not finite: the first of value, velocity and
-/// acceleration.
+/// Returns the first of value, velocity and acceleration of a motion that is not finite.
 pub(crate) fn not_finite(motion: Jet) -> Option<&'static str> {
     let parts = [
         (motion.value, "the value"),
@@ -219,7 +218,7 @@ impl MotionTable {
         }
     }
 
-    /// Before the first or after the last point.
+    /// Returns the motion before the first or after the last point.
     fn beyond<N: Number>(&self, spline: &Spline<N>, point: usize, t: N) -> N {
         let (from, value) = (spline.knots()[point], spline.values()[point]);
         if self.ends == Ends::Natural {
@@ -230,7 +229,7 @@ impl MotionTable {
         }
     }
 
-    /// An upper bound of |d²u/dt²| between two times, between which no point lies.
+    /// Returns an upper bound of |d²u/dt²| between two times, between which no point lies.
     fn curvature(&self, spline: &Spline<Jet>, from: f64, to: f64) -> f64 {
         let times = spline.knots();
         let (start, end) = (times[0].value, times[times.len() - 1].value);

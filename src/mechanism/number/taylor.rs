@@ -31,26 +31,26 @@ pub struct Taylor<S, const N: usize> {
 }
 
 impl<S, const N: usize> Taylor<S, N> {
-    /// A number with these derivatives of order 1 to N.
+    /// Makes a number with these derivatives of order 1 to N.
     pub const fn new(value: S, derivatives: [S; N]) -> Self {
         Self { value, derivatives }
     }
 }
 
 impl<S: Number, const N: usize> Taylor<S, N> {
-    /// A number that does not vary.
+    /// Makes a number that does not vary.
     #[must_use]
     pub fn fixed(value: S) -> Self {
         Self::new(value, [S::constant(0.0); N])
     }
 
-    /// The plain number `value`, which does not vary.
+    /// Makes the plain number `value`, which does not vary.
     #[must_use]
     pub fn constant(value: f64) -> Self {
         Self::fixed(S::constant(value))
     }
 
-    /// A linear function of the variable, here of this `value` and with this `slope`.
+    /// Makes a linear function of the variable, here with this `value` and this `slope`.
     #[must_use]
     pub fn linear(value: S, slope: S) -> Self {
         let mut linear = Self::fixed(value);
@@ -58,23 +58,23 @@ impl<S: Number, const N: usize> Taylor<S, N> {
         linear
     }
 
-    /// The variable itself at `value`: its first derivative is 1.
+    /// Makes the variable itself at `value`: its first derivative is 1.
     #[must_use]
     pub fn variable(value: S) -> Self {
         Self::linear(value, S::constant(1.0))
     }
 
-    /// A number whose derivatives are not known.
+    /// Makes a number whose derivatives are not known.
     fn undecided(value: S) -> Self {
         Self::new(value, [S::unknown(); N])
     }
 
-    /// The number whose derivative of each order is `of` that order.
+    /// Makes the number whose derivative of each order is `of` that order.
     fn by_order(of: impl Fn(usize) -> S) -> Self {
         Self::new(of(0), array::from_fn(|k| of(k + 1)))
     }
 
-    /// The derivative of order `k`, the value for order 0.
+    /// Returns the derivative of order `k`, the value for order 0.
     fn order(&self, k: usize) -> S {
         if k == 0 {
             self.value
@@ -83,20 +83,20 @@ impl<S: Number, const N: usize> Taylor<S, N> {
         }
     }
 
-    /// The first derivative.
+    /// Returns the first derivative.
     #[must_use]
     pub fn first(&self) -> S {
         self.derivatives[0]
     }
 
-    /// The second derivative.
+    /// Returns the second derivative.
     #[must_use]
     pub fn second(&self) -> S {
         const { assert!(N >= 2, "this number has no second derivative") };
         self.derivatives[1]
     }
 
-    /// The third derivative.
+    /// Returns the third derivative.
     #[must_use]
     pub fn third(&self) -> S {
         const { assert!(N >= 3, "this number has no third derivative") };

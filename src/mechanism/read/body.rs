@@ -7,9 +7,9 @@ use crate::mechanism::wording::quoted;
 use crate::mechanism::{Body, BodyId, Expression, Marker, MarkerId, Unit};
 
 use super::context::Context;
-#[cfg(feature = "cli")]
-use super::kind::NAME;
 use super::kind::{Array, Entry, Fields, Item, Kind, Text, schema};
+#[cfg(feature = "cli")]
+use super::kind::{Described, NAME};
 use super::number::{ANGLE, LENGTH, NUMBER, Number, POINT, Quantity};
 use super::table::{Field, table};
 
@@ -37,6 +37,18 @@ table! {
     }
 }
 
+table! {
+    /// A point of a body in polar coordinates; the axes are parallel to those of the body.
+    struct PolarKeys<'a> {
+        /// Distance from the body's origin.
+        #[required("0.1")]
+        r: Quantity = LENGTH,
+        /// Direction from the body's origin, counter-clockwise from the body's x-axis.
+        #[required("\"90*deg\"")]
+        angle: Quantity = ANGLE,
+    }
+}
+
 /// x, y \[m\] and angle \[rad\] of a marker in the frame of its body.
 type Frame = [Expression; 3];
 
@@ -44,7 +56,10 @@ type Frame = [Expression; 3];
 struct Frames;
 
 impl Frames {
-    const SHORT: Array<Number, 2> = Array::new("[x, y]` or `[x, y, angle]", [LENGTH; 2]);
+    const SHORT: Array<Number, 2> = Array::new(
+        "[x, y]` or `[x, y, angle]`, or a table `{ r, angle }",
+        [LENGTH; 2],
+    );
     const LONG: Array<Number, 3> = Array::new("[x, y, angle]", [LENGTH, LENGTH, ANGLE]);
 }
 
@@ -52,6 +67,13 @@ impl<'a> Kind<'a> for Frames {
     type Value = Vec<(Entry<'a>, Option<Frame>)>;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Self::Value> {
+        if item.value.get_ref().is_array() {
+            let message = "expected a table of markers with their names, found an array";
+            context
+                .error(code::WRONG_TYPE, item.span(), message)
+                .suggest("write for example `markers = { A = [0, 0], B = [0.1, 0] }`");
+            return None;
+        }
         let entries = context.entries(item)?.into_iter();
         let mut frame = |entry: Entry<'a>| {
             let marker = Item {
@@ -59,6 +81,9 @@ impl<'a> Kind<'a> for Frames {
                 value: entry.value,
                 ..*item
             };
+            if entry.value.get_ref().is_table() {
+                return context.polar_frame(entry);
+            }
             let length = entry
                 .value
                 .get_ref()
@@ -79,8 +104,8 @@ impl<'a> Kind<'a> for Frames {
             "type": "object",
             "propertyNames": { "pattern": NAME, "not": { "enum": BODY_QUANTITIES } },
             "additionalProperties": {
-                "description": "[x, y] or [x, y, angle] in the body's frame [m, m, rad].",
-                "anyOf": [Self::SHORT.schema(), Self::LONG.schema()],
+                "description": "[x, y], [x, y, angle] or { r, angle } in the body's frame [m, rad].",
+                "anyOf": [Self::SHORT.schema(), Self::LONG.schema(), PolarKeys::schema()],
             },
         }
     }
@@ -113,6 +138,19 @@ impl<'a> Context<'a> {
             bodies.extend(keys.map(|keys| self.body(*entry, keys, ids)));
         }
         (bodies, markers)
+    }
+
+    /// Reads a marker given by polar coordinates.
+    fn polar_frame(&mut self, entry: Entry<'a>) -> Option<Frame> {
+        let keys = self.entry::<PolarKeys<'a>>(entry, "marker")?;
+        let (r, angle) = (keys.r.expression()?, keys.angle.expression()?);
+        let Some([x, y]) = Expression::from_polar(&r, &angle) else {
+            let message = "the expressions are nested too deeply";
+            self.error(code::BAD_EXPRESSION, entry.value.span(), message)
+                .suggest("give a part of them a name: a parameter of its own");
+            return None;
+        };
+        Some([x, y, Expression::constant(0.0)])
     }
 
     fn body(&mut self, entry: Entry<'a>, keys: BodyKeys<'a>, markers: Vec<MarkerId>) -> Body {

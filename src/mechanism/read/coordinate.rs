@@ -45,6 +45,13 @@ const COORDINATE: Word<CoordinateKind> = Word::new("coordinate", code::UNKNOWN_C
         ("y", CoordinateKind::Y),
         ("distance", CoordinateKind::Distance),
     ]
+})
+.with_synonyms(|| {
+    vec![
+        ("rotation", "angle"),
+        ("phi", "angle"),
+        ("length", "distance"),
+    ]
 });
 
 impl<'a> Context<'a> {

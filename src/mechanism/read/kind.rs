@@ -159,6 +159,8 @@ pub(super) struct Word<T> {
     code: &'static str,
     /// Returns the words with their meanings.
     words: fn() -> Vec<(&'static str, T)>,
+    /// Returns other terms for the words, each with the word.
+    synonyms: fn() -> Vec<(&'static str, &'static str)>,
 }
 
 impl<T> Word<T> {
@@ -167,7 +169,20 @@ impl<T> Word<T> {
         code: &'static str,
         words: fn() -> Vec<(&'static str, T)>,
     ) -> Self {
-        Self { noun, code, words }
+        Self {
+            noun,
+            code,
+            words,
+            synonyms: Vec::new,
+        }
+    }
+
+    /// Returns the choice with other terms for its words, which messages explain.
+    pub(super) const fn with_synonyms(
+        self,
+        synonyms: fn() -> Vec<(&'static str, &'static str)>,
+    ) -> Self {
+        Self { synonyms, ..self }
     }
 
     fn names(&self) -> Vec<&'static str> {
@@ -183,7 +198,12 @@ impl<'a, T> Kind<'a> for Word<T> {
         let meaning = (self.words)().into_iter().find(|(word, _)| *word == text);
         if meaning.is_none() {
             let message = format!("no {} {}", self.noun, quoted(text));
-            let help = names::help(text, &self.names(), &[]);
+            let synonyms = (self.synonyms)().into_iter();
+            let mut meant = synonyms.filter(|(term, _)| term.eq_ignore_ascii_case(text));
+            let help = match meant.next() {
+                Some((_, word)) => Some(format!("the word for it here is `{word}`")),
+                None => names::help(text, &self.names(), &[]),
+            };
             context.error(self.code, item.span(), message).help = help;
         }
         meaning.map(|(_, meaning)| meaning)

@@ -1,6 +1,6 @@
 //! Declaration of the names in the file, before anything refers to them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::is_legal;
@@ -40,6 +40,7 @@ impl<'a> Context<'a> {
             .flat_map(|(noun, section)| section.items().iter().map(|entry| (*noun, *entry)));
         let mut all: Vec<(&str, Entry<'a>)> = entries.collect();
         all.sort_by_key(|(_, entry)| entry.key.span().start);
+        let names: HashSet<&str> = all.iter().map(|(_, entry)| entry.name()).collect();
         let mut earlier: HashMap<&str, (&str, Span)> = HashMap::new();
         for (noun, entry) in all {
             let (name, span) = (entry.name(), entry.key.span());
@@ -57,7 +58,15 @@ impl<'a> Context<'a> {
                     .label(span, "")
                     .label(first_span.clone(), format!("the {first_noun}")),
             )
-            .suggest("all these share one name space");
+            .suggest(match format!("{name}_{noun}") {
+                free if !names.contains(&*free) => {
+                    format!(
+                        "all these share one name space: call the {noun} {}",
+                        quoted(&free)
+                    )
+                }
+                _ => "all these share one name space".to_owned(),
+            });
         }
     }
 

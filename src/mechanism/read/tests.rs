@@ -169,6 +169,38 @@ fn a_driver_may_have_limits_and_be_wrapped() {
 }
 
 #[test]
+fn a_marker_may_be_given_in_polar_coordinates() {
+    let mechanism = pendulum(
+        "[parameters]\nhorn = 0.2\ntilt = '30*deg'\n[bodies.bell_crank.markers]\n\
+         A = { r = 'horn', angle = '-90*deg' }\nB = { r = 'horn', angle = 'tilt' }\n\
+         C = { r = '2*horn', angle = '120*deg' }\n",
+    );
+    let body = mechanism.body_id("bell_crank").expect("it is there");
+    let markers = mechanism.bodies[body.index()].markers.iter();
+    let texts: Vec<[String; 3]> = markers
+        .map(|marker| {
+            let marker = &mechanism.markers[marker.index()];
+            let [x, y] = &marker.position;
+            let name = |id: ParameterId| mechanism.parameters[id.index()].name.as_str();
+            [x, y, &marker.angle].map(|number| number.display(name).to_string())
+        })
+        .collect();
+    let (sine, cosine) = (120.0 * (std::f64::consts::PI / 180.0)).sin_cos();
+    assert_eq!(
+        texts,
+        [
+            ["0.0", "-horn", "0.0"].map(str::to_owned),
+            ["horn*cos(tilt)", "horn*sin(tilt)", "0.0"].map(str::to_owned),
+            [
+                format!("2.0*horn*{cosine:?}"),
+                format!("2.0*horn*{sine:?}"),
+                "0.0".to_owned()
+            ],
+        ]
+    );
+}
+
+#[test]
 fn x_and_y_may_be_measured_on_other_axes() {
     let mechanism = pendulum(
         "[measures]\n\

@@ -4,19 +4,19 @@ use std::fmt::Write as _;
 
 use super::separated::{Separated, comma_hint};
 
-/// Tables with more points are refused: each costs several hundred bytes in every instance.
+/// Largest number of points: each costs several hundred bytes in every instance.
 pub(in crate::mechanism) const MOST_POINTS: usize = 100_000;
 
-/// A CSV file beside the mechanism file, which travels with it.
+/// CSV file beside the mechanism file; the FMU holds both.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableFile {
-    /// Its name, without a folder.
+    /// Name, without a folder.
     pub name: String,
-    /// Its content.
+    /// Content.
     pub text: String,
 }
 
-/// What is wrong in a CSV file.
+/// Fault of a CSV file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub(in crate::mechanism) enum TableFileError {
     /// It has no rows of numbers.
@@ -27,9 +27,9 @@ pub(in crate::mechanism) enum TableFileError {
     Columns {
         /// The line, from 1.
         line: u64,
-        /// How many columns it has.
+        /// Number of its columns.
         found: usize,
-        /// How many it should have at least.
+        /// Number of columns that it needs.
         expected: usize,
     },
     /// Something other than a finite number.
@@ -37,21 +37,21 @@ pub(in crate::mechanism) enum TableFileError {
     Number {
         /// The line, from 1.
         line: u64,
-        /// What stands there.
+        /// Text in the place of the number.
         found: String,
     },
     /// More points than anyone needs.
     #[error("it has more than {most} points")]
     TooLong {
-        /// How many are read.
+        /// Largest number of points.
         most: usize,
     },
     /// No column of that name.
     #[error("{}", no_column(.name, .header))]
     Column {
-        /// The name asked for.
+        /// Name asked for.
         name: String,
-        /// The names that the file gives.
+        /// Names in the file.
         header: Vec<String>,
     },
 }
@@ -67,7 +67,7 @@ fn no_column(name: &str, header: &[String]) -> String {
     message
 }
 
-/// A row of two numbers, with the line where it stands.
+/// Row of two numbers, with its line.
 pub(in crate::mechanism) type Row = (u64, [f64; 2]);
 
 impl TableFile {
@@ -78,7 +78,7 @@ impl TableFile {
     ///
     /// # Errors
     ///
-    /// The first thing wrong with it.
+    /// First fault of the file.
     pub(in crate::mechanism) fn rows(
         &self,
         columns: Option<[&str; 2]>,

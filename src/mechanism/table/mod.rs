@@ -15,7 +15,7 @@ use super::{Expression, Number, ParameterId};
 pub struct Table {
     /// Abscissa and ordinate of each point, before scaling; two points at least.
     pub points: Vec<[Expression; 2]>,
-    /// What abscissas and ordinates are multiplied with to give SI units.
+    /// Factors that bring abscissas and ordinates to SI units.
     pub scale: [Expression; 2],
 }
 
@@ -36,7 +36,7 @@ impl Table {
         }
     }
 
-    /// The parameters that it uses; one may come twice.
+    /// Returns the parameters that it uses; one may come twice.
     pub fn parameters(&self) -> impl Iterator<Item = ParameterId> {
         let expressions = self.points.iter().flatten().chain(&self.scale);
         expressions.flat_map(Expression::parameters)

@@ -1,4 +1,4 @@
-//! Numbers as text, column by column, as the usual programs write them.
+//! Columns of numbers as text, in the forms that spreadsheets and simulators write.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ pub(crate) struct Separated<'a> {
 }
 
 impl<'a> Separated<'a> {
-    /// What separates the columns is whichever the first line that is no comment has.
+    /// Makes a reader of the text. The first line that is no comment decides the separator.
     pub(crate) fn new(text: &'a str) -> Self {
         let text = text.trim_start_matches('\u{feff}');
         let first = text
@@ -37,8 +37,8 @@ impl<'a> Separated<'a> {
         }
     }
 
-    /// The rows, however many columns each has: the line, from 1, and the fields without the
-    /// blanks round them.
+    /// Returns the rows, of any number of columns: the line, from 1, and the fields without the
+    /// blanks around them.
     pub(crate) fn rows(&self) -> impl Iterator<Item = (u64, csv::StringRecord)> {
         let reader = csv::ReaderBuilder::new()
             .has_headers(false)
@@ -56,7 +56,7 @@ impl<'a> Separated<'a> {
         })
     }
 
-    /// The line on which a record stands; its place is before the lines that the reader skipped.
+    /// Returns the line of a record. The reader gives a place before the lines that it skipped.
     fn line(&self, place: &csv::Position) -> u64 {
         let rest =
             usize::try_from(place.byte()).map_or("", |byte| self.text.get(byte..).unwrap_or(""));
@@ -72,7 +72,7 @@ fn is_comment(line: &str) -> bool {
     line.starts_with('#')
 }
 
-/// What to say besides of a field that is no number.
+/// Returns a hint for a field that is no number.
 pub(crate) fn comma_hint(found: &str) -> &'static str {
     if found.contains(',') {
         "; decimals stand after a point"

@@ -43,7 +43,7 @@ impl Interval {
         high: 1.0,
     };
 
-    /// The interval from `low` to `high`, undefined if one is NaN or `low` is larger.
+    /// Makes the interval from `low` to `high`, undefined if one is NaN or `low` is larger.
     #[must_use]
     pub fn new(low: f64, high: f64) -> Self {
         if low <= high {
@@ -53,19 +53,19 @@ impl Interval {
         }
     }
 
-    /// The interval that contains only `value`.
+    /// Makes the interval that contains only `value`.
     #[must_use]
     pub fn point(value: f64) -> Self {
         Self::new(value, value)
     }
 
-    /// A number in the interval, near its middle.
+    /// Returns a number in the interval, near its middle.
     #[must_use]
     pub fn midpoint(self) -> f64 {
         self.low.midpoint(self.high)
     }
 
-    /// The largest absolute value in it.
+    /// Returns the largest absolute value in it.
     #[must_use]
     pub fn magnitude(self) -> f64 {
         self.low.abs().max(self.high.abs())
@@ -77,7 +77,7 @@ impl Interval {
         self.low <= value && value <= self.high
     }
 
-    /// The numbers in both intervals.
+    /// Returns the numbers in both intervals.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         if self.is_undefined() || other.is_undefined() {

@@ -9,7 +9,7 @@ use crate::mechanism::{BodyId, JointKind};
 use super::{joint_type, wheels};
 
 joint_type! {
-    "belt" => |keys, _| Some(JointKind::Belt {
+    "belt" or "chain" or "pulley" => |keys, _| Some(JointKind::Belt {
         sizes: wheels::sizes(keys.radii, keys.teeth)?,
         crossed: keys.crossed.or(false)?,
         carrier: keys.carrier.or(None)?,

@@ -6,7 +6,7 @@ use crate::mechanism::read::number::{LENGTH, Quantity};
 use super::joint_type;
 
 joint_type! {
-    "link" => |keys, _| Some(JointKind::Link {
+    "link" or "rod" or "bar" or "distance" => |keys, _| Some(JointKind::Link {
         length: keys.length.expression()?,
     });
 

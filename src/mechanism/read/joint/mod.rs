@@ -39,17 +39,19 @@ table! {
 pub(super) struct JointType {
     /// Name under `type`.
     name: &'static str,
+    /// Other terms for it.
+    synonyms: &'static [&'static str],
     /// Reads the keys of the type.
     read: for<'a> fn(&mut Context<'a>, &Fields<'a>) -> Option<JointKind>,
     #[cfg(feature = "cli")]
     schema: fn() -> serde_json::Value,
 }
 
-/// Declares a type of joint: its name, its keys besides those of every joint, and the joint that
-/// they make.
+/// Declares a type of joint: its name and other terms for it, its keys besides those of every
+/// joint, and the joint that they make.
 macro_rules! joint_type {
     (
-        $name:literal => $kind:expr;
+        $name:literal $(or $synonym:literal)* => $kind:expr;
         $(#[$($attribute:tt)+])+
         struct $keys:ident<$life:lifetime> { $($key:tt)* }
     ) => {
@@ -60,6 +62,7 @@ macro_rules! joint_type {
 
         pub(super) static TYPE: $crate::mechanism::read::joint::JointType = $crate::mechanism::read::joint::JointType {
             name: $name,
+            synonyms: &[$($synonym),*],
             read: |context, fields| {
                 let kind: for<$life> fn($keys<$life>, &mut $crate::mechanism::read::context::Context<$life>) -> _ = $kind;
                 kind(context.further::<$crate::mechanism::read::joint::JointKeys<'_>, $keys<'_>>(fields), context)
@@ -91,6 +94,13 @@ const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT
     JOINT_TYPES
         .map(|joint_type| (joint_type.name, joint_type))
         .to_vec()
+})
+.with_synonyms(|| {
+    let synonyms = |joint_type: &&'static JointType| {
+        let name = joint_type.name;
+        joint_type.synonyms.iter().map(move |term| (*term, name))
+    };
+    JOINT_TYPES.iter().flat_map(synonyms).collect()
 });
 
 impl<'a> Context<'a> {

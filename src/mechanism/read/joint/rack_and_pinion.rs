@@ -8,7 +8,7 @@ use crate::mechanism::{JointKind, RackSide};
 use super::joint_type;
 
 joint_type! {
-    "rack_and_pinion" => |keys, _| Some(JointKind::RackAndPinion {
+    "rack_and_pinion" or "rack" or "pinion" => |keys, _| Some(JointKind::RackAndPinion {
         radius: keys.radius.expression()?,
         side: keys.side.or(RackSide::Above)?,
     });

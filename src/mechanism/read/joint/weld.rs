@@ -5,7 +5,7 @@ use crate::mechanism::JointKind;
 use super::joint_type;
 
 joint_type! {
-    "weld" => |_, _| Some(JointKind::Weld);
+    "weld" or "fixed" or "rigid" => |_, _| Some(JointKind::Weld);
 
     /// A rigid connection: the two frames coincide.
     struct Weld<'a> {}
