@@ -433,8 +433,8 @@ fn what_is_wrong_with_bytes_is_told() {
         matches!(
             version,
             StateError::Version {
-                given: 18,
-                expected: 2
+                given: 19,
+                expected: 3
             }
         ),
         "{version}"

@@ -3,50 +3,17 @@
 mod common;
 
 use std::f64::consts::{PI, TAU};
-use std::sync::{Arc, Mutex};
 
-use biela::fmi::{
-    Category, Error, Failure, Instance as Fmu, Interface, MechanismModel, Sink, State, Status,
-};
+use biela::fmi::{Category, Error, Failure, Interface, State};
+use common::log::Heard;
 use common::{Instance, instance_of, parse, shipped};
-
-/// Messages of a category, as they come.
-#[derive(Clone, Default)]
-struct Heard(Arc<Mutex<Vec<(Category, String)>>>);
-
-impl Sink for Heard {
-    fn write(&self, _: Status, category: Category, message: &str) {
-        let mut heard = self.0.lock().expect("no test panics with it");
-        heard.push((category, message.to_owned()));
-    }
-}
-
-impl Heard {
-    /// Those of a category since the last call, all others being forgotten.
-    fn take(&self, wanted: Category) -> Vec<String> {
-        let heard = self.take_all().into_iter();
-        heard
-            .filter(|(category, _)| *category == wanted)
-            .map(|(_, message)| message)
-            .collect()
-    }
-
-    fn take_all(&self) -> Vec<(Category, String)> {
-        std::mem::take(&mut self.0.lock().expect("no test panics with it"))
-    }
-}
 
 fn running(name: &str) -> Instance {
     started(instance_of(shipped(name), Interface::CoSimulation))
 }
 
-fn running_with(name: &str, sink: Box<dyn Sink + Send>) -> Instance {
-    let model = MechanismModel::new(shipped(name), Interface::CoSimulation);
-    started(Fmu::new(
-        model.expect("the mechanism assembles"),
-        sink,
-        true,
-    ))
+fn running_with(name: &str, heard: &Heard) -> Instance {
+    started(heard.instance(shipped(name), Interface::CoSimulation, true))
 }
 
 fn started(mut instance: Instance) -> Instance {
@@ -127,7 +94,7 @@ fn the_last_successful_time_of_a_moving_input_is_where_it_stopped() {
 #[test]
 fn a_dead_point_is_told_with_driver_value_limit_and_bodies() {
     let heard = Heard::default();
-    let mut instance = running_with("tlv", Box::new(heard.clone()));
+    let mut instance = running_with("tlv", &heard);
     instance.set_real(&[0], &[0.7]).unwrap();
     instance.do_step(0.0, 0.1).expect_err("0.7 m is too long");
     assert_eq!(
@@ -143,7 +110,7 @@ fn a_dead_point_is_told_with_driver_value_limit_and_bodies() {
 #[test]
 fn an_approach_to_a_dead_point_is_warned_of_once() {
     let heard = Heard::default();
-    let mut instance = running_with("tlv", Box::new(heard.clone()));
+    let mut instance = running_with("tlv", &heard);
     let mut warned = Vec::new();
     // Twice to within a nanometre of the limit, and back.
     for (step, off) in [0.1, 1e-8, 1e-9, 1e-8, 1e-9, 0.1, 1e-9, 1e-8]
@@ -168,7 +135,7 @@ fn an_approach_to_a_dead_point_is_warned_of_once() {
 #[test]
 fn a_change_point_is_an_event_not_a_warning() {
     let heard = Heard::default();
-    let mut instance = running_with("parallelogram", Box::new(heard.clone()));
+    let mut instance = running_with("parallelogram", &heard);
     heard.take(Category::Events);
     let start = PI / 3.0;
     let mut passed = 0;
@@ -183,12 +150,13 @@ fn a_change_point_is_an_event_not_a_warning() {
         let all = heard.take_all();
         assert!(
             all.iter()
-                .all(|(category, _)| *category != Category::Warning)
+                .all(|message| message.category != Category::Warning)
         );
-        for (_, message) in all
+        for message in all
             .iter()
-            .filter(|(category, _)| *category == Category::Events)
+            .filter(|message| message.category == Category::Events)
         {
+            let message = &message.text;
             assert!(
                 message.starts_with(
                     "change point passed on the smooth motion, with driver `crank_angle` at "

@@ -3,15 +3,17 @@
 use std::io::Cursor;
 
 use biela::fmi::{
-    Capabilities, Category, Causality, Codec, Error, Experiment, Failure, Instance, Interface,
-    Kind, Logger, Model, ModelDescription, Phase, Sink, State, StateError, Status, Unknown,
-    Unreadable, Variability, Variable, write_archive,
+    Capabilities, Category, Causality, Codec, DependencyKind, Error, Experiment, Failure, Groups,
+    Instance, Interface, Kind, Logger, Model, ModelDescription, Phase, Sink, State, StateError,
+    Status, Unknown, Unreadable, Variability, Variable, write_archive,
 };
 
 /// y′ = gain · u, with u held; y may not leave its range.
 struct Integrator {
     interface: Interface,
     variables: Vec<Variable<Quantity>>,
+    /// By value reference.
+    reals: [f64; 4],
     state: Integrated,
 }
 
@@ -45,6 +47,7 @@ impl Integrator {
             causality,
             variability,
             kind,
+            derivative_of: None,
         };
         let continuous = Variability::Continuous;
         let gain = Kind::Real {
@@ -52,6 +55,7 @@ impl Integrator {
             start: Some(1.0),
             min: Some(0.0),
             max: None,
+            nominal: None,
         };
         Self {
             interface,
@@ -77,7 +81,18 @@ impl Integrator {
                     continuous,
                     Kind::real(None, None),
                 ),
+                Variable {
+                    derivative_of: Some(2),
+                    ..variable(
+                        "slope",
+                        Quantity::Slope,
+                        Causality::Output,
+                        continuous,
+                        Kind::real(None, None),
+                    )
+                },
             ],
+            reals: [0.0; 4],
             state: Integrated::START,
         }
     }
@@ -104,6 +119,8 @@ impl Integrated {
 impl Model for Integrator {
     type Quantity = Quantity;
     type State = Integrated;
+
+    const OUTPUT_DERIVATIVES: i32 = 1;
 
     fn load(_: &std::path::Path, interface: Interface) -> Result<Self, Failure> {
         Ok(Self::new(interface))
@@ -142,42 +159,38 @@ impl Model for Integrator {
         }
     }
 
-    fn make_ready(&mut self, quantity: Quantity, _: Phase, log: &Logger) -> Result<(), Failure> {
-        if quantity == Quantity::Y && self.y() > LIMIT {
-            return Err(full(log));
+    fn groups(&self, quantity: Quantity) -> Groups {
+        Groups::from(quantity == Quantity::Y) | 2
+    }
+
+    fn refresh(&mut self, groups: Groups, _: Phase, _: &Logger) -> Result<(), Failure> {
+        if groups & 1 != 0 && self.y() > LIMIT {
+            return Err(full());
         }
+        self.reals = [self.state.u, self.state.gain, self.y(), self.slope()];
         Ok(())
     }
 
-    fn real(&mut self, quantity: Quantity) -> f64 {
-        match quantity {
-            Quantity::U => self.state.u,
-            Quantity::Gain => self.state.gain,
-            Quantity::Y => self.y(),
-            Quantity::Slope => self.slope(),
-        }
-    }
-
-    fn time_derivative(&self, quantity: Quantity, order: u32) -> Option<Quantity> {
-        (quantity == Quantity::Y && order == 1).then_some(Quantity::Slope)
+    fn reals(&self) -> &[f64] {
+        &self.reals
     }
 
     fn commit(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         if phase == Phase::Initialization {
             self.state.from = [0.0, self.state.time];
         }
-        self.make_ready(Quantity::Y, phase, log)?;
+        self.refresh(1, phase, log)?;
         self.state.from = [self.y(), self.state.time];
         Ok(())
     }
 
-    fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
+    fn step(&mut self, size: f64, end: f64, _: &Logger) -> Result<(), Failure> {
         let [y, time] = self.state.from;
         let reached = y + self.slope() * size;
         if reached > LIMIT {
             self.state.time = time + (LIMIT - y) / self.slope();
             self.state.from = [LIMIT, self.state.time];
-            return Err(full(log));
+            return Err(full());
         }
         self.state.time = end;
         self.state.from = [reached, end];
@@ -192,7 +205,7 @@ impl Model for Integrator {
         self.state = state.clone();
     }
 
-    fn walk(state: &mut Integrated, codec: &mut impl Codec) -> Result<(), Unreadable> {
+    fn visit(state: &mut Integrated, codec: &mut impl Codec) -> Result<(), Unreadable> {
         let Integrated {
             time,
             u,
@@ -212,8 +225,7 @@ impl Model for Integrator {
     }
 }
 
-fn full(log: &Logger) -> Failure {
-    log.write(Status::Warning, Category::Warning, "full");
+fn full() -> Failure {
     Failure::Discarded("full".to_owned())
 }
 
@@ -254,7 +266,7 @@ fn it_steps_until_it_is_full() {
     let slope: Vec<_> = instance.output_derivatives(&[2], &[1]).unwrap().collect();
     assert_eq!(slope, [3.0]);
     let none = instance.output_derivatives(&[2], &[2]).map(|_| ());
-    assert_eq!(none.unwrap_err().status(), Status::Discard);
+    assert_eq!(none.unwrap_err().status(), Status::Error);
     // The state machine and the checks of arguments are the layer's.
     assert!(matches!(
         instance.set_real(&[1], &[3.0]),
@@ -270,7 +282,8 @@ fn it_steps_until_it_is_full() {
     assert_eq!(instance.state(), State::StepFailed);
     let reached = 3.0 + 4.0 / 3.0;
     assert!((instance.last_successful_time() - reached).abs() < 1e-15);
-    assert!(instance.is_terminated());
+    // The host can go back to the state it has got, and step to where it was full.
+    assert!(!instance.is_terminated());
     assert_eq!(
         *log.0.lock().unwrap(),
         [(Status::Warning, "full".to_owned())]
@@ -340,7 +353,7 @@ fn it_is_described_and_packed() {
     let model = Integrator::new(Interface::CoSimulation);
     let unknown = Unknown {
         index: 3,
-        dependencies: [1].into(),
+        dependencies: [(1, DependencyKind::Dependent)].into(),
     };
     let description = ModelDescription {
         name: "integrator",
@@ -380,7 +393,7 @@ fn it_is_described_and_packed() {
         "description=\"y&apos; = gain u\"",
         "maxOutputDerivativeOrder=\"1\"",
         "<Real min=\"0.0\" start=\"1.0\"/>",
-        "<Unknown index=\"3\" dependencies=\"1\"/>",
+        "<Unknown index=\"3\" dependencies=\"1\" dependenciesKind=\"dependent\"/>",
     ] {
         assert!(xml.contains(part), "{part} in {xml}");
     }

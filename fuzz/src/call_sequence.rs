@@ -111,9 +111,14 @@ fn check(instance: &mut Instance, saved: &mut Vec<FmuState>, request: &Request) 
         }
         // Finding no pose takes the rates of the drivers along, which nobody can see.
         (_, Error::Model(_)) => assert_eq!(instance.state(), state),
-        (Call::GetRealOutputDerivatives, Error::NoOutputDerivative { .. }) => {}
         _ => {
-            assert_eq!(error.status(), Status::Error, "{request:?}: {error}");
+            let discarded = matches!(error, Error::Range { .. } | Error::Item { .. });
+            let status = if discarded {
+                Status::Discard
+            } else {
+                Status::Error
+            };
+            assert_eq!(error.status(), status, "{request:?}: {error}");
             assert_eq!(text(&instance.fmu_state()), text(&before), "{request:?}");
         }
     }
@@ -175,14 +180,17 @@ fn make(
             (Call::DoStep, instance.do_step(point, size.get()))
         }
         Request::EnterEventMode => (Call::EnterEventMode, instance.enter_event_mode()),
-        Request::NewDiscreteStates => (Call::NewDiscreteStates, instance.new_discrete_states()),
+        Request::NewDiscreteStates => (
+            Call::NewDiscreteStates,
+            instance.new_discrete_states().map(drop),
+        ),
         Request::EnterContinuousTimeMode => (
             Call::EnterContinuousTimeMode,
             instance.enter_continuous_time_mode(),
         ),
         Request::CompletedIntegratorStep => (
             Call::CompletedIntegratorStep,
-            instance.completed_integrator_step(),
+            instance.completed_integrator_step().map(drop),
         ),
         Request::SetTime(time) => (Call::SetTime, instance.set_time(time.get())),
         Request::GetContinuousStates(count) => (

@@ -97,7 +97,7 @@ fn go_on(instance: &mut Instance) {
             let time = instance.last_successful_time();
             instance.do_step(time, 0.1)
         }
-        State::ContinuousTimeMode => instance.completed_integrator_step(),
+        State::ContinuousTimeMode => instance.completed_integrator_step().map(drop),
         _ => Ok(()),
     };
     let _ = instance.reals(&reals).map(|values| values.sum::<f64>());

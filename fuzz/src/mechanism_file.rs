@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use biela::fmi::{Causality, Interface};
+use biela::fmi::{Causality, Interface, Order, Quantity};
 use biela::mechanism::{Mechanism, Source};
 
 use crate::{instance, reals};
@@ -76,14 +76,15 @@ fn run_instance(mechanism: &Arc<Mechanism>, interface: Interface) {
             Interface::CoSimulation => instance.do_step(time, 0.1),
             Interface::ModelExchange => instance
                 .set_time(time + 0.1)
-                .and_then(|()| instance.completed_integrator_step()),
+                .and_then(|()| instance.completed_integrator_step())
+                .map(drop),
         };
         let read = instance.reals(&reals).map(Iterator::collect::<Vec<_>>);
         if let Ok(values) = read {
             // A motion may be infinitely fast; a pose is a pose.
             let positions = values.iter().zip(&reals).filter(|&(_, &reference)| {
                 let quantity = instance.variables()[reference as usize].quantity;
-                quantity.order() == Some(biela::fmi::Order::Position)
+                matches!(quantity, Quantity::Output(_, Order::Position))
             });
             for (value, _) in positions {
                 assert!(value.is_finite(), "a position is {value}");

@@ -2,7 +2,7 @@
 
 use super::error::Error;
 use super::motion::Motion;
-use crate::fmi::{Causality, Kind, Quantity, variables};
+use crate::fmi::{Kind, Order, Quantity, Signal, variables};
 use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
 
 /// One quantity of a run.
@@ -10,7 +10,8 @@ use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
 pub(super) struct Column {
     /// Name of the FMU's variable.
     pub(super) name: String,
-    pub(super) quantity: Quantity,
+    pub(super) signal: Signal,
+    pub(super) order: Order,
     pub(super) unit: Unit,
 }
 
@@ -20,25 +21,25 @@ impl Column {
         let variables = variables(mechanism).into_iter();
         let mut columns: Vec<Self> = variables
             .filter_map(|variable| {
-                let (Kind::Real { unit, .. }, Causality::Input | Causality::Output) =
-                    (variable.kind, variable.causality)
-                else {
+                let Kind::Real { unit, .. } = variable.kind else {
                     return None;
                 };
-                let quantity = match variable.quantity {
+                let (signal, order) = match variable.quantity {
                     // In a run an input follows a motion.
-                    Quantity::Input(driver, order) => Quantity::Motion(driver, order),
-                    output => output,
+                    Quantity::Input(driver, order) => (Signal::Motion(driver), order),
+                    Quantity::Output(signal, order) => (signal, order),
+                    _ => return None,
                 };
                 Some(Self {
                     name: variable.name,
-                    quantity,
+                    signal,
+                    order,
                     unit: unit.unwrap_or(Unit::ONE),
                 })
             })
             .collect();
-        columns.sort_by_key(|column| match column.quantity {
-            Quantity::Motion(driver, _) => driver.index(),
+        columns.sort_by_key(|column| match column.signal {
+            Signal::Motion(driver) => driver.index(),
             _ => usize::MAX,
         });
         columns
@@ -69,16 +70,16 @@ impl Column {
     /// Returns the columns that a plot shows by default: the drivers, and of measures, points of
     /// interest and bodies the first kind that the mechanism has.
     pub(super) fn plotted(columns: &[Self]) -> Vec<Self> {
-        let select = |is_wanted: fn(&Quantity) -> bool| -> Vec<Self> {
-            let wanted = columns.iter().filter(|c| is_wanted(&c.quantity));
+        let select = |is_wanted: fn(&Signal) -> bool| -> Vec<Self> {
+            let wanted = columns.iter().filter(|c| is_wanted(&c.signal));
             wanted.cloned().collect()
         };
-        let kinds: [fn(&Quantity) -> bool; 3] = [
-            |quantity| matches!(quantity, Quantity::Measure(..)),
-            |quantity| matches!(quantity, Quantity::Marker(..)),
-            |quantity| matches!(quantity, Quantity::Body(..)),
+        let kinds: [fn(&Signal) -> bool; 3] = [
+            |signal| matches!(signal, Signal::Measure(_)),
+            |signal| matches!(signal, Signal::Marker(..)),
+            |signal| matches!(signal, Signal::Body(..)),
         ];
-        let mut plotted = select(|quantity| matches!(quantity, Quantity::Motion(..)));
+        let mut plotted = select(|signal| matches!(signal, Signal::Motion(_)));
         let further = kinds.into_iter().map(select).find(|kind| !kind.is_empty());
         plotted.extend(further.unwrap_or_default());
         plotted
@@ -88,15 +89,21 @@ impl Column {
     /// of interest and measures.
     pub(super) fn told(columns: &[Self]) -> Vec<Self> {
         let columns = columns.iter().filter(|column| {
-            let of_body = matches!(column.quantity, Quantity::Body(..));
-            column.quantity == column.quantity.position() && !of_body
+            let of_body = matches!(column.signal, Signal::Body(..));
+            column.order == Order::Position && !of_body
         });
         columns.cloned().collect()
     }
 
     /// Returns the current value \[SI\].
     pub(super) fn read(&self, motion: &Motion) -> f64 {
-        (self.quantity).read(&motion.solver, &motion.rates, &motion.driver_rates)
+        let Motion {
+            solver,
+            rates,
+            driver_rates,
+            ..
+        } = motion;
+        self.order.of(self.signal.jet(solver, rates, driver_rates))
     }
 }
 

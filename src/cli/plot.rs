@@ -9,7 +9,7 @@ use super::motion::Motion;
 use super::picture::Format;
 use super::recorder::Recorder;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
-use crate::fmi::{Order, Quantity};
+use crate::fmi::{Order, Signal};
 use crate::mechanism::{BodyId, Mechanism, Unit};
 
 /// Largest number of bodies whose lines can be told apart.
@@ -46,41 +46,40 @@ impl Plot {
     /// Removes the coordinates of bodies that stay constant, and all but the first few of the
     /// bodies that move. Returns how many it keeps, and how many move, if these are more.
     fn leave_out(&mut self) -> Option<[usize; 2]> {
-        let mut moving: Vec<Quantity> = Vec::new();
+        let mut moving: Vec<Signal> = Vec::new();
         let mut bodies: Vec<BodyId> = Vec::new();
         for (column, values) in self.columns.iter().zip(&self.values) {
-            if let Quantity::Body(body, _, Order::Position) = column.quantity
+            if let (Signal::Body(body, _), Order::Position) = (column.signal, column.order)
                 && varies(values)
             {
-                moving.push(column.quantity);
+                moving.push(column.signal);
                 if !bodies.contains(&body) {
                     bodies.push(body);
                 }
             }
         }
         let shown = &bodies[..bodies.len().min(MOST_BODIES)];
-        let is_kept = |quantity: &Quantity| match quantity {
-            Quantity::Body(body, ..) if !bodies.is_empty() => {
-                shown.contains(body) && moving.contains(&quantity.position())
+        let is_kept = |signal: &Signal| match signal {
+            Signal::Body(body, _) if !bodies.is_empty() => {
+                shown.contains(body) && moving.contains(signal)
             }
             _ => true,
         };
         let columns = std::mem::take(&mut self.columns).into_iter();
         let all = columns.zip(std::mem::take(&mut self.values));
-        let kept = all.filter(|(column, _)| is_kept(&column.quantity));
+        let kept = all.filter(|(column, _)| is_kept(&column.signal));
         (self.columns, self.values) = kept.unzip();
         (shown.len() < bodies.len()).then_some([shown.len(), bodies.len()])
     }
 
     /// Returns the chart: one panel per unit, positions first; angles in degrees.
     fn chart(self, mechanism: &Mechanism) -> Chart {
-        let mut sources: Vec<Quantity> = Vec::new();
+        let mut sources: Vec<Signal> = Vec::new();
         let mut panels: Vec<(Unit, Panel)> = Vec::new();
         for (column, mut values) in self.columns.into_iter().zip(self.values) {
-            let source = column.quantity.position();
-            let look = sources.iter().position(|known| *known == source);
+            let look = sources.iter().position(|known| *known == column.signal);
             let look = look.unwrap_or_else(|| {
-                sources.push(source);
+                sources.push(column.signal);
                 sources.len() - 1
             });
             if let Some(display) = column.unit.display {

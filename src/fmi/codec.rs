@@ -1,23 +1,23 @@
 //! Values as bytes and back.
 //!
-//! A value says once which fields it has and in which order, by walking a [`Codec`] through them:
-//! one that writes takes each field as it is, one that reads replaces it. So what is written and
-//! what is read cannot differ. All numbers are little-endian.
+//! A value visits its fields with a [`Codec`] in one function: a writing codec copies each field,
+//! a reading codec replaces it. The written and the read layout therefore cannot differ. All
+//! numbers are little-endian.
 
-/// What a walk fails with where a field cannot be read.
+/// The bytes end early, or do not encode a permitted value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unreadable;
 
-/// Takes bytes away or brings them.
+/// Writes fields to bytes, or reads them from bytes.
 pub trait Codec {
-    /// Writes `bytes`, or ignores them and reads as many.
+    /// Writes `bytes`, or reads as many instead.
     ///
     /// # Errors
     ///
-    /// As all that follow: there is nothing to read, or nothing that could be such a value.
+    /// [`Unreadable`], like all methods below.
     fn bytes<const N: usize>(&mut self, bytes: [u8; N]) -> Result<[u8; N], Unreadable>;
 
-    /// A number that has to be finite.
+    /// Visits a number that must be finite.
     fn finite(&mut self, value: &mut f64) -> Result<(), Unreadable> {
         self.real(value)?;
         if value.is_finite() {
@@ -27,80 +27,80 @@ pub trait Codec {
         }
     }
 
-    /// Any number.
+    /// Visits any number.
     fn real(&mut self, value: &mut f64) -> Result<(), Unreadable> {
         *value = f64::from_le_bytes(self.bytes(value.to_le_bytes())?);
         Ok(())
     }
 
-    /// A whole number.
+    /// Visits a whole number.
     fn signed(&mut self, value: &mut i32) -> Result<(), Unreadable> {
         *value = i32::from_le_bytes(self.bytes(value.to_le_bytes())?);
         Ok(())
     }
 
-    /// A number of things.
+    /// Visits a count.
     fn count(&mut self, value: &mut u32) -> Result<(), Unreadable> {
         *value = u32::from_le_bytes(self.bytes(value.to_le_bytes())?);
         Ok(())
     }
 
-    /// An index or a length.
-    fn place(&mut self, value: &mut usize) -> Result<(), Unreadable> {
+    /// Visits an index or a length.
+    fn index(&mut self, value: &mut usize) -> Result<(), Unreadable> {
         let bytes = self.bytes((*value as u64).to_le_bytes())?;
         *value = usize::try_from(u64::from_le_bytes(bytes)).map_err(|_| Unreadable)?;
         Ok(())
     }
 
-    /// The length of a list of at most `most` items, which gets that length; what is added is
-    /// `room`.
+    /// Visits the length of a list, which may have up to `most` items; a reading codec resizes
+    /// the list and adds items made by `item`.
     fn resize<T>(
         &mut self,
         list: &mut Vec<T>,
         most: usize,
-        room: impl FnMut() -> T,
+        item: impl FnMut() -> T,
     ) -> Result<(), Unreadable> {
         let mut length = list.len();
-        self.place(&mut length)?;
+        self.index(&mut length)?;
         if length > most {
             return Err(Unreadable);
         }
-        list.resize_with(length, room);
+        list.resize_with(length, item);
         Ok(())
     }
 
-    /// Yes or no.
+    /// Visits a Boolean.
     fn flag(&mut self, value: &mut bool) -> Result<(), Unreadable> {
         self.one_of(value, &[false, true])
     }
 
-    /// One of a few values, by its place among `all`.
+    /// Visits one of a few values by its index in `all`.
     fn one_of<T: Copy + PartialEq>(&mut self, value: &mut T, all: &[T]) -> Result<(), Unreadable> {
-        let place = all.iter().position(|item| item == value);
-        let place = place.and_then(|place| u8::try_from(place).ok());
-        let [place] = self.bytes([place.ok_or(Unreadable)?])?;
-        *value = *all.get(usize::from(place)).ok_or(Unreadable)?;
+        let index = all.iter().position(|item| item == value);
+        let index = index.and_then(|index| u8::try_from(index).ok());
+        let [index] = self.bytes([index.ok_or(Unreadable)?])?;
+        *value = *all.get(usize::from(index)).ok_or(Unreadable)?;
         Ok(())
     }
 
-    /// A value that may be missing; `room` is any value of its type. It takes as many bytes
-    /// either way.
+    /// Visits a value that may be missing; `default` is any value of its type. Present or missing,
+    /// it takes the same number of bytes.
     fn option<T>(
         &mut self,
         value: &mut Option<T>,
-        room: T,
-        walk: impl FnOnce(&mut Self, &mut T) -> Result<(), Unreadable>,
+        default: T,
+        visit: impl FnOnce(&mut Self, &mut T) -> Result<(), Unreadable>,
     ) -> Result<(), Unreadable> {
-        let mut there = value.is_some();
-        self.flag(&mut there)?;
-        let mut content = value.take().unwrap_or(room);
-        walk(self, &mut content)?;
-        *value = there.then_some(content);
+        let mut present = value.is_some();
+        self.flag(&mut present)?;
+        let mut content = value.take().unwrap_or(default);
+        visit(self, &mut content)?;
+        *value = present.then_some(content);
         Ok(())
     }
 }
 
-/// Writes to the end of a vector; never fails.
+/// Appends to a vector; never fails.
 pub(super) struct Writer<'a>(pub(super) &'a mut Vec<u8>);
 
 impl Codec for Writer<'_> {
@@ -109,7 +109,7 @@ impl Codec for Writer<'_> {
         Ok(bytes)
     }
 
-    /// What is written is as it is; reading it back is where it is judged.
+    /// Writes any number: the reader checks it.
     fn finite(&mut self, value: &mut f64) -> Result<(), Unreadable> {
         self.real(value)
     }

@@ -1,38 +1,37 @@
-//! How calls end, and why they are refused.
+//! Statuses and errors of calls.
 
 use super::UriError;
 use super::log::Category;
 use super::state::{Call, Interface, State};
 use crate::mechanism::shown;
 
-/// How a call ended, in the order of `fmi2Status`.
+/// Status of a call, in the order of `fmi2Status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
-    /// All well.
+    /// Success.
     Ok = 0,
-    /// All well, and something to say.
+    /// Success with a warning. No call of biela returns it: several hosts take it for a failure.
     Warning = 1,
-    /// Not possible from here; the host may go on another way.
+    /// Not possible from here; the host may continue another way.
     Discard = 2,
     /// Refused or failed.
     Error = 3,
-    /// A defect: the instance is lost.
+    /// A defect of biela; the instance is unusable.
     Fatal = 4,
 }
 
-/// Why a model could not do what was asked of it.
+/// A model's request failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Failure {
-    /// It cannot be done from here; the host may go on another way. The model has given a
-    /// warning to the log that says why, so that hosts with default settings show it.
+    /// Not possible from here; the host may continue another way.
     #[error("{0}")]
     Discarded(String),
-    /// It cannot be done at all.
+    /// Not possible at all.
     #[error("{0}")]
     Failed(String),
 }
 
-/// Why a call was refused or failed.
+/// A call was refused or failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -41,7 +40,7 @@ pub enum Error {
     Interface {
         /// The call.
         call: Call,
-        /// That of the instance.
+        /// The instance's interface.
         interface: Interface,
     },
     /// The call is not allowed in the present state.
@@ -59,7 +58,7 @@ pub enum Error {
     ValueReference {
         /// The value reference.
         value_reference: u32,
-        /// The highest one there is.
+        /// The highest value reference.
         last: usize,
     },
     /// The variable has another type.
@@ -72,15 +71,15 @@ pub enum Error {
         /// The type of the call.
         expected: &'static str,
     },
-    /// The variable cannot be set, or not now.
+    /// The variable cannot be set, or not in this state.
     #[error("`{name}` cannot be set: it is {why}")]
     NotSettable {
         /// The variable.
         name: String,
-        /// Why.
+        /// The reason, as a predicate.
         why: &'static str,
     },
-    /// NaN or infinity.
+    /// The value is NaN or infinite.
     #[error("`{name}` is {}: expected a finite number", shown(*.value))]
     NotFinite {
         /// The variable or argument.
@@ -88,7 +87,7 @@ pub enum Error {
         /// The value.
         value: f64,
     },
-    /// Outside `min` and `max`.
+    /// The value is outside `min` and `max`.
     #[error("`{name}` cannot be set to {}: expected {}", shown(*.value), range(*.min, *.max))]
     Range {
         /// The variable.
@@ -100,7 +99,7 @@ pub enum Error {
         /// Largest permitted value.
         max: Option<f64>,
     },
-    /// Not an item of the enumeration.
+    /// The value is no item of the enumeration.
     #[error("`{name}` cannot be set to {value}: expected 1 to {count}")]
     Item {
         /// The variable.
@@ -110,7 +109,7 @@ pub enum Error {
         /// The number of items.
         count: usize,
     },
-    /// An order of derivative that inputs do not have.
+    /// Inputs have derivatives of order 1 and 2 only.
     #[error("`{name}`: input derivatives of order {order} are not known; expected 1 or 2")]
     DerivativeOrder {
         /// The variable.
@@ -124,23 +123,17 @@ pub enum Error {
         /// The variable.
         name: String,
     },
-    /// An order of derivative that nothing has.
-    #[error("`{name}`: an output derivative cannot be of order {order}; expected 1 or more")]
+    /// Output derivatives have orders from 1 to `maxOutputDerivativeOrder`.
+    #[error("`{name}`: an output derivative cannot be of order {order}; expected 1 to {highest}")]
     OutputDerivativeOrder {
         /// The output.
         name: String,
         /// The order.
         order: i32,
+        /// The highest order.
+        highest: i32,
     },
-    /// A derivative that this output does not have.
-    #[error("`{name}` has no derivative of order {order}")]
-    NoOutputDerivative {
-        /// The output.
-        name: String,
-        /// The order.
-        order: i32,
-    },
-    /// A variable that directional derivatives are not taken of, or not by, or not now.
+    /// The variable is no unknown or known of directional derivatives in this state.
     #[error(
         "`{name}`: {role}, in initialization mode of calculated parameters and by parameters as \
          well"
@@ -148,129 +141,130 @@ pub enum Error {
     NoDerivative {
         /// The variable.
         name: String,
-        /// What there are derivatives of, or by what.
+        /// The permitted variables.
         role: &'static str,
     },
-    /// A kind of status that a status function does not tell.
-    #[error("status kind {kind} is not told by this function, or not while no step is pending")]
+    /// The status function does not know this kind.
+    #[error("this function has no status of kind {kind} while no step is pending")]
     StatusKind {
         /// The number of the kind.
         kind: i64,
     },
-    /// More continuous states or event indicators than there are.
-    #[error("{call} was called for {given} of them; there are none", call = call.name())]
+    /// The model has no continuous states and no event indicators.
+    #[error("{call} was called for {given} values; there are none", call = call.name())]
     Continuous {
         /// The call.
         call: Call,
-        /// How many it was called for.
+        /// The number of values.
         given: usize,
     },
-    /// A communication point, step size or stop time that makes no sense.
+    /// A communication point, step size, time or stop time is impossible.
     #[error("{message}")]
     Time {
-        /// What is wrong and what would be right.
+        /// The whole message.
         message: String,
     },
-    /// A name that is no log category.
+    /// The name is no log category.
     #[error("there is no log category `{name}`; expected {}", categories())]
     LogCategory {
         /// The name.
         name: String,
     },
-    /// The model failed, or discards what was asked.
+    /// The model failed or discards the call.
     #[error(transparent)]
     Model(#[from] Failure),
-    /// The resource location is no folder of this machine.
+    /// The resource location is no folder on this machine.
     #[error(transparent)]
     Uri(#[from] UriError),
-    /// Bytes or a state that are none of this FMU.
+    /// The bytes or the state do not belong to this FMU.
     #[error(transparent)]
     FmuState(#[from] StateError),
-    /// The resources are not those that the model description was made from.
+    /// The resources do not belong to the model description.
     #[error(
-        "the GUID `{given}` is not that of the model in the FMU's resources, `{actual}`: the \
+        "the GUID `{given}` is not the GUID `{actual}` of the model in the FMU's resources: the \
          model description and the resources do not belong together"
     )]
     Guid {
-        /// What the host gave.
+        /// GUID from the host.
         given: String,
-        /// That of the model.
+        /// GUID of the model.
         actual: String,
     },
 }
 
 impl Error {
-    /// The status that a call returns with this error.
+    /// Returns the status of a call with this error.
     #[must_use]
     pub fn status(&self) -> Status {
         match self {
             Self::Model(Failure::Discarded(_))
-            | Self::NoOutputDerivative { .. }
+            | Self::Range { .. }
+            | Self::Item { .. }
             | Self::StatusKind { .. } => Status::Discard,
             _ => Status::Error,
         }
     }
 }
 
-/// Why bytes are no FMU state of this FMU, or a state none of this instance.
+/// Bytes are no state of this FMU, or a state does not fit this instance.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StateError {
-    /// They do not begin like one.
+    /// The bytes do not start like a serialized state.
     #[error("these {length} bytes are no serialized FMU state of biela")]
     Foreign {
-        /// How many there are.
+        /// The number of bytes.
         length: usize,
     },
-    /// Another biela wrote them.
+    /// Another version of biela wrote the bytes.
     #[error("the serialized FMU state has version {given}; this FMU reads version {expected}")]
     Version {
-        /// The version of the bytes.
+        /// Version of the bytes.
         given: u32,
-        /// The one that can be read.
+        /// Version that this FMU reads.
         expected: u32,
     },
-    /// Too few or too many.
+    /// Bytes are missing or were appended.
     #[error(
         "the serialized FMU state was {announced} bytes long when it was written and is {given} now"
     )]
     Length {
-        /// As the bytes say.
+        /// Length that the bytes announce.
         announced: u64,
-        /// As they are.
+        /// Actual length.
         given: usize,
     },
-    /// They are not as they were written.
+    /// The bytes were altered.
     #[error("the serialized FMU state was altered: its checksum does not fit")]
     Checksum,
-    /// They belong to another model.
-    #[error("the FMU state is of the FMU with GUID `{given}`, not of this one, `{expected}`")]
+    /// The state belongs to another model.
+    #[error("the FMU state belongs to the FMU with GUID `{given}`; this FMU has `{expected}`")]
     Guid {
-        /// The GUID in the state.
+        /// GUID in the state.
         given: String,
-        /// That of this FMU.
+        /// GUID of this FMU.
         expected: String,
     },
-    /// It belongs to the other interface.
-    #[error("the FMU state is of an instance for {given}, and this one is for {expected}")]
+    /// The state belongs to the other interface.
+    #[error("the FMU state belongs to an instance for {given}; this one is for {expected}")]
     Interface {
-        /// That of the state.
+        /// Interface of the state.
         given: Interface,
-        /// That of the instance.
+        /// Interface of the instance.
         expected: Interface,
     },
-    /// Their checksum fits, but they describe no state that an instance could be in.
-    #[error("the serialized FMU state is none that an instance could be in: {what}")]
+    /// The checksum is right, but no instance can be in this state.
+    #[error("no instance can be in the serialized FMU state: {why}")]
     Impossible {
-        /// What is wrong.
-        what: String,
+        /// The reason.
+        why: String,
     },
-    /// There is not the room that the state takes.
+    /// The host's array has another size than the state.
     #[error("the serialized FMU state takes {needed} bytes, and there is room for {given}")]
     Room {
-        /// The size of the state.
+        /// Size of the state.
         needed: usize,
-        /// The room there is.
+        /// Size of the array.
         given: usize,
     },
 }
@@ -295,7 +289,7 @@ fn range(min: Option<f64>, max: Option<f64>) -> String {
     }
 }
 
-/// Refuses what a Real with these limits cannot be.
+/// Checks a value of a Real with these limits.
 pub(crate) fn check_limits(
     name: &str,
     value: f64,
@@ -313,7 +307,7 @@ pub(crate) fn check_limits(
     Ok(())
 }
 
-/// Refuses NaN and infinity.
+/// Checks that a value is finite.
 pub(super) fn check_finite(name: &str, value: f64) -> Result<(), Error> {
     if value.is_finite() {
         Ok(())

@@ -1,4 +1,4 @@
-//! Messages to the host, by category.
+//! Messages to the host by category.
 
 use super::Status;
 
@@ -7,17 +7,17 @@ use super::Status;
 pub enum Category {
     /// Every message.
     All,
-    /// Messages that accompany `fmi2Warning`.
+    /// Advice, and reasons of discarded calls.
     Warning,
-    /// Messages that accompany `fmi2Discard`.
+    /// Messages of a call that returns `fmi2Discard`.
     Discard,
-    /// Messages that accompany `fmi2Error`.
+    /// Messages of a call that returns `fmi2Error`.
     Error,
-    /// Messages that accompany `fmi2Fatal`.
+    /// Messages of a call that returns `fmi2Fatal`.
     Fatal,
-    /// What happens: initialized, reset, terminated, FMU state set.
+    /// Initialization, reset, termination, FMU states, change points.
     Events,
-    /// What the solver did in each step.
+    /// Iterations and sub-steps of each step.
     Solver,
 }
 
@@ -25,21 +25,18 @@ impl Category {
     /// All categories with their descriptions, in the order of the model description.
     pub const ALL: [(Self, &'static str); 7] = [
         (Self::All, "every message"),
-        (Self::Warning, "what calls for attention; always logged"),
-        (Self::Discard, "steps that could not be taken"),
-        (
-            Self::Error,
-            "calls that were refused or failed; always logged",
-        ),
+        (Self::Warning, "advice, and reasons of discarded calls"),
+        (Self::Discard, "discarded calls"),
+        (Self::Error, "refused and failed calls; always logged"),
         (Self::Fatal, "defects of biela; always logged"),
         (
             Self::Events,
-            "initialization, reset, termination and FMU states set",
+            "initialization, reset, termination, FMU states, change points, sources of rates",
         ),
         (Self::Solver, "iterations and sub-steps of each step"),
     ];
 
-    /// Its name in the model description and in the logger callback.
+    /// Returns the name in the model description and in the logger callback.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -49,7 +46,7 @@ impl Category {
             Self::Error => "logStatusError",
             Self::Fatal => "logStatusFatal",
             Self::Events => "logEvents",
-            Self::Solver => "logSolver",
+            Self::Solver => "logNonlinearSystems",
         }
     }
 
@@ -58,12 +55,12 @@ impl Category {
         all.find(|category| category.name() == name)
     }
 
-    /// Whether messages go to the host whatever its settings.
+    /// Returns whether the host gets messages of this category with any settings.
     fn always(self) -> bool {
-        matches!(self, Self::Warning | Self::Error | Self::Fatal)
+        matches!(self, Self::Error | Self::Fatal)
     }
 
-    /// The categories that it switches.
+    /// Returns the bits of the categories that it switches.
     fn bits(self) -> u8 {
         match self {
             Self::All => u8::MAX,
@@ -72,7 +69,7 @@ impl Category {
     }
 }
 
-/// Where messages end up: the host's logger callback.
+/// Receiver of messages: the host's logger callback.
 pub trait Sink {
     /// Takes one message.
     fn write(&self, status: Status, category: Category, message: &str);
@@ -98,24 +95,37 @@ impl Logger {
         Self { sink, enabled }
     }
 
-    /// Whether a message of this category would go out: lets callers skip making one.
+    /// Returns whether the host gets messages of this category. Callers ask before they format one.
     #[must_use]
     pub fn wants(&self, category: Category) -> bool {
         category.always() || self.enabled & category.bits() != 0
     }
 
-    /// Gives a message to the host, if it wants it.
+    /// Sends advice to the host if the category of warnings is on. Its status is `fmi2OK`: several
+    /// hosts end a simulation when a call returns `fmi2Warning`, so that no call does.
+    pub fn advise(&self, message: impl FnOnce() -> String) {
+        if self.wants(Category::Warning) {
+            self.sink.write(Status::Ok, Category::Warning, &message());
+        }
+    }
+
+    /// Sends the reason of a discarded call to the host, with any settings.
+    pub(super) fn warn_of_discard(&self, message: &str) {
+        self.sink.write(Status::Warning, Category::Warning, message);
+    }
+
+    /// Sends a message to the host if the category is on.
     pub fn write(&self, status: Status, category: Category, message: &str) {
         if self.wants(category) {
             self.sink.write(status, category, message);
         }
     }
 
-    /// Switches categories on or off; none named means all.
+    /// Switches the named categories on or off; an empty list switches all.
     ///
     /// # Errors
     ///
-    /// The first name that is no category; nothing is changed then.
+    /// The first name that is no category; all switches stay.
     pub(super) fn switch<'a>(&mut self, on: bool, categories: &[&'a str]) -> Result<(), &'a str> {
         let mut bits = 0;
         for name in categories {
@@ -147,13 +157,15 @@ mod tests {
     fn one_category_goes_off_while_the_others_stay_on() {
         let mut logger = Logger::new(Box::new(Nowhere), true);
         assert!(logger.wants(Category::Solver) && logger.wants(Category::Events));
-        logger.switch(false, &["logSolver"]).unwrap();
+        logger.switch(false, &["logNonlinearSystems"]).unwrap();
         assert!(!logger.wants(Category::Solver) && logger.wants(Category::Events));
         logger.switch(false, &["logAll"]).unwrap();
-        assert!(!logger.wants(Category::Events) && logger.wants(Category::Warning));
+        assert!(!logger.wants(Category::Events) && !logger.wants(Category::Warning));
+        assert!(logger.wants(Category::Error) && logger.wants(Category::Fatal));
         logger.switch(true, &["logEvents"]).unwrap();
         assert!(!logger.wants(Category::Solver) && logger.wants(Category::Events));
-        assert_eq!(logger.switch(true, &["logSolver", "logX"]), Err("logX"));
+        let switched = logger.switch(true, &["logNonlinearSystems", "logX"]);
+        assert_eq!(switched, Err("logX"));
         assert!(!logger.wants(Category::Solver));
     }
 }

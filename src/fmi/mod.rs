@@ -1,26 +1,26 @@
-//! FMI 2.0: models as FMUs, for co-simulation and for model exchange.
+//! FMI 2.0: a mechanism as an FMU, for co-simulation and for model exchange.
 //!
-//! | part | knows | |
-//! |---|---|---|
-//! | `abi` | C | the functions of `fmi2Functions.h`; pointers in, status out |
-//! | [`Instance`] | the standard | the state machine, what may be set when, log, FMU states |
-//! | [`Model`] | | what an instance asks of a model |
-//! | [`MechanismModel`] | mechanisms | a mechanism and its solver as a model |
-//! | [`ModelDescription`], [`write_fmu`] | the archive | XML and packaging |
+//! | part | subject |
+//! |---|---|
+//! | `abi` | the functions of `fmi2Functions.h`: pointers in, status out |
+//! | [`Instance`] | the standard: state machine, permitted values, log, FMU states |
+//! | [`Model`] | the interface between an instance and a model |
+//! | [`MechanismModel`] | a mechanism and its solver as a model |
+//! | [`ModelDescription`], [`write_fmu`] | `modelDescription.xml` and the archive |
 //!
-//! All but [`MechanismModel`] and what belongs to it know nothing of mechanisms. An [`Instance`]
-//! is safe Rust; every call of the C interface has its twin there.
+//! Only `mechanism_model` knows mechanisms. Only `abi` knows C: an [`Instance`] is safe Rust and
+//! has a method for every function of the C interface.
 //!
-//! The same library serves every mechanism. Exporting writes the mechanism's file and the model
-//! description made from its [table of variables](variables()) into an archive beside this
-//! library; instantiating reads the mechanism back.
+//! One library serves all mechanisms. The export packs it together with the mechanism's file and
+//! the model description, which comes from the [table of variables](variables()). The FMU reads
+//! the mechanism when the host instantiates it.
 
 mod abi;
 mod codec;
 pub(crate) mod error;
 mod instance;
 mod log;
-mod mechanism;
+mod mechanism_model;
 mod model;
 mod model_description;
 mod package;
@@ -33,12 +33,12 @@ pub use codec::{Codec, Unreadable};
 pub use error::{Error, Failure, StateError, Status};
 pub use instance::{FmuState, Instance};
 pub use log::{Category, Logger, Sink};
-pub use mechanism::{
-    MechanismModel, MechanismState, Order, Quantity, RESOURCE, TABLE_VERSION, describe, guid,
-    variables, write_fmu,
+pub use mechanism_model::{
+    MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal, TABLE_VERSION, describe,
+    guid, variables, write_fmu,
 };
-pub use model::Model;
-pub use model_description::{Capabilities, Experiment, ModelDescription, Unknown};
+pub use model::{Groups, Model};
+pub use model_description::{Capabilities, DependencyKind, Experiment, ModelDescription, Unknown};
 pub use package::{Document, PackageError, Platform, RuntimeLibrary, write as write_archive};
 pub use state::{Call, Interface, Phase, State};
 pub use uri::{UriError, resource_path};

@@ -1,11 +1,10 @@
-//! What a model brings to become an FMU.
+//! The interface between an FMU's instance and the model inside it.
 //!
-//! An [`Instance`](super::Instance) knows the standard: which call is allowed when, what a
-//! variable may be set to, what a host is told. A [`Model`] knows its equations and nothing of
-//! the standard's rules; it is asked only for what makes sense.
+//! An [`Instance`](super::Instance) knows the standard: the calls that each state allows, the
+//! values that a variable accepts, the messages that a host receives. A [`Model`] knows its
+//! equations and none of the standard's rules; it receives valid requests only.
 
 use std::fmt::Debug;
-use std::ops::Range;
 use std::path::Path;
 
 use super::codec::{Codec, Unreadable};
@@ -14,16 +13,15 @@ use super::log::Logger;
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 
-/// A model that an [`Instance`](super::Instance) makes an FMU of.
+/// A model that an [`Instance`](super::Instance) turns into an FMU.
 ///
-/// The model is at a time and has values in force: those last set. What it computes from them
-/// belongs to them, whatever was set and read in between. What it was at when last committed, it
-/// goes on from. The host's values arrive checked: of the right type, finite, within their limits
-/// and at a time when they may be set.
+/// A model has a time, values set by the host, and a committed point from which it goes on.
+/// Computed values depend on these three alone, not on what was set or read in between. Values
+/// arrive checked: of the right type, finite, within their limits, at a permitted time.
 ///
 /// ```
 /// use biela::fmi::{
-///     Causality, Codec, Failure, Instance, Interface, Kind, Logger, Model, Phase, Status,
+///     Causality, Codec, Failure, Groups, Instance, Interface, Kind, Logger, Model, Phase, Status,
 ///     Unreadable, Variability, Variable,
 /// };
 ///
@@ -37,7 +35,8 @@ use super::variable::Variable;
 /// #[derive(Clone, Debug, Default, PartialEq)]
 /// struct State {
 ///     time: f64,
-///     u: f64,
+///     /// u and y, by value reference.
+///     reals: [f64; 2],
 /// }
 ///
 /// impl Model for Double {
@@ -52,6 +51,7 @@ use super::variable::Variable;
 ///             causality,
 ///             variability: Variability::Continuous,
 ///             kind: Kind::real(None, start),
+///             derivative_of: None,
 ///         };
 ///         Ok(Self {
 ///             variables: vec![
@@ -81,13 +81,17 @@ use super::variable::Variable;
 ///         self.state = State::default();
 ///     }
 ///     fn set_reals(&mut self, values: impl Iterator<Item = (char, f64)>) {
-///         values.for_each(|(_, value)| self.state.u = value);
+///         values.for_each(|(_, value)| self.state.reals[0] = value);
 ///     }
-///     fn real(&mut self, quantity: char) -> f64 {
-///         if quantity == 'u' { self.state.u } else { 2.0 * self.state.u }
+///     fn groups(&self, quantity: char) -> Groups {
+///         Groups::from(quantity == 'y')
 ///     }
-///     fn make_ready(&mut self, _: char, _: Phase, _: &Logger) -> Result<(), Failure> {
+///     fn refresh(&mut self, _: Groups, _: Phase, _: &Logger) -> Result<(), Failure> {
+///         self.state.reals[1] = 2.0 * self.state.reals[0];
 ///         Ok(())
+///     }
+///     fn reals(&self) -> &[f64] {
+///         &self.state.reals
 ///     }
 ///     fn commit(&mut self, _: Phase, _: &Logger) -> Result<(), Failure> {
 ///         Ok(())
@@ -102,9 +106,9 @@ use super::variable::Variable;
 ///     fn restore(&mut self, state: &State) {
 ///         self.state = state.clone();
 ///     }
-///     fn walk(state: &mut State, codec: &mut impl Codec) -> Result<(), Unreadable> {
+///     fn visit(state: &mut State, codec: &mut impl Codec) -> Result<(), Unreadable> {
 ///         codec.finite(&mut state.time)?;
-///         codec.finite(&mut state.u)
+///         state.reals.iter_mut().try_for_each(|value| codec.finite(value))
 ///     }
 /// }
 ///
@@ -121,57 +125,55 @@ use super::variable::Variable;
 /// instance.set_real(&[0], &[21.0])?;
 /// instance.do_step(0.0, 0.1)?;
 /// assert_eq!(instance.reals(&[1])?.next(), Some(42.0));
-/// // The standard's rules are none of the model's business.
+/// // The instance keeps the standard's rules; the model does not know them.
 /// assert!(instance.set_real(&[1], &[0.0]).is_err());
 /// assert!(instance.do_step(0.0, 0.1).is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Model: Sized {
-    /// What a variable stands for.
+    /// The model's own name for a variable.
     type Quantity: Copy + Debug + PartialEq;
 
-    /// All that decides how the model goes on, time included.
+    /// Highest order of output derivatives.
+    const OUTPUT_DERIVATIVES: i32 = 0;
+
+    /// Everything that decides how the model goes on, time included.
     type State: Clone + Debug + PartialEq;
 
     /// Reads the model from the resources of an FMU.
     ///
     /// # Errors
     ///
-    /// Why there is none, for people.
+    /// The reason why the resources hold no such model.
     fn load(resources: &Path, interface: Interface) -> Result<Self, Failure>;
 
-    /// The GUID that its model description has to bear.
+    /// Returns the GUID that the model description must have.
     fn guid(&self) -> &str;
 
-    /// For which interface it was made.
+    /// Returns the interface that the model was loaded for.
     fn interface(&self) -> Interface;
 
-    /// The variables, in the order of their value references. Always the same.
+    /// Returns the variables in the order of their value references. The list never changes.
     fn variables(&self) -> &[Variable<Self::Quantity>];
 
-    /// Where in time it is \[s\]: after a step that was discarded, the last time that was
-    /// reached.
+    /// Returns the time \[s\]; after a discarded step the last time that was reached.
     fn time(&self) -> f64;
 
-    /// Goes to a time \[s\], as the host says it: the start, or any time in model exchange.
+    /// Sets the time \[s\]: the start time, or any time in model exchange.
     fn set_time(&mut self, time: f64);
 
-    /// Back to what it was when loaded.
+    /// Restores the model as it was loaded.
     fn reset(&mut self);
 
-    /// Takes values of inputs and parameters.
+    /// Sets inputs and parameters of type Real.
     fn set_reals(&mut self, values: impl Iterator<Item = (Self::Quantity, f64)>);
 
-    /// Takes values of whole numbers and of enumerations, whose first item is 1.
+    /// Sets Integers and Enumerations; the first item of an enumeration is 1.
     fn set_integers(&mut self, values: impl Iterator<Item = (Self::Quantity, i32)>) {
-        debug_assert_eq!(
-            values.count(),
-            0,
-            "there are none unless this is overridden"
-        );
+        debug_assert_eq!(values.count(), 0, "the model has none by default");
     }
 
-    /// Takes the derivatives of order 1 or 2 that inputs have during the next step.
+    /// Sets derivatives of inputs, of order 1 or 2, for the next step.
     fn set_input_derivatives(
         &mut self,
         derivatives: impl Iterator<Item = (Self::Quantity, usize, f64)>,
@@ -179,63 +181,35 @@ pub trait Model: Sized {
         derivatives.for_each(drop);
     }
 
-    /// The value references of Reals whose values the model keeps side by side, in this order.
-    /// Always the same; hosts that read some in a row get them from [there](Self::row_values) much
-    /// faster than one by one.
-    fn row(&self) -> Range<u32> {
-        0..0
-    }
+    /// Returns the groups that the value of a Real belongs to, 0 for a value that is always up to
+    /// date. The answer never changes.
+    fn groups(&self, quantity: Self::Quantity) -> Groups;
 
-    /// The values of these places of the [row](Self::row), of which there is one at least.
+    /// Brings the [values](Self::reals) of these groups up to date.
     ///
     /// # Errors
     ///
-    /// They have no values for the values set.
-    fn row_values(
-        &mut self,
-        places: Range<usize>,
-        phase: Phase,
-        log: &Logger,
-    ) -> Result<&[f64], Failure> {
-        let _ = (phase, log);
-        unreachable!("places {places:?} are none unless this is overridden")
+    /// The values do not exist for what the host has set.
+    fn refresh(&mut self, groups: Groups, phase: Phase, log: &Logger) -> Result<(), Failure>;
+
+    /// Returns the values of all variables by value reference. Values of groups that were not
+    /// [refreshed](Self::refresh) since the last change, and of variables that are no Reals, have
+    /// no meaning.
+    fn reals(&self) -> &[f64];
+
+    /// Returns the value of an Integer or an Enumeration. Such values change at communication
+    /// points and events only, so that they are always up to date.
+    fn integer(&self, quantity: Self::Quantity) -> i32 {
+        unreachable!("{quantity:?} is a Real unless a model overrides this")
     }
 
-    /// Computes what the value of a quantity is read from.
+    /// Returns the directional derivative of each unknown: the sum over `knowns` of
+    /// ∂unknown/∂known times the known's change. Unknowns are outputs and, in initialization,
+    /// calculated parameters; knowns are inputs and, in initialization, parameters.
     ///
     /// # Errors
     ///
-    /// It has no value for the values set.
-    fn make_ready(
-        &mut self,
-        quantity: Self::Quantity,
-        phase: Phase,
-        log: &Logger,
-    ) -> Result<(), Failure>;
-
-    /// The value of a Real that is [ready](Self::make_ready).
-    fn real(&mut self, quantity: Self::Quantity) -> f64;
-
-    /// The value of a whole number or an enumeration that is [ready](Self::make_ready).
-    fn integer(&mut self, quantity: Self::Quantity) -> i32 {
-        unreachable!("{quantity:?} is no whole number unless this is overridden")
-    }
-
-    /// The quantity that is the derivative of another one with respect to time, of an order from
-    /// 1 on; `None` where there is none.
-    fn time_derivative(&self, quantity: Self::Quantity, order: u32) -> Option<Self::Quantity> {
-        let _ = (quantity, order);
-        None
-    }
-
-    /// How outputs, and in initialization calculated parameters, change along a direction in the
-    /// space of inputs, and in initialization parameters: the sum over `knowns` of
-    /// ∂unknown/∂known times the known's own change, for each of the unknowns, all of which are
-    /// [ready](Self::make_ready).
-    ///
-    /// # Errors
-    ///
-    /// There is no derivative.
+    /// The derivative does not exist.
     fn directional_derivatives(
         &mut self,
         unknowns: &[Self::Quantity],
@@ -248,46 +222,53 @@ pub trait Model: Sized {
         Err(Failure::Failed(why.to_owned()))
     }
 
-    /// Takes what belongs to the values set as the point to go on from: at the end of
-    /// initialization, and in model exchange when the host has accepted a step of its own.
+    /// Makes the point of the values set the committed one: at the end of initialization, and in
+    /// model exchange when the host has accepted a step of its own.
     ///
     /// # Errors
     ///
-    /// Nothing belongs to them; the point stays what it was.
+    /// No such point exists; the committed one stays.
     fn commit(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure>;
 
-    /// Takes a step of `size` \[s\] from the point last committed, and commits its end, which is
-    /// called `end` \[s\].
+    /// Brings discrete values up to date: at the end of initialization, and in model exchange at an
+    /// event.
+    fn update_discrete(&mut self) {}
+
+    /// Takes a step of `size` \[s\] from the committed point, and commits its end, at time `end`
+    /// \[s\].
     ///
     /// # Errors
     ///
-    /// [`Failure::Discarded`] where it cannot come to the end; it has then committed where it
-    /// came to. [`Failure::Failed`] if it has stayed where it was.
+    /// [`Failure::Discarded`] if the model cannot reach the end; it has then committed the point
+    /// that it reached. [`Failure::Failed`] if it has not moved.
     fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure>;
 
-    /// A copy of its state. A model that goes on from there, this one or another one with the
-    /// same GUID, does so with the same bits.
+    /// Returns a copy of the state. This model, or another one with the same GUID, goes on from it
+    /// with the same bits.
     fn save(&mut self) -> Self::State;
 
-    /// Goes back to a state that was saved, or that [`check`](Self::check) has passed.
+    /// Restores a saved state, or one that [`check`](Self::check) has accepted.
     fn restore(&mut self, state: &Self::State);
 
-    /// Takes a codec through a state: all of it, always in the same order. Reading starts from the
-    /// present state of a model with the same GUID.
+    /// Visits every field of a state with a codec, always in the same order. Reading starts from
+    /// the present state of a model with the same GUID.
     ///
     /// # Errors
     ///
-    /// A value that a codec could not read.
-    fn walk(state: &mut Self::State, codec: &mut impl Codec) -> Result<(), Unreadable>;
+    /// The codec cannot read a field.
+    fn visit(state: &mut Self::State, codec: &mut impl Codec) -> Result<(), Unreadable>;
 
-    /// Makes sure that a state that was read is one that can be [restored](Self::restore).
-    /// Leaves the model in any state.
+    /// Checks that a state which was read can be [restored](Self::restore). May leave the model
+    /// in any state.
     ///
     /// # Errors
     ///
-    /// Why it is not.
+    /// The reason why it cannot.
     fn check(&mut self, state: &mut Self::State) -> Result<(), String> {
         let _ = state;
         Ok(())
     }
 }
+
+/// A set of groups of Reals, one bit per group. The values of a group are computed together.
+pub type Groups = u16;

@@ -1,6 +1,6 @@
 //! `modelDescription.xml` (FMI 2.0, 2.2, 3.3.1 and 4.3.1).
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use quick_xml::events::{BytesDecl, Event};
@@ -12,41 +12,41 @@ use crate::unit::Unit;
 
 type Xml = Writer<Vec<u8>>;
 
-/// What `modelDescription.xml` says.
+/// Content of `modelDescription.xml`.
 #[derive(Clone, Debug)]
 pub struct ModelDescription<'a, Q> {
     /// FMI modelName and modelIdentifier: a C identifier.
     pub name: &'a str,
-    /// One line for people, empty if there is none.
+    /// One line for people; may be empty.
     pub description: &'a str,
-    /// Who wrote the model.
+    /// Author of the model.
     pub author: Option<&'a str>,
-    /// The model's version.
+    /// Version of the model.
     pub version: Option<&'a str>,
-    /// Whose the model is.
+    /// Copyright notice of the model.
     pub copyright: Option<&'a str>,
-    /// On which terms it may be used.
+    /// License of the model.
     pub license: Option<&'a str>,
-    /// What ties it to the resources.
+    /// GUID, which the resources must have too.
     pub guid: String,
-    /// The default experiment.
+    /// Default experiment.
     pub experiment: Experiment,
-    /// What the model can do.
+    /// Capabilities of the model.
     pub capabilities: Capabilities,
-    /// In the order of their value references.
+    /// Variables in the order of their value references.
     pub variables: Vec<Variable<Q>>,
-    /// Every output.
+    /// All outputs.
     pub outputs: Vec<Unknown>,
-    /// What is computed in initialization: every output and calculated parameter.
+    /// All outputs and calculated parameters.
     pub initial_unknowns: Vec<Unknown>,
 }
 
 /// The default experiment \[s, s, s, 1\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Experiment {
-    /// Where it starts.
+    /// Start time.
     pub start: f64,
-    /// Where it ends.
+    /// Stop time.
     pub stop: f64,
     /// Communication step size.
     pub step: f64,
@@ -54,31 +54,50 @@ pub struct Experiment {
     pub tolerance: f64,
 }
 
-/// What a model can do beyond what every [`Model`](super::Model) does.
+/// Optional capabilities of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities {
-    /// Whether it makes use of input derivatives.
+    /// Whether input derivatives have an effect.
     pub interpolates_inputs: bool,
-    /// The highest order of output derivatives.
+    /// Highest order of output derivatives.
     pub output_derivatives: u32,
-    /// Whether it has directional derivatives.
+    /// Whether the model provides directional derivatives.
     pub directional_derivatives: bool,
 }
 
-/// A variable that is computed, and what it depends on; places are counted from 1.
+/// A computed variable and its dependencies, as indices counted from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unknown {
-    /// Its place among the variables.
+    /// Index of the variable.
     pub index: usize,
-    /// The places of those that it depends on.
-    pub dependencies: BTreeSet<usize>,
+    /// Indices of the variables that it depends on, and the kind of each dependency.
+    pub dependencies: BTreeMap<usize, DependencyKind>,
+}
+
+/// Kind of a dependency (FMI 2.0, 2.2.8).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DependencyKind {
+    /// Without a particular structure.
+    Dependent,
+    /// With a constant factor.
+    Constant,
+}
+
+impl DependencyKind {
+    /// Returns the kind's name in the model description.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Dependent => "dependent",
+            Self::Constant => "constant",
+        }
+    }
 }
 
 impl<Q> ModelDescription<'_, Q> {
-    /// The file.
+    /// Returns the file's content.
     ///
-    /// `generated` is the attribute `generationDateAndTime`, left out for `None`: the same model
-    /// then gives the same bytes.
+    /// `generated` is the attribute `generationDateAndTime`. Without it the same model gives the
+    /// same bytes.
     #[must_use]
     pub fn write(&self, generated: Option<&str>) -> Vec<u8> {
         let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
@@ -135,7 +154,7 @@ fn write_document<Q>(
     Ok(())
 }
 
-/// Attributes that are left out where they have no value.
+/// Attributes that an element has only if they have a value.
 trait WithOptional {
     fn with_optional(self, attributes: &[(&str, Option<&str>)]) -> Self;
 }
@@ -155,7 +174,7 @@ fn non_empty(text: &str) -> Option<&str> {
     Some(text).filter(|text| !text.is_empty())
 }
 
-/// A number so that reading it back gives the same bits.
+/// Formats a number so that reading it gives the same bits.
 fn number(value: f64) -> String {
     format!("{value:?}")
 }
@@ -212,8 +231,8 @@ fn real_unit<Q>(variable: &Variable<Q>) -> Option<Unit> {
     }
 }
 
-/// The units that variables use, in the order of their first use, each with the display units
-/// that variables use.
+/// Writes the units of the variables in the order of first use, each with the display units that
+/// variables use.
 fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
     let mut units: Vec<(Unit, Vec<_>)> = Vec::new();
     for unit in variables.iter().filter_map(real_unit) {
@@ -264,15 +283,16 @@ fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
     Ok(())
 }
 
-/// The simple type that variables with this unit and its usual display unit are declared with.
+/// Returns the simple type of variables with this unit.
 fn type_of(unit: Unit) -> Option<&'static str> {
+    // No variable has such a name (2.2.3): a name of two parts ends with a lower-case word.
     let types = [
-        (Unit::METRE, "Length"),
-        (Unit::METRE_PER_SECOND, "Velocity"),
-        (Unit::METRE_PER_SECOND_SQUARED, "Acceleration"),
-        (Unit::RADIAN, "Angle"),
-        (Unit::RADIAN_PER_SECOND, "AngularVelocity"),
-        (Unit::RADIAN_PER_SECOND_SQUARED, "AngularAcceleration"),
+        (Unit::METRE, "biela.Length"),
+        (Unit::METRE_PER_SECOND, "biela.Velocity"),
+        (Unit::METRE_PER_SECOND_SQUARED, "biela.Acceleration"),
+        (Unit::RADIAN, "biela.Angle"),
+        (Unit::RADIAN_PER_SECOND, "biela.AngularVelocity"),
+        (Unit::RADIAN_PER_SECOND_SQUARED, "biela.AngularAcceleration"),
     ];
     let mut types = types.into_iter();
     types
@@ -289,13 +309,14 @@ fn write_types<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
                     Kind::Real {
                         unit: Some(unit), ..
                     } => {
-                        // The type has the unit's usual display unit, a variable may have another.
+                        // A variable may have another display unit than its type.
                         let usual = Unit::by_name(unit.name).unwrap_or(*unit);
                         if let Some(name) = type_of(usual).filter(|name| written.insert(*name)) {
                             write_type(xml, name, |xml| {
                                 let display = usual.display.map(|display| display.name);
+                                let quantity = name.trim_start_matches("biela.");
                                 xml.create_element("Real")
-                                    .with_attributes([("quantity", name), ("unit", usual.name)])
+                                    .with_attributes([("quantity", quantity), ("unit", usual.name)])
                                     .with_optional(&[("displayUnit", display)])
                                     .write_empty()?;
                                 Ok(())
@@ -405,9 +426,12 @@ fn write_variable_type<Q>(xml: &mut Xml, variable: &Variable<Q>) -> io::Result<(
             start,
             min,
             max,
+            nominal,
         } => {
             let display = unit.and_then(|unit| unit.display);
-            let [min, max, start] = [min, max, start].map(|value| value.map(number));
+            let [min, max, nominal, start] =
+                [min, max, nominal, start].map(|value| value.map(number));
+            let derivative = variable.derivative_of.map(|of| (of + 1).to_string());
             xml.create_element("Real")
                 .with_optional(&[
                     ("declaredType", unit.and_then(type_of)),
@@ -415,7 +439,9 @@ fn write_variable_type<Q>(xml: &mut Xml, variable: &Variable<Q>) -> io::Result<(
                     ("displayUnit", display.map(|display| display.name)),
                     ("min", min.as_deref()),
                     ("max", max.as_deref()),
+                    ("nominal", nominal.as_deref()),
                     ("start", start.as_deref()),
+                    ("derivative", derivative.as_deref()),
                 ])
                 .write_empty()?;
         }
@@ -441,19 +467,23 @@ fn write_structure<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> i
 }
 
 fn write_unknowns(xml: &mut Xml, name: &str, unknowns: &[Unknown]) -> io::Result<()> {
-    // The schema has no empty lists.
+    // The schema forbids empty lists.
     if unknowns.is_empty() {
         return Ok(());
     }
     xml.create_element(name).write_inner_content(|xml| {
         for unknown in unknowns {
-            let dependencies = unknown.dependencies.iter();
-            let dependencies: Vec<_> = dependencies.map(usize::to_string).collect();
+            let indices = unknown.dependencies.keys().map(usize::to_string);
+            let kinds = unknown.dependencies.values().map(|kind| kind.name());
+            let indices = indices.collect::<Vec<_>>().join(" ");
+            let kinds = kinds.collect::<Vec<_>>().join(" ");
             xml.create_element("Unknown")
                 .with_attributes([
                     ("index", unknown.index.to_string().as_str()),
-                    ("dependencies", &dependencies.join(" ")),
+                    ("dependencies", &indices),
                 ])
+                // The schema forbids an empty list of kinds.
+                .with_optional(&[("dependenciesKind", non_empty(&kinds))])
                 .write_empty()?;
         }
         Ok(())

@@ -61,37 +61,37 @@ impl Platform {
 /// A runtime library: this crate built as a shared library.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RuntimeLibrary {
-    /// The platform it was built for.
+    /// Platform of the library.
     pub platform: Platform,
-    /// Its bytes.
+    /// Content of the file.
     pub content: Cow<'static, [u8]>,
 }
 
-/// An archive that could not be written.
+/// The archive could not be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PackageError {
-    /// The archive itself.
+    /// The archive cannot be written.
     #[error("cannot write the archive: {0}")]
     Archive(#[from] zip::result::ZipError),
-    /// Its content.
+    /// The archive's content cannot be written.
     #[error("cannot write the archive: {0}")]
     Write(#[from] std::io::Error),
 }
 
-/// A file for people that goes into the archive.
+/// A file in the archive that documents the FMU.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Document {
-    /// Where in the archive: `model.png`, `documentation/index.html`.
+    /// Path in the archive: `model.png`, `documentation/index.html`.
     pub path: String,
-    /// Its content.
+    /// Content of the file.
     pub content: Vec<u8>,
 }
 
-/// Writes an FMU: its model description, what documents it, the runtime libraries and its
-/// resources, each with its name in `resources/`.
+/// Writes an FMU: model description, documents, runtime libraries and resources, each resource
+/// with its name in `resources/`.
 ///
-/// The same input gives the same bytes: entries have a fixed order and a fixed time.
+/// The same input gives the same bytes: entries have a fixed order and a fixed date.
 ///
 /// # Errors
 ///

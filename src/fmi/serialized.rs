@@ -1,60 +1,61 @@
-//! The envelope of a serialized FMU state, by which foreign, truncated and altered bytes are
-//! told.
+//! The envelope of a serialized FMU state. It detects foreign, truncated and altered bytes.
 //!
-//! | bytes | |
+//! | bytes | content |
 //! |---|---|
-//! | 8 | what all begin with |
-//! | 4 | version of all that follows |
-//! | 8 | length of the whole |
+//! | 8 | signature |
+//! | 4 | version of the format |
+//! | 8 | total length |
 //! | 4 | length of the FMU's GUID |
-//! | … | that GUID |
+//! | … | the GUID |
 //! | … | the state |
-//! | 4 | CRC-32 of all before |
+//! | 4 | CRC-32 of all preceding bytes |
 
 use super::codec::{Reader, Unreadable, Writer};
 use super::error::StateError;
 
-/// Not text, so that a file of them is not taken for any.
-const BEGINNING: [u8; 8] = *b"\x8bbiela\x1a\n";
+/// First bytes of every serialized state. They are not valid UTF-8, so that no text file starts
+/// with them.
+const SIGNATURE: [u8; 8] = *b"\x8bbiela\x1a\n";
 
-/// Raised whenever states are written in another way.
-const VERSION: u32 = 2;
+/// Version of the format, raised with every change of it.
+const VERSION: u32 = 3;
 
 const CHECKSUM: usize = 4;
-const SHORTEST: usize = BEGINNING.len() + 4 + 8 + 4 + CHECKSUM;
+/// Length without GUID and state.
+const SHORTEST: usize = SIGNATURE.len() + 4 + 8 + 4 + CHECKSUM;
 
-/// Puts the envelope round what `walk` writes.
+/// Returns the bytes that `visit` writes, in their envelope.
 pub(super) fn write(
     guid: &str,
-    walk: impl FnOnce(&mut Writer<'_>) -> Result<(), Unreadable>,
+    visit: impl FnOnce(&mut Writer<'_>) -> Result<(), Unreadable>,
 ) -> Vec<u8> {
-    let mut bytes = BEGINNING.to_vec();
+    let mut bytes = SIGNATURE.to_vec();
     bytes.extend(VERSION.to_le_bytes());
     let length = bytes.len()..bytes.len() + 8;
     bytes.extend(0_u64.to_le_bytes());
     bytes.extend((guid.len() as u32).to_le_bytes());
     bytes.extend(guid.as_bytes());
-    walk(&mut Writer(&mut bytes)).expect("writing to memory does not fail");
+    visit(&mut Writer(&mut bytes)).expect("writing to memory does not fail");
     let whole = (bytes.len() + CHECKSUM) as u64;
     bytes[length].copy_from_slice(&whole.to_le_bytes());
     bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     bytes
 }
 
-/// Takes the envelope off, and has `walk` read all that is in it.
+/// Checks the envelope and lets `visit` read its content.
 ///
 /// # Errors
 ///
-/// The bytes are not as [`write()`] wrote them for this GUID.
+/// The bytes differ from what [`write()`] wrote for this GUID.
 pub(super) fn read(
     guid: &str,
     bytes: &[u8],
-    walk: impl FnOnce(&mut Reader<'_>) -> Result<(), Unreadable>,
+    visit: impl FnOnce(&mut Reader<'_>) -> Result<(), Unreadable>,
 ) -> Result<(), StateError> {
     let foreign = StateError::Foreign {
         length: bytes.len(),
     };
-    let Some(mut rest) = bytes.strip_prefix(&BEGINNING) else {
+    let Some(mut rest) = bytes.strip_prefix(&SIGNATURE) else {
         return Err(foreign);
     };
     let mut number = |size: usize| {
@@ -91,7 +92,7 @@ pub(super) fn read(
     let parts = guid_length.and_then(|length| content.split_at_checked(length));
     let Some((given, state)) = parts else {
         return Err(StateError::Impossible {
-            what: "its GUID is longer than itself".to_owned(),
+            why: "its GUID is longer than itself".to_owned(),
         });
     };
     if given != guid.as_bytes() {
@@ -101,13 +102,16 @@ pub(super) fn read(
         });
     }
     let mut reader = Reader(state);
-    match walk(&mut reader) {
+    match visit(&mut reader) {
         Ok(()) if reader.0.is_empty() => Ok(()),
         Ok(()) => Err(StateError::Impossible {
-            what: format!("{} bytes too many", reader.0.len()),
+            why: format!("it has {} bytes too many", reader.0.len()),
         }),
         Err(Unreadable) => Err(StateError::Impossible {
-            what: format!("a value {} bytes before its end", reader.0.len() + CHECKSUM),
+            why: format!(
+                "a value {} bytes before its end is impossible",
+                reader.0.len() + CHECKSUM
+            ),
         }),
     }
 }

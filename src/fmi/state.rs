@@ -1,18 +1,18 @@
-//! The states of an instance and the calls that each allows (FMI 2.0, 3.2.3 and 4.2.4).
+//! The states of an instance and the calls allowed in each (FMI 2.0, 3.2.3 and 4.2.4).
 
 use std::fmt;
 
-/// Which of the two interfaces of an FMU an instance was made for.
+/// One of the two interfaces of an FMU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interface {
-    /// The host asks for equations at any time; the model takes no steps of its own.
+    /// The host integrates and evaluates the model at any time.
     ModelExchange,
-    /// The model goes from one communication point to the next.
+    /// The model steps from one communication point to the next.
     CoSimulation,
 }
 
 impl Interface {
-    /// Both.
+    /// Both interfaces.
     pub const ALL: [Self; 2] = [Self::ModelExchange, Self::CoSimulation];
 }
 
@@ -32,23 +32,23 @@ pub enum State {
     Instantiated,
     /// Between entering and exiting initialization mode.
     InitializationMode,
-    /// Model exchange: discrete values may change, time stands still.
+    /// Model exchange: discrete values may change at a fixed time.
     EventMode,
     /// Model exchange: the host integrates.
     ContinuousTimeMode,
     /// Co-simulation: ready for the next step.
     StepComplete,
-    /// A step is being taken. Never entered: steps have ended when `fmi2DoStep` returns.
+    /// Co-simulation: a step is under way. Never entered: `fmi2DoStep` returns at its end.
     StepInProgress,
     /// Co-simulation: the last step was discarded.
     StepFailed,
-    /// A step was cancelled. Never entered, as there is none to be cancelled.
+    /// Co-simulation: the host has cancelled a step. Never entered, like `StepInProgress`.
     StepCanceled,
-    /// After terminating.
+    /// After `fmi2Terminate`.
     Terminated,
-    /// Initialization failed; only reading, going back and freeing are left.
+    /// Initialization failed; the host may read, reset, set an FMU state or free the instance.
     Error,
-    /// A defect was caught; nothing but freeing is left.
+    /// A defect was caught; the host may free the instance.
     Fatal,
 }
 
@@ -68,7 +68,7 @@ impl State {
         Self::Fatal,
     ];
 
-    /// What the state means to a model.
+    /// Returns the phase of the model in this state.
     pub(super) fn phase(self) -> Phase {
         match self {
             Self::Instantiated | Self::InitializationMode => Phase::Initialization,
@@ -78,14 +78,14 @@ impl State {
     }
 }
 
-/// What an instance's state means to its model.
+/// Phase of a model, derived from its instance's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Values are being set with which it will start.
+    /// The host sets start values.
     Initialization,
-    /// It goes on from what was last committed.
+    /// The model goes on from the committed point.
     Running,
-    /// Nothing can be set any more: values are those last committed.
+    /// The host can set nothing; values belong to the committed point.
     Halted,
 }
 
@@ -111,7 +111,7 @@ macro_rules! calls {
     ($(
         $name:ident: [$($me:ident)*] [$($cs:ident)*];
     )*) => {
-        /// A call of the C interface that the state decides about.
+        /// A function of the C interface that is allowed in some states only.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Call {
             $(
@@ -124,7 +124,7 @@ macro_rules! calls {
             /// All calls.
             pub const ALL: &'static [Self] = &[$(Self::$name),*];
 
-            /// The C function's name.
+            /// Returns the name of the C function.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self {
@@ -132,7 +132,7 @@ macro_rules! calls {
                 }
             }
 
-            /// The states in which the call is allowed; none if it belongs to the other interface.
+            /// Returns the states that allow the call; none if it belongs to the other interface.
             #[must_use]
             pub fn allowed_in(self, interface: Interface) -> &'static [State] {
                 match (self, interface) {
@@ -143,11 +143,11 @@ macro_rules! calls {
                 }
             }
 
-            /// Whether the call is allowed in a state.
+            /// Returns whether a state allows the call.
             #[must_use]
             #[inline]
             pub fn is_allowed_in(self, interface: Interface, state: State) -> bool {
-                // Each call asks: one bit a state is quicker than a list.
+                // Every call asks. One bit per state is quicker than a list.
                 let allowed: u16 = match (self, interface) {
                     $(
                         (Self::$name, Interface::ModelExchange) => 0 $(| 1 << State::$me as u16)*,
@@ -160,7 +160,7 @@ macro_rules! calls {
     };
 }
 
-// Where each call is allowed for model exchange, then for co-simulation.
+// The states that allow each call: in model exchange, then in co-simulation.
 calls! {
     SetDebugLogging:
         [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
@@ -268,7 +268,7 @@ calls! {
         [ContinuousTimeMode]
         [];
     GetDerivatives:
-        [EventMode ContinuousTimeMode Terminated Error]
+        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
     GetEventIndicators:
         [InitializationMode EventMode ContinuousTimeMode Terminated Error]
@@ -277,7 +277,7 @@ calls! {
         [InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
     GetNominalsOfContinuousStates:
-        [Instantiated EventMode ContinuousTimeMode Terminated Error]
+        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
     SetRealInputDerivatives:
         []
@@ -308,12 +308,34 @@ calls! {
         [StepComplete StepInProgress StepFailed Terminated];
 }
 
+impl Call {
+    /// Returns whether the call may end with `fmi2Discard` (FMI 2.0, 2.1.3).
+    #[must_use]
+    pub fn may_discard(self, interface: Interface) -> bool {
+        match self {
+            Self::SetReal | Self::SetInteger | Self::SetBoolean | Self::SetString => true,
+            Self::GetReal
+            | Self::SetContinuousStates
+            | Self::GetContinuousStates
+            | Self::GetDerivatives
+            | Self::GetEventIndicators => interface == Interface::ModelExchange,
+            Self::DoStep
+            | Self::GetStatus
+            | Self::GetRealStatus
+            | Self::GetIntegerStatus
+            | Self::GetBooleanStatus
+            | Self::GetStringStatus => interface == Interface::CoSimulation,
+            _ => false,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Call, Interface, State};
 
     #[test]
-    fn bits_and_lists_say_the_same() {
+    fn bits_and_lists_agree() {
         for &call in Call::ALL {
             for interface in Interface::ALL {
                 for state in State::ALL {

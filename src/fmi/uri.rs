@@ -1,4 +1,4 @@
-//! From `fmuResourceLocation` to a folder.
+//! Conversion of `fmuResourceLocation` to a folder.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use percent_encoding::percent_decode_str;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UriError {
-    /// Nothing was given.
+    /// The URI is empty.
     #[error("the resource location is empty; expected a URI such as `file:///path/to/resources`")]
     Empty,
     /// The URI has another scheme than `file`.
@@ -16,6 +16,14 @@ pub enum UriError {
     Scheme {
         /// The URI.
         uri: String,
+    },
+    /// The URI has a drive in place of a machine.
+    #[error("the resource location `{uri}` names the host `{drive}`; a drive follows `file:///`")]
+    Drive {
+        /// The URI.
+        uri: String,
+        /// The drive.
+        drive: String,
     },
     /// The URI names another machine.
     #[error("the resource location `{uri}` is on another host, `{host}`")]
@@ -25,7 +33,7 @@ pub enum UriError {
         /// The host in it.
         host: String,
     },
-    /// The percent-decoded path is not UTF-8 where paths are text.
+    /// The percent-decoded path is not UTF-8, on a system whose paths are text.
     #[error("the resource location `{uri}` does not decode to UTF-8")]
     Encoding {
         /// The URI.
@@ -33,10 +41,10 @@ pub enum UriError {
     },
 }
 
-/// The folder that a resource location names: `file:///x`, `file:/x` and `file://localhost/x`,
+/// Returns the folder of a resource location: `file:///x`, `file:/x` or `file://localhost/x`,
 /// percent-encoded, with or without a trailing slash (FMI 2.0, 2.1.5, and RFC 8089).
 ///
-/// Some hosts hand over a plain absolute path; that is taken as it is.
+/// Accepts a plain absolute path as well, which some hosts pass.
 ///
 /// # Errors
 ///
@@ -55,6 +63,12 @@ pub fn resource_path(uri: &str) -> Result<PathBuf, UriError> {
         None => rest,
         Some(after) => {
             let (host, path) = after.split_at(after.find('/').unwrap_or(after.len()));
+            if host.ends_with(':') {
+                return Err(UriError::Drive {
+                    uri: uri.to_owned(),
+                    drive: host.to_owned(),
+                });
+            }
             if !(host.is_empty() || host.eq_ignore_ascii_case("localhost")) {
                 return Err(UriError::Host {
                     uri: uri.to_owned(),
@@ -93,7 +107,7 @@ fn decode(path: &str) -> Option<PathBuf> {
 #[cfg(not(unix))]
 fn decode(path: &str) -> Option<PathBuf> {
     let path = percent_decode_str(path).decode_utf8().ok()?;
-    // `/C:/x` names `C:/x`.
+    // The path of `file:///C:/x` is `/C:/x`.
     let drive = path
         .strip_prefix('/')
         .filter(|p| p[..].get(1..2) == Some(":"));
@@ -136,6 +150,11 @@ mod tests {
                 "{uri}"
             );
         }
+        // RFC 3986, 3.2: what follows two slashes is a host.
+        assert!(matches!(
+            resource_path("file://C:/resources"),
+            Err(UriError::Drive { drive, .. }) if drive == "C:"
+        ));
         assert!(matches!(
             resource_path("file://server/share/x"),
             Err(UriError::Host { host, .. }) if host == "server"

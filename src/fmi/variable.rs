@@ -2,27 +2,29 @@
 
 use crate::unit::Unit;
 
-/// One scalar variable of an FMU. Its value reference is its place in the model's list.
+/// One scalar variable of an FMU. Its value reference is its index in the model's list.
 #[derive(Clone, Debug)]
 pub struct Variable<Q> {
     /// Structured name: `crank.phi`, `crank_angle.position`.
     pub name: String,
-    /// One line for people, empty if there is nothing to add to the name.
+    /// One line for people, empty if the name says it all.
     pub description: String,
-    /// What it stands for, as the model calls it.
+    /// The model's own name for the variable.
     pub quantity: Q,
     /// FMI causality.
     pub causality: Causality,
     /// FMI variability.
     pub variability: Variability,
-    /// Type, with what depends on it.
+    /// Type, with the attributes of that type.
     pub kind: Kind,
+    /// Value reference of the variable whose time derivative this one is.
+    pub derivative_of: Option<u32>,
 }
 
 /// FMI causality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Causality {
-    /// Can be set, does not depend on anything.
+    /// Set by the host, constant during a simulation.
     Parameter,
     /// Computed from parameters.
     CalculatedParameter,
@@ -30,7 +32,7 @@ pub enum Causality {
     Input,
     /// Computed for the host.
     Output,
-    /// Computed, about the solver rather than the model.
+    /// Computed; describes the solver rather than the model.
     Local,
     /// Time.
     Independent,
@@ -49,23 +51,25 @@ pub enum Variability {
     Continuous,
 }
 
-/// A variable's type. There are no Booleans and no Strings: several hosts stumble over them.
+/// A variable's type. Booleans and Strings are left out: several hosts fail on them.
 #[derive(Clone, Debug)]
 pub enum Kind {
     /// A real number.
     Real {
         /// Unit of the values, if they have one.
         unit: Option<Unit>,
-        /// Start value, for what the host can set.
+        /// Start value of a variable that the host can set.
         start: Option<f64>,
         /// Smallest permitted value.
         min: Option<f64>,
         /// Largest permitted value.
         max: Option<f64>,
+        /// Usual magnitude of the values, if it is known.
+        nominal: Option<f64>,
     },
     /// A whole number.
     Integer,
-    /// One of a few named choices, counted from 1; the start value is 1.
+    /// One of a few named items, counted from 1; the start value is 1.
     Enumeration(&'static Enumeration),
 }
 
@@ -78,8 +82,19 @@ pub struct Enumeration {
     pub items: &'static [(&'static str, &'static str)],
 }
 
+/// Returns the value reference of each variable's time derivative.
+pub(super) fn derivatives<Q>(variables: &[Variable<Q>]) -> Box<[Option<u32>]> {
+    let mut derivatives = vec![None; variables.len()];
+    for (value_reference, variable) in (0..).zip(variables) {
+        if let Some(of) = variable.derivative_of {
+            derivatives[of as usize] = Some(value_reference);
+        }
+    }
+    derivatives.into()
+}
+
 impl Kind {
-    /// A real number that may have any value.
+    /// Returns a real number without limits.
     #[must_use]
     pub fn real(unit: Option<Unit>, start: Option<f64>) -> Self {
         Self::Real {
@@ -87,16 +102,17 @@ impl Kind {
             start,
             min: None,
             max: None,
+            nominal: None,
         }
     }
 
-    /// Whether it is a real number.
+    /// Returns whether it is a real number.
     #[must_use]
     pub fn is_real(&self) -> bool {
         matches!(self, Self::Real { .. })
     }
 
-    /// The type for people.
+    /// Returns the type with its article, for messages.
     pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Real { .. } => "a Real",

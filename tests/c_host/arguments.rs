@@ -35,7 +35,6 @@ SetRealInputDerivatives A 1 @crank.phi 1 1 -> only inputs have input derivatives
 SetReal A 1 @crank_angle.position nan -> expected a finite number
 SetReal A 1 @crank_angle.velocity inf -> expected a finite number
 SetReal A 2 @crank_angle.position,@crank_angle.acceleration 1.3,-inf -> expected a finite number
-SetReal A 2 @crank_angle.position,@rocker_length 1.3,0 -> cannot be set to 0: expected at least 0.001
 SetRealInputDerivatives A 1 @crank_angle.position 0 1 -> order 0 are not known; expected 1 or 2
 SetRealInputDerivatives A 2 @crank_angle.position,@crank_angle.position 1,3 1,1 -> order 3 are not known
 SetRealInputDerivatives A 1 @crank_angle.position 1 nan -> expected a finite number
@@ -43,8 +42,9 @@ SetRealInputDerivatives A 1 @crank_angle.position 1 nan -> expected a finite num
 GetRealOutputDerivatives A 1 9999 1 room -> no variable with value reference 9999
 GetRealOutputDerivatives A 1 @crank_angle.position 1 room -> `crank_angle.position` is no output
 GetRealOutputDerivatives A 1 @solver.residual 1 room -> only outputs have output derivatives
-GetRealOutputDerivatives A 1 @crank.phi 0 room -> cannot be of order 0; expected 1 or more
+GetRealOutputDerivatives A 1 @crank.phi 0 room -> cannot be of order 0; expected 1 to 2
 GetRealOutputDerivatives A 2 @crank.phi,@crank.phi 1,-2147483648 room -> cannot be of order -2147483648
+GetRealOutputDerivatives A 1 @crank.phi 3 room -> cannot be of order 3; expected 1 to 2
 # Steps.
 DoStep A 0.5 0.1 1 -> is not where the last step ended, 0 s
 DoStep A 0 0 1 -> the step size 0 s is not positive
@@ -112,17 +112,27 @@ const REFUSED_BEFORE: &str = "
 SetupExperiment A nan NULL -> `startTime` is NaN
 SetupExperiment A 0 inf -> `stopTime` is inf
 SetupExperiment A 2 1 -> the stop time 1 s is before the start time 2 s
+SetReal A 1 @crank_length nan -> expected a finite number
+";
+
+/// Values of parameters outside their limits (FMI 2.0, 2.2.3) in state `instantiated`.
+const DISCARDED_BEFORE: &str = "
 SetInteger A 1 @rates 0 -> expected 1 to 3
 SetInteger A 2 @rates,@extrapolation 2,3 -> expected 1 to 2
 SetInteger A 1 @rates -2147483648 -> expected 1 to 3
 SetReal A 1 @crank_length -1 -> expected at least 0.001
-SetReal A 1 @crank_length nan -> expected a finite number
+";
+
+/// The same in state `stepComplete`. The value before the wrong one is not set either.
+const DISCARDED: &str = "
+SetReal A 2 @crank_angle.position,@rocker_length 1.3,0 -> cannot be set to 0: expected at least 0.001
 ";
 
 /// The same in continuous-time mode of model exchange.
 const REFUSED_IN_EXCHANGE: &str = "
 SetTime A nan -> `time` is NaN
 SetTime A inf -> `time` is inf
+SetTime A 1.1 -> the time 1.1 s is beyond the stop time 1 s
 CompletedIntegratorStep A NULL room -> `enterEventMode` is a null pointer
 CompletedIntegratorStep A room NULL -> `terminateSimulation` is a null pointer
 SetContinuousStates A 1 -> there are none
@@ -176,6 +186,11 @@ fn wrong_arguments_are_refused_and_change_nothing() {
         assert!(reason.contains(why), "{request:?}: {reason}");
         assert_eq!(host.get_reals(A, &everything), before, "{request:?}");
     }
+    for (request, why) in refusals(DISCARDED, &fmu) {
+        let reason = host.discarded(&request);
+        assert!(reason.contains(why), "{request:?}: {reason}");
+        assert_eq!(host.get_reals(A, &everything), before, "{request:?}");
+    }
     // Without events, which a refused list of categories would have switched on.
     let start = host.get_real(A, "0");
     host.ok(&["DoStep", A, "0", "1", "1"]);
@@ -195,7 +210,9 @@ fn wrong_arguments_in_model_exchange_change_nothing() {
         ..Instantiate::right(&fmu)
     };
     assert!(host.instantiate(A, &exchange).0);
-    host.initialize(A);
+    host.ok(&["SetupExperiment", A, "0", "1"]);
+    host.ok(&["EnterInitializationMode", A]);
+    host.ok(&["ExitInitializationMode", A]);
     host.refused(&["NewDiscreteStates", A, NULL]);
     host.ok(&["EnterContinuousTimeMode", A]);
     let everything = fmu.reals();
@@ -214,6 +231,10 @@ fn wrong_settings_before_the_start_are_refused() {
     host.instantiated(A, &fmu);
     for (request, why) in refusals(REFUSED_BEFORE, &fmu) {
         let reason = host.refused(&request);
+        assert!(reason.contains(why), "{request:?}: {reason}");
+    }
+    for (request, why) in refusals(DISCARDED_BEFORE, &fmu) {
+        let reason = host.discarded(&request);
         assert!(reason.contains(why), "{request:?}: {reason}");
     }
     host.initialize(A);

@@ -217,16 +217,36 @@ impl Host {
         answer.results
     }
 
-    /// Makes a call that has to be refused, and gives the reason that was logged.
+    /// Makes a call that must be refused, and returns the reason that was logged.
     #[track_caller]
     pub(crate) fn refused(&mut self, request: &[impl AsRef<str> + Debug]) -> String {
+        self.failed(request, Status::Error, (Status::Error, "logStatusError"))
+    }
+
+    /// Makes a call that must be discarded, and returns the reason that was logged.
+    #[track_caller]
+    pub(crate) fn discarded(&mut self, request: &[impl AsRef<str> + Debug]) -> String {
+        self.failed(
+            request,
+            Status::Discard,
+            (Status::Warning, "logStatusWarning"),
+        )
+    }
+
+    #[track_caller]
+    fn failed(
+        &mut self,
+        request: &[impl AsRef<str> + Debug],
+        status: Status,
+        logged: (Status, &str),
+    ) -> String {
         let answer = self.call(request);
-        assert_eq!(answer.status, Status::Error, "{request:?}: {answer:?}");
+        assert_eq!(answer.status, status, "{request:?}: {answer:?}");
         let [message] = &answer.log[..] else {
             panic!("{request:?}: not one message: {answer:?}")
         };
-        assert_eq!(message.status, Status::Error, "{request:?}");
-        assert_eq!(message.category, "logStatusError", "{request:?}");
+        let found = (message.status, message.category.as_str());
+        assert_eq!(found, logged, "{request:?}");
         let call = format!("fmi2{}: ", request[0].as_ref());
         assert!(message.text.starts_with(&call), "{request:?}: {message:?}");
         message.text.clone()

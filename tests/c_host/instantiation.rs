@@ -73,6 +73,18 @@ fn what_cannot_be_instantiated_is_null_and_tells_the_logger() {
             },
             "`instanceName` is empty",
         ),
+        // At least one character that is no white space (2.1.5).
+        (
+            Instantiate {
+                name: text(" \t"),
+                ..right.clone()
+            },
+            "`instanceName` is empty or blank",
+        ),
+        (
+            with_uri("file://C:/resources"),
+            "names the host `C:`; a drive follows `file:///`",
+        ),
         (with_uri(""), "the resource location is empty"),
         (
             with_uri("https://example.org/resources"),

@@ -107,14 +107,26 @@ fn categories_are_switched_on_and_off() {
         categories(&host.call(&["ExitInitializationMode", A])),
         ["logEvents"]
     );
-    assert_eq!(categories(&host.do_step(A, 0.0, 0.1)), ["logSolver"]);
+    assert_eq!(
+        categories(&host.do_step(A, 0.0, 0.1)),
+        ["logNonlinearSystems"]
+    );
 
     // Off altogether, and then some again.
     host.ok(&["SetDebugLogging", A, "0", "0", NULL]);
     assert_eq!(categories(&host.do_step(A, 0.1, 0.1)), [""; 0]);
-    host.ok(&["SetDebugLogging", A, "1", "2", "logEvents,logSolver"]);
-    assert_eq!(categories(&host.do_step(A, 0.2, 0.1)), ["logSolver"]);
-    host.ok(&["SetDebugLogging", A, "0", "1", "logSolver"]);
+    host.ok(&[
+        "SetDebugLogging",
+        A,
+        "1",
+        "2",
+        "logEvents,logNonlinearSystems",
+    ]);
+    assert_eq!(
+        categories(&host.do_step(A, 0.2, 0.1)),
+        ["logNonlinearSystems"]
+    );
+    host.ok(&["SetDebugLogging", A, "0", "1", "logNonlinearSystems"]);
     assert_eq!(categories(&host.do_step(A, 0.3, 0.1)), [""; 0]);
     // Settings outlast a reset.
     assert_eq!(categories(&host.call(&["Reset", A])), ["logEvents"]);

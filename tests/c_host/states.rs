@@ -46,10 +46,10 @@ EnterContinuousTimeMode         - - x - - -   - - - - - -
 CompletedIntegratorStep         - - - x - -   - - - - - -
 SetTime                         - - x x - -   - - - - - -
 SetContinuousStates             - - - x - -   - - - - - -
-GetDerivatives                  - - x x x x   - - - - - -
+GetDerivatives                  - x x x x x   - - - - - -
 GetEventIndicators              - x x x x x   - - - - - -
 GetContinuousStates             - x x x x x   - - - - - -
-GetNominalsOfContinuousStates   x - x x x x   - - - - - -
+GetNominalsOfContinuousStates   x x x x x x   - - - - - -
 ";
 
 /// The table's columns. A synchronous slave is never in another state; a caught defect leads to

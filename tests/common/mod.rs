@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test file uses a part of this")]
 
+pub(crate) mod log;
+
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 

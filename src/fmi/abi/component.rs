@@ -131,7 +131,7 @@ fn serve(
     outcome.unwrap_or_else(|payload| {
         let what = format!("{call}: defect in biela: {}", panic_message(&*payload));
         // Should the logging be what panicked, a second panic must not escape either.
-        let _ = catch_unwind(AssertUnwindSafe(|| instance.lose(&what)));
+        let _ = catch_unwind(AssertUnwindSafe(|| instance.mark_fatal(&what)));
         Status::Fatal
     })
 }

@@ -2,7 +2,7 @@
 
 use super::types::{fmi2Boolean, fmi2Component, fmi2EventInfo, fmi2False, fmi2Real, fmi2Status};
 
-use super::arguments::write;
+use super::arguments::Room;
 use super::component::with_instance;
 use crate::fmi::Call;
 
@@ -21,7 +21,8 @@ pub unsafe extern "C" fn fmi2EnterEventMode(c: fmi2Component) -> fmi2Status {
     }
 }
 
-/// `fmi2NewDiscreteStates`: nothing ever follows from one.
+/// `fmi2NewDiscreteStates`: there are no discrete states. The simulation ends at an event for
+/// whose values no pose exists.
 ///
 /// # Safety
 ///
@@ -34,16 +35,18 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(
     // SAFETY: the host's promise.
     unsafe {
         with_instance(c, "fmi2NewDiscreteStates", |instance| {
-            instance.new_discrete_states()?;
-            let nothing = fmi2EventInfo {
+            instance.allow(Call::NewDiscreteStates)?;
+            let to = Room::new("fmi2eventInfo", event_info, 1)?;
+            let must_end = instance.new_discrete_states()?;
+            to.fill([fmi2EventInfo {
                 newDiscreteStatesNeeded: FALSE,
-                terminateSimulation: FALSE,
+                terminateSimulation: must_end.into(),
                 nominalsOfContinuousStatesChanged: FALSE,
                 valuesOfContinuousStatesChanged: FALSE,
                 nextEventTimeDefined: FALSE,
                 nextEventTime: 0.0,
-            };
-            write("fmi2eventInfo", event_info, nothing)
+            }]);
+            Ok(())
         })
     }
 }
@@ -80,9 +83,12 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
     unsafe {
         with_instance(c, "fmi2CompletedIntegratorStep", |instance| {
             instance.allow(Call::CompletedIntegratorStep)?;
-            write("enterEventMode", enter_event_mode, FALSE)?;
-            write("terminateSimulation", terminate_simulation, FALSE)?;
-            Ok(instance.completed_integrator_step()?)
+            let enter = Room::new("enterEventMode", enter_event_mode, 1)?;
+            let terminate = Room::new("terminateSimulation", terminate_simulation, 1)?;
+            let must_end = instance.completed_integrator_step()?;
+            enter.fill([FALSE]);
+            terminate.fill([must_end.into()]);
+            Ok(())
         })
     }
 }

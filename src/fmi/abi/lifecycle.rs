@@ -68,8 +68,9 @@ pub unsafe extern "C" fn fmi2Instantiate(
                 text("fmuResourceLocation", fmu_resource_location)?,
             )
         };
-        if name.is_empty() {
-            return Err(CallError::Argument("`instanceName` is empty".to_owned()));
+        if name.trim().is_empty() {
+            let message = "`instanceName` is empty or blank".to_owned();
+            return Err(CallError::Argument(message));
         }
         let interface = match fmu_type {
             fmi2ModelExchange => Interface::ModelExchange,

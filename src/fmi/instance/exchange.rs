@@ -1,76 +1,104 @@
-//! Model exchange, for models without continuous states and event indicators.
+//! Model exchange for models without continuous states and event indicators.
 
-use super::{Error, Instance, check_finite};
+use super::stepping::TIME_ROUNDING;
+use super::{Category, Error, Failure, Instance, Status, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
 
 impl<M: Model> Instance<M> {
-    /// `fmi2EnterEventMode`: what the model has come to is what it goes on from.
+    /// `fmi2EnterEventMode`: commits the model's present point. If none exists,
+    /// [`new_discrete_states`](Self::new_discrete_states) ends the simulation.
     ///
     /// # Errors
     ///
-    /// The model has no values for what was set; nothing is changed then.
+    /// The state forbids the call, or the model failed.
     pub fn enter_event_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterEventMode)?;
-        self.commit()?;
+        self.commit(Call::EnterEventMode)?;
+        self.model.update_discrete();
         self.state = State::EventMode;
         Ok(())
     }
 
-    /// `fmi2NewDiscreteStates`: there are none, so that nothing is ever left to be done.
+    /// `fmi2NewDiscreteStates`: the model has none. Returns whether the simulation must end.
     ///
     /// # Errors
     ///
-    /// The state does not allow it.
-    pub fn new_discrete_states(&self) -> Result<(), Error> {
-        self.allow(Call::NewDiscreteStates)
+    /// The state forbids the call, or the model failed.
+    pub fn new_discrete_states(&mut self) -> Result<bool, Error> {
+        self.allow(Call::NewDiscreteStates)?;
+        if self.terminated {
+            self.commit(Call::NewDiscreteStates)?;
+        }
+        Ok(self.terminated)
     }
 
     /// `fmi2EnterContinuousTimeMode`.
     ///
     /// # Errors
     ///
-    /// The state does not allow it.
+    /// The state forbids the call.
     pub fn enter_continuous_time_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterContinuousTimeMode)?;
         self.state = State::ContinuousTimeMode;
         Ok(())
     }
 
-    /// `fmi2CompletedIntegratorStep`: what the model has come to is what it goes on from. No
-    /// event and no termination follows.
+    /// `fmi2CompletedIntegratorStep`: commits the model's present point. No event follows. Returns
+    /// whether the simulation must end, since no such point exists.
     ///
     /// # Errors
     ///
-    /// The model has no values for what was set; nothing is changed then.
-    pub fn completed_integrator_step(&mut self) -> Result<(), Error> {
+    /// The state forbids the call, or the model failed.
+    pub fn completed_integrator_step(&mut self) -> Result<bool, Error> {
         self.allow(Call::CompletedIntegratorStep)?;
-        self.commit()
+        self.commit(Call::CompletedIntegratorStep)?;
+        Ok(self.terminated)
     }
 
-    fn commit(&mut self) -> Result<(), Error> {
-        self.model.commit(self.state.phase(), &self.logger)?;
-        self.last_successful_time = self.model.time();
-        Ok(())
+    /// Commits the model's present point. If none exists the simulation must end: the standard
+    /// permits no discard here (2.1.3).
+    fn commit(&mut self, call: Call) -> Result<(), Error> {
+        match self.model.commit(self.state.phase(), &self.logger) {
+            Ok(()) => {
+                self.last_successful_time = self.model.time();
+                self.terminated = false;
+                Ok(())
+            }
+            Err(Failure::Discarded(reason)) => {
+                let message = format!("{}: the simulation must end: {reason}", call.name());
+                self.logger.write(Status::Error, Category::Error, &message);
+                self.terminated = true;
+                Ok(())
+            }
+            Err(failure) => Err(self.failed(call, failure)),
+        }
     }
 
-    /// `fmi2SetTime` \[s\]. A time beyond the stop time is taken: solvers look ahead.
+    /// `fmi2SetTime` \[s\].
     ///
     /// # Errors
     ///
-    /// The time is not finite.
+    /// The time is not finite, or beyond the stop time by more than rounding (2.1.6).
     pub fn set_time(&mut self, time: f64) -> Result<(), Error> {
         self.allow(Call::SetTime)?;
         check_finite("time", time)?;
+        if let Some(stop) = self.stop_time
+            && time > stop + TIME_ROUNDING * stop.abs().max(time - self.last_successful_time)
+        {
+            return Err(Error::Time {
+                message: format!("the time {time} s is beyond the stop time {stop} s"),
+            });
+        }
         self.model.set_time(time);
         Ok(())
     }
 
-    /// The functions of continuous states and event indicators: right for none of them.
+    /// A function of continuous states or event indicators, for `count` values.
     ///
     /// # Errors
     ///
-    /// `count` is not zero.
+    /// `count` is not zero: the model has none.
     pub fn continuous(&self, call: Call, count: usize) -> Result<(), Error> {
         self.allow(call)?;
         if count == 0 {

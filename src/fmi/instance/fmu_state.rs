@@ -1,4 +1,4 @@
-//! The FMU state: all that decides how an instance goes on.
+//! The FMU state: everything that decides how an instance goes on.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use crate::fmi::model::Model;
 use crate::fmi::serialized;
 use crate::fmi::state::{Call, Interface, State};
 
-/// What [`Instance::fmu_state`] saves and [`Instance::set_fmu_state`] restores.
+/// A state that [`Instance::fmu_state`] saves and [`Instance::set_fmu_state`] restores.
 ///
-/// It belongs to a model and an interface, not to an instance: any instance of the same FMU takes
-/// it, at any time, and goes on from it with the same bits. Log settings are no part of it.
+/// It fits any instance of the same model and interface, at any time; the instance goes on from
+/// it with the same bits. Log settings are no part of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FmuState<S> {
     guid: Arc<str>,
@@ -20,23 +20,25 @@ pub struct FmuState<S> {
     state: State,
     stop_time: Option<f64>,
     last_successful_time: f64,
+    discarded: bool,
     terminated: bool,
     model: S,
 }
 
 impl<M: Model> Instance<M> {
-    /// `fmi2GetFMUstate`: a copy of all that decides how the instance goes on.
+    /// `fmi2GetFMUstate`: returns a copy of the FMU state.
     ///
     /// # Errors
     ///
-    /// The state machine does not allow it.
+    /// The state machine forbids the call.
     pub fn fmu_state(&mut self) -> Result<FmuState<M::State>, Error> {
         self.allow(Call::GetFMUstate)?;
-        // Field by field, so that a new one cannot be forgotten.
+        // Destructured, so that the compiler reports a new field.
         let Self {
             quantities: _,
-            row: _,
-            free_inputs: _,
+            groups: _,
+            derivatives: _,
+            continuous_inputs: _,
             logger: _,
             guid,
             model,
@@ -44,25 +46,28 @@ impl<M: Model> Instance<M> {
             state,
             stop_time,
             last_successful_time,
+            discarded,
             terminated,
+            state_held,
         } = self;
+        *state_held = true;
         Ok(FmuState {
             guid: Arc::clone(guid),
             interface: *interface,
             state: *state,
             stop_time: *stop_time,
             last_successful_time: *last_successful_time,
+            discarded: *discarded,
             terminated: *terminated,
             model: model.save(),
         })
     }
 
-    /// `fmi2SetFMUstate`: goes on from a state of this instance or of another one of the same
-    /// FMU, whatever happened since.
+    /// `fmi2SetFMUstate`: restores a state of this or another instance of the same FMU.
     ///
     /// # Errors
     ///
-    /// The state is of another FMU, or the state machine does not allow it.
+    /// The state belongs to another FMU, or the state machine forbids the call.
     pub fn set_fmu_state(&mut self, state: &FmuState<M::State>) -> Result<(), Error> {
         self.allow(Call::SetFMUstate)?;
         self.check_origin(state)?;
@@ -70,28 +75,29 @@ impl<M: Model> Instance<M> {
         self.state = state.state;
         self.stop_time = state.stop_time;
         self.last_successful_time = state.last_successful_time;
+        self.discarded = state.discarded;
         self.terminated = state.terminated;
-        self.tell(|model| format!("FMU state set: {} at t = {} s", state.state, model.time()));
+        self.state_held = true;
+        self.log_event(|model| format!("FMU state set: {} at t = {} s", state.state, model.time()));
         Ok(())
     }
 
-    /// `fmi2SerializedFMUstateSize`: how many bytes
-    /// [`serialize_fmu_state`](Self::serialize_fmu_state) gives for this state.
+    /// `fmi2SerializedFMUstateSize`: returns the number of bytes of a serialized state.
     ///
     /// # Errors
     ///
-    /// The state is of another FMU, or the state machine does not allow the call.
+    /// As [`serialize_fmu_state`](Self::serialize_fmu_state).
     pub fn serialized_fmu_state_size(&self, state: &FmuState<M::State>) -> Result<usize, Error> {
         self.allow(Call::SerializedFMUstateSize)?;
         Ok(self.serialized(state)?.len())
     }
 
-    /// `fmi2SerializeFMUstate`: a state as bytes that
-    /// [`deserialize_fmu_state`](Self::deserialize_fmu_state) reads, here or elsewhere.
+    /// `fmi2SerializeFMUstate`: returns a state as bytes, which
+    /// [`deserialize_fmu_state`](Self::deserialize_fmu_state) reads on any machine.
     ///
     /// # Errors
     ///
-    /// The state is of another FMU, or the state machine does not allow the call.
+    /// The state belongs to another FMU, or the state machine forbids the call.
     pub fn serialize_fmu_state(&self, state: &FmuState<M::State>) -> Result<Vec<u8>, Error> {
         self.allow(Call::SerializeFMUstate)?;
         self.serialized(state)
@@ -100,39 +106,39 @@ impl<M: Model> Instance<M> {
     fn serialized(&self, state: &FmuState<M::State>) -> Result<Vec<u8>, Error> {
         self.check_origin(state)?;
         Ok(serialized::write(&self.guid, |writer| {
-            // A walk may replace what it goes through.
-            Self::walk(&mut state.clone(), writer)
+            // A codec may replace the fields that it visits.
+            Self::visit(&mut state.clone(), writer)
         }))
     }
 
-    /// `fmi2DeSerializeFMUstate`: the state that was written as `bytes`. The instance stays as it
-    /// is.
+    /// `fmi2DeSerializeFMUstate`: returns the state that was written as `bytes`. The instance does
+    /// not change.
     ///
     /// # Errors
     ///
-    /// The bytes are no state of this FMU, as [`StateError`] has it; or the state machine does
-    /// not allow the call.
+    /// [`StateError`] for bytes that are no state of this FMU; or the state machine forbids the
+    /// call.
     pub fn deserialize_fmu_state(&mut self, bytes: &[u8]) -> Result<FmuState<M::State>, Error> {
         self.allow(Call::DeSerializeFMUstate)?;
         let here = self.fmu_state()?;
-        // Of the right sizes, to be replaced.
+        // The reader replaces the content of a state with the right sizes.
         let mut state = here.clone();
-        serialized::read(&self.guid, bytes, |reader| Self::walk(&mut state, reader))?;
+        serialized::read(&self.guid, bytes, |reader| Self::visit(&mut state, reader))?;
         self.check_origin(&state)?;
-        // No slave is ever seen cancelled.
+        // No instance ever gets into `stepCanceled`.
         let allowed = Call::GetFMUstate.is_allowed_in(self.interface, state.state);
         if !allowed || state.state == State::StepCanceled {
             return Err(Error::FmuState(StateError::Impossible {
-                what: format!("it is in state {}", state.state),
+                why: format!("it is in state {}", state.state),
             }));
         }
         let checked = self.model.check(&mut state.model);
         self.model.restore(&here.model);
-        checked.map_err(|what| StateError::Impossible { what })?;
+        checked.map_err(|why| StateError::Impossible { why })?;
         Ok(state)
     }
 
-    /// Whether a state comes from an instance of the same FMU and interface.
+    /// Checks that a state comes from an instance of the same FMU and interface.
     fn check_origin(&self, state: &FmuState<M::State>) -> Result<(), Error> {
         if state.guid != self.guid {
             return Err(Error::FmuState(StateError::Guid {
@@ -149,13 +155,14 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    fn walk(state: &mut FmuState<M::State>, codec: &mut impl Codec) -> Result<(), Unreadable> {
+    fn visit(state: &mut FmuState<M::State>, codec: &mut impl Codec) -> Result<(), Unreadable> {
         let FmuState {
             guid: _,
             interface,
             state,
             stop_time,
             last_successful_time,
+            discarded,
             terminated,
             model,
         } = state;
@@ -163,7 +170,8 @@ impl<M: Model> Instance<M> {
         codec.one_of(state, &State::ALL)?;
         codec.option(stop_time, 0.0, |codec, time| codec.finite(time))?;
         codec.finite(last_successful_time)?;
+        codec.flag(discarded)?;
         codec.flag(terminated)?;
-        M::walk(model, codec)
+        M::visit(model, codec)
     }
 }

@@ -1,15 +1,14 @@
 //! An instance of an FMU in safe Rust.
 //!
-//! Every call of the C interface that concerns an instance has its twin here; `abi` only turns
-//! pointers into slices. A refused call changes neither data nor state and leaves the instance
-//! usable. What the numbers mean is the [`Model`]'s business.
+//! Each function of the C interface has a method here; `abi` converts pointers only. A refused
+//! call changes neither data nor state, and the instance stays usable. The [`Model`] computes the
+//! values.
 
 mod exchange;
 mod fmu_state;
 mod stepping;
 mod values;
 
-use std::ops::Range;
 use std::sync::Arc;
 
 pub use fmu_state::FmuState;
@@ -17,52 +16,44 @@ pub(super) use values::check_value;
 
 use super::error::{Error, Failure, Status, check_finite};
 use super::log::{Category, Logger, Sink};
-use super::model::Model;
+use super::model::{Groups, Model};
 use super::resource_path;
 use super::state::{Call, Interface, State};
-use super::variable::{Causality, Kind, Variability, Variable};
+use super::variable::{Variable, derivatives};
+use values::{groups_of, is_continuous_input};
 
-/// An instance of an FMU: a model, and what the standard asks for around it.
+/// An instance of an FMU: a model inside the standard's state machine.
 #[derive(Debug)]
 pub struct Instance<M: Model> {
     model: M,
     guid: Arc<str>,
-    /// Those of the variables, side by side: hosts read many at a time.
+    /// Quantity of each variable.
     quantities: Box<[M::Quantity]>,
-    /// Those that the model keeps side by side.
-    row: Range<u32>,
-    /// Whether each is an input that can have any finite value at any time.
-    free_inputs: Box<[bool]>,
+    /// Groups of each variable's value, for those that are Reals.
+    groups: Box<[Groups]>,
+    /// Value reference of each variable's time derivative.
+    derivatives: Box<[Option<u32>]>,
+    /// Whether each variable is an input that accepts any finite value at any time.
+    continuous_inputs: Box<[bool]>,
     interface: Interface,
     logger: Logger,
     state: State,
     stop_time: Option<f64>,
     last_successful_time: f64,
-    /// Set by a discarded step: the host should end or go back.
+    /// Whether the last step was discarded.
+    discarded: bool,
+    /// Whether the simulation must end, or go on from another state.
     terminated: bool,
-}
-
-fn is_free_input<Q>(variable: &Variable<Q>) -> bool {
-    let unlimited = matches!(
-        variable.kind,
-        Kind::Real {
-            min: None,
-            max: None,
-            ..
-        }
-    );
-    unlimited
-        && variable.causality == Causality::Input
-        && variable.variability == Variability::Continuous
+    /// Whether the host holds an FMU state of the last communication point.
+    state_held: bool,
 }
 
 impl<M: Model> Instance<M> {
-    /// Makes an instance of the model in the folder that the URI `resources` names.
+    /// Creates an instance of the model in the folder of the URI `resources`.
     ///
     /// # Errors
     ///
-    /// The model cannot be read, or is not the one that `guid` names. The reason has then gone
-    /// to the sink as well.
+    /// The resources hold no model, or one with another GUID. The sink has received the reason.
     pub fn instantiate(
         guid: &str,
         resources: &str,
@@ -90,87 +81,107 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Makes an instance of a model.
+    /// Creates an instance of a model.
     pub fn new(model: M, sink: Box<dyn Sink + Send>, logging_on: bool) -> Self {
-        let variables = model.variables().iter();
-        let quantities: Box<[_]> = variables.map(|variable| variable.quantity).collect();
-        let variables = model.variables().iter();
+        let variables = model.variables();
         Self {
-            row: model.row(),
-            free_inputs: variables.map(is_free_input).collect(),
-            quantities,
+            derivatives: derivatives(variables),
+
+            quantities: variables.iter().map(|v| v.quantity).collect(),
+            groups: variables.iter().map(|v| groups_of(&model, v)).collect(),
+            continuous_inputs: variables.iter().map(is_continuous_input).collect(),
             guid: model.guid().into(),
             interface: model.interface(),
             logger: Logger::new(sink, logging_on),
             state: State::Instantiated,
             stop_time: None,
             last_successful_time: model.time(),
+            discarded: false,
             terminated: false,
+            state_held: false,
             model,
         }
     }
 
-    /// The model.
+    /// Returns the model.
     #[must_use]
     pub fn model(&self) -> &M {
         &self.model
     }
 
-    /// The variables, in the order of their value references.
+    /// Returns the variables in the order of their value references.
     #[must_use]
     pub fn variables(&self) -> &[Variable<M::Quantity>] {
         self.model.variables()
     }
 
-    /// For which interface the instance was made.
+    /// Returns the interface that the instance was created for.
     #[must_use]
     pub fn interface(&self) -> Interface {
         self.interface
     }
 
-    /// The present state.
+    /// Returns the present state.
     #[must_use]
     pub fn state(&self) -> State {
         self.state
     }
 
-    /// Gives an error to the host's logger and turns it into the call's status.
+    /// Logs an error and returns the call's status.
     pub fn report(&self, call: &str, error: &Error) -> Status {
         let status = error.status();
-        let category = match status {
-            Status::Discard => Category::Discard,
-            _ => Category::Error,
-        };
-        if self.logger.wants(category) {
-            let message = match error {
-                // The warning that came before has said it all.
-                Error::Model(Failure::Discarded(_)) => format!("{call}: discarded"),
-                _ => format!("{call}: {error}"),
-            };
-            self.logger.write(status, category, &message);
+        match error {
+            // A warning has given the reason.
+            Error::Model(Failure::Discarded(_)) => {
+                let message = format!("{call}: discarded");
+                self.logger.write(status, Category::Discard, &message);
+            }
+            Error::StatusKind { .. } => {
+                let message = format!("{call}: {error}");
+                self.logger.write(status, Category::Discard, &message);
+            }
+            Error::Range { .. } | Error::Item { .. } => {
+                self.logger.warn_of_discard(&format!("{call}: {error}"));
+            }
+            _ => {
+                let message = format!("{call}: {error}");
+                self.logger.write(status, Category::Error, &message);
+            }
         }
         status
     }
 
-    /// Tells the host's logger of an argument that is no use at all.
+    /// Returns the error of a call in which the model failed. Logs the reason of a discarded call;
+    /// where the standard permits no discard, the call fails.
+    #[cold]
+    fn failed(&self, call: Call, failure: Failure) -> Error {
+        match failure {
+            Failure::Discarded(reason) if call.may_discard(self.interface) => {
+                self.logger.warn_of_discard(&reason);
+                Failure::Discarded(reason).into()
+            }
+            Failure::Discarded(reason) | Failure::Failed(reason) => Failure::Failed(reason).into(),
+        }
+    }
+
+    /// Logs that an argument is unusable, and returns the call's status.
     pub fn report_argument(&self, call: &str, message: &str) -> Status {
         let message = format!("{call}: {message}");
         self.logger.write(Status::Error, Category::Error, &message);
         Status::Error
     }
 
-    /// Marks the instance as lost after a caught defect.
-    pub fn lose(&mut self, what: &str) {
+    /// Marks the instance as unusable after a caught defect, and logs the defect.
+    pub fn mark_fatal(&mut self, message: &str) {
         self.state = State::Fatal;
-        self.logger.write(Status::Fatal, Category::Fatal, what);
+        self.logger.write(Status::Fatal, Category::Fatal, message);
     }
 
-    /// Whether the present state allows a call.
+    /// Checks that the present state allows a call.
     ///
     /// # Errors
     ///
-    /// [`Error::State`] if not, [`Error::Interface`] if no state of the instance's interface
-    /// does.
+    /// [`Error::State`] if another state does, [`Error::Interface`] if none does.
     #[inline]
     pub fn allow(&self, call: Call) -> Result<(), Error> {
         let (interface, state) = (self.interface, self.state);
@@ -187,11 +198,11 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// `fmi2SetDebugLogging`: switches log categories; none named means all.
+    /// `fmi2SetDebugLogging`: switches log categories; an empty list switches all.
     ///
     /// # Errors
     ///
-    /// [`Error::LogCategory`] for a name that is none; nothing is switched then.
+    /// [`Error::LogCategory`] for an unknown name; all switches stay.
     pub fn set_debug_logging(&mut self, on: bool, categories: &[&str]) -> Result<(), Error> {
         self.allow(Call::SetDebugLogging)?;
         self.logger
@@ -205,7 +216,7 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     ///
-    /// A time is not finite, or the stop time is before the start.
+    /// A time is not finite, or the stop time is before the start time.
     pub fn setup_experiment(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
         self.allow(Call::SetupExperiment)?;
         check_finite("startTime", start)?;
@@ -227,7 +238,7 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     ///
-    /// The state does not allow it.
+    /// The state forbids the call.
     pub fn enter_initialization_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterInitializationMode)?;
         self.state = State::InitializationMode;
@@ -238,19 +249,20 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     ///
-    /// The model cannot start with them; the instance is then in the error state.
+    /// The model cannot start with these values; the instance is then in state `error`.
     pub fn exit_initialization_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::ExitInitializationMode)?;
         if let Err(failure) = self.model.commit(self.state.phase(), &self.logger) {
             self.state = State::Error;
-            return Err(failure.into());
+            return Err(self.failed(Call::ExitInitializationMode, failure));
         }
+        self.model.update_discrete();
         self.state = match self.interface {
             Interface::ModelExchange => State::EventMode,
             Interface::CoSimulation => State::StepComplete,
         };
         self.last_successful_time = self.model.time();
-        self.tell(|model| format!("initialized at t = {} s", model.time()));
+        self.log_event(|model| format!("initialized at t = {} s", model.time()));
         Ok(())
     }
 
@@ -258,32 +270,33 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     ///
-    /// The state does not allow it.
+    /// The state forbids the call.
     pub fn terminate(&mut self) -> Result<(), Error> {
         self.allow(Call::Terminate)?;
         self.state = State::Terminated;
-        self.tell(|_| "terminated".to_owned());
+        self.log_event(|_| "terminated".to_owned());
         Ok(())
     }
 
-    /// `fmi2Reset`: back to the state after instantiation, log settings apart.
+    /// `fmi2Reset`: restores the state after instantiation. Log settings stay.
     ///
     /// # Errors
     ///
-    /// The state does not allow it.
+    /// The state forbids the call.
     pub fn reset(&mut self) -> Result<(), Error> {
         self.allow(Call::Reset)?;
         self.model.reset();
         self.state = State::Instantiated;
         self.last_successful_time = self.model.time();
         self.stop_time = None;
+        self.discarded = false;
         self.terminated = false;
-        self.tell(|_| "reset".to_owned());
+        self.state_held = false;
+        self.log_event(|_| "reset".to_owned());
         Ok(())
     }
 
-    /// Gives an event to the log, if anyone listens.
-    fn tell(&self, message: impl FnOnce(&M) -> String) {
+    fn log_event(&self, message: impl FnOnce(&M) -> String) {
         if self.logger.wants(Category::Events) {
             let message = message(&self.model);
             self.logger.write(Status::Ok, Category::Events, &message);

@@ -1,31 +1,48 @@
-//! Co-simulation: steps, and how they ended.
+//! Co-simulation: steps and their outcome.
 
 use super::{Error, Failure, Instance, check_finite};
 use crate::fmi::error::Status;
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
 
-/// Hosts add up step sizes: communication points may be off by this much, relative to the
-/// larger of time and step.
-const TIME_ROUNDING: f64 = 1e-9;
+/// Tolerance of communication points, relative to the larger of time and step: hosts add up step
+/// sizes.
+pub(super) const TIME_ROUNDING: f64 = 1e-9;
 
 impl<M: Model> Instance<M> {
-    /// `fmi2DoStep`: goes from the last communication point over `h` seconds.
+    /// `fmi2DoStep`: steps from the last communication point over `h` seconds.
     ///
     /// # Errors
     ///
-    /// A step that the model discards: the instance is then in state `stepFailed`, at the last
-    /// time that was reached. Anything else leaves it as it was.
+    /// [`Failure::Discarded`] leaves the instance in state `stepFailed`, at the last time that the
+    /// model reached. Any other error changes nothing.
     pub fn do_step(&mut self, communication_point: f64, h: f64) -> Result<(), Error> {
         self.allow(Call::DoStep)?;
         self.check_step(communication_point, h)?;
-        let stepped = self.model.step(h, communication_point + h, &self.logger);
+        let end = communication_point + h;
+        let stepped = self.model.step(h, end, &self.logger);
         self.last_successful_time = self.model.time();
-        if let Err(Failure::Discarded(_)) = stepped {
-            self.state = State::StepFailed;
-            self.terminated = true;
+        match stepped {
+            Ok(()) => {
+                self.state_held = false;
+                Ok(())
+            }
+            Err(failure) => Err(self.fail_step(communication_point, h, failure)),
         }
-        Ok(stepped?)
+    }
+
+    /// Decides whether a host should end after a discarded step, or may retry a shorter one: it may
+    /// if it can go back to the start of the step, and a shorter step would lead further.
+    #[cold]
+    fn fail_step(&mut self, communication_point: f64, h: f64, failure: Failure) -> Error {
+        if let Failure::Discarded(_) = failure {
+            let rounding = TIME_ROUNDING * communication_point.abs().max(h);
+            let progressed = self.last_successful_time > communication_point + rounding;
+            self.state = State::StepFailed;
+            self.discarded = true;
+            self.terminated = !(progressed && self.state_held);
+        }
+        self.failed(Call::DoStep, failure)
     }
 
     fn check_step(&self, communication_point: f64, h: f64) -> Result<(), Error> {
@@ -51,23 +68,24 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// `fmi2GetStatus` of `fmi2DoStepStatus`: how the last step ended.
+    /// `fmi2GetStatus` of `fmi2DoStepStatus`: status of the last step.
     #[must_use]
     pub fn step_status(&self) -> Status {
-        if self.terminated {
+        if self.discarded {
             Status::Discard
         } else {
             Status::Ok
         }
     }
 
-    /// `fmi2GetRealStatus` of `fmi2LastSuccessfulTime` \[s\].
+    /// `fmi2GetRealStatus` of `fmi2LastSuccessfulTime` \[s\]: the last time that the model reached.
     #[must_use]
     pub fn last_successful_time(&self) -> f64 {
         self.last_successful_time
     }
 
-    /// `fmi2GetBooleanStatus` of `fmi2Terminated`: whether a step was discarded for good.
+    /// `fmi2GetBooleanStatus` of `fmi2Terminated`: whether the simulation must end. False after a
+    /// discarded step that a host with an FMU state of its start can repeat with a smaller size.
     #[must_use]
     pub fn is_terminated(&self) -> bool {
         self.terminated

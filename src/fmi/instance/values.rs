@@ -1,26 +1,44 @@
-//! Setting and getting variables, and their derivatives.
+//! Setting and getting variables and their derivatives.
 
 use std::ops::Range;
 use std::slice::Iter;
 
 use super::{Error, Instance, check_finite};
 use crate::fmi::error::check_limits;
-use crate::fmi::model::Model;
+use crate::fmi::model::{Groups, Model};
 use crate::fmi::state::{Call, State};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 
+/// Groups of a variable that is no Real: a bit that no model uses, as it is the last one.
+const NO_REAL: Groups = 1 << (Groups::BITS - 1);
+
+/// Returns the groups of a variable's value.
+pub(super) fn groups_of<M: Model>(model: &M, variable: &Variable<M::Quantity>) -> Groups {
+    if variable.kind.is_real() {
+        model.groups(variable.quantity)
+    } else {
+        NO_REAL
+    }
+}
+
+/// Returns whether a variable is an input that accepts any finite value at any time. The limits of
+/// an input are information for the host (FMI 2.0, 2.2.3); the model decides what follows.
+pub(super) fn is_continuous_input<Q>(variable: &Variable<Q>) -> bool {
+    variable.causality == Causality::Input && variable.variability == Variability::Continuous
+}
+
 impl<M: Model> Instance<M> {
-    /// `fmi2SetReal`. Either all values are taken or none.
+    /// `fmi2SetReal`. Sets all values or none.
     ///
     /// # Errors
     ///
-    /// A variable is unknown, no Real, or not to be set now; a value is not finite or outside
-    /// `min` and `max`.
+    /// A variable is unknown, no Real, or not settable in this state; a value is not finite, or
+    /// that of a parameter is outside `min` and `max`.
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
         for (&value_reference, &value) in value_references.iter().zip(values) {
-            let free = self.free_inputs.get(value_reference as usize);
-            if !(free == Some(&true) && value.is_finite()) {
+            let is_input = self.continuous_inputs.get(value_reference as usize);
+            if !(is_input == Some(&true) && value.is_finite()) {
                 let variable = self.settable(value_reference, "Real")?;
                 check_value(variable, value)?;
             }
@@ -32,12 +50,12 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi2SetInteger`, for enumerations as well. Either all values are taken or none.
+    /// `fmi2SetInteger`, for Enumerations as well. Sets all values or none.
     ///
     /// # Errors
     ///
-    /// A variable is unknown, no Integer or Enumeration, or not to be set now; a value is no
-    /// item of its enumeration.
+    /// A variable is unknown, no Integer or Enumeration, or not settable in this state; a value is
+    /// no item of its Enumeration.
     pub fn set_integer(&mut self, value_references: &[u32], values: &[i32]) -> Result<(), Error> {
         self.allow(Call::SetInteger)?;
         for (&value_reference, &value) in value_references.iter().zip(values) {
@@ -59,12 +77,11 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi2SetBoolean` and `fmi2SetString`: there are no such variables, so that only an empty
-    /// list is right. The same holds for getting them.
+    /// A getter or setter of Booleans or Strings: legal for an empty list only.
     ///
     /// # Errors
     ///
-    /// There is any value reference.
+    /// The list is not empty: no variable has such a type.
     pub fn no_variables(
         &self,
         call: Call,
@@ -78,12 +95,11 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// `fmi2SetRealInputDerivatives`: derivatives of inputs for the next step.
+    /// `fmi2SetRealInputDerivatives`: derivatives of inputs for the next step. Sets all or none.
     ///
     /// # Errors
     ///
-    /// A variable is no input, an order is not 1 or 2, or a value is not finite; none is taken
-    /// then.
+    /// A variable is no input, an order is not 1 or 2, or a value is not finite.
     pub fn set_real_input_derivatives(
         &mut self,
         value_references: &[u32],
@@ -94,17 +110,14 @@ impl<M: Model> Instance<M> {
         let entries = value_references.iter().zip(orders).zip(values);
         for ((&value_reference, &order), &value) in entries.clone() {
             let variable = self.variable(value_reference)?;
+            let name = || variable.name.clone();
             if variable.causality != Causality::Input {
-                return Err(Error::NotSettable {
-                    name: variable.name.clone(),
-                    why: "no input, and only inputs have input derivatives",
-                });
+                let why = "no input, and only inputs have input derivatives";
+                return Err(Error::NotSettable { name: name(), why });
             }
             if !(1..=2).contains(&order) {
-                return Err(Error::DerivativeOrder {
-                    name: variable.name.clone(),
-                    order,
-                });
+                let name = name();
+                return Err(Error::DerivativeOrder { name, order });
             }
             check_finite(&variable.name, value)?;
         }
@@ -115,11 +128,11 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi2GetReal`. Computes what is asked for and not known yet.
+    /// `fmi2GetReal`. Writes all values or none.
     ///
     /// # Errors
     ///
-    /// As [`reals`](Self::reals); nothing is written then.
+    /// As [`reals`](Self::reals).
     pub fn get_real(&mut self, value_references: &[u32], values: &mut [f64]) -> Result<(), Error> {
         for (to, value) in values.iter_mut().zip(self.reals(value_references)?) {
             *to = value;
@@ -127,7 +140,8 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// The values of Real variables, in the order of their references.
+    /// Returns the values of Real variables in the order of their references. Computes only the
+    /// groups that are asked for.
     ///
     /// # Errors
     ///
@@ -137,46 +151,41 @@ impl<M: Model> Instance<M> {
         value_references: &'a [u32],
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetReal)?;
-        if let Some(places) = self.places_in_row(value_references) {
-            let phase = self.state.phase();
-            let values = self.model.row_values(places, phase, &self.logger)?;
-            return Ok(Reals::InRow(values.iter()));
+        let run = consecutive(value_references);
+        let groups = match run.clone().and_then(|run| self.groups.get(run)) {
+            Some(groups) => groups.iter().fold(0, |all, group| all | group),
+            None => value_references.iter().fold(0, |all, &vr| {
+                let group = self.groups.get(vr as usize);
+                all | group.map_or(NO_REAL, |group| *group)
+            }),
+        };
+        if groups & NO_REAL != 0 {
+            return Err(self.why_not_real(value_references));
         }
-        for &value_reference in value_references {
-            let variable = self.variable(value_reference)?;
-            if !variable.kind.is_real() {
-                return Err(wrong_type(variable, "Real"));
-            }
-            self.make_ready(variable.quantity)?;
-        }
-        Ok(Reals::OneByOne {
-            model: &mut self.model,
-            quantities: &self.quantities,
-            left: value_references.iter(),
+        self.refresh(Call::GetReal, groups)?;
+        let values = self.model.reals();
+        Ok(match run {
+            Some(run) => Reals::Consecutive(values[run].iter()),
+            None => Reals::Scattered(value_references.iter(), values),
         })
     }
 
-    /// The places in the model's row that are asked for, if they are next to each other.
-    #[inline]
-    fn places_in_row(&self, value_references: &[u32]) -> Option<Range<usize>> {
-        let first = *value_references.first()?;
-        let count = value_references.len();
-        let end = (first as usize).checked_add(count)?;
-        if first < self.row.start || end > self.row.end as usize {
-            return None;
+    /// Returns the error for the first reference that is no Real.
+    #[cold]
+    fn why_not_real(&self, value_references: &[u32]) -> Error {
+        let mut variables = value_references.iter().map(|&vr| self.variable(vr));
+        let first = variables.find(|v| !v.as_ref().is_ok_and(|v| v.kind.is_real()));
+        match first.expect("the caller has found one") {
+            Ok(variable) => wrong_type(variable, "Real"),
+            Err(unknown) => unknown,
         }
-        // No branch a reference: quicker, as nearly all hosts ask like this.
-        let differences = (first..).zip(value_references);
-        let differ = differences.fold(0, |differ, (expected, given)| differ | (expected ^ given));
-        let start = (first - self.row.start) as usize;
-        (differ == 0).then_some(start..start + count)
     }
 
-    /// `fmi2GetInteger`, for enumerations as well.
+    /// `fmi2GetInteger`, for Enumerations as well. Writes all values or none.
     ///
     /// # Errors
     ///
-    /// As [`integers`](Self::integers); nothing is written then.
+    /// As [`integers`](Self::integers).
     pub fn get_integer(
         &mut self,
         value_references: &[u32],
@@ -188,12 +197,11 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// The values of Integer and Enumeration variables, in the order of their references.
+    /// Returns the values of Integer and Enumeration variables in the order of their references.
     ///
     /// # Errors
     ///
-    /// A variable is unknown or neither Integer nor Enumeration; or it has no value for the
-    /// values set.
+    /// A variable is unknown, or neither Integer nor Enumeration.
     pub fn integers<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -204,20 +212,19 @@ impl<M: Model> Instance<M> {
             if variable.kind.is_real() {
                 return Err(wrong_type(variable, "Integer or Enumeration"));
             }
-            self.make_ready(variable.quantity)?;
         }
-        let (model, quantities) = (&mut self.model, &self.quantities);
+        let (model, quantities) = (&self.model, &self.quantities);
         let values = value_references.iter();
         Ok(values.map(|&vr| model.integer(quantities[vr as usize])))
     }
 
-    /// `fmi2GetRealOutputDerivatives`: derivatives of outputs with respect to time, in the order
-    /// of their references.
+    /// `fmi2GetRealOutputDerivatives`: returns time derivatives of outputs in the order of their
+    /// references, 0 for a derivative that the model does not know (4.2.1).
     ///
     /// # Errors
     ///
-    /// [`Error::NoOutputDerivative`] for one that does not exist; a variable is no output, an
-    /// order is below 1; or it has no value for the values set.
+    /// A variable is no output, an order is below 1 or above [`Model::OUTPUT_DERIVATIVES`]; or the
+    /// output has no value for the values set.
     pub fn output_derivatives<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -225,37 +232,44 @@ impl<M: Model> Instance<M> {
     ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
         self.allow(Call::GetRealOutputDerivatives)?;
         let entries = value_references.iter().zip(orders);
+        let mut groups = 0;
         for (&value_reference, &order) in entries.clone() {
             let variable = self.variable(value_reference)?;
             let name = || variable.name.clone();
             if variable.causality != Causality::Output {
                 return Err(Error::NotOutput { name: name() });
             }
-            if order < 1 {
-                let name = name();
-                return Err(Error::OutputDerivativeOrder { name, order });
+            let highest = M::OUTPUT_DERIVATIVES;
+            if !(1..=highest).contains(&order) {
+                return Err(Error::OutputDerivativeOrder {
+                    name: name(),
+                    order,
+                    highest,
+                });
             }
-            let derivative = self.model.time_derivative(variable.quantity, order as u32);
-            let Some(derivative) = derivative else {
-                let name = name();
-                return Err(Error::NoOutputDerivative { name, order });
-            };
-            self.make_ready(derivative)?;
+            if let Some(derivative) = self.derivative(value_reference, order) {
+                groups |= self.groups[derivative as usize];
+            }
         }
-        let (model, quantities) = (&mut self.model, &self.quantities);
-        Ok(entries.map(|(&vr, &order)| {
-            let derivative = model.time_derivative(quantities[vr as usize], order as u32);
-            model.real(derivative.expect("checked above"))
+        self.refresh(Call::GetRealOutputDerivatives, groups)?;
+        Ok(entries.map(|(&value_reference, &order)| {
+            let derivative = self.derivative(value_reference, order);
+            derivative.map_or(0.0, |vr| self.model.reals()[vr as usize])
         }))
     }
 
-    /// `fmi2GetDirectionalDerivative`: how outputs change along a direction in the space of
-    /// inputs; in initialization mode also calculated parameters, and along parameters.
+    /// Returns the reference of a variable's time derivative.
+    fn derivative(&self, value_reference: u32, order: i32) -> Option<u32> {
+        (0..order).try_fold(value_reference, |vr, _| self.derivatives[vr as usize])
+    }
+
+    /// `fmi2GetDirectionalDerivative`: returns the directional derivatives of outputs by inputs and
+    /// time; in initialization mode also of calculated parameters and by parameters.
     ///
     /// # Errors
     ///
-    /// A variable is not one of these, or given twice; a change is not finite; or there is no
-    /// derivative for the values set.
+    /// A variable is none of these; a change is not finite; or the derivative does not exist for
+    /// the values set.
     pub fn directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -274,12 +288,12 @@ impl<M: Model> Instance<M> {
         for (&value_reference, &change) in knowns.iter().zip(changes) {
             let variable = self.variable(value_reference)?;
             let known = match variable.causality {
-                Causality::Input => true,
+                Causality::Input | Causality::Independent => true,
                 Causality::Parameter => initializing && variable.kind.is_real(),
                 _ => false,
             };
             if !known {
-                return refuse(variable, "derivatives are taken by inputs");
+                return refuse(variable, "derivatives are taken by inputs and time");
             }
             check_finite(&variable.name, change)?;
             directions.push((variable.quantity, change));
@@ -297,19 +311,19 @@ impl<M: Model> Instance<M> {
             }
             wanted.push(variable.quantity);
         }
-        for &quantity in &wanted {
-            self.make_ready(quantity)?;
-        }
         let phase = self.state.phase();
         let logger = &self.logger;
-        Ok(self
-            .model
-            .directional_derivatives(&wanted, &directions, phase, logger)?)
+        self.model
+            .directional_derivatives(&wanted, &directions, phase, logger)
+            .map_err(|failure| self.failed(Call::GetDirectionalDerivative, failure))
     }
 
-    fn make_ready(&mut self, quantity: M::Quantity) -> Result<(), Error> {
+    #[inline]
+    fn refresh(&mut self, call: Call, groups: Groups) -> Result<(), Error> {
         let phase = self.state.phase();
-        Ok(self.model.make_ready(quantity, phase, &self.logger)?)
+        self.model
+            .refresh(groups, phase, &self.logger)
+            .map_err(|failure| self.failed(call, failure))
     }
 
     fn variable(&self, value_reference: u32) -> Result<&Variable<M::Quantity>, Error> {
@@ -322,7 +336,7 @@ impl<M: Model> Instance<M> {
             })
     }
 
-    /// The variable, if it has this type and can be set in the present state.
+    /// Returns a variable that has this type and that the host may set in the present state.
     fn settable(
         &self,
         value_reference: u32,
@@ -361,51 +375,52 @@ impl<M: Model> Instance<M> {
     }
 }
 
-/// The values of Real variables that are ready, in the order of their references.
-enum Reals<'a, M: Model> {
-    InRow(Iter<'a, f64>),
-    OneByOne {
-        model: &'a mut M,
-        quantities: &'a [M::Quantity],
-        left: Iter<'a, u32>,
-    },
+/// Returns the range of value references that are consecutive, as nearly all hosts ask for them.
+#[inline]
+fn consecutive(value_references: &[u32]) -> Option<Range<usize>> {
+    let first = *value_references.first()?;
+    let last = first.checked_add(u32::try_from(value_references.len()).ok()? - 1)?;
+    // No branch per reference: compilers use vector instructions.
+    let differences = (first..=last).zip(value_references);
+    let differ = differences.fold(0, |differ, (expected, given)| differ | (expected ^ given));
+    (differ == 0).then_some(first as usize..last as usize + 1)
 }
 
-impl<M: Model> Iterator for Reals<'_, M> {
+/// Values of Real variables in the order of their references.
+enum Reals<'a> {
+    Consecutive(Iter<'a, f64>),
+    /// References and the values of all variables.
+    Scattered(Iter<'a, u32>, &'a [f64]),
+}
+
+impl Iterator for Reals<'_> {
     type Item = f64;
 
     #[inline]
     fn next(&mut self) -> Option<f64> {
         match self {
-            Self::InRow(values) => values.next().copied(),
-            Self::OneByOne {
-                model,
-                quantities,
-                left,
-            } => Some(model.real(quantities[*left.next()? as usize])),
+            Self::Consecutive(values) => values.next().copied(),
+            Self::Scattered(references, values) => Some(values[*references.next()? as usize]),
         }
     }
 
+    /// Chooses the variant once, not per value.
     #[inline]
     fn fold<B, F: FnMut(B, f64) -> B>(self, start: B, f: F) -> B {
         match self {
-            Self::InRow(values) => values.copied().fold(start, f),
-            Self::OneByOne {
-                model,
-                quantities,
-                left,
-            } => left
-                .map(|&vr| model.real(quantities[vr as usize]))
-                .fold(start, f),
+            Self::Consecutive(values) => values.copied().fold(start, f),
+            Self::Scattered(references, values) => {
+                references.map(|&vr| values[vr as usize]).fold(start, f)
+            }
         }
     }
 }
 
-/// Whether a Real variable can have a value.
+/// Checks a value of a Real parameter.
 pub(in crate::fmi) fn check_value<Q>(variable: &Variable<Q>, value: f64) -> Result<(), Error> {
     let limits = match variable.kind {
         Kind::Real { min, max, .. } => [min, max],
-        _ => [None; 2],
+        Kind::Integer | Kind::Enumeration(_) => [None; 2],
     };
     check_limits(&variable.name, value, limits)
 }

@@ -5,11 +5,11 @@ use uuid::Uuid;
 use super::variables::TABLE_VERSION;
 use crate::mechanism::Mechanism;
 
-/// The name space of biela's GUIDs; an arbitrary constant.
+/// Name space of biela's GUIDs, an arbitrary constant.
 const NAMESPACE: Uuid = Uuid::from_u128(0x8d0c_61f7_2f0e_4b36_9a53_b1e1_a0f0_0d1e);
 
-/// The GUID of a mechanism's FMU: a hash of all its values and tables and of the version of the
-/// table of variables. Comments and layout of the file do not matter.
+/// Returns the GUID of a mechanism's FMU: a hash of its values and tables and of the version of
+/// the table of variables. Comments and layout of the file have no effect.
 #[must_use]
 pub fn guid(mechanism: &Mechanism) -> String {
     let content = format!("biela {TABLE_VERSION}\n{}", mechanism.canonical);
@@ -26,7 +26,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_and_layout_do_not_matter_and_values_do() {
+    fn values_change_the_guid_but_comments_and_layout_do_not() {
         let text = include_str!("../../../mechanisms/pendulum.toml");
         let original = guid_of(text);
         let reworded = text

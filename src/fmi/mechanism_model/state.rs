@@ -1,81 +1,87 @@
-//! All that decides how a mechanism goes on, as it is saved, restored and written.
+//! The saved state: everything that decides how a mechanism goes on.
 
 use std::sync::Arc;
 
-use super::inputs::{DriverInput, Extrapolation, RateSource};
-use super::{Freshness, MechanismModel, Settings};
+use super::input::{DriverInput, Extrapolation, RateSource};
+use super::monitor::Monitor;
+use super::{Freshness, MechanismModel, Quantity, Settings};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
 use crate::kinematics::{Crossing, Pose, Progress};
 use crate::mechanism::{DriverId, Jet};
 
-/// The residual below which a pose counts as one of the mechanism, relative to its largest
-/// coordinate in characteristic lengths and radians. Newton leaves what rounding does, some
-/// 1e-15; what is closed to this, the next step closes fully.
+/// Largest residual of a pose that is read, relative to its largest coordinate in characteristic
+/// lengths and radians. Newton leaves 1e-15; the next step closes a pose within this tolerance.
 const CLOSED: f64 = 1e-9;
 
 /// The state of a [`MechanismModel`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismState {
-    home: Arc<Pose>,
+    start_pose: Arc<Pose>,
     settings: Settings,
     inputs: Vec<DriverInput>,
+    monitors: Vec<Monitor>,
     committed: Pose,
-    /// Where the solver stands: the committed pose, or that of values set since.
-    standing: Pose,
+    /// The solver's pose: the committed one, or that of values set since.
+    present: Pose,
     at_committed: bool,
     driver_rates: Vec<Jet>,
     committed_rates: Vec<Jet>,
-    /// Never [`Freshness::Rates`]: rates follow from the pose.
+    /// [`Freshness::Stale`] or [`Freshness::Pose`]: rates follow from the pose.
     freshness: Freshness,
+    path_progress: Progress,
     progress: Progress,
     time: f64,
     near_singular: bool,
 }
 
 impl MechanismModel {
-    pub(super) fn saved(&mut self) -> MechanismState {
-        // A stale pose is found anew from the committed one.
+    pub(super) fn save_state(&mut self) -> MechanismState {
+        // The next evaluation starts from the committed pose anyway.
         if self.freshness == Freshness::Stale {
             self.solver.restore(&self.committed);
             self.at_committed = true;
         }
         self.solver.forget_way();
-        self.freshness = self.freshness.min(Freshness::Pose);
-        // Field by field, so that a new one cannot be forgotten.
+        self.set_freshness(self.freshness.min(Freshness::Pose));
+        // Destructured, so that the compiler reports a new field.
         let Self {
             mechanism: _,
             guid: _,
             interface: _,
             variables: _,
-            // The same for all instances of a mechanism, rounding apart.
-            own_home: _,
-            // Work space, laid anew for each step.
+            // Equal in all instances of a mechanism, up to rounding.
+            file_pose: _,
+            // Set for each step.
             path: _,
-            // Computed from the pose when asked for.
+            // Computed with the rates of the drivers.
+            sources: _,
+            // Computed from the pose.
             rates: _,
-            row: _,
-            coordinates: _,
-            home,
+            reals: _,
+            start_pose,
             settings,
             inputs,
+            monitors,
             solver,
             committed,
             at_committed,
             driver_rates,
             committed_rates,
             freshness,
+            path_progress,
             progress,
             time,
             near_singular,
         } = self;
         MechanismState {
-            home: Arc::clone(home),
+            start_pose: Arc::clone(start_pose),
             settings: settings.clone(),
             inputs: inputs.clone(),
+            monitors: monitors.clone(),
             committed: committed.clone(),
-            standing: if *at_committed {
+            present: if *at_committed {
                 committed.clone()
             } else {
                 solver.pose().clone()
@@ -84,52 +90,59 @@ impl MechanismModel {
             driver_rates: driver_rates.clone(),
             committed_rates: committed_rates.clone(),
             freshness: *freshness,
+            path_progress: *path_progress,
             progress: *progress,
             time: *time,
             near_singular: *near_singular,
         }
     }
 
-    pub(super) fn go_back_to(&mut self, state: &MechanismState) {
-        self.home = Arc::clone(&state.home);
+    pub(super) fn restore_state(&mut self, state: &MechanismState) {
+        self.start_pose = Arc::clone(&state.start_pose);
         self.settings.clone_from(&state.settings);
         self.inputs.clone_from(&state.inputs);
+        self.monitors.clone_from(&state.monitors);
         self.committed.clone_from(&state.committed);
-        self.solver.restore(&state.standing);
+        self.solver.restore(&state.present);
         self.solver.forget_way();
         self.at_committed = state.at_committed;
         self.driver_rates.clone_from(&state.driver_rates);
         self.committed_rates.clone_from(&state.committed_rates);
-        self.freshness = state.freshness;
+        self.set_freshness(state.freshness);
+        self.path_progress = state.path_progress;
         self.progress = state.progress;
         self.time = state.time;
         self.near_singular = state.near_singular;
     }
 
-    /// Makes sure that nothing in a state that was read can lead where no model could be. Leaves
-    /// the solver at any pose.
+    /// Checks that a model can be in a state that was read. Leaves the solver at any pose.
+    ///
+    /// # Errors
+    ///
+    /// A value is outside its limits, or a pose is none of this mechanism.
     pub(super) fn check_state(&mut self, state: &mut MechanismState) -> Result<(), String> {
-        // Whatever the bytes say of derived parameters.
+        // Derived parameters follow from the others.
         self.mechanism
             .derive_parameters(&mut state.settings.parameters);
         for variable in &self.variables {
             if variable.causality == Causality::Parameter
-                && let Some(value) = state.settings.parameter(variable.quantity)
+                && let Quantity::Parameter(parameter) = variable.quantity
             {
+                let value = state.settings.parameters[parameter.index()];
                 check_value(variable, value).map_err(|error| error.to_string())?;
             }
         }
-        for pose in [&state.home, &state.committed, &state.standing] {
+        for pose in [&state.start_pose, &state.committed, &state.present] {
             self.check_pose(pose)?;
         }
-        // The usual case, which needs no second copy.
-        if state.home == self.own_home {
-            state.home = Arc::clone(&self.own_home);
+        // The usual case, in which instances share one copy.
+        if state.start_pose == self.file_pose {
+            state.start_pose = Arc::clone(&self.file_pose);
         }
         Ok(())
     }
 
-    /// Makes sure that the equations can be evaluated at a pose and hold there.
+    /// Checks that the equations exist at a pose and hold there.
     fn check_pose(&mut self, pose: &Pose) -> Result<(), String> {
         let system = self.solver.system();
         let (mut at, mut targets) = (system.configuration(), system.targets());
@@ -141,11 +154,11 @@ impl MechanismModel {
             largest.max((q / system.column_scale(column, at.size())).abs())
         });
         if !self.solver.admits_crossings(pose) {
-            return Err("its change points are none of this mechanism".to_owned());
+            return Err("its change points do not belong to this mechanism".to_owned());
         }
         self.solver.restore(pose);
         let residual = self.solver.residual();
-        // Not a number is not closed either.
+        // False for NaN too.
         if residual <= CLOSED * largest {
             Ok(())
         } else {
@@ -155,17 +168,19 @@ impl MechanismModel {
 }
 
 impl MechanismState {
-    pub(super) fn walk(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
+    pub(super) fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
         let Self {
-            home,
+            start_pose,
             settings,
             inputs,
+            monitors,
             committed,
-            standing,
+            present,
             at_committed,
             driver_rates,
             committed_rates,
             freshness,
+            path_progress,
             progress,
             time,
             near_singular,
@@ -174,34 +189,42 @@ impl MechanismState {
         codec.flag(at_committed)?;
         codec.flag(near_singular)?;
         codec.finite(time)?;
-        codec.count(&mut progress.iterations)?;
-        codec.count(&mut progress.substeps)?;
-        codec.count(&mut progress.crossings)?;
-        codec.count(&mut progress.checked)?;
-        // Derived parameters may be anything until values are looked at together.
+        for Progress {
+            iterations,
+            substeps,
+            crossings,
+            checked,
+        } in [path_progress, progress]
+        {
+            for count in [iterations, substeps, crossings, checked] {
+                codec.count(count)?;
+            }
+        }
+        // Derived parameters may have any value: `check_state` derives them again.
         for value in &mut settings.parameters {
             codec.real(value)?;
         }
-        codec.one_of(&mut settings.rates, &RateSource::ALL)?;
-        codec.one_of(&mut settings.extrapolation, &Extrapolation::ALL)?;
-        for input in inputs {
-            input.walk(codec)?;
+        codec.one_of(&mut settings.rule.rates, &RateSource::ALL)?;
+        codec.one_of(&mut settings.rule.extrapolation, &Extrapolation::ALL)?;
+        for (input, monitor) in inputs.iter_mut().zip(monitors) {
+            input.visit(codec)?;
+            monitor.visit(codec)?;
         }
-        // A prescribed motion may have rates that are not finite; who asks for them is told.
+        // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {
             codec.real(&mut rates.value)?;
             for rate in &mut rates.derivatives {
                 codec.real(rate)?;
             }
         }
-        for pose in [Arc::make_mut(home), committed, standing] {
-            walk_pose(pose, codec)?;
+        for pose in [Arc::make_mut(start_pose), committed, present] {
+            visit_pose(pose, codec)?;
         }
         Ok(())
     }
 }
 
-fn walk_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> {
+fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> {
     let Pose {
         time,
         parameters,
@@ -228,10 +251,10 @@ fn walk_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> 
     })?;
     crossings
         .iter_mut()
-        .try_for_each(|crossing| walk_crossing(Arc::make_mut(crossing), unknowns, codec))
+        .try_for_each(|crossing| visit_crossing(Arc::make_mut(crossing), unknowns, codec))
 }
 
-fn walk_crossing(
+fn visit_crossing(
     crossing: &mut Crossing,
     unknowns: usize,
     codec: &mut impl Codec,
@@ -244,8 +267,8 @@ fn walk_crossing(
         coefficients,
         free,
     } = crossing;
-    codec.place(block)?;
-    codec.place(&mut driver.0)?;
+    codec.index(block)?;
+    codec.index(&mut driver.0)?;
     codec.finite(center)?;
     codec.finite(half_width)?;
     codec.resize(coefficients, unknowns, || [0.0; 6])?;

@@ -9,10 +9,10 @@ use crate::fmi::package::{self, Document, PackageError, RuntimeLibrary};
 use crate::kinematics::Structure;
 use crate::mechanism::{Diagnostic, Mechanism, Severity, Source};
 
-/// The mechanism's file inside `resources/`.
+/// Name of the mechanism's file in `resources/`.
 pub const RESOURCE: &str = "mechanism.toml";
 
-/// Reads the mechanism in the folder of resources.
+/// Reads the mechanism from the folder of resources.
 pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
     let path = resources.join(RESOURCE);
     let source = Source::open(RESOURCE, &path).map_err(|error| {
@@ -32,10 +32,8 @@ pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
         })
 }
 
-/// Writes the FMU of a mechanism: its file, its model description, the runtime libraries and
-/// what documents it.
-///
-/// The same input gives the same bytes: entries have a fixed order and a fixed time.
+/// Writes the FMU of a mechanism: its file, its model description, runtime libraries and
+/// documents. The same input gives the same bytes.
 ///
 /// # Errors
 ///

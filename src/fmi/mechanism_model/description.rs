@@ -1,0 +1,203 @@
+//! The model description of a mechanism's FMU.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::variables::{Order, Quantity, Signal, is_angle, variables};
+use super::{MechanismModel, guid};
+use crate::fmi::model::Model;
+use crate::fmi::model_description::{
+    Capabilities, DependencyKind, Experiment, ModelDescription, Unknown,
+};
+use crate::fmi::variable::{Causality, Kind, Variable};
+use crate::kinematics::{Dependencies, Structure, System};
+use crate::mechanism::{DriverId, Mechanism, Unit};
+
+/// Capabilities of a [`MechanismModel`](super::MechanismModel).
+const CAPABILITIES: Capabilities = Capabilities {
+    interpolates_inputs: true,
+    output_derivatives: MechanismModel::OUTPUT_DERIVATIVES as u32,
+    directional_derivatives: true,
+};
+
+/// Returns the model description of a mechanism's FMU.
+#[must_use]
+pub fn describe<'a>(
+    mechanism: &'a Mechanism,
+    structure: &Structure,
+) -> ModelDescription<'a, Quantity> {
+    let mut variables = variables(mechanism);
+    set_nominal(mechanism, &mut variables);
+    let indices = Indices::new(mechanism, &variables);
+    let mut outputs = Vec::new();
+    let mut initial_unknowns = Vec::new();
+    for (index, variable) in (1..).zip(&variables) {
+        let order = match (variable.quantity, variable.causality) {
+            (Quantity::Output(_, order), _) => order,
+            (_, Causality::CalculatedParameter) => Order::Position,
+            _ => continue,
+        };
+        let dependencies = variable.quantity.dependencies(mechanism, structure);
+        if variable.causality == Causality::Output {
+            outputs.push(Unknown {
+                index,
+                dependencies: indices.outputs(&dependencies),
+            });
+        }
+        initial_unknowns.push(Unknown {
+            index,
+            dependencies: indices.initial(mechanism, variable.quantity, &dependencies, order),
+        });
+    }
+    let simulation = &mechanism.simulation;
+    ModelDescription {
+        name: &mechanism.name,
+        description: &mechanism.description,
+        author: mechanism.author.as_deref(),
+        version: mechanism.version.as_deref(),
+        copyright: mechanism.copyright.as_deref(),
+        license: mechanism.license.as_deref(),
+        guid: guid(mechanism),
+        experiment: Experiment {
+            start: simulation.start,
+            stop: simulation.stop,
+            step: simulation.step,
+            tolerance: simulation.tolerance,
+        },
+        capabilities: CAPABILITIES,
+        variables,
+        outputs,
+        initial_unknowns,
+    }
+}
+
+/// Indices of variables in the model description, counted from 1.
+struct Indices {
+    /// First of the three inputs of each driver that is an input.
+    inputs: Vec<Option<usize>>,
+    /// Each parameter.
+    parameters: Vec<usize>,
+    rate_source: Option<usize>,
+    time: usize,
+}
+
+impl Indices {
+    fn new(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Self {
+        let mut indices = Self {
+            inputs: vec![None; mechanism.drivers.len()],
+            parameters: vec![0; mechanism.parameters.len()],
+            rate_source: None,
+            time: 0,
+        };
+        for (index, variable) in (1..).zip(variables) {
+            match variable.quantity {
+                Quantity::Input(driver, Order::Position) => {
+                    indices.inputs[driver.index()] = Some(index);
+                }
+                Quantity::Parameter(parameter) => indices.parameters[parameter.index()] = index,
+                Quantity::RateSource => indices.rate_source = Some(index),
+                Quantity::Time => indices.time = index,
+                _ => {}
+            }
+        }
+        indices
+    }
+
+    /// Returns the inputs and the time that an output depends on, over all settings of `rates` and
+    /// `extrapolation`: estimated rates depend on positions, extrapolated positions on rates.
+    fn outputs(&self, dependencies: &Dependencies) -> BTreeMap<usize, DependencyKind> {
+        self.drivers(dependencies, Order::Acceleration)
+    }
+
+    /// Returns the inputs up to an order, and the time.
+    fn drivers(
+        &self,
+        dependencies: &Dependencies,
+        order: Order,
+    ) -> BTreeMap<usize, DependencyKind> {
+        let mut indices = BTreeMap::new();
+        for driver in &dependencies.drivers {
+            let of_driver = match self.inputs[driver.index()] {
+                Some(first) => first..=first + order as usize,
+                None => self.time..=self.time,
+            };
+            indices.extend(of_driver.map(|index| (index, DependencyKind::Dependent)));
+        }
+        indices
+    }
+
+    /// Returns everything that a quantity of this order depends on in initialization mode, where
+    /// nothing is extrapolated: parameters as well.
+    fn initial(
+        &self,
+        mechanism: &Mechanism,
+        quantity: Quantity,
+        dependencies: &Dependencies,
+        order: Order,
+    ) -> BTreeMap<usize, DependencyKind> {
+        let mut indices = self.drivers(dependencies, order);
+        if let Some(driver) = driver_angle(mechanism, quantity)
+            && let Some(index) = self.inputs[driver.index()]
+        {
+            indices.insert(index, DependencyKind::Constant);
+        }
+        let mut add = |index| indices.insert(index, DependencyKind::Dependent);
+        // A quantity that no driver moves has rates of zero for any parameters.
+        if order == Order::Position || !dependencies.drivers.is_empty() {
+            for id in &dependencies.parameters {
+                add(self.parameters[id.index()]);
+            }
+        }
+        let mut drivers = dependencies.drivers.iter();
+        if order > Order::Position && drivers.any(|id| self.inputs[id.index()].is_some()) {
+            self.rate_source.map(add);
+        }
+        indices
+    }
+}
+
+/// Returns the driver whose value a quantity differs from by a constant only, up to its sign: the
+/// angle of a body that the driver turns against ground.
+fn driver_angle(mechanism: &Mechanism, quantity: Quantity) -> Option<DriverId> {
+    let Quantity::Output(Signal::Body(body, 2), Order::Position) = quantity else {
+        return None;
+    };
+    let drivers = mechanism.drivers.iter();
+    let found = drivers
+        .map(|driver| &driver.coordinate)
+        .position(|coordinate| {
+            let bodies =
+                [coordinate.from, coordinate.to].map(|id| mechanism.markers[id.index()].body);
+            is_angle(coordinate) && (bodies == [None, Some(body)] || bodies == [Some(body), None])
+        });
+    found.map(DriverId)
+}
+
+/// Gives lengths among inputs and outputs the mechanism's size as their usual magnitude, rounded to
+/// one digit. Angles have the order of 1, which is the default.
+fn set_nominal(mechanism: &Mechanism, variables: &mut [Variable<Quantity>]) {
+    let system = System::new(Arc::new(mechanism.clone()));
+    let (mut at, mut targets) = (system.configuration(), system.targets());
+    let parameters = mechanism.default_parameters();
+    if system
+        .set_parameters(&parameters, &mut at, &mut targets)
+        .is_err()
+    {
+        return;
+    }
+    let Ok(size) = format!("{:.0e}", at.size()).parse() else {
+        return;
+    };
+    for variable in variables {
+        let is_position = matches!(
+            variable.quantity,
+            Quantity::Input(_, Order::Position) | Quantity::Output(_, Order::Position)
+        );
+        if let Kind::Real { unit, nominal, .. } = &mut variable.kind
+            && unit.is_some_and(|unit| unit.name == Unit::METRE.name)
+            && is_position
+        {
+            *nominal = Some(size);
+        }
+    }
+}

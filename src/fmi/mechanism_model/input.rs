@@ -1,0 +1,662 @@
+//! The inputs of one driver: their path during a step, and the rates in force.
+//!
+//! Input derivatives shape the path of the variable that they are given for. Each rate comes from
+//! the first source in its column that there is:
+//!
+//! | velocity | acceleration |
+//! |---|---|
+//! | the input `.velocity`, if it is in use | the input `.acceleration`, if it is in use |
+//! | order 1 of `.position` | order 1 of `.velocity` |
+//! | | order 2 of `.position` |
+//! | | the backward difference of two velocities that are no estimates |
+//! | the estimate | the estimate |
+//!
+//! The parameter `rates` decides whether an input is in use: `inputs` always, `estimated` never,
+//! `auto` once the host has set it to other than zero after initialization. The estimate
+//! differentiates the parabola through the last three positions at the newest one.
+
+use std::f64::consts::TAU;
+
+use super::variables::Order;
+use crate::fmi::codec::{Codec, Unreadable};
+
+/// Use of the rate inputs: the FMU's parameter `rates`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RateSource {
+    Auto = 1,
+    Inputs = 2,
+    Estimated = 3,
+}
+
+impl RateSource {
+    pub(super) const ALL: [Self; 3] = [Self::Auto, Self::Inputs, Self::Estimated];
+}
+
+/// Path of positions without input derivatives: the FMU's parameter `extrapolation`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Extrapolation {
+    Hold = 1,
+    Taylor = 2,
+}
+
+impl Extrapolation {
+    pub(super) const ALL: [Self; 2] = [Self::Hold, Self::Taylor];
+}
+
+/// The FMU's parameters that decide about paths and rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Rule {
+    pub(super) rates: RateSource,
+    pub(super) extrapolation: Extrapolation,
+}
+
+/// Source of a rate in force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Source {
+    /// The rate input.
+    Input,
+    /// Input derivatives.
+    Derivatives,
+    /// The backward difference of velocities that are no estimates.
+    Difference,
+    /// The parabola through the last three positions.
+    #[default]
+    Estimate,
+}
+
+impl Source {
+    pub(super) const ALL: [Self; 4] = [
+        Self::Input,
+        Self::Derivatives,
+        Self::Difference,
+        Self::Estimate,
+    ];
+}
+
+/// Velocity and acceleration of a driver.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct DriverRates {
+    pub(super) velocity: f64,
+    pub(super) acceleration: f64,
+}
+
+/// The inputs at one communication point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sample {
+    pub(super) time: f64,
+    pub(super) position: f64,
+    /// Velocity in force, unless it is an estimate.
+    pub(super) velocity: Option<f64>,
+    /// Acceleration in force, if it is an input.
+    pub(super) acceleration: Option<f64>,
+}
+
+/// The last three samples, newest first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct History([Option<Sample>; 3]);
+
+/// The three FMI inputs of one driver.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DriverInput {
+    /// Position, velocity and acceleration as set by the host.
+    values: [f64; 3],
+    /// Position in force: of a wrapped angle the turn nearest the driver's last value.
+    position: f64,
+    /// First and second derivative of each value for the next step, if set by the host.
+    derivatives: [[Option<f64>; 2]; 3],
+    /// Whether the host has set velocity and acceleration to other than zero after initialization.
+    used: [bool; 2],
+    history: History,
+    /// Size \[s\] of the last step if the rates extrapolated the position in it, else 0.
+    extrapolated_over: f64,
+}
+
+/// Ratio of two consecutive steps below which the shorter one is left out of estimates. Hosts mark
+/// a jump by a step of 1e-12 s; step size controls change steps by a factor of ten at most.
+const SHORT_STEP: f64 = 0.01;
+
+impl DriverInput {
+    /// Returns the inputs at their start values: rates of zero.
+    pub(super) fn new(start: f64) -> Self {
+        Self {
+            values: [start, 0.0, 0.0],
+            position: start,
+            derivatives: [[None; 2]; 3],
+            used: [false; 2],
+            history: History::default(),
+            extrapolated_over: 0.0,
+        }
+    }
+
+    /// Returns an input as set by the host.
+    pub(super) fn get(&self, order: Order) -> f64 {
+        self.values[order as usize]
+    }
+
+    /// Returns the position in force.
+    pub(super) fn position(&self) -> f64 {
+        self.position
+    }
+
+    pub(super) fn set(&mut self, order: Order, value: f64) {
+        self.values[order as usize] = value;
+        match order {
+            Order::Position => self.position = value,
+            Order::Velocity => self.used[0] |= value != 0.0,
+            Order::Acceleration => self.used[1] |= value != 0.0,
+        }
+    }
+
+    /// Sets a position modulo one turn: the turn nearest `last`.
+    pub(super) fn set_wrapped(&mut self, value: f64, last: f64) {
+        self.set(Order::Position, value);
+        self.position += TAU * ((last - value) / TAU).round();
+    }
+
+    /// Sets the derivative of order 1 or 2 of one of the three inputs for the next step.
+    pub(super) fn set_derivative(&mut self, order: Order, derivative: usize, value: f64) {
+        self.derivatives[order as usize][derivative - 1] = Some(value);
+    }
+
+    /// Ends initialization: rate inputs set before count at the start only.
+    pub(super) fn start(&mut self) {
+        self.used = [false; 2];
+    }
+
+    /// Returns the rate inputs.
+    pub(super) fn given_rates(&self) -> DriverRates {
+        DriverRates {
+            velocity: self.values[1],
+            acceleration: self.values[2],
+        }
+    }
+
+    /// Returns velocity and acceleration of the position's path at the start of a step of size `h`
+    /// from `time`.
+    pub(super) fn path(&self, rule: Rule, time: f64, h: f64) -> DriverRates {
+        if self.is_extrapolated(rule) {
+            return self.rates(rule.rates, time, h, 0.0).0;
+        }
+        let [velocity, acceleration] = self.derivatives[0].map(Option::unwrap_or_default);
+        DriverRates {
+            velocity,
+            acceleration,
+        }
+    }
+
+    /// Returns whether the rates extrapolate the position in a step.
+    fn is_extrapolated(&self, rule: Rule) -> bool {
+        rule.extrapolation == Extrapolation::Taylor && self.derivatives[0] == [None, None]
+    }
+
+    /// Returns the rates in force at the end of a step of size `h` from `time`, and their sources;
+    /// with `h = 0` those at `time` itself.
+    pub(super) fn rates_after(&self, rule: Rule, time: f64, h: f64) -> (DriverRates, [Source; 2]) {
+        if self.is_extrapolated(rule) {
+            let (mut rates, sources) = self.rates(rule.rates, time, h, 0.0);
+            rates.velocity += h * rates.acceleration;
+            (rates, sources)
+        } else {
+            self.rates(rule.rates, time, h, h)
+        }
+    }
+
+    /// Returns the rates by the table above, at `at` in a step of size `h` from `time`.
+    fn rates(&self, rates: RateSource, time: f64, h: f64, at: f64) -> (DriverRates, [Source; 2]) {
+        let velocity = self.given_velocity(rates, at);
+        let acceleration = self.given_acceleration(rates, at);
+        if let (Some((velocity, of_velocity)), Some((acceleration, of_acceleration))) =
+            (velocity, acceleration)
+        {
+            let rates = DriverRates {
+                velocity,
+                acceleration,
+            };
+            return (rates, [of_velocity, of_acceleration]);
+        }
+        let history = self.history.with(self.sample(rates, time), h);
+        let estimate = history.estimate();
+        let (velocity, of_velocity) = velocity.unwrap_or((estimate.velocity, Source::Estimate));
+        let difference = || Some((history.difference()?, Source::Difference));
+        let (acceleration, of_acceleration) = acceleration
+            .or_else(difference)
+            .unwrap_or((estimate.acceleration, Source::Estimate));
+        let rates = DriverRates {
+            velocity,
+            acceleration,
+        };
+        (rates, [of_velocity, of_acceleration])
+    }
+
+    fn given_velocity(&self, rates: RateSource, h: f64) -> Option<(f64, Source)> {
+        if self.is_used(Order::Velocity, rates, h) {
+            return Some((self.extrapolated(Order::Velocity, h), Source::Input));
+        }
+        let [first, second] = self.derivatives[0];
+        Some((first? + h * second.unwrap_or(0.0), Source::Derivatives))
+    }
+
+    fn given_acceleration(&self, rates: RateSource, h: f64) -> Option<(f64, Source)> {
+        if self.is_used(Order::Acceleration, rates, h) {
+            return Some((self.extrapolated(Order::Acceleration, h), Source::Input));
+        }
+        let [[_, of_position], [first, second], _] = self.derivatives;
+        let of_velocity = first.map(|first| first + h * second.unwrap_or(0.0));
+        Some((of_velocity.or(of_position)?, Source::Derivatives))
+    }
+
+    /// Returns whether a rate input is in use at the end of a step of size `h`.
+    fn is_used(&self, order: Order, rates: RateSource, h: f64) -> bool {
+        match rates {
+            RateSource::Inputs => true,
+            RateSource::Estimated => false,
+            RateSource::Auto => {
+                let at_start = h <= 0.0 && self.history.is_empty();
+                self.used[order as usize - 1] || at_start && self.values[order as usize] != 0.0
+            }
+        }
+    }
+
+    /// Returns a rate input at `h` on the path of its own derivatives.
+    fn extrapolated(&self, order: Order, h: f64) -> f64 {
+        let [first, second] = self.derivatives[order as usize];
+        self.values[order as usize] + h * (first.unwrap_or(0.0) + 0.5 * h * second.unwrap_or(0.0))
+    }
+
+    /// Returns the inputs at a communication point.
+    fn sample(&self, rates: RateSource, time: f64) -> Sample {
+        let value = |(value, _): (f64, Source)| value;
+        Sample {
+            time,
+            position: self.position,
+            velocity: self.given_velocity(rates, 0.0).map(value),
+            acceleration: (self.given_acceleration(rates, 0.0))
+                .filter(|(_, source)| *source == Source::Input)
+                .map(value),
+        }
+    }
+
+    /// Returns the size \[s\] of the last step if the rates extrapolated the position in it, else 0.
+    pub(super) fn extrapolated_over(&self) -> f64 {
+        self.extrapolated_over
+    }
+
+    /// Returns the last recorded sample before `time`.
+    pub(super) fn last_sample(&self, time: f64) -> Option<Sample> {
+        self.history.0[0].filter(|last| last.time < time)
+    }
+
+    /// Returns the change of the position in the last recorded step.
+    pub(super) fn last_change(&self) -> f64 {
+        match self.history.0 {
+            [Some(newest), Some(before), _] => newest.position - before.position,
+            _ => 0.0,
+        }
+    }
+
+    /// Ends a step of size `h` from `time`: records and returns the inputs, and clears the
+    /// derivatives.
+    pub(super) fn record(&mut self, rule: Rule, time: f64, h: f64) -> Sample {
+        let sample = self.sample(rule.rates, time);
+        self.extrapolated_over = if self.is_extrapolated(rule) { h } else { 0.0 };
+        self.history = self.history.with(sample, 0.0);
+        self.derivatives = [[None; 2]; 3];
+        sample
+    }
+
+    /// Visits all fields.
+    pub(super) fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
+        let Self {
+            values,
+            position,
+            derivatives,
+            used,
+            history,
+            extrapolated_over,
+        } = self;
+        for value in values.iter_mut().chain([position, extrapolated_over]) {
+            codec.finite(value)?;
+        }
+        for derivative in derivatives.as_flattened_mut() {
+            codec.option(derivative, 0.0, |codec, value| codec.finite(value))?;
+        }
+        for flag in used {
+            codec.flag(flag)?;
+        }
+        let samples = history.0.iter_mut();
+        samples.into_iter().try_for_each(|sample| {
+            codec.option(sample, Sample::default(), |codec, sample| {
+                codec.finite(&mut sample.time)?;
+                codec.finite(&mut sample.position)?;
+                for rate in [&mut sample.velocity, &mut sample.acceleration] {
+                    codec.option(rate, 0.0, |codec, value| codec.finite(value))?;
+                }
+                Ok(())
+            })
+        })
+    }
+}
+
+impl History {
+    fn is_empty(&self) -> bool {
+        self.0[0].is_none()
+    }
+
+    /// Returns the history with a new sample, from which a step of size `h` starts. Leaves out the
+    /// earlier end of a step that is short beside the one before or after.
+    fn with(&self, sample: Sample, h: f64) -> Self {
+        let short = |step: f64, neighbour: f64| step < SHORT_STEP * neighbour;
+        match self.0 {
+            // The same communication point.
+            [Some(newest), b, c] if newest.time >= sample.time => Self([Some(sample), b, c]),
+            [Some(newest), Some(b), c]
+                if short(sample.time - newest.time, newest.time - b.time) =>
+            {
+                Self([Some(sample), Some(b), c])
+            }
+            [Some(newest), Some(b), None]
+                if short(newest.time - b.time, sample.time - newest.time) =>
+            {
+                Self([Some(sample), Some(newest), None])
+            }
+            [Some(newest), None, None] if short(sample.time - newest.time, h) => {
+                Self([Some(sample), None, None])
+            }
+            [a, b, _] => Self([Some(sample), a, b]),
+        }
+    }
+
+    /// Returns the derivatives of the polynomial through all samples at the newest one.
+    fn estimate(&self) -> DriverRates {
+        let slope = |a: Sample, b: Sample| (a.position - b.position) / (a.time - b.time);
+        match self.0 {
+            [Some(newest), Some(before), Some(oldest)] => {
+                let last = slope(newest, before);
+                let curvature = (last - slope(before, oldest)) / (newest.time - oldest.time);
+                DriverRates {
+                    velocity: last + curvature * (newest.time - before.time),
+                    acceleration: 2.0 * curvature,
+                }
+            }
+            [Some(newest), Some(before), None] => DriverRates {
+                velocity: slope(newest, before),
+                acceleration: 0.0,
+            },
+            _ => DriverRates::default(),
+        }
+    }
+
+    /// Returns the backward difference of the last two velocities, if both are no estimates.
+    fn difference(&self) -> Option<f64> {
+        let [Some(newest), Some(before), _] = self.0 else {
+            return None;
+        };
+        Some((newest.velocity? - before.velocity?) / (newest.time - before.time))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AUTO: Rule = rule(RateSource::Auto, Extrapolation::Hold);
+    const INPUTS: Rule = rule(RateSource::Inputs, Extrapolation::Hold);
+    const ESTIMATED: Rule = rule(RateSource::Estimated, Extrapolation::Hold);
+    const TAYLOR: Rule = rule(RateSource::Auto, Extrapolation::Taylor);
+    const RULES: [Rule; 6] = [
+        AUTO,
+        INPUTS,
+        ESTIMATED,
+        TAYLOR,
+        rule(RateSource::Inputs, Extrapolation::Taylor),
+        rule(RateSource::Estimated, Extrapolation::Taylor),
+    ];
+
+    const fn rule(rates: RateSource, extrapolation: Extrapolation) -> Rule {
+        Rule {
+            rates,
+            extrapolation,
+        }
+    }
+
+    fn rates(velocity: f64, acceleration: f64) -> DriverRates {
+        DriverRates {
+            velocity,
+            acceleration,
+        }
+    }
+
+    /// Returns an input that a host set to `position(t)` before a step at each of these times, the
+    /// last of which has not ended yet.
+    fn in_steps(times: &[f64], position: impl Fn(f64) -> f64) -> DriverInput {
+        let mut input = DriverInput::new(0.0);
+        for (step, &time) in times.iter().enumerate() {
+            if step > 0 {
+                input.record(AUTO, times[step - 1], time - times[step - 1]);
+            }
+            input.set(Order::Position, position(time));
+        }
+        input
+    }
+
+    fn rates_after(input: &DriverInput, rule: Rule, time: f64, h: f64) -> DriverRates {
+        input.rates_after(rule, time, h).0
+    }
+
+    // Numbers whose sums and quotients are exact in binary throughout.
+
+    #[test]
+    fn a_parabola_is_estimated_exactly_with_any_steps() {
+        let input = in_steps(&[1.0, 1.5, 3.5], |t| 2.0 + 3.0 * t + 4.0 * t * t);
+        for rule in [AUTO, ESTIMATED] {
+            let expected = rates(3.0 + 8.0 * 3.5, 8.0);
+            assert_eq!(rates_after(&input, rule, 3.5, 0.25), expected);
+        }
+    }
+
+    #[test]
+    fn two_samples_give_a_line_and_one_gives_rest() {
+        let position = |t: f64| 5.0 - 2.0 * t;
+        let one = in_steps(&[1.0], position);
+        assert_eq!(rates_after(&one, AUTO, 1.0, 1.0), rates(0.0, 0.0));
+        let two = in_steps(&[1.0, 2.0], position);
+        assert_eq!(rates_after(&two, AUTO, 2.0, 1.0), rates(-2.0, 0.0));
+    }
+
+    #[test]
+    fn a_communication_point_is_one_sample_with_any_number_of_values() {
+        let mut input = in_steps(&[0.0, 1.0], |t| t);
+        input.record(AUTO, 1.0, 1.0);
+        input.set(Order::Position, 7.0);
+        input.record(AUTO, 1.0, 1.0);
+        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(7.0, 0.0));
+    }
+
+    /// An event at t = 2 s, marked by a step of 1e-12 s, before or after which the value jumps.
+    #[test]
+    fn a_jump_is_not_divided_by_a_short_step() {
+        for event in [1e-12, 1e-6, 1e-3] {
+            let jump = |t: f64| if t > 2.0 { 1.0 } else { 0.0 };
+            for times in [
+                &[0.0, 1.0, 2.0, 2.0 + event][..],
+                &[1.0, 2.0, 2.0 + event, 3.0],
+                &[2.0, 2.0 + event, 3.0],
+                &[2.0, 2.0 + event],
+            ] {
+                let input = in_steps(times, jump);
+                let now = times[times.len() - 1];
+                let found = rates_after(&input, AUTO, now, 1.0);
+                // A jump of 1 within a step of 1 s; the parabola through it adds half as much.
+                assert!(found.velocity.abs() < 2.0, "{times:?}: {found:?}");
+            }
+        }
+    }
+
+    /// Steps of 1 ms, one of 1 µs among them: u = t² is still differentiated exactly, up to
+    /// rounding of 1e-16/1e-3².
+    #[test]
+    fn a_short_step_does_not_spoil_a_smooth_motion() {
+        let times = [0.001, 0.002, 0.003, 0.003_001, 0.004, 0.005];
+        for count in 3..=times.len() {
+            let input = in_steps(&times[..count], |t| t * t);
+            let now = times[count - 1];
+            let found = rates_after(&input, AUTO, now, 0.001);
+            assert!(
+                (found.velocity - 2.0 * now).abs() < 1e-12,
+                "{count}: {found:?}"
+            );
+            assert!(
+                (found.acceleration - 2.0).abs() < 1e-9,
+                "{count}: {found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn each_rate_input_counts_once_it_was_not_zero() {
+        let mut input = in_steps(&[0.0, 1.0, 2.0], |t| t * t);
+        input.set(Order::Velocity, 0.0);
+        input.set(Order::Acceleration, 0.0);
+        let estimated = rates(4.0, 2.0);
+        assert_eq!(rates_after(&input, AUTO, 2.0, 1.0), estimated);
+        assert_eq!(rates_after(&input, INPUTS, 2.0, 1.0), rates(0.0, 0.0));
+        // The acceleration alone: the velocity is still estimated.
+        input.set(Order::Acceleration, 20.0);
+        assert_eq!(rates_after(&input, AUTO, 2.0, 1.0), rates(4.0, 20.0));
+        input.set(Order::Velocity, 10.0);
+        // Back at zero, where the motion turns: it still counts.
+        input.set(Order::Velocity, 0.0);
+        assert_eq!(rates_after(&input, AUTO, 2.0, 1.0), rates(0.0, 20.0));
+        assert_eq!(rates_after(&input, INPUTS, 2.0, 1.0), rates(0.0, 20.0));
+        assert_eq!(rates_after(&input, ESTIMATED, 2.0, 1.0), estimated);
+    }
+
+    #[test]
+    fn rates_set_before_the_end_of_initialization_count_at_the_start_only() {
+        let mut input = DriverInput::new(0.0);
+        input.set(Order::Velocity, 3.0);
+        input.start();
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.0), rates(3.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 1.0), rates(0.0, 0.0));
+        assert_eq!(rates_after(&input, INPUTS, 0.0, 1.0), rates(3.0, 0.0));
+        input.record(AUTO, 0.0, 1.0);
+        input.set(Order::Position, 7.0);
+        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(7.0, 0.0));
+        input.set(Order::Velocity, 3.0);
+        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(3.0, 0.0));
+    }
+
+    #[test]
+    fn a_velocity_alone_is_differenced() {
+        let mut input = DriverInput::new(0.0);
+        input.set(Order::Velocity, 3.0);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(3.0, 0.0));
+        input.record(AUTO, 0.0, 1.0);
+        input.set(Order::Velocity, 4.0);
+        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(4.0, 2.0));
+        assert_eq!(rates_after(&input, INPUTS, 0.5, 0.5), rates(4.0, 0.0));
+    }
+
+    /// The velocity of the last step was an estimate: no difference with it.
+    #[test]
+    fn a_velocity_that_is_new_is_not_differenced() {
+        let mut input = in_steps(&[0.0, 1.0, 2.0, 3.0], |t| t * t);
+        input.set(Order::Velocity, 100.0);
+        assert_eq!(rates_after(&input, AUTO, 3.0, 1.0), rates(100.0, 2.0));
+        input.record(AUTO, 3.0, 1.0);
+        input.set(Order::Velocity, 101.0);
+        assert_eq!(rates_after(&input, AUTO, 4.0, 1.0), rates(101.0, 1.0));
+    }
+
+    /// FMI 2.0, 4.2.1: each order by itself; rate inputs in use come first.
+    #[test]
+    fn input_derivatives_shape_the_path_and_replace_missing_rates() {
+        let mut input = DriverInput::new(1.0);
+        input.set_derivative(Order::Position, 1, 2.0);
+        input.set_derivative(Order::Position, 2, 4.0);
+        for rule in RULES {
+            assert_eq!(input.path(rule, 0.0, 0.5), rates(2.0, 4.0), "{rule:?}");
+        }
+        for rule in [AUTO, ESTIMATED] {
+            assert_eq!(rates_after(&input, rule, 0.0, 0.5), rates(4.0, 4.0));
+        }
+        assert_eq!(rates_after(&input, INPUTS, 0.0, 0.5), rates(0.0, 0.0));
+
+        input.set(Order::Acceleration, 7.0);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(4.0, 7.0));
+        input.set(Order::Velocity, 100.0);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(100.0, 7.0));
+        assert_eq!(input.path(AUTO, 0.0, 0.5), rates(2.0, 4.0));
+    }
+
+    #[test]
+    fn input_derivatives_last_one_step() {
+        let mut input = DriverInput::new(1.0);
+        input.set_derivative(Order::Position, 1, 2.0);
+        input.record(AUTO, 0.0, 1.0);
+        assert_eq!(input.path(AUTO, 0.5, 0.5), rates(0.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(0.0, 0.0));
+    }
+
+    /// All three inputs wired and order 1 given: the acceleration stays the input.
+    #[test]
+    fn order_1_leaves_a_wired_acceleration() {
+        let mut input = DriverInput::new(1.0);
+        input.set(Order::Velocity, 2.0);
+        input.set(Order::Acceleration, 40.0);
+        input.set_derivative(Order::Position, 1, 2.0);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(2.0, 40.0));
+    }
+
+    /// Order 1 alone: the acceleration is the difference of two such velocities.
+    #[test]
+    fn order_1_alone_is_differenced() {
+        let mut input = DriverInput::new(1.0);
+        input.set_derivative(Order::Position, 1, 2.0);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(2.0, 0.0));
+        input.record(AUTO, 0.0, 1.0);
+        input.set_derivative(Order::Position, 1, 3.0);
+        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(3.0, 2.0));
+    }
+
+    #[test]
+    fn derivatives_of_rate_inputs_shape_their_paths() {
+        let mut input = DriverInput::new(0.0);
+        input.set(Order::Velocity, 1.0);
+        input.set_derivative(Order::Velocity, 1, 2.0);
+        assert_eq!(input.path(AUTO, 0.0, 0.5), rates(0.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(2.0, 2.0));
+        input.set_derivative(Order::Velocity, 2, 8.0);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(3.0, 6.0));
+        input.set(Order::Acceleration, 3.0);
+        input.set_derivative(Order::Acceleration, 1, 4.0);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(3.0, 5.0));
+    }
+
+    #[test]
+    fn taylor_extrapolates_by_the_rates_at_the_start_of_the_step() {
+        let input = in_steps(&[0.0, 1.0, 2.0], |t| t * t);
+        assert_eq!(input.path(TAYLOR, 2.0, 0.5), rates(4.0, 2.0));
+        assert_eq!(rates_after(&input, TAYLOR, 2.0, 0.5), rates(5.0, 2.0));
+        assert_eq!(input.path(AUTO, 2.0, 0.5), rates(0.0, 0.0));
+    }
+
+    #[test]
+    fn a_wrapped_angle_means_the_turn_nearest_the_last_value() {
+        let mut input = DriverInput::new(0.0);
+        for (value, last, turns) in [
+            (0.1, 6.2, 1.0),
+            (6.2, 0.1, -1.0),
+            (-3.1, 3.1, 1.0),
+            (0.5, 100.0, 16.0),
+            (0.5, 0.4, 0.0),
+        ] {
+            input.set_wrapped(value, last);
+            assert_eq!(input.get(Order::Position).to_bits(), value.to_bits());
+            assert!(
+                (input.position() - value - turns * TAU).abs() < 1e-13,
+                "{value}"
+            );
+        }
+    }
+}

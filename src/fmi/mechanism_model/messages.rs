@@ -1,0 +1,232 @@
+//! Messages about poses and steps.
+
+use super::MechanismModel;
+use super::input::{Extrapolation, RateSource, Rule, Source};
+use super::monitor::Contradiction;
+use super::variables::{Order, is_angle, units};
+use crate::fmi::error::Status;
+use crate::fmi::log::{Category, Logger};
+use crate::fmi::state::Interface;
+use crate::kinematics::{Blocked, Curve, Progress, Reason};
+use crate::mechanism::{Driver, shown};
+
+impl MechanismModel {
+    /// Describes why a step stopped: the drivers that move, their limits and the values asked for.
+    pub(super) fn describe_dead_point(&mut self, blocked: &Blocked, start: f64, h: f64) -> String {
+        let (limit, s) = match &blocked.reason {
+            Reason::Singular(point) => (point.drivers.clone(), point.s),
+            _ => (self.solver.pose().drivers.clone(), blocked.s),
+        };
+        let asked = self.path.drivers_at_end(&self.mechanism);
+        let mut parts = Vec::new();
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            let show = |value| driver.coordinate.kind.show(value);
+            if driver.motion().is_some() {
+                parts.push(format!(
+                    "driver `{}` cannot follow its motion beyond {} at t = {} s",
+                    driver.name,
+                    show(limit[index]),
+                    start + s * h
+                ));
+            } else if (asked[index] - self.committed.drivers[index]).abs() > 0.0 {
+                parts.push(format!(
+                    "driver `{}` was asked for {} and cannot go beyond {}",
+                    driver.name,
+                    show(asked[index]),
+                    show(limit[index])
+                ));
+            }
+        }
+        if self.path.moves_parameters() {
+            parts.push("no mechanism exists for parameters on the way to those set".to_owned());
+        }
+        let what = match &blocked.reason {
+            Reason::Value(error) => {
+                parts.push(error.to_string());
+                "no mechanism"
+            }
+            Reason::Contradiction(open) => {
+                parts.push(format!("beyond, {open}, redundant up to here"));
+                "contradiction"
+            }
+            Reason::TooLong => {
+                parts.push("the step needs more sub-steps than the solver takes".to_owned());
+                "given up"
+            }
+            Reason::Singular(point) => &point.to_string(),
+            _ => "no continuous motion",
+        };
+        format!(
+            "{what}, after {:.4} of the step from {start} s over {h} s: {}",
+            blocked.s,
+            parts.join("; ")
+        )
+    }
+
+    /// Reports redundant constraints and dimensions that do not fit.
+    pub(super) fn report_mechanism(&self, log: &Logger) {
+        if log.wants(Category::Warning) {
+            for redundancy in self.solver.redundancies() {
+                log.advise(|| redundancy.to_string());
+            }
+            for misfit in self.solver.geometry_warnings() {
+                log.advise(|| misfit.to_string());
+            }
+        }
+    }
+
+    /// Reports each approach to a singular position once.
+    fn report_approach(&mut self, log: &Logger) {
+        if let Some(approach) = self.solver.approach(&mut self.near_singular) {
+            log.advise(|| format!("t = {} s: {approach}", self.time));
+        }
+    }
+
+    /// Reports once an angle that falls by more than half a turn on the path, as an angle does that
+    /// the host wraps.
+    pub(super) fn report_falls(&mut self, log: &Logger) {
+        let drivers = self.mechanism.drivers.iter().zip(&self.path.curves);
+        let observed = self.inputs.iter().zip(&mut self.monitors);
+        for ((driver, curve), (input, monitor)) in drivers.zip(observed) {
+            if let Curve::Input { jump, .. } = *curve
+                && is_angle(&driver.coordinate)
+                && monitor.falls(-jump, input.last_change())
+            {
+                let name = &driver.name;
+                log.advise(|| {
+                    format!(
+                        "t = {} s: driver `{name}` jumps by {} rad within one step, which the \
+                         mechanism follows turn by turn; if the host wraps the angle, set \
+                         `wrapped = true` for the driver in the mechanism file",
+                        self.time,
+                        shown(-jump)
+                    )
+                });
+            }
+        }
+    }
+
+    /// Ends a step of size `h` from `start`, or in model exchange an accepted step of the host:
+    /// records the inputs, and reports what the step brought about.
+    pub(super) fn complete_step(&mut self, start: f64, h: f64, log: &Logger) {
+        self.report_approach(log);
+        let (rule, advice) = match self.interface {
+            Interface::CoSimulation => {
+                let advice = ", or set `rates` to 3 (`estimated`)";
+                (self.settings.rule, advice)
+            }
+            Interface::ModelExchange => {
+                let rule = Rule {
+                    rates: RateSource::Inputs,
+                    extrapolation: Extrapolation::Hold,
+                };
+                (rule, "")
+            }
+        };
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            let (input, monitor) = (&mut self.inputs[index], &mut self.monitors[index]);
+            let value = self.solver.pose().drivers[index];
+            if monitor.goes_beyond(value, [driver.min, driver.max]) {
+                log.advise(|| describe_excursion(driver, value, start + h));
+            }
+            if driver.motion().is_some() {
+                continue;
+            }
+            for (order, source) in monitor.changes(self.sources[index]) {
+                if rule.rates == RateSource::Auto && log.wants(Category::Events) {
+                    let message = describe_source(driver, order, source, start);
+                    log.write(Status::Ok, Category::Events, &message);
+                }
+            }
+            let last = input.last_sample(start);
+            let now = input.record(rule, start, h);
+            if let Some(contradiction) = last.and_then(|last| monitor.compare(&last, &now)) {
+                log.advise(|| describe_contradiction(driver, contradiction, start, advice));
+            }
+        }
+        self.log_crossings(log);
+        self.log_effort(log);
+    }
+
+    /// Logs the change points on the last path.
+    pub(super) fn log_crossings(&self, log: &Logger) {
+        if self.path_progress.crossings > 0 && log.wants(Category::Events) {
+            for crossing in self.solver.crossed() {
+                let message = self.solver.describe_crossing(crossing);
+                log.write(Status::Ok, Category::Events, &message);
+            }
+        }
+    }
+
+    /// Logs the effort of a step.
+    fn log_effort(&self, log: &Logger) {
+        if log.wants(Category::Solver) {
+            let Progress {
+                iterations,
+                substeps,
+                checked,
+                ..
+            } = self.path_progress;
+            let checked = match checked {
+                0 => String::new(),
+                checked => format!(" ({checked} checked, not proved)"),
+            };
+            let message = format!(
+                "t = {} s: sub-steps {substeps}{checked}, iterations {iterations}, residual {:.1e}",
+                self.time,
+                self.solver.residual()
+            );
+            log.write(Status::Ok, Category::Solver, &message);
+        }
+    }
+}
+
+fn describe_excursion(driver: &Driver, value: f64, time: f64) -> String {
+    let above = driver.max.filter(|max| value > *max);
+    let (name, limit) = above.map_or(("min", driver.min), |max| ("max", Some(max)));
+    let show = |value| driver.coordinate.kind.show(value);
+    format!(
+        "t = {time} s: driver `{}` is at {}, beyond its `{name}` = {}; the mechanism follows it",
+        driver.name,
+        show(value),
+        limit.map(show).unwrap_or_default()
+    )
+}
+
+fn describe_source(driver: &Driver, order: Order, source: Source, time: f64) -> String {
+    let source = match source {
+        Source::Input => "the rate input",
+        Source::Derivatives => "input derivatives",
+        Source::Difference => "differences of the velocity",
+        Source::Estimate => "an estimate from positions",
+    };
+    let Driver { name, .. } = driver;
+    let rate = order.suffix();
+    format!("t = {time} s: the {rate} of driver `{name}` now comes from {source}")
+}
+
+fn describe_contradiction(
+    driver: &Driver,
+    contradiction: Contradiction,
+    time: f64,
+    advice: &str,
+) -> String {
+    let Contradiction {
+        order,
+        given,
+        actual,
+    } = contradiction;
+    let Driver { name, .. } = driver;
+    let unit = units(&driver.coordinate)[order as usize].name;
+    // Four digits: differences of positions have rounding.
+    let rounded = |rate: f64| format!("{rate:.3e}").parse().unwrap_or(rate);
+    let [given, actual] = [given, actual].map(|rate| format!("{} {unit}", shown(rounded(rate))));
+    let (lower, rate) = match order {
+        Order::Acceleration => ("velocity", "acceleration"),
+        _ => ("position", "velocity"),
+    };
+    format!(
+        "t = {time} s: the {rate} of driver `{name}` is given as {given}, but its {lower} changes \
+         by {actual}: connect `{name}.{rate}`{advice}"
+    )
+}

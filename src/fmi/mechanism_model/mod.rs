@@ -1,0 +1,353 @@
+//! A mechanism as the model of an FMU: the [`Model`] made of a [`Mechanism`] and its [`Solver`].
+//!
+//! | file | subject |
+//! |---|---|
+//! | `variables` | the table of variables |
+//! | `description`, `guid`, `resource` | the FMU's files |
+//! | `input` | one driver's inputs: their path during a step and their rates |
+//! | `monitor` | one driver's observations: contradictions, falls, limits |
+//! | `pose` | initialization, steps, and the pose and rates of the values set |
+//! | `messages` | messages about poses and steps |
+//! | `outputs` | values by value reference |
+//! | `derivatives` | directional derivatives |
+//! | `state` | the saved state |
+
+mod derivatives;
+mod description;
+mod guid;
+mod input;
+mod messages;
+mod monitor;
+mod outputs;
+mod pose;
+mod resource;
+mod state;
+mod variables;
+
+use std::path::Path as FilePath;
+use std::sync::Arc;
+
+pub use description::describe;
+pub use guid::guid;
+pub use resource::{RESOURCE, write_fmu};
+pub use state::MechanismState;
+pub use variables::{Order, Quantity, Signal, TABLE_VERSION, variables};
+
+use super::codec::{Codec, Unreadable};
+use super::error::Failure;
+use super::log::Logger;
+use super::model::{Groups, Model};
+use super::state::{Interface, Phase};
+use super::variable::Variable;
+use crate::kinematics::{self, Path, Pose, Progress, Rates, Solver};
+use crate::mechanism::{DriverSource, Jet, Mechanism};
+use input::{DriverInput, Extrapolation, RateSource, Rule, Source};
+use monitor::Monitor;
+use outputs::Reals;
+
+/// A mechanism at the values that a host has set.
+#[derive(Debug)]
+pub struct MechanismModel {
+    mechanism: Arc<Mechanism>,
+    guid: String,
+    interface: Interface,
+    variables: Vec<Variable<Quantity>>,
+    solver: Solver,
+    /// Pose of the file's own values.
+    file_pose: Arc<Pose>,
+    /// Pose from which initialization starts: `file_pose`, or that of a restored state, which
+    /// another machine may have computed with other rounding.
+    start_pose: Arc<Pose>,
+    settings: Settings,
+    /// Inputs per driver; those of prescribed motions have no meaning.
+    inputs: Vec<DriverInput>,
+    /// Observations per driver.
+    monitors: Vec<Monitor>,
+    /// Sources of the rates per driver at the solver's pose.
+    sources: Vec<[Source; 2]>,
+    /// Pose from which the mechanism goes on; in co-simulation that of the last communication
+    /// point.
+    committed: Pose,
+    /// Whether the solver is at the committed pose.
+    at_committed: bool,
+    /// Rates of all drivers at the solver's pose; `value` has no meaning.
+    driver_rates: Vec<Jet>,
+    /// Rates of all drivers at the committed pose.
+    committed_rates: Vec<Jet>,
+    freshness: Freshness,
+    /// Rates of q at the solver's pose.
+    rates: Rates,
+    reals: Reals,
+    path: Path,
+    /// Effort of the last path.
+    path_progress: Progress,
+    /// Effort of the last step or, in model exchange, up to the last event.
+    progress: Progress,
+    time: f64,
+    /// Whether the host has been warned of the singular position nearby.
+    near_singular: bool,
+}
+
+/// Values set by the host, apart from inputs.
+#[derive(Clone, Debug, PartialEq)]
+struct Settings {
+    parameters: Vec<f64>,
+    rule: Rule,
+}
+
+/// Validity of the solver's pose and rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Freshness {
+    /// Neither belongs to the values set.
+    Stale,
+    /// The pose belongs to the values set.
+    Pose,
+    /// Pose and rates belong to the values set.
+    Rates,
+}
+
+impl MechanismModel {
+    /// Assembles a mechanism at its own estimates and values.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism does not assemble.
+    pub fn new(mechanism: Arc<Mechanism>, interface: Interface) -> Result<Self, kinematics::Error> {
+        let path = Path::new(&mechanism);
+        let mut solver = Solver::new(Arc::clone(&mechanism))?;
+        solver.assemble(&path)?;
+        let file_pose = Arc::new(solver.pose().clone());
+        let variables = variables(&mechanism);
+        Ok(Self {
+            guid: guid(&mechanism),
+            interface,
+            reals: Reals::new(&variables),
+            variables,
+            settings: Settings::new(&mechanism),
+            inputs: start_inputs(&mechanism),
+            monitors: vec![Monitor::default(); mechanism.drivers.len()],
+            sources: vec![[Source::default(); 2]; mechanism.drivers.len()],
+            committed: Pose::clone(&file_pose),
+            at_committed: true,
+            driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
+            committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
+            rates: Rates::new(file_pose.q.len()),
+            freshness: Freshness::Stale,
+            path,
+            path_progress: Progress::default(),
+            progress: Progress::default(),
+            time: file_pose.time,
+            near_singular: false,
+            start_pose: Arc::clone(&file_pose),
+            file_pose,
+            solver,
+            mechanism,
+        })
+    }
+
+    /// Returns the mechanism.
+    #[must_use]
+    pub fn mechanism(&self) -> &Arc<Mechanism> {
+        &self.mechanism
+    }
+
+    /// Records the validity of the solver's pose after a change, which makes all output values out
+    /// of date.
+    #[inline]
+    fn set_freshness(&mut self, freshness: Freshness) {
+        self.freshness = freshness;
+        self.reals.invalidate();
+    }
+}
+
+impl Model for MechanismModel {
+    type Quantity = Quantity;
+    type State = MechanismState;
+
+    const OUTPUT_DERIVATIVES: i32 = 2;
+
+    fn load(resources: &FilePath, interface: Interface) -> Result<Self, Failure> {
+        let mechanism = Arc::new(resource::read(resources)?);
+        Self::new(mechanism, interface).map_err(failed)
+    }
+
+    fn guid(&self) -> &str {
+        &self.guid
+    }
+
+    fn interface(&self) -> Interface {
+        self.interface
+    }
+
+    fn variables(&self) -> &[Variable<Quantity>] {
+        &self.variables
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn set_time(&mut self, time: f64) {
+        self.time = time;
+        self.set_freshness(Freshness::Stale);
+    }
+
+    fn reset(&mut self) {
+        self.start_pose = Arc::clone(&self.file_pose);
+        self.settings = Settings::new(&self.mechanism);
+        self.inputs = start_inputs(&self.mechanism);
+        self.monitors.fill(Monitor::default());
+        self.committed.clone_from(&self.start_pose);
+        self.solver.restore(&self.start_pose);
+        self.at_committed = true;
+        self.driver_rates.fill(Jet::constant(0.0));
+        self.committed_rates.fill(Jet::constant(0.0));
+        self.set_freshness(Freshness::Stale);
+        self.path_progress = Progress::default();
+        self.progress = Progress::default();
+        self.time = self.start_pose.time;
+        self.near_singular = false;
+    }
+
+    fn set_reals(&mut self, values: impl Iterator<Item = (Quantity, f64)>) {
+        let mut parameters_changed = false;
+        for (quantity, value) in values {
+            match quantity {
+                Quantity::Input(driver, order) => {
+                    let index = driver.index();
+                    let input = &mut self.inputs[index];
+                    if order == Order::Position && self.mechanism.drivers[index].wrapped {
+                        input.set_wrapped(value, self.committed.drivers[index]);
+                    } else {
+                        input.set(order, value);
+                    }
+                }
+                Quantity::Parameter(parameter) => {
+                    self.settings.parameters[parameter.index()] = value;
+                    parameters_changed = true;
+                }
+                _ => unreachable!("only inputs and parameters are settable"),
+            }
+            self.set_freshness(Freshness::Stale);
+        }
+        if parameters_changed {
+            self.mechanism
+                .derive_parameters(&mut self.settings.parameters);
+        }
+    }
+
+    fn set_integers(&mut self, values: impl Iterator<Item = (Quantity, i32)>) {
+        for (quantity, value) in values {
+            let item = value as usize - 1;
+            match quantity {
+                Quantity::RateSource => self.settings.rule.rates = RateSource::ALL[item],
+                Quantity::Extrapolation => {
+                    self.settings.rule.extrapolation = Extrapolation::ALL[item];
+                }
+                _ => unreachable!("only the two Enumerations are settable"),
+            }
+            self.set_freshness(Freshness::Stale);
+        }
+    }
+
+    fn set_input_derivatives(&mut self, derivatives: impl Iterator<Item = (Quantity, usize, f64)>) {
+        for (quantity, order, value) in derivatives {
+            if let Quantity::Input(driver, input) = quantity {
+                self.inputs[driver.index()].set_derivative(input, order, value);
+            }
+            self.set_freshness(Freshness::Stale);
+        }
+    }
+
+    fn groups(&self, quantity: Quantity) -> Groups {
+        outputs::group(quantity)
+    }
+
+    #[inline]
+    fn refresh(&mut self, groups: Groups, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        self.refresh_groups(groups, phase, log)
+    }
+
+    #[inline]
+    fn reals(&self) -> &[f64] {
+        self.reals.values()
+    }
+
+    fn integer(&self, quantity: Quantity) -> i32 {
+        let count = match quantity {
+            Quantity::RateSource => return self.settings.rule.rates as i32,
+            Quantity::Extrapolation => return self.settings.rule.extrapolation as i32,
+            Quantity::Iterations => self.progress.iterations,
+            Quantity::Substeps => self.progress.substeps,
+            Quantity::Proved => u32::from(self.progress.checked == 0),
+            _ => unreachable!("all other variables are Reals"),
+        };
+        i32::try_from(count).unwrap_or(i32::MAX)
+    }
+
+    fn directional_derivatives(
+        &mut self,
+        unknowns: &[Quantity],
+        knowns: &[(Quantity, f64)],
+        phase: Phase,
+        log: &Logger,
+    ) -> Result<Vec<f64>, Failure> {
+        self.derivatives_along(unknowns, knowns, phase, log)
+    }
+
+    fn commit(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        self.commit_values(phase, log)
+    }
+
+    fn update_discrete(&mut self) {
+        self.progress = self.path_progress;
+    }
+
+    fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
+        self.take_step(size, end, log)
+    }
+
+    fn save(&mut self) -> MechanismState {
+        self.save_state()
+    }
+
+    fn restore(&mut self, state: &MechanismState) {
+        self.restore_state(state);
+    }
+
+    fn visit(state: &mut MechanismState, codec: &mut impl Codec) -> Result<(), Unreadable> {
+        state.visit(codec)
+    }
+
+    fn check(&mut self, state: &mut MechanismState) -> Result<(), String> {
+        self.check_state(state)
+    }
+}
+
+impl Settings {
+    fn new(mechanism: &Mechanism) -> Self {
+        Self {
+            parameters: mechanism.default_parameters(),
+            rule: Rule {
+                rates: RateSource::Auto,
+                extrapolation: Extrapolation::Hold,
+            },
+        }
+    }
+}
+
+fn start_inputs(mechanism: &Mechanism) -> Vec<DriverInput> {
+    let drivers = mechanism.drivers.iter();
+    let start = |source: &DriverSource| match source {
+        DriverSource::Input { start } => *start,
+        DriverSource::Motion(_) => 0.0,
+    };
+    drivers
+        .map(|driver| DriverInput::new(start(&driver.source)))
+        .collect()
+}
+
+/// Converts an error of the kinematics.
+fn failed(error: kinematics::Error) -> Failure {
+    Failure::Failed(error.to_string())
+}

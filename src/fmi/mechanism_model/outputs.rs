@@ -1,0 +1,214 @@
+//! Values of Reals by value reference, computed in groups.
+
+use super::MechanismModel;
+use super::variables::{Order, Quantity, Signal};
+use crate::fmi::error::Failure;
+use crate::fmi::log::Logger;
+use crate::fmi::model::Groups;
+use crate::fmi::state::Phase;
+use crate::fmi::variable::{Variable, derivatives};
+
+/// Inputs, parameters and time.
+const SETTINGS: Groups = 1;
+/// Residual and condition at the pose.
+const SOLVER: Groups = 1 << 1;
+/// Coordinates of bodies. Here and below, the group of the rates is one bit higher.
+const BODIES: Groups = 1 << 2;
+/// Points of markers.
+const MARKERS: Groups = 1 << 4;
+/// Measures and prescribed motions.
+const COORDINATES: Groups = 1 << 6;
+
+const POSES: Groups = BODIES | MARKERS | COORDINATES;
+const RATES: Groups = POSES << 1;
+
+/// Values of all variables by value reference.
+#[derive(Debug)]
+pub(super) struct Reals {
+    values: Box<[f64]>,
+    /// Groups whose values are up to date.
+    current: Groups,
+    bodies: Box<[BodyPlace]>,
+    /// All signals but those of bodies.
+    signals: Box<[SignalPlace]>,
+    /// Value references of all other Reals.
+    others: Box<[(u32, Quantity)]>,
+}
+
+/// A body among the outputs. Its nine values have consecutive references: x, y, phi, then their
+/// velocities, then their accelerations.
+#[derive(Clone, Copy, Debug)]
+struct BodyPlace {
+    /// Column of its x in q.
+    column: usize,
+    /// Value reference of its x.
+    reference: usize,
+}
+
+/// A signal and its value references by order.
+#[derive(Clone, Copy, Debug)]
+struct SignalPlace {
+    signal: Signal,
+    references: [u32; 3],
+}
+
+impl Signal {
+    /// Returns the group of the signal's value.
+    fn group(self) -> Groups {
+        match self {
+            Self::Body(..) => BODIES,
+            Self::Marker(..) => MARKERS,
+            Self::Measure(_) | Self::Motion(_) => COORDINATES,
+        }
+    }
+}
+
+/// Returns the group of a quantity; 0 for a quantity that is no Real.
+pub(super) fn group(quantity: Quantity) -> Groups {
+    match quantity {
+        Quantity::Input(..) | Quantity::Parameter(_) | Quantity::Time => SETTINGS,
+        Quantity::Residual | Quantity::Rcond => SOLVER,
+        Quantity::Output(signal, Order::Position) => signal.group(),
+        Quantity::Output(signal, _) => signal.group() << 1,
+        Quantity::RateSource
+        | Quantity::Extrapolation
+        | Quantity::Iterations
+        | Quantity::Substeps
+        | Quantity::Proved => 0,
+    }
+}
+
+impl Reals {
+    pub(super) fn new(variables: &[Variable<Quantity>]) -> Self {
+        let derivatives = derivatives(variables);
+        let mut bodies = Vec::new();
+        let mut signals = Vec::new();
+        let mut others = Vec::new();
+        for (vr, variable) in (0_u32..).zip(variables) {
+            match variable.quantity {
+                Quantity::Output(Signal::Body(body, 0), Order::Position) => {
+                    bodies.push(BodyPlace {
+                        column: 3 * body.index(),
+                        reference: vr as usize,
+                    });
+                }
+                Quantity::Output(Signal::Body(..), _) => {}
+                Quantity::Output(signal, Order::Position) => {
+                    let derivative = |of: u32| derivatives[of as usize].expect("signals have two");
+                    let references = [vr, derivative(vr), derivative(derivative(vr))];
+                    signals.push(SignalPlace { signal, references });
+                }
+                quantity if group(quantity) & (SETTINGS | SOLVER) != 0 => {
+                    others.push((vr, quantity));
+                }
+                _ => {}
+            }
+        }
+        Self {
+            values: vec![0.0; variables.len()].into(),
+            current: 0,
+            bodies: bodies.into(),
+            signals: signals.into(),
+            others: others.into(),
+        }
+    }
+
+    /// Returns the values.
+    #[inline]
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Marks all values as out of date.
+    #[inline]
+    pub(super) fn invalidate(&mut self) {
+        self.current = 0;
+    }
+}
+
+impl MechanismModel {
+    /// Brings the values of these groups up to date. Allocates nothing.
+    ///
+    /// # Errors
+    ///
+    /// No pose exists for the values set, or no rates exist at that pose.
+    #[inline]
+    pub(super) fn refresh_groups(
+        &mut self,
+        groups: Groups,
+        phase: Phase,
+        log: &Logger,
+    ) -> Result<(), Failure> {
+        let missing = groups & !self.reals.current;
+        if missing == 0 {
+            return Ok(());
+        }
+        if missing & RATES != 0 {
+            self.refresh_rates(phase, log)?;
+        } else if missing & (POSES | SOLVER) != 0 {
+            self.refresh_pose(phase, log)?;
+        }
+        if missing & (BODIES | BODIES << 1) != 0 {
+            self.fill_bodies(missing);
+        }
+        if missing & !(BODIES | BODIES << 1) != 0 {
+            self.fill_others(missing);
+        }
+        self.reals.current |= missing;
+        Ok(())
+    }
+
+    /// Fills in the values of bodies. Most hosts read these at every step: no match per value.
+    fn fill_bodies(&mut self, groups: Groups) {
+        let Reals { values, bodies, .. } = &mut self.reals;
+        let q = &self.solver.pose().q;
+        let rates = [self.rates.velocity(), self.rates.acceleration()];
+        for &BodyPlace { column, reference } in bodies.iter() {
+            let to = &mut values[reference..reference + 9];
+            let own = column..column + 3;
+            if groups & BODIES != 0 {
+                to[..3].copy_from_slice(&q[own.clone()]);
+            }
+            if groups & BODIES << 1 != 0 {
+                to[3..6].copy_from_slice(&rates[0][own.clone()]);
+                to[6..].copy_from_slice(&rates[1][own]);
+            }
+        }
+    }
+
+    /// Fills in all values but those of bodies.
+    fn fill_others(&mut self, groups: Groups) {
+        let Reals {
+            values,
+            signals,
+            others,
+            ..
+        } = &mut self.reals;
+        for SignalPlace { signal, references } in signals.iter() {
+            let [pose, rates] = [signal.group(), signal.group() << 1].map(|g| groups & g != 0);
+            if pose || rates {
+                let jet = signal.jet(&self.solver, &self.rates, &self.driver_rates);
+                if pose {
+                    values[references[0] as usize] = jet.value;
+                }
+                if rates {
+                    values[references[1] as usize] = jet.first();
+                    values[references[2] as usize] = jet.second();
+                }
+            }
+        }
+        if groups & (SETTINGS | SOLVER) == 0 {
+            return;
+        }
+        for &(vr, quantity) in others.iter().filter(|(_, q)| groups & group(*q) != 0) {
+            values[vr as usize] = match quantity {
+                Quantity::Input(driver, order) => self.inputs[driver.index()].get(order),
+                Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
+                Quantity::Time => self.time,
+                Quantity::Residual => self.solver.residual(),
+                Quantity::Rcond => self.solver.rcond(),
+                _ => unreachable!("the list has no other quantities"),
+            };
+        }
+    }
+}

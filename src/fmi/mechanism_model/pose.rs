@@ -1,0 +1,296 @@
+//! Initialization, steps, and the pose and rates of the values set.
+
+use super::input::DriverRates;
+use super::{Freshness, MechanismModel, RateSource, failed};
+use crate::fmi::error::Failure;
+use crate::fmi::log::Logger;
+use crate::fmi::state::{Interface, Phase};
+use crate::kinematics::{Blocked, Curve, Progress, Start};
+use crate::mechanism::{DriverId, DriverSource, Jet};
+
+/// Gap between two polynomials of an input, relative to its travel in the step, below which the
+/// input counts as continuous: a host's polynomials do not meet exactly.
+const SEAM: f64 = 0.01;
+
+impl MechanismModel {
+    /// Takes a step of size `h` \[s\] from the last communication point. Allocates nothing if it
+    /// succeeds and has nothing to report.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Discarded`] if no continuous motion leads to the end. The mechanism is then at
+    /// the last time whose driver values it reached.
+    pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
+        let start = self.time;
+        if !self.at_committed {
+            self.solver.restore(&self.committed);
+            self.at_committed = true;
+        }
+        self.set_path(start, h);
+        self.report_falls(log);
+        match self.solver.track(&self.path) {
+            Ok(progress) => {
+                self.path_progress = progress;
+                self.progress = progress;
+                self.set_driver_rates(start, h, 1.0);
+                self.time = end;
+                self.commit_pose();
+                self.complete_step(start, h, log);
+                Ok(())
+            }
+            Err(blocked) => Err(self.fail_step(blocked, start, h, log)),
+        }
+    }
+
+    /// Sets the path from the committed pose to the values in force at the end of a step of size
+    /// `h` from `start`; with `h = 0` to the values set.
+    fn set_path(&mut self, start: f64, h: f64) {
+        let Self {
+            path,
+            committed,
+            settings,
+            inputs,
+            interface,
+            ..
+        } = self;
+        path.start = start;
+        path.duration = h;
+        path.from.copy_from_slice(&committed.parameters);
+        path.to.copy_from_slice(&settings.parameters);
+        let drivers = path.curves.iter_mut().zip(inputs).zip(&committed.drivers);
+        for ((curve, input), committed) in drivers {
+            if let Curve::Input {
+                position,
+                velocity,
+                acceleration,
+                jump,
+            } = curve
+            {
+                let rates = match interface {
+                    // The host integrates and sets each input at each time.
+                    Interface::ModelExchange => DriverRates::default(),
+                    Interface::CoSimulation => input.path(settings.rule, start, h),
+                };
+                *position = input.position();
+                *velocity = rates.velocity;
+                *acceleration = rates.acceleration;
+                *jump = committed - *position;
+            }
+        }
+    }
+
+    /// Sets the drivers' rates to those at the part `s` of a step of size `h` from `start`.
+    fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
+        let Self {
+            driver_rates,
+            sources,
+            mechanism,
+            inputs,
+            settings,
+            solver,
+            interface,
+            ..
+        } = self;
+        for (index, driver) in mechanism.drivers.iter().enumerate() {
+            driver_rates[index] = match &driver.source {
+                DriverSource::Input { .. } => {
+                    let input = &inputs[index];
+                    let DriverRates {
+                        velocity,
+                        acceleration,
+                    } = match interface {
+                        Interface::ModelExchange => input.given_rates(),
+                        Interface::CoSimulation => {
+                            let (rates, sources_now) =
+                                input.rates_after(settings.rule, start, s * h);
+                            sources[index] = sources_now;
+                            rates
+                        }
+                    };
+                    Jet::new(0.0, [velocity, acceleration])
+                }
+                DriverSource::Motion(_) => solver.motion(DriverId(index), start + s * h),
+            };
+        }
+    }
+
+    /// Commits the pose of the values set.
+    ///
+    /// # Errors
+    ///
+    /// The pose does not exist; the committed one stays.
+    pub(super) fn commit_values(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        let starting = phase == Phase::Initialization;
+        let estimated = self.settings.rule.rates == RateSource::Estimated;
+        if starting && estimated && self.interface == Interface::ModelExchange {
+            let why = "`rates` is `estimated`, which needs communication points; in model exchange \
+                       the velocity and acceleration inputs have to be given";
+            return Err(Failure::Failed(why.to_owned()));
+        }
+        self.refresh_pose(phase, log)?;
+        if !starting {
+            self.report_falls(log);
+        }
+        self.commit_pose();
+        if starting {
+            for input in &mut self.inputs {
+                input.start();
+            }
+            self.report_mechanism(log);
+        } else {
+            self.complete_step(self.time, 0.0, log);
+        }
+        Ok(())
+    }
+
+    /// Commits the solver's pose.
+    fn commit_pose(&mut self) {
+        self.solver.save(&mut self.committed);
+        self.committed_rates.copy_from_slice(&self.driver_rates);
+        self.at_committed = true;
+        self.set_freshness(Freshness::Pose);
+    }
+
+    /// Restores the committed pose and its rates.
+    fn restore_committed(&mut self) {
+        self.solver.restore(&self.committed);
+        self.driver_rates.copy_from_slice(&self.committed_rates);
+        self.at_committed = true;
+    }
+
+    /// Commits the last pose before a dead point at the part `blocked.s` of a step.
+    fn fail_step(&mut self, blocked: Blocked, start: f64, h: f64, log: &Logger) -> Failure {
+        let message = self.describe_dead_point(&blocked, start, h);
+        self.path_progress = blocked.progress;
+        self.progress = blocked.progress;
+        self.log_crossings(log);
+        // Held inputs and parameters reach their values at the end of the step only. Inputs on a
+        // curve of their own have right values up to the dead point.
+        let jumped = self.path.moves_parameters()
+            || self.path.curves.iter().any(|curve| match *curve {
+                Curve::Input {
+                    velocity,
+                    acceleration,
+                    jump,
+                    ..
+                } => jump.abs() > SEAM * (h * (velocity + 0.5 * h * acceleration)).abs(),
+                Curve::Motion => false,
+            });
+        if jumped {
+            self.restore_committed();
+        } else {
+            self.time = start + blocked.s * h;
+            self.set_driver_rates(start, h, blocked.s);
+        }
+        self.commit_pose();
+        Failure::Discarded(message)
+    }
+
+    /// Brings the solver to the pose of the values set.
+    ///
+    /// # Errors
+    ///
+    /// The pose does not exist.
+    pub(super) fn refresh_pose(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        if self.freshness != Freshness::Stale {
+            return Ok(());
+        }
+        match phase {
+            Phase::Initialization => self.initialize(log)?,
+            Phase::Running => self.evaluate()?,
+            Phase::Halted => self.restore_committed(),
+        }
+        self.set_freshness(Freshness::Pose);
+        Ok(())
+    }
+
+    /// Computes the rates of q for the values set.
+    ///
+    /// # Errors
+    ///
+    /// The pose or its rates do not exist.
+    pub(super) fn refresh_rates(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        self.refresh_pose(phase, log)?;
+        if self.freshness == Freshness::Pose {
+            let driver_rates = &self.driver_rates;
+            self.solver
+                .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
+                .map_err(failed)?;
+            self.freshness = Freshness::Rates;
+        }
+        Ok(())
+    }
+
+    /// Finds the start pose: moves from the file's own pose to the values set or, if a dead point
+    /// lies between, assembles at these values from the estimates.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism does not assemble.
+    fn initialize(&mut self, log: &Logger) -> Result<(), Failure> {
+        self.committed.clone_from(&self.start_pose);
+        self.set_path(self.start_pose.time, self.time - self.start_pose.time);
+        for curve in &mut self.path.curves {
+            if let Curve::Input {
+                velocity,
+                acceleration,
+                ..
+            } = curve
+            {
+                (*velocity, *acceleration) = (0.0, 0.0);
+            }
+        }
+        self.at_committed = false;
+        let start = self.solver.start(&self.start_pose, &self.path);
+        match start.map_err(failed)? {
+            Start::Continuous(progress) => {
+                self.path_progress = progress;
+                self.log_crossings(log);
+            }
+            Start::Reassembled(assembly) => {
+                self.path_progress = Progress {
+                    iterations: assembly.iterations,
+                    substeps: 1,
+                    crossings: 0,
+                    checked: 0,
+                };
+                log.advise(|| {
+                    "no continuous motion leads from the mechanism file's own pose to the start \
+                     values: assembled at the start values from the estimates instead, possibly \
+                     in another assembly mode"
+                        .to_owned()
+                });
+            }
+        }
+        self.set_driver_rates(self.time, 0.0, 0.0);
+        Ok(())
+    }
+
+    /// Finds the pose for values set since the last commit, and commits nothing. In co-simulation
+    /// the standard forbids reading it without a step (4.2.4); biela answers as an extension.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Discarded`] if no continuous motion leads there.
+    fn evaluate(&mut self) -> Result<(), Failure> {
+        self.solver.restore(&self.committed);
+        let (start, h) = match self.interface {
+            Interface::ModelExchange => (self.committed.time, self.time - self.committed.time),
+            Interface::CoSimulation => (self.time, 0.0),
+        };
+        self.set_path(start, h);
+        let followed = self.solver.track(&self.path);
+        self.at_committed = false;
+        self.set_driver_rates(start, h, 1.0);
+        match followed {
+            Ok(progress) => {
+                self.path_progress = progress;
+                Ok(())
+            }
+            Err(blocked) => {
+                let message = self.describe_dead_point(&blocked, start, h);
+                Err(Failure::Discarded(message))
+            }
+        }
+    }
+}

@@ -1,0 +1,511 @@
+//! The table of variables of a mechanism's FMU. Getters, setters and `modelDescription.xml` read
+//! it.
+
+use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
+use crate::kinematics::{Dependencies, Rates, Solver, Structure};
+use crate::mechanism::{
+    BodyId, Coordinate, CoordinateKind, DriverId, DriverSource, Jet, MarkerId, Mechanism,
+    ParameterId, Unit,
+};
+
+/// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
+pub const TABLE_VERSION: u32 = 2;
+
+/// A variable's meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Value, velocity or acceleration of a driver that is an input.
+    Input(DriverId, Order),
+    /// A parameter of the mechanism.
+    Parameter(ParameterId),
+    /// The source of the drivers' rates.
+    RateSource,
+    /// The extrapolation of inputs during a step.
+    Extrapolation,
+    /// A signal of the mechanism, or a time derivative of it.
+    Output(Signal, Order),
+    /// Largest scaled residual of the constraint equations.
+    Residual,
+    /// Scaled reciprocal condition of the Jacobian.
+    Rcond,
+    /// Newton iterations of the last step.
+    Iterations,
+    /// Sub-steps of the last step.
+    Substeps,
+    /// Whether the last step was proved throughout.
+    Proved,
+    /// Time.
+    Time,
+}
+
+/// A scalar signal of the mechanism, which has a velocity and an acceleration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// A generalized coordinate of a body: x (component 0), y (1) or phi (2).
+    Body(BodyId, usize),
+    /// A marker's global x (component 0) or y (1).
+    Marker(MarkerId, usize),
+    /// A measure, by its index in [`Mechanism::measures`].
+    Measure(usize),
+    /// The value of a driver with a prescribed motion.
+    Motion(DriverId),
+}
+
+impl Signal {
+    /// Returns value, velocity and acceleration at the solver's pose. Velocity and acceleration
+    /// have a meaning only if `rates` and `driver_rates` belong to that pose. Allocates nothing.
+    #[inline]
+    #[must_use]
+    pub fn jet(self, solver: &Solver, rates: &Rates, driver_rates: &[Jet]) -> Jet {
+        match self {
+            Self::Body(body, component) => {
+                let column = 3 * body.index() + component;
+                let derivatives = [rates.velocity()[column], rates.acceleration()[column]];
+                Jet::new(solver.pose().q[column], derivatives)
+            }
+            Self::Marker(marker, component) => solver.marker(marker, rates)[component],
+            Self::Measure(measure) => solver.measure(measure, rates),
+            Self::Motion(driver) => Jet {
+                value: solver.pose().drivers[driver.index()],
+                ..driver_rates[driver.index()]
+            },
+        }
+    }
+}
+
+/// Order of a time derivative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Order {
+    /// The quantity itself.
+    Position,
+    /// Its first derivative.
+    Velocity,
+    /// Its second derivative.
+    Acceleration,
+}
+
+impl Order {
+    /// All three, in order.
+    pub const ALL: [Self; 3] = [Self::Position, Self::Velocity, Self::Acceleration];
+
+    /// Returns the derivative of this order.
+    #[inline]
+    #[must_use]
+    pub fn of(self, jet: Jet) -> f64 {
+        match self {
+            Self::Position => jet.value,
+            Self::Velocity => jet.first(),
+            Self::Acceleration => jet.second(),
+        }
+    }
+
+    /// Returns the last part of the name of a driver's or measure's variable.
+    #[must_use]
+    pub fn suffix(self) -> &'static str {
+        SUFFIXES[self as usize]
+    }
+}
+
+/// Last parts of the names of a driver's or measure's variables, by order.
+const SUFFIXES: [&str; 3] = ["position", "velocity", "acceleration"];
+const LENGTHS: [Unit; 3] = [
+    Unit::METRE,
+    Unit::METRE_PER_SECOND,
+    Unit::METRE_PER_SECOND_SQUARED,
+];
+const ANGLES: [Unit; 3] = [
+    Unit::RADIAN,
+    Unit::RADIAN_PER_SECOND,
+    Unit::RADIAN_PER_SECOND_SQUARED,
+];
+
+/// Choices of the source of the drivers' rates.
+pub static RATE_SOURCES: Enumeration = Enumeration {
+    name: "biela.Rates",
+    items: &[
+        (
+            "auto",
+            "each rate input once it was set to other than zero after initialization, otherwise \
+             input derivatives, otherwise an estimate",
+        ),
+        ("inputs", "the rate inputs, always"),
+        (
+            "estimated",
+            "input derivatives, otherwise an estimate from the last three positions",
+        ),
+    ],
+};
+
+/// Choices of the extrapolation of inputs during a step.
+pub static EXTRAPOLATIONS: Enumeration = Enumeration {
+    name: "biela.Extrapolation",
+    items: &[
+        (
+            "hold",
+            "held over a step: outputs lag the inputs by one step",
+        ),
+        ("taylor", "extrapolated by velocity and acceleration"),
+    ],
+};
+
+/// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
+/// parameters, settings, bodies, markers, measures, motions, solver, time; in the file's order
+/// within each group.
+#[must_use]
+pub fn variables(mechanism: &Mechanism) -> Vec<Variable<Quantity>> {
+    let mut table = Table::default();
+    table.add_inputs(mechanism);
+    table.add_parameters(mechanism);
+    if has_inputs(mechanism) {
+        table.add_settings();
+    }
+    table.add_outputs(mechanism);
+    table.add_solver();
+    table.add(
+        "time",
+        "",
+        Quantity::Time,
+        (Causality::Independent, Variability::Continuous),
+        Kind::real(Some(Unit::SECOND), None),
+    );
+    table.list
+}
+
+/// A signal's entry in the table.
+struct SignalEntry {
+    signal: Signal,
+    /// Last part of the variables' names, by order.
+    names: [&'static str; 3],
+    description: String,
+    /// Units by order.
+    units: [Unit; 3],
+}
+
+#[derive(Default)]
+struct Table {
+    list: Vec<Variable<Quantity>>,
+}
+
+impl Table {
+    fn add(
+        &mut self,
+        name: impl Into<String>,
+        description: impl Into<String>,
+        quantity: Quantity,
+        (causality, variability): (Causality, Variability),
+        kind: Kind,
+    ) {
+        self.list.push(Variable {
+            name: name.into(),
+            description: description.into(),
+            quantity,
+            causality,
+            variability,
+            kind,
+            derivative_of: None,
+        });
+    }
+
+    /// Makes the last variable the time derivative of the one `distance` before it.
+    fn derives(&mut self, order: Order, distance: usize) {
+        if order > Order::Position
+            && let Some(last) = self.list.len().checked_sub(1)
+        {
+            self.list[last].derivative_of = Some((last - distance) as u32);
+        }
+    }
+
+    fn add_inputs(&mut self, mechanism: &Mechanism) {
+        for (index, driver) in mechanism.drivers.iter().enumerate() {
+            let DriverSource::Input { start } = driver.source else {
+                continue;
+            };
+            let description = describe(mechanism, &driver.description, &driver.coordinate);
+            let units = units(&driver.coordinate);
+            for order in Order::ALL {
+                let [start, min, max] = match order {
+                    Order::Position => [Some(start), driver.min, driver.max],
+                    _ => [Some(0.0), None, None],
+                };
+                self.add(
+                    format!("{}.{}", driver.name, order.suffix()),
+                    of_order(order, &description),
+                    Quantity::Input(DriverId(index), order),
+                    (Causality::Input, Variability::Continuous),
+                    Kind::Real {
+                        unit: Some(units[order as usize]),
+                        start,
+                        min,
+                        max,
+                        nominal: None,
+                    },
+                );
+                self.derives(order, 1);
+            }
+        }
+    }
+
+    fn add_parameters(&mut self, mechanism: &Mechanism) {
+        for (index, parameter) in mechanism.parameters.iter().enumerate() {
+            let id = ParameterId(index);
+            let (causality, tunable) = if parameter.derived {
+                let tunable = derived_from_tunable(mechanism, id);
+                (Causality::CalculatedParameter, tunable)
+            } else {
+                (Causality::Parameter, parameter.tunable)
+            };
+            let variability = if tunable {
+                Variability::Tunable
+            } else {
+                Variability::Fixed
+            };
+            self.add(
+                parameter.name.clone(),
+                parameter.description.clone(),
+                Quantity::Parameter(id),
+                (causality, variability),
+                Kind::Real {
+                    unit: parameter.unit,
+                    start: (!parameter.derived).then_some(parameter.default),
+                    min: parameter.min,
+                    max: parameter.max,
+                    nominal: None,
+                },
+            );
+        }
+    }
+
+    fn add_settings(&mut self) {
+        self.add(
+            "rates",
+            "source of the velocity and acceleration of the inputs",
+            Quantity::RateSource,
+            (Causality::Parameter, Variability::Fixed),
+            Kind::Enumeration(&RATE_SOURCES),
+        );
+        self.add(
+            "extrapolation",
+            "path of inputs without input derivatives during a step",
+            Quantity::Extrapolation,
+            (Causality::Parameter, Variability::Fixed),
+            Kind::Enumeration(&EXTRAPOLATIONS),
+        );
+    }
+
+    /// Adds the signals of one owner: all values, then all velocities, then all accelerations.
+    fn add_signals(&mut self, owner: &str, entries: &[SignalEntry]) {
+        for order in Order::ALL {
+            for entry in entries {
+                self.add(
+                    format!("{owner}.{}", entry.names[order as usize]),
+                    of_order(order, &entry.description),
+                    Quantity::Output(entry.signal, order),
+                    (Causality::Output, Variability::Continuous),
+                    Kind::real(Some(entry.units[order as usize]), None),
+                );
+                self.derives(order, entries.len());
+            }
+        }
+    }
+
+    fn add_outputs(&mut self, mechanism: &Mechanism) {
+        const X: [&str; 3] = ["x", "vx", "ax"];
+        const Y: [&str; 3] = ["y", "vy", "ay"];
+        const PHI: [&str; 3] = ["phi", "omega", "alpha"];
+        for &id in &mechanism.outputs.bodies {
+            let body = &mechanism.bodies[id.index()].name;
+            let entry = |component, names: [&'static str; 3], units, what: &str| SignalEntry {
+                signal: Signal::Body(id, component),
+                names,
+                description: format!("{what} of `{body}`"),
+                units,
+            };
+            let entries = [
+                entry(0, X, LENGTHS, "x of the origin"),
+                entry(1, Y, LENGTHS, "y of the origin"),
+                entry(2, PHI, ANGLES, "the angle"),
+            ];
+            self.add_signals(body, &entries);
+        }
+        for &id in &mechanism.outputs.markers {
+            let marker = mechanism.marker_path(id);
+            let entries = [X, Y].into_iter().enumerate().map(|(component, names)| {
+                let signal = Signal::Marker(id, component);
+                SignalEntry {
+                    signal,
+                    names,
+                    description: format!("{} of marker `{marker}`", names[0]),
+                    units: LENGTHS,
+                }
+            });
+            self.add_signals(&marker, &entries.collect::<Vec<_>>());
+        }
+        let mut add_coordinate = |signal, name: &str, description: &str, coordinate| {
+            let entry = SignalEntry {
+                signal,
+                names: SUFFIXES,
+                description: describe(mechanism, description, coordinate),
+                units: units(coordinate),
+            };
+            self.add_signals(name, &[entry]);
+        };
+        for (index, measure) in mechanism.measures.iter().enumerate() {
+            let signal = Signal::Measure(index);
+            add_coordinate(
+                signal,
+                &measure.name,
+                &measure.description,
+                &measure.coordinate,
+            );
+        }
+        for (index, driver) in mechanism.drivers.iter().enumerate() {
+            if driver.motion().is_some() {
+                let signal = Signal::Motion(DriverId(index));
+                add_coordinate(
+                    signal,
+                    &driver.name,
+                    &driver.description,
+                    &driver.coordinate,
+                );
+            }
+        }
+    }
+
+    fn add_solver(&mut self) {
+        let mut add = |name, description, quantity, variability, kind| {
+            let traits = (Causality::Local, variability);
+            self.add(name, description, quantity, traits, kind);
+        };
+        let real = Kind::real(Some(Unit::ONE), None);
+        add(
+            "solver.residual",
+            "largest residual of the constraint equations, in characteristic lengths and radians",
+            Quantity::Residual,
+            Variability::Continuous,
+            real.clone(),
+        );
+        add(
+            "solver.rcond",
+            "scaled reciprocal condition of the Jacobian: 1 is best, 0 a singular position",
+            Quantity::Rcond,
+            Variability::Continuous,
+            real,
+        );
+        add(
+            "solver.iterations",
+            "Newton iterations of the last step",
+            Quantity::Iterations,
+            Variability::Discrete,
+            Kind::Integer,
+        );
+        add(
+            "solver.substeps",
+            "sub-steps of the last step, 1 for an ordinary one",
+            Quantity::Substeps,
+            Variability::Discrete,
+            Kind::Integer,
+        );
+        add(
+            "solver.proved",
+            "1 if the last step was proved throughout to stay on its branch, 0 if parts were checked",
+            Quantity::Proved,
+            Variability::Discrete,
+            Kind::Integer,
+        );
+    }
+}
+
+/// Returns whether any driver is an FMI input.
+#[must_use]
+pub fn has_inputs(mechanism: &Mechanism) -> bool {
+    let mut drivers = mechanism.drivers.iter();
+    drivers.any(|driver| driver.motion().is_none())
+}
+
+impl Quantity {
+    /// Returns the drivers and parameters that an output or a calculated parameter depends on,
+    /// structurally exact; none for other variables.
+    #[must_use]
+    pub(super) fn dependencies(self, mechanism: &Mechanism, structure: &Structure) -> Dependencies {
+        let mut dependencies = Dependencies::default();
+        match self {
+            Self::Output(Signal::Body(body, component), _) => {
+                dependencies.extend(structure.dependencies(3 * body.index() + component));
+            }
+            Self::Output(Signal::Marker(marker, component), _) => {
+                let of_point = structure.point_dependencies(mechanism, marker, component);
+                dependencies.extend(&of_point);
+            }
+            Self::Output(Signal::Measure(index), _) => {
+                let coordinate = &mechanism.measures[index].coordinate;
+                dependencies.extend(&structure.coordinate_dependencies(mechanism, coordinate));
+            }
+            Self::Output(Signal::Motion(driver), _) => {
+                dependencies.drivers.insert(driver);
+                if let Some(motion) = mechanism.drivers[driver.index()].motion() {
+                    dependencies.add_motion(mechanism, motion);
+                }
+            }
+            Self::Parameter(parameter) => dependencies.add_parameter(mechanism, parameter),
+            Self::Input(..)
+            | Self::RateSource
+            | Self::Extrapolation
+            | Self::Residual
+            | Self::Rcond
+            | Self::Iterations
+            | Self::Substeps
+            | Self::Proved
+            | Self::Time => {}
+        }
+        dependencies
+    }
+}
+
+fn derived_from_tunable(mechanism: &Mechanism, parameter: ParameterId) -> bool {
+    let mut roots = Dependencies::default();
+    roots.add_parameter(mechanism, parameter);
+    let mut roots = roots.parameters.iter();
+    roots.any(|root| mechanism.parameters[root.index()].tunable)
+}
+
+/// Returns whether a coordinate is an angle.
+pub(super) fn is_angle(coordinate: &Coordinate) -> bool {
+    units(coordinate)[0].dimension == Unit::RADIAN.dimension
+}
+
+/// Returns the units of a coordinate by order.
+pub(super) fn units(coordinate: &Coordinate) -> [Unit; 3] {
+    match coordinate.kind {
+        CoordinateKind::Angle => ANGLES,
+        CoordinateKind::X | CoordinateKind::Y | CoordinateKind::Distance => LENGTHS,
+    }
+}
+
+/// Returns the file's own description of a coordinate, or else what it measures.
+fn describe(mechanism: &Mechanism, own: &str, coordinate: &Coordinate) -> String {
+    if !own.is_empty() {
+        return own.to_owned();
+    }
+    let [from, to, axes] =
+        [coordinate.from, coordinate.to, coordinate.axes].map(|id| mechanism.marker_path(id));
+    let on_axes = if axes == from {
+        String::new()
+    } else {
+        format!(" on the axes of `{axes}`")
+    };
+    match coordinate.kind {
+        CoordinateKind::Angle => format!("the angle from `{from}` to `{to}`"),
+        CoordinateKind::X => format!("x from `{from}` to `{to}`{on_axes}"),
+        CoordinateKind::Y => format!("y from `{from}` to `{to}`{on_axes}"),
+        CoordinateKind::Distance => format!("the distance from `{from}` to `{to}`"),
+    }
+}
+
+/// Returns the description of a signal's derivative.
+fn of_order(order: Order, description: &str) -> String {
+    match order {
+        Order::Position => description.to_owned(),
+        Order::Velocity => format!("velocity: {description}"),
+        Order::Acceleration => format!("acceleration: {description}"),
+    }
+}

@@ -1,0 +1,109 @@
+//! Values of variables: output derivatives (4.2.1), limits (2.2.3), names of types (2.2.3).
+
+use std::collections::BTreeSet;
+
+use biela::fmi::{Error, Interface, Status, describe};
+
+use crate::common::{assembled, folder, instance_of, parse, shipped, stems};
+use crate::{get, set, started, vr};
+
+/// "If the actual order is lower, the retrieved value is 0", with `fmi2OK`.
+#[test]
+fn output_derivatives_beyond_the_known_ones_are_zero() {
+    let mut instance = started(instance_of(shipped("four_bar"), Interface::CoSimulation));
+    set(
+        &mut instance,
+        [
+            ("crank_angle.velocity", 3.0),
+            ("crank_angle.acceleration", -4.0),
+        ],
+    );
+    instance.do_step(0.0, 0.1).expect("the crank stands");
+    let [omega, alpha] = get(&mut instance, ["rocker.omega", "rocker.alpha"]);
+    let asked = [
+        ("rocker.phi", 1, omega),
+        ("rocker.phi", 2, alpha),
+        ("rocker.omega", 1, alpha),
+        ("rocker.omega", 2, 0.0),
+        ("rocker.alpha", 1, 0.0),
+        ("rocker.alpha", 2, 0.0),
+    ];
+    let references = asked.map(|(name, ..)| vr(&instance, name));
+    let orders = asked.map(|(_, order, _)| order);
+    let found = instance.output_derivatives(&references, &orders);
+    let found: Vec<_> = found.expect("up to the declared order").collect();
+    assert_eq!(found, asked.map(|(.., expected)| expected));
+    for order in [0, 3, -1] {
+        let orders = [order];
+        let refused = instance.output_derivatives(&references[..1], &orders);
+        let error = refused.map(|_| ()).expect_err("orders are 1 and 2");
+        assert_eq!(error.status(), Status::Error);
+        let expected = format!("cannot be of order {order}; expected 1 to 2");
+        assert!(error.to_string().ends_with(&expected), "{error}");
+    }
+}
+
+/// "On a fixed or tunable parameter `fmi2Status = fmi2Discard` is returned"; so the instance can be
+/// used on, which it could not after an error (2.1.3, 2.1.6).
+#[test]
+fn a_parameter_outside_its_limits_is_discarded() {
+    let mut instance = instance_of(shipped("four_bar"), Interface::CoSimulation);
+    let length = vr(&instance, "crank_length");
+    let rates = vr(&instance, "rates");
+    let error = instance.set_real(&[length], &[0.0]).expect_err("too short");
+    assert!(matches!(error, Error::Range { .. }));
+    assert_eq!(error.status(), Status::Discard);
+    let error = instance.set_integer(&[rates], &[4]).expect_err("no item");
+    assert_eq!(error.status(), Status::Discard);
+    // What no limit says is an error still.
+    let error = instance.set_real(&[length], &[f64::NAN]).expect_err("NaN");
+    assert_eq!(error.status(), Status::Error);
+    let mut instance = started(instance);
+    assert_eq!(get(&mut instance, ["crank_length"]), [0.1]);
+    instance.terminate().expect("nothing has failed");
+}
+
+/// The names of types and variables of a mechanism.
+fn names(xml: &str, element: &str) -> BTreeSet<String> {
+    let start = format!("<{element} name=\"");
+    let found = xml.split(&start).skip(1);
+    let name = |rest: &str| {
+        rest.split('"')
+            .next()
+            .expect("the attribute ends")
+            .to_owned()
+    };
+    found.map(name).collect()
+}
+
+/// "`name` of a `SimpleType` must be different to all `name` attributes of `ScalarVariable`s."
+#[test]
+fn no_variable_has_the_name_of_a_type() {
+    let text = std::fs::read_to_string(folder("mechanisms").join("four_bar.toml"));
+    let mut text = text.expect("it is shipped");
+    // Parameters and bodies that are called as types might be.
+    for (own, name) in [
+        ("crank_length", "Length"),
+        ("rocker_length", "Angle"),
+        ("coupler_length", "Rates"),
+        ("base", "Extrapolation"),
+        ("crank_angle", "biela"),
+        ("rocker", "Velocity"),
+    ] {
+        text = text.replace(own, name);
+    }
+    let mut mechanisms: Vec<_> = stems("mechanisms", "toml")
+        .iter()
+        .map(|name| shipped(name))
+        .collect();
+    mechanisms.push(parse(&text));
+    for mechanism in mechanisms {
+        let (solver, _) = assembled(&mechanism);
+        let xml = describe(solver.mechanism(), solver.structure()).write(None);
+        let xml = String::from_utf8(xml).expect("XML is text");
+        let (types, variables) = (names(&xml, "SimpleType"), names(&xml, "ScalarVariable"));
+        assert!(!types.is_empty() && !variables.is_empty());
+        let both: Vec<_> = types.intersection(&variables).collect();
+        assert!(both.is_empty(), "{}: {both:?}", mechanism.name);
+    }
+}
