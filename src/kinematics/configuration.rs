@@ -1,18 +1,18 @@
-//! Where every marker is, for a given q: what all constraints read.
+//! The configuration: the bodies at one q, and the markers on them.
 
 use nalgebra::Vector2;
 
 use super::Error;
 use crate::mechanism::{BodyId, Expression, MarkerId, Mechanism, ProfileInForce};
 
-/// A vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
+/// Returns a vector turned by a quarter turn: the derivative of A(phi) s is `perp(A(phi) s)`.
 #[must_use]
 pub fn perp(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
-/// The unit vector in the direction `angle`. A right angle such as `90*deg` is one only up to
-/// its rounding; the vector then has exact zeros, as the structure of the equations has.
+/// Returns the unit vector in the direction `angle`. At a right angle such as `90*deg`, which is
+/// one up to rounding only, it has exact zeros, as the structure of the equations has.
 #[must_use]
 pub(super) fn axis(angle: f64) -> Vector2<f64> {
     let (sin, cos) = angle.sin_cos();
@@ -64,7 +64,7 @@ pub(super) struct BodyPose {
 }
 
 impl BodyPose {
-    /// The frame of ground.
+    /// Frame of ground.
     const GROUND: Self = Self {
         origin: Vector2::new(0.0, 0.0),
         phi: 0.0,
@@ -72,7 +72,7 @@ impl BodyPose {
         sin: 0.0,
     };
 
-    /// A frame at the origin, turned by phi.
+    /// Returns a frame at the origin, turned by phi.
     #[inline(always)]
     pub(super) fn turned(phi: f64) -> Self {
         let (sin, cos) = phi.sin_cos();
@@ -84,14 +84,14 @@ impl BodyPose {
         }
     }
 
-    /// A(phi) s.
+    /// Returns A(phi) s.
     #[inline(always)]
     pub(super) fn rotate(&self, s: Vector2<f64>) -> Vector2<f64> {
         rotate(self.cos, self.sin, s)
     }
 }
 
-/// A vector turned by the angle with this cosine and sine.
+/// Returns a vector turned by the angle with this cosine and sine.
 #[inline(always)]
 pub(super) fn rotate(cos: f64, sin: f64, s: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(cos * s.x - sin * s.y, sin * s.x + cos * s.y)
@@ -101,7 +101,7 @@ pub(super) fn rotate(cos: f64, sin: f64, s: Vector2<f64>) -> Vector2<f64> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CoefficientId(pub usize);
 
-/// An unknown that a joint brings with it: its place behind the unknowns of the bodies.
+/// A joint unknown, which belongs to no body: its index behind the unknowns of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JointUnknownId(pub usize);
 
@@ -118,19 +118,19 @@ pub struct CamProfile {
     pub what: String,
 }
 
-/// What a relation needs besides markers, known when the equations are written down.
+/// A coefficient of a relation.
 #[derive(Clone, Debug)]
 pub struct Coefficient {
     /// Its value as a function of the parameters.
     pub expression: Expression,
-    /// What it belongs to, for messages.
+    /// The joint that it belongs to, for messages.
     pub what: String,
 }
 
-/// The bodies of a mechanism at one q, and where that puts every marker.
+/// The bodies of a mechanism at one q, and the markers on them.
 ///
 /// Made once; [`set_parameters`](Self::set_parameters) and [`set_pose`](Self::set_pose) then
-/// change it without allocating. A marker's pose is computed when it is asked for.
+/// change it without allocating. A marker's pose is computed on demand.
 #[derive(Clone, Debug)]
 pub struct Configuration {
     frames: Vec<LocalFrame>,
@@ -138,14 +138,13 @@ pub struct Configuration {
     bodies: Vec<BodyPose>,
     coefficients: Vec<f64>,
     profiles: Vec<CamProfile>,
-    /// The unknowns behind those of the bodies, which joints bring with them.
+    /// The joint unknowns, behind those of the bodies.
     joint_unknowns: Vec<f64>,
     size: f64,
 }
 
 impl Configuration {
-    /// A configuration of all bodies at the origin, for parameter values still to be set, with
-    /// room for what the system's joints need.
+    /// Makes a configuration of all bodies at the origin; parameter values are still to be set.
     #[must_use]
     pub fn new(
         mechanism: &Mechanism,
@@ -173,13 +172,13 @@ impl Configuration {
         }
     }
 
-    /// Takes over the markers' places on their bodies and the coefficients for these parameter
+    /// Evaluates the markers' places on their bodies, coefficients and profiles for these parameter
     /// values.
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] if an expression leaves its domain; the configuration is then
-    /// without use until valid values are set.
+    /// [`Error::NotFinite`] if an expression leaves its domain, [`Error::Profile`] for a profile
+    /// that makes no contour; the configuration is then without use until valid values are set.
     pub fn set_parameters(
         &mut self,
         mechanism: &Mechanism,
@@ -219,7 +218,7 @@ impl Configuration {
         Ok(())
     }
 
-    /// Moves the bodies to q, \[m, m, rad\] for each body, then the joints' own unknowns.
+    /// Moves the bodies to q, \[m, m, rad\] for each body, then the joint unknowns.
     pub fn set_pose(&mut self, mechanism: &Mechanism, q: &[f64]) {
         let (bodies, joint_unknowns) = q.split_at(3 * mechanism.bodies.len());
         self.joint_unknowns.copy_from_slice(joint_unknowns);
@@ -231,7 +230,7 @@ impl Configuration {
         }
     }
 
-    /// Writes q, as [`set_pose`](Self::set_pose) reads it.
+    /// Writes q in the order in which [`set_pose`](Self::set_pose) reads it.
     pub(super) fn copy_pose(&self, q: &mut [f64]) {
         let (bodies, joint_unknowns) = q.split_at_mut(3 * (self.bodies.len() - 1));
         for (body, q) in self.bodies.iter().zip(bodies.chunks_exact_mut(3)) {
@@ -242,7 +241,7 @@ impl Configuration {
         joint_unknowns.copy_from_slice(&self.joint_unknowns);
     }
 
-    /// The unknown q\[column\].
+    /// Returns the unknown q\[column\].
     pub(super) fn coordinate(&self, column: usize) -> f64 {
         let place = column / 3;
         if place >= self.bodies.len() - 1 {
@@ -274,31 +273,31 @@ impl Configuration {
         }
     }
 
-    /// The bodies' frames, then that of ground.
+    /// Returns the frames of the bodies, then that of ground.
     #[inline(always)]
     pub(super) fn frames(&self) -> &[BodyPose] {
         &self.bodies
     }
 
-    /// The bodies' frames, to be changed, then that of ground.
+    /// Returns the frames of the bodies, to be changed, then that of ground.
     #[inline(always)]
     pub(super) fn frames_mut(&mut self) -> &mut [BodyPose] {
         &mut self.bodies
     }
 
-    /// The frame of a body, that of ground for `None`.
+    /// Returns the frame of a body, that of ground for `None`.
     fn frame(&self, body: Option<BodyId>) -> &BodyPose {
         let place = body.map_or(self.bodies.len() - 1, BodyId::index);
         &self.bodies[place]
     }
 
-    /// A marker's place on its body: s, and its angle.
+    /// Returns a marker's place on its body: s, and its angle.
     pub(super) fn local(&self, marker: MarkerId) -> (Vector2<f64>, f64) {
         let frame = &self.frames[marker.index()];
         (frame.position, frame.angle)
     }
 
-    /// A marker's pose.
+    /// Returns a marker's pose.
     #[must_use]
     pub fn marker(&self, marker: MarkerId) -> MarkerPose {
         let frame = &self.frames[marker.index()];
@@ -313,42 +312,43 @@ impl Configuration {
         }
     }
 
-    /// A body's angle \[rad\], zero for ground.
+    /// Returns a body's angle \[rad\], zero for ground.
     #[must_use]
     pub fn phi(&self, body: Option<BodyId>) -> f64 {
         self.frame(body).phi
     }
 
-    /// A coefficient with the parameter values in force.
+    /// Returns a coefficient with the parameter values in force.
     #[must_use]
     pub fn coefficient(&self, id: CoefficientId) -> f64 {
         self.coefficients[id.0]
     }
 
-    /// The value of a joint's own unknown.
+    /// Returns the value of a joint unknown.
     #[must_use]
     pub fn joint_unknown(&self, id: JointUnknownId) -> f64 {
         self.joint_unknowns[id.0]
     }
 
-    /// The place in q of a joint's own unknown.
+    /// Returns the index in q of a joint unknown.
     #[must_use]
     pub fn joint_unknown_column(&self, id: JointUnknownId) -> usize {
         3 * (self.bodies.len() - 1) + id.0
     }
 
-    /// A cam's profile with the parameter values in force.
+    /// Returns a cam's profile with the parameter values in force.
     #[must_use]
     pub fn profile(&self, id: ProfileId) -> &ProfileInForce {
         &self.profiles[id.0].in_force
     }
 
-    /// All profiles.
+    /// Returns all profiles.
     pub(super) fn profiles(&self) -> &[CamProfile] {
         &self.profiles
     }
 
-    /// The mechanism's characteristic length \[m\]: makes metres and radians comparable.
+    /// Returns the mechanism's characteristic length \[m\], which makes metres and radians
+    /// comparable.
     ///
     /// It is the extent of the largest body or the largest length that a joint holds, not the
     /// extent of the whole, so that a long chain of small loops is measured by its loops.
@@ -357,13 +357,13 @@ impl Configuration {
         if self.size > 0.0 { self.size } else { 1.0 }
     }
 
-    /// Takes a length that a joint holds into account for the [size](Self::size).
+    /// Makes the [size](Self::size) at least a length that a joint holds.
     pub(super) fn enlarge(&mut self, length: f64) {
         self.size = self.size.max(length);
     }
 }
 
-/// Extent of the largest body, else of ground's markers; zero if neither has any.
+/// Returns the extent of the largest body, or of ground's markers; zero if neither has any.
 fn size(mechanism: &Mechanism, frames: &[LocalFrame]) -> f64 {
     let extent = |markers: &mut dyn Iterator<Item = &LocalFrame>| {
         let (low, high) = markers.fold(

@@ -1,8 +1,8 @@
-//! What an equation belongs to, for messages.
+//! The element of the mechanism file that an equation belongs to.
 
 use crate::mechanism::{DriverId, Mechanism};
 
-/// The joint, bare constraint or driver that an equation comes from.
+/// The joint, constraint or driver of an equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Element {
     /// Index into [`Mechanism::joints`].
@@ -14,7 +14,7 @@ pub enum Element {
 }
 
 impl Element {
-    /// The name in the mechanism file.
+    /// Returns the name in the mechanism file.
     #[must_use]
     pub fn name(self, mechanism: &Mechanism) -> &str {
         match self {
@@ -24,7 +24,7 @@ impl Element {
         }
     }
 
-    /// Kind and name: ``joint `B` ``.
+    /// Returns kind and name: ``joint `B` ``.
     #[must_use]
     pub fn describe(self, mechanism: &Mechanism) -> String {
         let kind = match self {

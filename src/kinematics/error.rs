@@ -1,4 +1,4 @@
-//! What can go wrong in the kinematics.
+//! The errors of the kinematics.
 
 use std::fmt;
 
@@ -17,10 +17,10 @@ pub enum Error {
         drivers: usize,
         /// Degrees of freedom that no driver drives.
         free: usize,
-        /// What can move though no driver does: kind and name of each body.
+        /// The bodies that can move though no driver does: kind and name of each.
         loose: Vec<String>,
-        /// Drivers of which one is too many, or joints and constraints that hold what a driver
-        /// would drive: kind and name of each.
+        /// Drivers of which one is too many, or joints and constraints that hold a coordinate that
+        /// a driver drives: kind and name of each.
         excess: Vec<String>,
     },
     /// Constraints that cannot be satisfied together, whatever the mechanism's pose.
@@ -32,13 +32,13 @@ pub enum Error {
     Contradiction {
         /// The smallest set: kind and name of each.
         elements: Vec<String>,
-        /// What stays open in the one declared last when the others are closed.
+        /// The gap in the one declared last when the others are closed.
         open: OpenJoint,
     },
     /// An expression has no finite value for the parameter values in force.
     #[error("{what} has no finite value with these parameter values")]
     NotFinite {
-        /// What the expression is for.
+        /// The quantity that the expression gives.
         what: String,
     },
     /// The motion of a driver has no finite value, or no finite rates.
@@ -46,10 +46,10 @@ pub enum Error {
     NoMotion {
         /// The driver.
         driver: String,
-        /// What it has not.
+        /// The non-finite quantity.
         quantity: &'static str,
     },
-    /// A distance is to be held at a value that no distance can have.
+    /// The target of a distance is not positive.
     #[error("{what} would hold a distance at {value} m; a distance must be positive")]
     NotPositive {
         /// The joint, constraint or driver.
@@ -57,20 +57,20 @@ pub enum Error {
         /// The value \[m\].
         value: f64,
     },
-    /// Parameters make no contour of a cam.
+    /// The profile of a cam has no valid contour for the parameter values in force.
     #[error("{what}: {error}")]
     Profile {
         /// The joint.
         what: String,
-        /// What is wrong with the contour.
+        /// The fault of the contour.
         error: ProfileError,
     },
-    /// No pose satisfies all equations, or none was found that does.
+    /// No pose satisfies all equations, or none was found.
     #[error("{}", not_assembled_message(verdict, open))]
     NotAssembled {
-        /// Which of the two.
+        /// Proved impossible, or not found.
         verdict: Verdict,
-        /// What stays open in the nearest pose found.
+        /// The joints that stay open in the nearest pose found.
         open: Vec<OpenJoint>,
         /// q of that pose.
         nearest: Vec<f64>,
@@ -80,39 +80,39 @@ pub enum Error {
     Singular {
         /// Scaled reciprocal condition of the Jacobian.
         rcond: f64,
-        /// The bodies that can move there without any driver, as far as they were looked for.
+        /// The bodies that can move there without any driver; empty if not determined.
         bodies: Vec<String>,
     },
 }
 
-/// What is known of a mechanism that was not assembled.
+/// The verdict on a mechanism that was not assembled.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// There is no pose that satisfies all equations.
+    /// No pose satisfies all equations.
     Impossible {
-        /// Why, in the nearest pose.
+        /// The proof, in the nearest pose.
         proof: Box<Proof>,
-        /// In how many ways the bodies found before can stand; each has been excluded.
+        /// Number of branches of the blocks before; each is excluded.
         ways: usize,
     },
-    /// None was found, which is no proof.
+    /// No pose was found; one may still exist.
     NotFound {
-        /// From how many starts, all of them deterministic.
+        /// Number of starts, the same ones each time.
         starts: usize,
     },
 }
 
-/// Why a part of a mechanism cannot close.
+/// The proof that a block cannot close.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Proof {
     /// Two links do not reach from one point to another.
     Reach {
-        /// The bodies that are the links.
+        /// The two links.
         bodies: [String; 2],
-        /// The markers that they are to join.
+        /// The markers that they have to join.
         points: [String; 2],
-        /// How far these are apart \[m\].
+        /// Distance of these markers \[m\].
         distance: f64,
         /// The least and the largest distance that the links span \[m\].
         span: [f64; 2],
@@ -126,7 +126,7 @@ pub enum Proof {
     Excluded {
         /// The bodies.
         bodies: Vec<String>,
-        /// Into how many boxes their angles had to be divided.
+        /// Number of boxes into which their angles were divided.
         boxes: usize,
     },
 }
@@ -160,9 +160,9 @@ impl fmt::Display for Proof {
 pub struct OpenJoint {
     /// Kind and name.
     pub element: String,
-    /// The gap between its points \[m\], zero if it asks for none.
+    /// The gap between its points \[m\], zero if it has none.
     pub gap: f64,
-    /// The error of its angle \[rad\], zero if it asks for none.
+    /// The error of its angle \[rad\], zero if it has none.
     pub angle: f64,
 }
 
@@ -177,19 +177,19 @@ impl fmt::Display for OpenJoint {
     }
 }
 
-/// A length to four digits, for messages.
+/// Formats a length with four digits, for messages.
 fn millimetres(length: f64) -> String {
     format!("{} mm", four_digits(length * 1e3))
 }
 
-/// An angle to four digits, for messages.
+/// Formats an angle with four digits, for messages.
 fn degrees(angle: f64) -> String {
     format!("{} deg", four_digits(angle.to_degrees()))
 }
 
 fn four_digits(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
-        // What rounds up to a power of ten has its digits.
+        // A value that rounds up to a power of ten has the digits of that power.
         let rounded = value.abs().max(1e-3) * (1.0 + 5e-5);
         let decimals = 3 - rounded.log10().floor() as i32;
         format!("{value:.*}", decimals.max(0) as usize)
@@ -198,7 +198,7 @@ fn four_digits(value: f64) -> String {
     }
 }
 
-/// Names for a message, with `last` before the last one; of very many only the first.
+/// Lists names for a message, with `last` before the last one; of very many only the first.
 fn list(names: &[String], last: &str) -> String {
     const SHOWN: usize = 8;
     if names.len() > SHOWN + 1 {
@@ -211,7 +211,7 @@ fn list(names: &[String], last: &str) -> String {
     }
 }
 
-/// Says that bodies line up, with something before that: one alone is in line with what drives it.
+/// Says that bodies line up, with `almost` before the verb; one alone lines up with its driver.
 pub(crate) fn in_line(bodies: &[String], almost: &str) -> String {
     let verb = if bodies.len() == 1 { "lines" } else { "line" };
     format!("{} {almost}{verb} up", list(bodies, " and "))

@@ -14,12 +14,12 @@ use super::redundancy::{assemble_on_all, choose_rows};
 use super::singular::settle;
 use super::state::{Pose, State};
 
-/// The way to the pose for the first values.
+/// The method that found the first pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
-    /// By continuous motion: the assembly mode is that of the pose at the start.
+    /// Continuous motion: the assembly mode is that of the pose at the start.
     Continuous(Progress),
-    /// From the estimates, as the motion was blocked; possibly in another assembly mode.
+    /// Assembly from the estimates, because the motion was blocked; possibly another assembly mode.
     Reassembled(Assembly),
 }
 
@@ -43,7 +43,7 @@ pub(super) fn assemble(
     path: &Path,
 ) -> Result<Assembly, Error> {
     match assemble_rows(model, state, path, !model.redundant.is_empty()) {
-        // Or redundant in a way that numbers alone tell.
+        // The rows may be redundant for these numbers.
         Err(Error::Singular { .. }) => {
             choose_rows(model, state, path)?;
             assemble_rows(model, state, path, true)
@@ -69,6 +69,10 @@ fn assemble_rows(
         }
     };
     choose_turns(&model.system, state, &estimate);
+    // The search may have chosen pivots, at poses that belong to no motion.
+    model
+        .plan
+        .reset_pivots(&model.system, &state.at, &state.targets);
     state.refresh(model)?;
     let rcond = model.plan.rcond();
     if rcond < SINGULAR {

@@ -12,16 +12,38 @@
 //! | sensitivity | Phi_q δq = δu − Phi_p δp | and the derivatives of Eq. 3.6.10 and 3.6.11 |
 //! | assembly | min (q − q⁰)ᵀ(q − q⁰) + r PhiᵀPhi, r growing | Eq. 3.6.9 |
 //!
-//! The system is solved block by block: [`Structure`] finds which equations determine which
-//! unknowns and in which order, and a plan compiled from it has a block for each block, straight
-//! code for the dyads of which most mechanisms consist. The work of a step is proportional to the
-//! number of bodies. Position, velocity and acceleration share one factorisation a block.
+//! The system is solved block by block: [`Structure`] finds the blocks and their order, and a plan
+//! compiled from it has a solver for each, straight code for the dyads of which most mechanisms
+//! consist. The work of a step is proportional to the number of bodies. Position, velocity and
+//! acceleration share one factorisation per block.
 //!
 //! Redundant equations are found by rank, set aside and watched: see [`Solver::redundancies`].
 //!
-//! [`System`] has the equations and their rows, [`Solver`] a mechanism at one pose, which it can
+//! [`System`] has the equations. [`Solver`] has a mechanism at one pose, which it can
 //! [assemble](Solver::assemble), [track along a path](Solver::track) and give
 //! [rates](Solver::solve_rates) to. Neither knows of FMI.
+//!
+//! Each file uses only those above it in this list:
+//!
+//! | file or folder | subject |
+//! |---|---|
+//! | `linear` | dense and sparse matrices, condition, rank |
+//! | `element`, `error`, `newton` | names for messages; errors; limits of Newton–Raphson |
+//! | `configuration` | the bodies and markers at one q |
+//! | [`constraint`], [`variation`] | one relation per file; its derivatives along a direction |
+//! | `system` | the equations, their scales and their linearisation |
+//! | `structure` | matching and blocks |
+//! | `path` | time, parameters and drivers over one step |
+//! | `certificate` | the proof that one motion joins the ends of a sub-step |
+//! | `block` | the plan, and one solver per kind of block |
+//! | `model`, `state` | all that is compiled; all that moves |
+//! | `assembly` | a pose from the estimates |
+//! | `redundancy` | rows that follow from others, and those that are solved |
+//! | `singular` | dead points and change points |
+//! | `continuation` | sub-steps along a path |
+//! | `initial_pose` | the first pose |
+//! | `analysis` | sensitivity, range, modes, checks of the geometry |
+//! | `solver` | the facade |
 
 mod analysis;
 mod assembly;

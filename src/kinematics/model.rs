@@ -24,9 +24,9 @@ pub(super) struct Model {
 pub(super) struct RedundantRows {
     /// Rows that follow from the others, of equals the ones declared last; ascending.
     pub(super) all: Vec<usize>,
-    /// As many, those set aside at the first pose; ascending.
+    /// The rows set aside at the first pose, as many; ascending.
     pub(super) first: Vec<usize>,
-    /// As many, those set aside at present; ascending.
+    /// The rows set aside at present, as many; ascending.
     pub(super) now: Vec<usize>,
 }
 

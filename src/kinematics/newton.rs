@@ -20,14 +20,14 @@ impl Default for Correction {
     }
 }
 
-/// No pose was found, or one that may be off the motion.
+/// A correction without a pose, or with one that may be off the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Rejected;
 
 /// A residual up to this many times its estimated rounding error counts as zero.
 pub(super) const AT_ROUNDING: f64 = 4.0;
-/// So does a residual up to this many times its rounding error that has stopped falling: the
-/// estimate leaves out the sums and products inside a row.
+/// A residual up to this many times its rounding error that has stopped falling counts as zero,
+/// too: the estimate of the rounding leaves out the sums and products inside a row.
 pub(super) const STALLED: f64 = 100.0;
 
 /// Most corrections in a step: Newton–Raphson converges quadratically from a good prediction.

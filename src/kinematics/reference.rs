@@ -1,4 +1,4 @@
-//! The oracle: all equations at once by dense matrices, as the formulas have it.
+//! The reference: the formulas of the source text on all equations at once, by dense matrices.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::{Curve, Path, Rates, Solver};
 use crate::mechanism::{Jet, Mechanism, Source};
 use proptest::prelude::*;
 
-/// Phi and Phi_q at the solver's pose, as they are.
+/// Returns Phi and Phi_q at the solver's pose, not scaled.
 fn equations(solver: &Solver) -> (DVector<f64>, DMatrix<f64>) {
     let equations = solver.system().equations();
     let order = equations.len();
@@ -49,8 +49,8 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
     let lu = phi_q.full_piv_lu();
     let solve = |side: &DVector<f64>| lu.solve(side).expect("the pose is regular");
     let largest = |v: &[f64]| v.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
-    // Both sides are off by some eps times the magnitudes, through the inverse once for q, and
-    // for the rates once more each.
+    // Both sides have errors of some eps times the magnitudes, multiplied by the inverse once for
+    // q, and once more for each order of the rates.
     let rounding = 100.0 * f64::EPSILON / rcond;
 
     let off = solve(&phi);
@@ -94,7 +94,7 @@ pub(super) fn assembled(source: &Source) -> (Solver, Path) {
     (solver, path)
 }
 
-/// Moves each driver by its part of `by`, as far as it goes.
+/// Moves each driver by its part of `by`, as far as the motion goes.
 fn move_on(solver: &mut Solver, path: &mut Path, by: f64) {
     path.start = solver.pose().time;
     path.from.copy_from_slice(&solver.pose().parameters);
@@ -111,7 +111,7 @@ fn move_on(solver: &mut Solver, path: &mut Path, by: f64) {
             *jump = now - *position;
         }
     }
-    // A dead point ends the way; where it ended is as good a place to look.
+    // A dead point may stop the motion; the pose in front of it serves as well.
     let _ = solver.track(path);
 }
 
@@ -140,7 +140,7 @@ fn every_shipped_mechanism_agrees() {
     assert!(seen > 20);
 }
 
-/// Chains, and lifts whose loops are one block: of dense and of sparse matrices.
+/// Chains, and lifts whose loops are one block with a dense or a sparse matrix.
 #[test]
 fn generated_mechanisms_agree() {
     use generated::{Ground, chain, scissor_lift};
@@ -162,7 +162,7 @@ fn generated_mechanisms_agree() {
     }
 }
 
-/// A mechanism that grows part by part on points that already move.
+/// Returns the text of a mechanism that grows part by part on points that already move.
 pub(super) fn grown(parts: &[Part]) -> String {
     use std::fmt::Write as _;
     let mut bodies = String::new();
@@ -194,7 +194,7 @@ pub(super) fn grown(parts: &[Part]) -> String {
         let (a, b) = (format!("a{k}"), format!("b{k}"));
         let estimate = format!("[{}, 0.1, 0.5]", pivot - 0.3);
         match kind {
-            // A dyad of revolutes; links long enough to turn.
+            // An RRR dyad whose links are long enough to turn.
             0 => {
                 body("a", 0.32 + 0.1 * size, &estimate);
                 body("b", 0.34, &format!("[{pivot}, 0.0, 1.8]"));
@@ -226,7 +226,7 @@ pub(super) fn grown(parts: &[Part]) -> String {
                 joint("t", "translational", &format!("{a}.A"), &format!("{b}.A"));
                 tip = format!("{b}.B");
             }
-            // A wheel on the crank's body, geared to another that is pinned to ground.
+            // A wheel on the crank's body, geared to a wheel that is pinned to ground.
             _ => {
                 body("a", 0.2, &format!("[{pivot}, 0, 0]"));
                 joint("ra", "revolute", &format!("ground.P{k}"), &format!("{a}.A"));
@@ -269,12 +269,12 @@ proptest! {
             .unwrap_or_else(|diagnostics| panic!("{text}: {diagnostics:#?}"));
         let mut path = Path::new(&mechanism);
         let mut solver = Solver::new(Arc::new(mechanism)).expect("the drivers match");
-        // Not each of them closes.
+        // Some of them do not close.
         prop_assume!(solver.assemble(&path).is_ok());
         let driver = Jet::new(0.0, [1.3, -0.7]);
         for _ in 0..5 {
-            // Where a position is all but singular both sides are as uncertain as each other, and
-            // next to a change point the solver is the more accurate one.
+            // Near a singular position both sides are equally uncertain, and next to a change point
+            // the solver is the more accurate one.
             if solver.rcond() > 1e-4 && solver.pose().crossings.is_empty() {
                 check(&mut solver, &[driver], &text);
             }

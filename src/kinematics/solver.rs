@@ -100,8 +100,8 @@ impl Solver {
     ///
     /// [`Error::NotAssembled`] with the joints that stay open, and a proof that the mechanism
     /// cannot close, if there is one; [`Error::Singular`] if it closes in a singular position;
-    /// [`Error::NotFinite`] and [`Error::NotPositive`] for values without a mechanism. The solver is
-    /// then without a valid pose until it is assembled or [restored](Self::restore); after the
+    /// [`Error::NotFinite`] and [`Error::NotPositive`] for values without a mechanism. The solver
+    /// is then without a valid pose until it is assembled or [restored](Self::restore); after the
     /// first of these its pose is the nearest one.
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
         initial_pose::assemble(&mut self.model, &mut self.state, path)
@@ -151,9 +151,9 @@ impl Solver {
         self.state.restore(&mut self.model, pose);
     }
 
-    /// Forgets all that the way to the present pose has left: pivots of sparse matrices, proofs
-    /// that hold for several steps, the choice among redundant rows. From here on everything depends
-    /// on the pose alone, to the last bit.
+    /// Forgets all traces of the motion to the present pose: pivots of sparse matrices, proofs that
+    /// hold for several steps, the choice among redundant rows. All further results depend on the
+    /// pose alone, to the last bit.
     pub fn forget_way(&mut self) {
         self.model.plan.forget_pivots();
         self.model.plan.forget_proofs();
@@ -243,9 +243,9 @@ impl Solver {
     }
 
     /// Returns the approach to a singular position, if the mechanism, at the end of a path, has
-    /// come near one since `near` was last false; `near` is true from then on until the mechanism is
-    /// away again. Next to a change point that is crossed there is no warning. Away from singular
-    /// positions it costs a comparison.
+    /// come near one since `near` was last false; `near` is true from then on until the mechanism
+    /// is away again. Next to a change point that is crossed there is no warning. Away from
+    /// singular positions it costs a comparison.
     pub fn approach(&mut self, near: &mut bool) -> Option<Approach> {
         singular::approach(&mut self.model, &mut self.state, near)
     }
@@ -256,8 +256,8 @@ impl Solver {
         singular::describe_crossing(&self.model, crossing)
     }
 
-    /// Returns whether this mechanism could have come to the crossings of a pose that was read from
-    /// outside, and q lies on them.
+    /// Returns whether the crossings of a pose that was read from outside are possible for this
+    /// mechanism and contain q.
     #[must_use]
     pub fn admits_crossings(&self, pose: &Pose) -> bool {
         singular::admits_crossings(&self.model, pose)
@@ -296,10 +296,10 @@ impl Solver {
         analysis::range(model, state, tracker, driver, settings)
     }
 
-    /// Finds the other poses in which the mechanism closes with the parameters and driver values of
-    /// the present pose: both branches of each dyad, all branches of other blocks of few angles, by
-    /// bounds over intervals, and those of the rest that minimisation finds from a fixed set of
-    /// starts. The pose stays as it is.
+    /// Finds the other assembly modes for the parameters and driver values of the present pose. The
+    /// search covers both branches of each dyad and, by bounds over intervals, all branches of
+    /// other blocks with few angles. Of the remaining blocks it finds the branches that a
+    /// minimisation from a fixed set of starts reaches. The pose is unchanged.
     ///
     /// # Errors
     ///

@@ -6,14 +6,13 @@ use super::block::{BlockState, Crossing};
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity};
 use super::error::Error;
-use super::linear::Row;
 use super::model::Model;
 use super::newton::Rejected;
 use super::path::{Motions, Path, Rates};
-use super::system::{RowValue, System, Targets};
+use super::system::{System, Targets, Values};
 use crate::mechanism::{DriverId, Jet, MarkerId};
 
-/// The pose of a mechanism: all that decides where it is and how it goes on from there.
+/// The pose of a mechanism: all numbers on which its further motion depends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     /// Time \[s\].
@@ -254,22 +253,22 @@ impl State {
         }
     }
 
-    /// Evaluates a row of Phi at the present places of the bodies.
-    pub(super) fn row_value(&self, system: &System, row: usize) -> RowValue {
-        system.evaluate_row(row, &self.at, &self.targets, &self.pose.drivers, |_, _| {})
+    /// Returns the numbers in the equations at the present places of the bodies.
+    pub(super) fn values(&self) -> Values<'_> {
+        Values {
+            at: &self.at,
+            targets: &self.targets,
+            drivers: &self.pose.drivers,
+        }
     }
 
-    /// Returns the entries of a row of the Jacobian at the present places of the bodies, scaled.
-    pub(super) fn jacobian_row(&self, system: &System, row: usize) -> Row {
-        let mut entries = Row::new();
-        system.sparse_row(
-            row,
-            &self.at,
-            &self.targets,
-            &self.pose.drivers,
-            &mut entries,
-        );
-        entries
+    /// Returns the ratio of the extreme singular values of these rows of the Jacobian in these
+    /// unknowns, which are ascending, at the present places of the bodies.
+    pub(super) fn dense_rcond(&self, system: &System, rows: &[usize], columns: &[usize]) -> f64 {
+        let place = |column: usize| columns.binary_search(&column).ok();
+        let (_, jacobian) = system.dense_rows(rows, columns.len(), place, self.values());
+        let singular = jacobian.singular_values();
+        singular.min() / singular.max()
     }
 
     /// Returns the largest scaled residual of Phi at the pose.
@@ -301,7 +300,7 @@ impl State {
         self.refresh(model)?;
         let finite = if self.has_single_driver() {
             let [first, second] = driver(DriverId(0)).derivatives;
-            self.tangent.run(first, second, rates)
+            self.tangent.scale(first, second, rates)
         } else {
             for (index, jet) in self.driver_rates.iter_mut().enumerate() {
                 *jet = driver(DriverId(index));

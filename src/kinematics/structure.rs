@@ -1,9 +1,9 @@
-//! Which equation determines which unknown, found without numbers.
+//! The structure of the equations: the blocks in the order of solution, found without numbers.
 //!
-//! A maximum matching pairs equations with unknowns. With all matched, the strongly connected
+//! A maximum matching pairs equations with unknowns. If all are matched, the strongly connected
 //! components of the paired graph are the blocks that must be solved together, in block lower
-//! triangular order (Dulmage–Mendelsohn). Where some stay unmatched, numbers have to tell which
-//! rows are redundant and what is free to move: see `redundancy`.
+//! triangular order (Dulmage–Mendelsohn). If some stay unmatched, numbers decide which rows are
+//! redundant and which unknowns are free to move: see `redundancy`.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, OnceLock};
@@ -25,8 +25,8 @@ pub struct Structure {
     blocks: Vec<Block>,
     /// Block of each unknown.
     block_of: Vec<usize>,
-    /// What each block's unknowns depend on, through it and those before it; found when it is
-    /// first asked for, as only an export wants it and in a chain it grows with every link.
+    /// Dependencies of each block's unknowns, through it and the blocks before it; computed on
+    /// demand, as only an export needs them and in a chain they grow with every link.
     dependencies: OnceLock<Vec<Dependencies>>,
 }
 
@@ -45,37 +45,37 @@ pub struct Block {
     parameters: Vec<ParameterId>,
 }
 
-/// What a quantity depends on, structurally exact.
+/// The drivers and parameters that a quantity depends on, structurally exact.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dependencies {
-    /// Drivers, inputs and prescribed motions alike.
+    /// Drivers, both inputs and prescribed motions.
     pub drivers: BTreeSet<DriverId>,
-    /// Parameters that can be set: derived ones are replaced by what they are derived from.
+    /// Parameters that can be set; a derived one counts as those that it is derived from.
     pub parameters: BTreeSet<ParameterId>,
 }
 
 impl Dependencies {
-    /// Adds what another quantity depends on.
+    /// Adds the dependencies of another quantity.
     pub fn extend(&mut self, other: &Self) {
         self.drivers.extend(&other.drivers);
         self.parameters.extend(&other.parameters);
     }
 
-    /// Adds what an expression of the mechanism uses.
+    /// Adds the parameters of an expression of the mechanism.
     pub fn add_expression(&mut self, mechanism: &Mechanism, expression: &Expression) {
         for parameter in expression.parameters() {
             self.add_parameter(mechanism, parameter);
         }
     }
 
-    /// Adds what a prescribed motion uses.
+    /// Adds the parameters of a prescribed motion.
     pub fn add_motion(&mut self, mechanism: &Mechanism, motion: &Motion) {
         for parameter in motion.parameters() {
             self.add_parameter(mechanism, parameter);
         }
     }
 
-    /// Adds a parameter, or what it is derived from.
+    /// Adds a parameter, or the parameters that it is derived from.
     pub fn add_parameter(&mut self, mechanism: &Mechanism, parameter: ParameterId) {
         let definition = &mechanism.parameters[parameter.index()];
         if definition.derived {
@@ -88,11 +88,11 @@ impl Dependencies {
 }
 
 impl Structure {
-    /// Analyses a system without the rows `set_aside`, which are ascending. `None` unless each
-    /// row left can be paired with an unknown of its own and none is left over.
+    /// Analyses a system without the rows `set_aside`, which are ascending. Returns `None` unless
+    /// rows and unknowns can be paired without a rest.
     ///
-    /// What depends on what goes through the rows left only: parameters in the others decide
-    /// whether the mechanism closes, not where it is.
+    /// Dependencies go through the rows that are left: parameters in the others decide whether the
+    /// mechanism closes, not where it is.
     pub(super) fn new(system: &System, set_aside: &[usize]) -> Option<Self> {
         let rows = 0..system.equations().len();
         let incidences: Vec<_> = rows.clone().map(|row| system.incidence(row)).collect();
@@ -116,7 +116,7 @@ impl Structure {
         Some(structure)
     }
 
-    /// Pairs as many of these rows as can be, earlier ones first. Returns the rows of the system
+    /// Pairs as many of these rows as possible, earlier ones first. Returns the rows of the system
     /// that are then left, ascending; `None` if an unknown is left.
     pub(super) fn left_over(
         system: &System,
@@ -130,7 +130,7 @@ impl Structure {
         complete.then(|| unpaired.collect())
     }
 
-    /// The structure of a system that has still to be analysed.
+    /// Returns the structure of a system that is not analysed yet.
     pub(super) fn of_nothing(system: &System) -> Self {
         Self {
             mechanism: Arc::clone(system.mechanism()),
@@ -140,25 +140,25 @@ impl Structure {
         }
     }
 
-    /// The blocks, each after those it depends on.
+    /// Returns the blocks, each after those that it depends on.
     #[must_use]
     pub fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
-    /// What the unknown q\[column\] depends on.
+    /// Returns the dependencies of the unknown q\[column\].
     #[must_use]
     pub fn dependencies(&self, column: usize) -> &Dependencies {
         &self.all_dependencies()[self.block_of[column]]
     }
 
-    /// The block of each unknown.
+    /// Returns the block of the unknown q\[column\].
     #[must_use]
     pub fn block_of(&self, column: usize) -> usize {
         self.block_of[column]
     }
 
-    /// What a coordinate depends on.
+    /// Returns the dependencies of a coordinate.
     #[must_use]
     pub fn coordinate_dependencies(
         &self,
@@ -170,7 +170,7 @@ impl Structure {
         self.through(mechanism, &incidence)
     }
 
-    /// What the global x (component 0) or y (1) of a marker depends on.
+    /// Returns the dependencies of the global x (component 0) or y (1) of a marker.
     #[must_use]
     pub fn point_dependencies(
         &self,
@@ -183,7 +183,7 @@ impl Structure {
         self.through(mechanism, &incidence)
     }
 
-    /// What a function of these unknowns and parameters depends on.
+    /// Returns the dependencies of a function of these unknowns and parameters.
     fn through(&self, mechanism: &Mechanism, incidence: &Incidence) -> Dependencies {
         let mut dependencies = Dependencies::default();
         for &parameter in &incidence.parameters {
@@ -195,7 +195,7 @@ impl Structure {
         dependencies
     }
 
-    /// The block of these rows and columns; those before it are known.
+    /// Makes the block of these rows and columns; those before it are known.
     fn block(
         &self,
         system: &System,
@@ -258,12 +258,12 @@ impl Structure {
 struct Matching {
     column_of: Vec<Option<usize>>,
     row_of: Vec<Option<usize>>,
-    /// Whether no row was left without an unknown.
+    /// Whether each row has an unknown.
     pairs_all_rows: bool,
 }
 
 impl Matching {
-    /// Augments row by row along alternating paths, breadth first.
+    /// Matches row by row along alternating paths, breadth first.
     fn new(incidences: &[Incidence], unknowns: usize, rows: impl Iterator<Item = usize>) -> Self {
         let mut matching = Self {
             column_of: vec![None; incidences.len()],
@@ -272,7 +272,7 @@ impl Matching {
         };
         let mut reached_from = vec![None; unknowns];
         for row in rows {
-            // Most rows find a free unknown at once.
+            // Most rows contain a free unknown.
             let free = incidences[row]
                 .unknowns
                 .iter()
@@ -333,8 +333,8 @@ impl Matching {
         self.pairs_all_rows && self.row_of.iter().all(Option::is_some)
     }
 
-    /// Strongly connected components of the paired rows, in an order in which each comes after
-    /// those whose unknowns it uses.
+    /// Returns the strongly connected components of the paired rows, in an order in which each
+    /// comes after those whose unknowns it uses.
     fn components(&self, incidences: &[Incidence]) -> Vec<Vec<usize>> {
         let mut graph =
             DiGraph::<(), (), usize>::with_capacity(incidences.len(), 3 * incidences.len());
@@ -354,8 +354,8 @@ impl Matching {
                 }
             }
         }
-        // Kosaraju's order has a component after all those its edges lead to, and, unlike
-        // petgraph's Tarjan, needs no recursion as deep as a chain is long.
+        // Kosaraju's order has a component after all those that its edges lead to. Unlike
+        // petgraph's Tarjan it does not recurse as deep as a chain is long.
         kosaraju_scc(&graph)
             .into_iter()
             .map(|component| {

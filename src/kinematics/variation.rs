@@ -1,8 +1,8 @@
-//! A moving mechanism and how its motion changes along a direction.
+//! A moving mechanism with the derivatives of its motion along a direction.
 //!
-//! The direction is one in the space of the drivers' values, velocities and accelerations, and of
-//! the parameters. Each quantity is a [`Varied`] number, on which the relations are written down
-//! once more: arithmetic does the differentiating, so that nothing is approximated.
+//! The direction is in the space of values, velocities and accelerations of the drivers, and of the
+//! parameters. Each quantity is a [`Varied`] number, on which the relations are evaluated; its
+//! arithmetic differentiates exactly.
 
 use super::configuration::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
 use crate::mechanism::{
@@ -34,21 +34,21 @@ struct VariedFrame {
     angle: Varied,
 }
 
-/// The bodies of a moving mechanism, as a [`Configuration`](super::Configuration) has them at
-/// rest.
+/// The bodies of a moving mechanism: the counterpart of [`Configuration`](super::Configuration) on
+/// [`Varied`] numbers.
 #[derive(Clone, Debug)]
 pub struct VariedConfiguration {
     frames: Vec<VariedFrame>,
     coefficients: Vec<Varied>,
     profiles: Vec<ProfileAlong>,
     bodies: usize,
-    /// The generalized coordinates, the joints' own unknowns included.
+    /// The generalized coordinates, then the joint unknowns.
     q: Vec<Varied>,
 }
 
 impl VariedConfiguration {
-    /// A mechanism that moves with q, q̇ and q̈, for changes of its parameters; q has still to be
-    /// given its changes.
+    /// Makes a mechanism that moves with q, q̇ and q̈ and whose parameters change; the changes of q
+    /// are still to be set.
     pub(super) fn new(
         mechanism: &Mechanism,
         coefficients: &[Coefficient],
@@ -76,13 +76,13 @@ impl VariedConfiguration {
         }
     }
 
-    /// q\[column\].
+    /// Returns q\[column\].
     #[must_use]
     pub fn coordinate(&self, column: usize) -> Varied {
         self.q[column]
     }
 
-    /// Gives the changes of q, q̇ (order 1) or q̈ (order 2).
+    /// Sets the changes of q (order 0), q̇ (order 1) or q̈ (order 2).
     pub(super) fn change(&mut self, order: usize, changes: &[f64]) {
         for (q, change) in self.q.iter_mut().zip(changes) {
             let coefficient = match order {
@@ -93,7 +93,7 @@ impl VariedConfiguration {
         }
     }
 
-    /// A marker's motion.
+    /// Returns a marker.
     #[must_use]
     pub fn marker(&self, marker: MarkerId) -> VariedMarker {
         let VariedFrame {
@@ -118,25 +118,25 @@ impl VariedConfiguration {
         }
     }
 
-    /// A body's angle \[rad\], zero for ground.
+    /// Returns a body's angle \[rad\], zero for ground.
     #[must_use]
     pub fn phi(&self, body: Option<BodyId>) -> Varied {
         body.map_or(Varied::constant(0.0), |body| self.q[3 * body.index() + 2])
     }
 
-    /// A coefficient.
+    /// Returns a coefficient.
     #[must_use]
     pub fn coefficient(&self, id: CoefficientId) -> Varied {
         self.coefficients[id.0]
     }
 
-    /// A joint's own unknown.
+    /// Returns a joint unknown.
     #[must_use]
     pub fn joint_unknown(&self, id: JointUnknownId) -> Varied {
         self.q[3 * self.bodies + id.0]
     }
 
-    /// The radius R of a cam at a moving polar angle θ, and R′(θ).
+    /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ).
     #[must_use]
     pub fn radius(&self, profile: ProfileId, theta: Varied) -> [Varied; 2] {
         let radius = self.profiles[profile.0].radius(theta.value);
@@ -148,7 +148,7 @@ impl VariedConfiguration {
     }
 }
 
-/// An expression of parameters alone.
+/// Returns the value of an expression without time.
 pub(super) fn evaluate(
     expression: &Expression,
     parameter: &impl Fn(ParameterId) -> Varied,
@@ -156,38 +156,38 @@ pub(super) fn evaluate(
     expression.evaluate(parameter, Varied::constant(0.0))
 }
 
-/// The unit vector in a direction \[rad\].
+/// Returns the unit vector at an angle \[rad\].
 #[must_use]
 pub fn direction(theta: Varied) -> VariedVector {
     [theta.cos(), theta.sin()]
 }
 
-/// A vector turned by an angle.
+/// Returns a vector turned by an angle.
 #[must_use]
 pub fn rotate(angle: Varied, [x, y]: VariedVector) -> VariedVector {
     let [cos, sin] = direction(angle);
     [cos * x - sin * y, sin * x + cos * y]
 }
 
-/// A vector turned by a quarter turn.
+/// Returns a vector turned by a quarter turn.
 #[must_use]
 pub fn quarter_turn([x, y]: VariedVector) -> VariedVector {
     [-y, x]
 }
 
-/// a + b.
+/// Returns a + b.
 #[must_use]
 pub fn add(a: VariedVector, b: VariedVector) -> VariedVector {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-/// a − b.
+/// Returns a − b.
 #[must_use]
 pub fn subtract(a: VariedVector, b: VariedVector) -> VariedVector {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// a · b.
+/// Returns a · b.
 #[must_use]
 pub fn dot(a: VariedVector, b: VariedVector) -> Varied {
     a[0] * b[0] + a[1] * b[1]

@@ -1,8 +1,9 @@
-//! Assembly modes: all the branches in which a mechanism closes for the same values of its drivers.
+//! Assembly modes: the poses in which a mechanism closes for the same values of its drivers.
 
-use crate::kinematics::assembly::branches::{Branches, SearchEffort};
+use crate::kinematics::assembly::branches::SearchEffort;
 use crate::kinematics::assembly::estimate::{distance, estimate};
-use crate::kinematics::assembly::least_squares::is_same;
+use crate::kinematics::assembly::part::is_same;
+use crate::kinematics::assembly::search::BranchSearch;
 use crate::kinematics::assembly::turns::choose_turns;
 use crate::kinematics::error::Error;
 use crate::kinematics::model::Model;
@@ -10,43 +11,40 @@ use crate::kinematics::redundancy::opened;
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
 
-/// The branches in which a mechanism closes besides the one in which it stands.
+/// The assembly modes of a mechanism besides the one of its pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// Those found, nearest the estimates first.
+    /// The modes found, nearest the estimates first.
     pub others: Vec<Mode>,
-    /// From how many starts each part was assembled of which not all branches are known, for each way
-    /// of the parts before it; zero if there is no such part.
+    /// Number of starts of each block of which not all branches are known, on each branch of the
+    /// blocks before it; zero if there is no such block.
     pub starts: usize,
-    /// Whether there are no others: all parts were assembled in every way that closed forms give
-    /// them, or bounds over intervals, which leave no other.
+    /// Whether there are no others: all blocks were assembled on every branch that closed forms
+    /// give, or bounds over intervals, which leave no other.
     pub complete: bool,
 }
 
-/// One way in which a mechanism closes.
+/// One assembly mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// Generalized coordinates, \[m, m, rad\] for each body, then the joints' own unknowns. Each
-    /// angle is the representative nearest its estimate.
+    /// Generalized coordinates, \[m, m, rad\] for each body, then the joint unknowns. Each angle is
+    /// the representative nearest its estimate.
     pub q: Vec<f64>,
     /// Scaled reciprocal condition of the Jacobian there.
     pub rcond: f64,
-    /// The largest move of a body from its estimate, in radians and characteristic lengths.
+    /// The largest distance of a body from its estimate, in radians and characteristic lengths.
     pub distance: f64,
 }
 
-/// From so many starts a part is assembled of which not all branches are known.
+/// Starting points anywhere for a block without a complete list of branches.
 const STARTS: usize = 60;
-/// So many modes are listed at the most: independent parts multiply theirs.
+/// Most modes that are listed: independent blocks multiply theirs.
 const MOST_MODES: usize = 64;
-/// So many times blocks are put in another way at the most.
-const MOST_STEPS: usize = 20_000;
+/// Most work of the search; see [`BranchSearch`].
+const MOST_WORK: f64 = 20_000.0;
 
-/// Finds the other branches in which the mechanism closes with the parameters and driver values
-/// of the present pose: goes through both branches of each dyad and slide, through those of other
-/// parts of few angles that bounds over intervals find, which are all there are, and through
-/// those that minimisation finds for the rest from several starts, which are always the same.
-/// The solver stays where it is.
+/// Finds the other assembly modes for the parameters and driver values of the pose. See
+/// [`Solver::modes`](crate::kinematics::Solver::modes).
 ///
 /// # Errors
 ///
@@ -55,85 +53,41 @@ pub(in crate::kinematics) fn modes(model: &mut Model, state: &mut State) -> Resu
     let estimate = estimate(&model.system, &state.pose.parameters)?;
     let home = state.pose.clone();
     state.release_crossings(model);
-    let mut modes = Modes {
-        others: Vec::new(),
-        starts: 0,
-        complete: true,
-    };
-    for q in close_on_all_branches(model, state, &estimate, &mut modes) {
+    let effort = SearchEffort::Anywhere(STARTS);
+    let mut search = BranchSearch::new(model, state, &estimate, effort, MOST_WORK);
+    let mut poses = Vec::new();
+    while poses.len() < MOST_MODES && search.next() {
+        poses.push(search.pose());
+    }
+    let complete = search.is_complete && poses.len() < MOST_MODES;
+    let starts = search.starts;
+    let mut others: Vec<Mode> = Vec::new();
+    for q in poses {
         state.pose.q.copy_from_slice(&q);
         choose_turns(&model.system, state, &estimate);
         if opened(model, state).is_some() {
             continue;
         }
-        let known = std::iter::once(&home.q).chain(modes.others.iter().map(|mode| &mode.q));
-        if known
-            .into_iter()
-            .any(|known| is_at(&model.system, state, known))
-        {
+        let mut known = std::iter::once(&home.q).chain(others.iter().map(|mode| &mode.q));
+        if known.any(|known| is_at(&model.system, state, known)) {
             continue;
         }
-        modes.others.push(Mode {
+        others.push(Mode {
             rcond: state.rcond(model),
             distance: distance(&model.system, state, &estimate),
             q: state.pose.q.clone(),
         });
     }
-    let others = &mut modes.others;
     others.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     state.restore(model, &home);
-    Ok(modes)
+    Ok(Modes {
+        others,
+        starts,
+        complete,
+    })
 }
 
-/// q of each mode; notes in `modes` how they were looked for.
-fn close_on_all_branches(
-    model: &mut Model,
-    state: &mut State,
-    estimate: &[f64],
-    modes: &mut Modes,
-) -> Vec<Vec<f64>> {
-    let Model { system, plan, .. } = model;
-    let unknowns = system.unknowns();
-    let mut work = state.block_state(system);
-    let blocks = &mut plan.blocks;
-    let mut levels: Vec<Branches> = Vec::with_capacity(blocks.len());
-    let mut poses = Vec::new();
-    let most_steps = MOST_STEPS + 2 * blocks.len();
-    for _ in 0..most_steps {
-        // Forward while blocks close, back to the last one that has another way.
-        if let Some(block) = blocks.get(levels.len()) {
-            let effort = SearchEffort::Anywhere(STARTS);
-            levels.push(Branches::new(block, &mut work, estimate, effort));
-        } else {
-            let mut q = vec![0.0; unknowns];
-            work.at.copy_pose(&mut q);
-            poses.push(q);
-            if poses.len() >= MOST_MODES {
-                break;
-            }
-        }
-        while let Some((branches, block)) = levels.len().checked_sub(1).and_then(|last| {
-            let branches = levels.get_mut(last)?;
-            Some((branches, &mut blocks[last]))
-        }) {
-            if branches.next(block, &mut work, estimate).is_some() {
-                break;
-            }
-            if !branches.is_complete() {
-                modes.complete = false;
-                modes.starts = modes.starts.max(branches.starts);
-            }
-            levels.pop();
-        }
-        if levels.is_empty() {
-            return poses;
-        }
-    }
-    modes.complete = false;
-    poses
-}
-
-/// Whether the pose is the same as another, whole turns of the angles apart.
+/// Returns whether the pose is the same as another, whole turns of the angles apart.
 fn is_at(system: &System, state: &State, other: &[f64]) -> bool {
     let size = state.at.size();
     let mut pairs = state.pose.q.iter().zip(other).enumerate();

@@ -10,12 +10,12 @@ use crate::kinematics::state::{Pose, State};
 use crate::kinematics::system::System;
 use crate::mechanism::{CoordinateKind, DriverId};
 
-/// The range of a driver from one pose, either way.
+/// The range of a driver from one pose, in both directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Range {
-    /// The end of the way down from the start.
+    /// The end below the start.
     pub lower: End,
-    /// The end of the way up.
+    /// The end above the start.
     pub upper: End,
     /// The change points passed, by the driver's value, ascending.
     pub crossings: Vec<ChangePoint>,
@@ -23,11 +23,11 @@ pub struct Range {
     pub samples: Vec<Sample>,
 }
 
-/// The end of the way of a driver in one direction.
+/// The end of the range in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
-    /// None: after this many turns of the driver the mechanism is at its start again, whole turns of
-    /// its bodies apart.
+    /// None: after this many turns of the driver the mechanism is at its start again, whole turns
+    /// of its bodies apart.
     Turns(u32),
     /// A singular position, located to rounding; as a rule a dead point.
     Singular(Box<SingularPoint>),
@@ -45,7 +45,7 @@ pub enum End {
     },
 }
 
-/// A change point on the way of a driver.
+/// A change point in the range of a driver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChangePoint {
     /// The driver's value \[m or rad\].
@@ -54,7 +54,7 @@ pub struct ChangePoint {
     pub bodies: Vec<String>,
 }
 
-/// One pose on the way.
+/// One pose in the range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// The driver's value \[m or rad\].
@@ -154,7 +154,7 @@ struct Explorer<'a> {
 }
 
 impl Explorer<'_> {
-    /// Moves the driver one way from the start, up (1) or down (−1).
+    /// Moves the driver in one direction from the start, up (1) or down (−1).
     fn explore(&mut self, sign: f64, samples: &mut Vec<Sample>) -> End {
         let index = self.driver.index();
         let from = self.start.drivers[index];

@@ -1,4 +1,4 @@
-//! How a motion changes with its drivers and its parameters.
+//! Sensitivity: the derivatives of a motion with respect to drivers and parameters.
 //!
 //! With Phi(q, t, p) = 0 along a direction in the space of u, u̇, ü and p, the changes of q, q̇ and
 //! q̈ solve three systems with the same matrix, by the implicit function theorem:
@@ -6,10 +6,10 @@
 //! | | |
 //! |---|---|
 //! | Phi_q δq = δu − Phi_p δp | from Phi = 0 |
-//! | Phi_q δq̇ = δu̇ − what Φ̇ changes by with δq and δp, were δq̇ zero | from Eq. 3.6.10 |
-//! | Phi_q δq̈ = δü − what Φ̈ changes by with δq, δq̇ and δp, were δq̈ zero | from Eq. 3.6.11 |
+//! | Phi_q δq̇ = δu̇ − δΦ̇, with δΦ̇ for δq, δp and δq̇ = 0 | from Eq. 3.6.10 |
+//! | Phi_q δq̈ = δü − δΦ̈, with δΦ̈ for δq, δq̇, δp and δq̈ = 0 | from Eq. 3.6.11 |
 //!
-//! Each Φ, Φ̇ and Φ̈ comes with its change from the relations on [`Varied`] numbers.
+//! The relations on [`Varied`] numbers give Φ, Φ̇ and Φ̈ with their changes.
 
 use crate::kinematics::block::{BlockJacobian, BlockState};
 use crate::kinematics::constraint::Constraint;
@@ -22,7 +22,7 @@ use crate::kinematics::system::Target;
 use crate::kinematics::variation::{Varied, VariedConfiguration, VariedVector, evaluate};
 use crate::mechanism::{DriverId, Dual, Jet, MarkerId, MotionInForce, ParameterId};
 
-/// A direction: how fast drivers and parameters change along it.
+/// A direction in the space of drivers and parameters.
 #[derive(Clone, Debug)]
 pub struct Direction {
     /// Changes of value, velocity and acceleration of each driver that is an input
@@ -34,7 +34,7 @@ pub struct Direction {
     pub time: f64,
 }
 
-/// How a motion changes along a direction.
+/// The derivative of a motion along a direction.
 #[derive(Debug)]
 pub struct Sensitivity<'a> {
     at: VariedConfiguration,
@@ -44,32 +44,32 @@ pub struct Sensitivity<'a> {
 }
 
 impl Sensitivity<'_> {
-    /// The changes of q\[column\], of its rate and of its second derivative.
+    /// Returns the changes of q\[column\], of its rate and of its second derivative.
     #[must_use]
     pub fn coordinate(&self, column: usize) -> Jet {
         along(self.at.coordinate(column))
     }
 
-    /// Those of a marker's point: x, then y.
+    /// Returns the changes of a marker's point, velocity and acceleration: x, then y.
     #[must_use]
     pub fn marker(&self, marker: MarkerId) -> [Jet; 2] {
         let point: VariedVector = self.at.marker(marker).point;
         point.map(along)
     }
 
-    /// Those of a measure.
+    /// Returns the changes of a measure, of its rate and of its second derivative.
     #[must_use]
     pub fn measure(&self, index: usize) -> Jet {
         along(self.measures[index].along(&self.at))
     }
 
-    /// Those of a driver.
+    /// Returns the changes of a driver, of its velocity and of its acceleration.
     #[must_use]
     pub fn driver(&self, driver: DriverId) -> Jet {
         along(self.drivers[driver.index()])
     }
 
-    /// The change of a parameter, which for a derived one follows from those of others.
+    /// Returns the change of a parameter; the change of a derived one follows from the others.
     #[must_use]
     pub fn parameter(&self, parameter: ParameterId) -> f64 {
         self.parameters[parameter.index()].value.first()
@@ -136,7 +136,7 @@ impl State {
         let mut at = system.varied(parameter, motion, self.at.profiles());
 
         let mut jacobian = BlockJacobian::new(system, &model.structure);
-        let mut work = BlockState {
+        let mut state = BlockState {
             system,
             targets: &self.targets,
             drivers: &self.pose.drivers,
@@ -144,7 +144,7 @@ impl State {
             tangent: &mut self.tangent,
         };
         jacobian
-            .factorise(&mut work)
+            .factorise(&mut state)
             .map_err(|Rejected| SINGULAR_HERE)?;
         let targets: Vec<_> = system
             .equations()

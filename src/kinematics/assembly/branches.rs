@@ -1,195 +1,152 @@
-//! The branches in which one block closes behind those before it, one after the other.
+//! The branches of one block: the ways in which it closes behind the blocks before it.
 
-use nalgebra::DVector;
-
-use super::least_squares::{ATTEMPTS, Part};
 use super::loops::{AllBranches, all_branches};
-use crate::kinematics::block::{BlockSolver, BlockState, ClosureGap, SolveBlock};
+use super::part::{ATTEMPTS, Part};
+use crate::kinematics::block::{BlockBranches, BlockState, ClosureGap, SolveBlock};
 use crate::kinematics::constraint::{Gradient, Region};
-use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS};
+use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS, Rejected};
 
-/// How hard to look for branches where neither a closed form nor bounds give them all.
+/// The effort of the search where neither a closed form nor bounds list all branches.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::kinematics) enum SearchEffort {
-    /// At and near the estimates.
+    /// Starts at and near the estimates.
     Near,
-    /// From so many places anywhere as well.
+    /// This many starts anywhere as well.
     Anywhere(usize),
 }
 
-/// The branches in which a block closes, nearest the estimates first as far as that is known.
+/// The branches of a block, nearest the estimates first as far as that is known.
 #[derive(Debug)]
 pub(in crate::kinematics) struct Branches {
     source: Source,
-    /// How many it has given.
+    /// Number of branches given.
     pub(super) given: usize,
-    /// From how many starts it has looked for them.
-    pub(in crate::kinematics) starts: usize,
-    /// How many of them led to none.
+    /// Number of starts tried.
+    pub(super) starts: usize,
+    /// Number of starts without a branch.
     failures: usize,
 }
 
-/// Where branches come from.
+/// The source of branches.
 #[derive(Debug)]
 enum Source {
-    /// Unknowns that follow from what was found before.
+    /// One branch, explicit in the unknowns found before.
     Explicit,
-    /// The angles of a dyad, or that of a slide.
+    /// The angles of the two branches of a dyad.
     ClosedForm([[f64; 2]; 2]),
-    /// Minimisation and Newton–Raphson from several starts.
-    Starts {
-        part: Part,
-        most: usize,
-        /// Whether the rows are linear, once another way has been asked for.
-        linear: Option<bool>,
-        found: Vec<DVector<f64>>,
-        /// The branches that bounds give, once the starts near the estimates are used up.
-        all: Option<AllBranches>,
-    },
-    /// A closed form that misses: there are none.
-    None(ClosureGap),
+    /// A closed form without a branch.
+    Gap(ClosureGap),
+    /// Minimisation and Newton–Raphson from several starts, then bounds over intervals.
+    Starts(Box<Starts>),
+}
+
+/// The search for branches from several starts.
+#[derive(Debug)]
+struct Starts {
+    part: Part,
+    most: usize,
+    /// Whether the rows are linear, once another branch has been asked for.
+    is_linear: Option<bool>,
+    found: Vec<Vec<f64>>,
+    /// The branches that bounds list, once the starts near the estimates are used up.
+    all: Option<AllBranches>,
 }
 
 impl Branches {
-    /// Those of a block; all that it reads is found in `work`.
+    /// Prepares the branches of a block; the blocks before it are solved.
     pub(in crate::kinematics) fn new(
-        block: &BlockSolver,
-        work: &mut BlockState<'_>,
+        block: &dyn SolveBlock,
+        state: &mut BlockState<'_>,
         estimate: &[f64],
         effort: SearchEffort,
     ) -> Self {
-        let found = match block {
-            BlockSolver::PinnedBody(_) | BlockSolver::InterpolatedBlock(_) => Ok(Source::Explicit),
-            BlockSolver::RrrDyad(dyad) => dyad.branches(work, estimate).map(Source::ClosedForm),
-            BlockSolver::RrpDyad(slide) => {
-                let branches = slide.branches(work, estimate);
-                branches.map(|[first, second]| Source::ClosedForm([[first, 0.0], [second, 0.0]]))
-            }
-            BlockSolver::CoupledBlock(block) => Ok(Source::Starts {
-                part: Part::new(block.rows(), block.columns()),
-                linear: None,
+        let source = match block.branches(state, estimate) {
+            BlockBranches::One => Source::Explicit,
+            BlockBranches::Two(angles) => Source::ClosedForm(angles),
+            BlockBranches::None(gap) => Source::Gap(gap),
+            BlockBranches::Unlisted => Source::Starts(Box::new(Starts {
+                part: Part::new(state.system, block.rows(), block.columns()),
                 most: match effort {
                     SearchEffort::Near => ATTEMPTS,
                     SearchEffort::Anywhere(starts) => ATTEMPTS + starts,
                 },
+                is_linear: None,
                 found: Vec::new(),
                 all: None,
-            }),
+            })),
         };
         Self {
-            source: found.unwrap_or_else(Source::None),
+            source,
             given: 0,
             starts: 0,
             failures: 0,
         }
     }
 
-    /// Whether there are no others than those it has given, once it gives no more.
+    /// Returns whether there are no others than those given, once it gives no more.
     pub(in crate::kinematics) fn is_complete(&self) -> bool {
         match &self.source {
             Source::Explicit => true,
-            // What a closed form promises has to be there.
+            // A branch that a closed form promises has to be found.
             Source::ClosedForm(_) => self.failures == 0,
-            Source::Starts { linear, all, .. } => {
-                let listed = all.as_ref().is_some_and(|all| all.branches.is_some());
-                *linear == Some(true) || listed && self.failures == 0
+            Source::Gap(gap) => gap.certain,
+            Source::Starts(starts) => {
+                let all = starts.all.as_ref();
+                let listed = all.is_some_and(|all| all.branches.is_some());
+                starts.is_linear == Some(true) || listed && self.failures == 0
             }
-            Source::None(miss) => miss.certain,
         }
     }
 
-    /// Into how many boxes angles were divided for bounds.
-    pub(in crate::kinematics) fn boxes(&self) -> usize {
+    /// Returns the number of boxes into which bounds divided the angles.
+    pub(super) fn boxes(&self) -> usize {
         match &self.source {
-            Source::Starts { all: Some(all), .. } => all.boxes,
+            Source::Starts(starts) => starts.all.as_ref().map_or(0, |all| all.boxes),
             _ => 0,
         }
     }
 
-    /// By how much a block in closed form misses that gave no way \[m\].
+    /// Returns the gap that a closed form without a branch leaves \[m\].
     pub(super) fn gap(&self) -> Option<f64> {
         match &self.source {
-            Source::Explicit | Source::Starts { .. } => None,
-            // It was close enough for rounding to decide.
+            Source::Explicit | Source::Starts(_) => None,
+            // The gap is within rounding.
             Source::ClosedForm(_) => Some(0.0),
-            Source::None(miss) => Some(miss.gap),
+            Source::Gap(gap) => Some(gap.gap),
         }
     }
 
-    /// Puts the block, in `work`, in the next of its branches; `None` if there is no other.
+    /// Puts the block on the next of its branches; `None` if there is no other.
     pub(in crate::kinematics) fn next(
         &mut self,
-        block: &mut BlockSolver,
-        work: &mut BlockState<'_>,
+        block: &mut dyn SolveBlock,
+        state: &mut BlockState<'_>,
         estimate: &[f64],
     ) -> Option<Correction> {
         loop {
             let attempt = self.starts;
-            let corrected = match (&mut self.source, &mut *block) {
-                (Source::Explicit, block) if attempt == 0 => {
-                    block.close(work, MAX_ASSEMBLY_ITERATIONS)
+            let corrected = match &mut self.source {
+                Source::Explicit if attempt == 0 => block.close(state, MAX_ASSEMBLY_ITERATIONS),
+                Source::ClosedForm(angles) if attempt < angles.len() => {
+                    block.close_from(state, angles[attempt], MAX_ASSEMBLY_ITERATIONS)
                 }
-                (Source::ClosedForm(branches), BlockSolver::RrrDyad(block))
-                    if attempt < branches.len() =>
-                {
-                    block.close_from(work, branches[attempt], MAX_ASSEMBLY_ITERATIONS)
-                }
-                (Source::ClosedForm(branches), BlockSolver::RrpDyad(block))
-                    if attempt < branches.len() =>
-                {
-                    block.close_from(work, branches[attempt][0], MAX_ASSEMBLY_ITERATIONS)
-                }
-                (
-                    Source::Starts {
-                        part,
-                        most,
-                        linear,
-                        found,
-                        all,
-                    },
-                    BlockSolver::CoupledBlock(block),
-                ) => {
-                    if self.given > 0
-                        && *linear
-                            .get_or_insert_with(|| is_linear(block.rows(), block.columns(), work))
-                    {
+                Source::Explicit | Source::ClosedForm(_) | Source::Gap(_) => return None,
+                Source::Starts(starts) => {
+                    if self.given > 0 && starts.is_linear(state) {
                         return None;
                     }
-                    let far = attempt.checked_sub(ATTEMPTS);
-                    if far.is_some() && all.is_none() {
-                        let (rows, columns) = (&part.rows, part.columns());
-                        *all = Some(all_branches(rows, columns, work, estimate));
-                        // From here on a failure is one to close where a way was promised.
+                    if attempt == ATTEMPTS {
+                        starts.list_all(state, estimate);
+                        // From here on a failure is one to close where a branch was promised.
                         self.failures = 0;
                     }
-                    let listed = all.as_ref().and_then(|all| all.branches.as_ref());
-                    let mut correct = |work: &mut BlockState<'_>, most| block.close(work, most);
-                    let corrected = match (far, listed) {
-                        (None, _) => part.attempt(work, estimate, attempt, correct),
-                        (Some(far), Some(listed)) => {
-                            let way = listed.get(far)?;
-                            part.write(work, &DVector::from_column_slice(way));
-                            correct(work, MAX_ASSEMBLY_ITERATIONS)
-                        }
-                        (Some(far), None) if attempt < *most => {
-                            part.attempt_anywhere(work, estimate, far, correct)
-                        }
-                        _ => return None,
-                    };
-                    if corrected.is_ok() {
-                        let unknowns = part.read(work);
-                        if found
-                            .iter()
-                            .any(|known| part.is_same(work, known, &unknowns))
-                        {
-                            self.starts += 1;
-                            continue;
-                        }
-                        found.push(unknowns);
+                    let corrected = starts.close(block, state, estimate, attempt)?;
+                    if corrected.is_ok() && starts.is_known(state) {
+                        self.starts += 1;
+                        continue;
                     }
                     corrected
                 }
-                _ => return None,
             };
             self.starts += 1;
             match corrected {
@@ -203,19 +160,65 @@ impl Branches {
     }
 }
 
-/// Whether the rows are linear in the unknowns, so that there is one way at the most.
-fn is_linear(rows: &[usize], columns: &[usize], work: &BlockState<'_>) -> bool {
-    let size = work.at.size();
-    let unknowns = work.system.unknowns();
-    let (mut radii, mut direction) = (vec![0.0; unknowns], vec![0.0; unknowns]);
-    for &column in columns {
-        let scale = work.system.column_scale(column, size);
-        (radii[column], direction[column]) = (scale, scale);
+impl Starts {
+    /// Lists all branches by bounds over intervals, if the block has few enough angles.
+    fn list_all(&mut self, state: &BlockState<'_>, estimate: &[f64]) {
+        let problem = &self.part.problem;
+        self.all = Some(all_branches(
+            &problem.rows,
+            &problem.columns,
+            state,
+            estimate,
+        ));
     }
-    let region = Region { radii: &radii };
-    rows.iter().all(|&row| {
-        let constraint = &work.system.equations()[row].constraint;
-        let bend = constraint.bend(work.at, &region, &direction, &mut Gradient::new());
-        bend.is_some_and(|bend| bend <= 0.0)
-    })
+
+    /// Tries to close the block from the next start; `None` if there is no other.
+    fn close(
+        &mut self,
+        block: &mut dyn SolveBlock,
+        state: &mut BlockState<'_>,
+        estimate: &[f64],
+        attempt: usize,
+    ) -> Option<Result<Correction, Rejected>> {
+        let Some(far) = attempt.checked_sub(ATTEMPTS) else {
+            return Some(self.part.attempt(block, state, estimate, attempt));
+        };
+        let listed = self.all.as_ref().and_then(|all| all.branches.as_ref());
+        if let Some(listed) = listed {
+            self.part.problem.write(state, listed.get(far)?);
+            return Some(block.close(state, MAX_ASSEMBLY_ITERATIONS));
+        }
+        (attempt < self.most).then(|| self.part.attempt_anywhere(block, state, estimate, far))
+    }
+
+    /// Returns whether the present branch was found before, and notes it otherwise.
+    fn is_known(&mut self, state: &BlockState<'_>) -> bool {
+        let unknowns = self.part.problem.read(state);
+        let mut found = self.found.iter();
+        let is_known = found.any(|known| self.part.is_same(state, known, &unknowns));
+        if !is_known {
+            self.found.push(unknowns);
+        }
+        is_known
+    }
+
+    /// Returns whether the rows are linear in the unknowns, so that there is one branch at most.
+    fn is_linear(&mut self, state: &BlockState<'_>) -> bool {
+        let problem = &self.part.problem;
+        *self.is_linear.get_or_insert_with(|| {
+            let size = state.at.size();
+            let unknowns = state.system.unknowns();
+            let (mut radii, mut direction) = (vec![0.0; unknowns], vec![0.0; unknowns]);
+            for &column in &problem.columns {
+                let scale = state.system.column_scale(column, size);
+                (radii[column], direction[column]) = (scale, scale);
+            }
+            let region = Region { radii: &radii };
+            problem.rows.iter().all(|&row| {
+                let constraint = &state.system.equations()[row].constraint;
+                let bend = constraint.bend(state.at, &region, &direction, &mut Gradient::new());
+                bend.is_some_and(|bend| bend <= 0.0)
+            })
+        })
+    }
 }

@@ -1,5 +1,6 @@
 //! The joints, constraints and drivers that stay open at a pose.
 
+use super::least_squares::LeastSquares;
 use crate::kinematics::constraint::Dimension;
 use crate::kinematics::element::Element;
 use crate::kinematics::error::OpenJoint;
@@ -52,4 +53,32 @@ pub(in crate::kinematics) fn open_joints(
         kept
     });
     open
+}
+
+/// Most minimisation steps towards the nearest pose of a mechanism that does not close.
+pub(in crate::kinematics) const STEPS_TO_NEAREST: usize = 200;
+/// Weight of all other rows when the gap is gathered in one element: they stay open by some 1e-8 of
+/// the gap, below the digits of a message.
+const HOLD_CLOSED: f64 = 1e4;
+
+/// Gathers the gap of some rows in one element: a minimum spreads it over all joints of a loop, but
+/// people look for one joint that does not meet. Returns the largest scaled residual.
+pub(in crate::kinematics) fn gather(
+    model: &Model,
+    state: &mut State,
+    problem: &mut LeastSquares,
+    element: Element,
+) -> f64 {
+    let equations = model.system.equations();
+    let weight = |row: usize| {
+        if equations[row].element == element {
+            1.0
+        } else {
+            HOLD_CLOSED
+        }
+    };
+    let mut state = state.block_state(&model.system);
+    problem
+        .minimise(&mut state, None, weight, STEPS_TO_NEAREST)
+        .largest
 }

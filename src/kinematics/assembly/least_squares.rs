@@ -1,259 +1,168 @@
-//! Assembly of a part of the mechanism: minimises Eq. 3.6.9 from several starts.
-
-use std::f64::consts::TAU;
-
-use nalgebra::{DMatrix, DVector};
+//! Damped least squares (Levenberg–Marquardt) on rows of Phi, for mechanisms of any size.
 
 use crate::kinematics::block::BlockState;
-use crate::kinematics::constraint::{Gradient, Relation};
-use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS, Rejected};
-use crate::kinematics::system::System;
+use crate::kinematics::constraint::Relation;
+use crate::kinematics::linear::{Factors, Row, SparseLu, nan_or_larger};
+use crate::kinematics::newton::{AT_ROUNDING, STALLED};
+use crate::kinematics::system::{RowValue, System};
 
-/// The weights r of Eq. 3.6.9, from one where the estimates count as much as the constraints to
-/// one where the minimum is within Newton's reach.
-const WEIGHTS: [f64; 5] = [1.0, 1e2, 1e4, 1e6, 1e8];
-/// Minimisation steps for each weight; Newton follows, so that none needs to converge.
-const STEPS_PER_WEIGHT: usize = 20;
-/// The estimates themselves, and this many less one deterministic shifts of them: estimates of
-/// zero often lie on a symmetry from which no minimisation can choose a side.
-pub(in crate::kinematics) const STARTS: usize = 8;
-/// A part is tried straight from the estimates, then by minimisation from each of the starts.
-pub(in crate::kinematics) const ATTEMPTS: usize = 1 + STARTS;
-/// Minimisation steps from anywhere; a start that needs more is one of many.
-const STEPS_FROM_ANYWHERE: usize = 40;
-/// Points nearer than this part of the mechanism's size lie on each other.
-const TOUCHING: f64 = 1e-6;
-/// Unknowns that differ by less than this, scaled, are the same.
-const SAME: f64 = 1e-6;
-/// A part of more unknowns than this is too large for dense matrices to be the first choice.
-pub(in crate::kinematics) const SMALL_PART: usize = 120;
-/// One of more unknowns than this is too large for them altogether.
-pub(in crate::kinematics) const LARGEST_PART: usize = 300;
+/// A scaled residual beyond its rounding up to this one holds: it is five digits above the one that
+/// Newton–Raphson leaves in rows that are well conditioned, and less than anyone could measure.
+const GAP: f64 = 1e-9;
+/// Most steps to close some rows; they converge quadratically to a regular pose that exists.
+const STEPS_TO_CLOSE: usize = 60;
 
-/// Rows of Phi and unknowns, assembled while all others stay where they are. There may be more rows
-/// than unknowns, or fewer.
+/// Returns whether a row counts as satisfied.
+pub(in crate::kinematics) fn holds(row: RowValue) -> bool {
+    row.value.abs() <= GAP + STALLED * row.rounding
+}
+
+/// Rows of Phi and the unknowns over which they are minimised; all other unknowns are held. There
+/// may be more rows than unknowns, or fewer.
+///
+/// The step d of least ‖J d + Φ‖² + r ‖q + d − q⁰‖² + μ ‖d‖² solves
+///
+/// ```text
+/// ⎡ 1     J    ⎤ ⎡ y ⎤   ⎡    −Φ     ⎤
+/// ⎣ Jᵀ  −r − μ ⎦ ⎣ d ⎦ = ⎣ r (q − q⁰) ⎦
+/// ```
+///
+/// which is as sparse as J and, unlike JᵀJ, as well conditioned. The row of a distance u is
+/// (d·d − u²)/(2u), which is smooth where the points coincide.
 #[derive(Debug)]
-pub(in crate::kinematics) struct Part {
+pub(in crate::kinematics) struct LeastSquares {
     /// Ascending.
     pub(in crate::kinematics) rows: Vec<usize>,
     /// Ascending.
-    columns: Vec<usize>,
+    pub(in crate::kinematics) columns: Vec<usize>,
+    lu: SparseLu,
+    /// The rows of J, their columns as indices into `columns`.
+    jacobian: Vec<Row>,
+    phi: Vec<f64>,
+    step: Vec<f64>,
 }
 
-impl Part {
-    pub(in crate::kinematics) fn new(rows: &[usize], columns: &[usize]) -> Self {
+/// A term r ‖q − q⁰‖², scaled.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::kinematics) struct Pull<'a> {
+    /// q⁰, in the order of the columns.
+    pub(in crate::kinematics) to: &'a [f64],
+    /// r.
+    pub(in crate::kinematics) strength: f64,
+}
+
+/// The rows at a place.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::kinematics) struct Residual {
+    /// The sum of squares that is minimised.
+    pub(in crate::kinematics) cost: f64,
+    /// The largest scaled residual.
+    pub(in crate::kinematics) largest: f64,
+    /// Whether all rows hold.
+    pub(in crate::kinematics) holds: bool,
+    at_rounding: bool,
+}
+
+impl LeastSquares {
+    /// Makes the storage for these rows and unknowns.
+    pub(in crate::kinematics) fn new(system: &System, rows: &[usize], columns: &[usize]) -> Self {
         let sorted = |list: &[usize]| {
             let mut list = list.to_vec();
             list.sort_unstable();
             list
         };
-        Self {
-            rows: sorted(rows),
-            columns: sorted(columns),
-        }
-    }
-
-    /// Its unknowns, ascending.
-    pub(in crate::kinematics) fn columns(&self) -> &[usize] {
-        &self.columns
-    }
-
-    /// How many unknowns it has.
-    pub(in crate::kinematics) fn unknowns(&self) -> usize {
-        self.columns.len()
-    }
-
-    /// The unknowns as they are.
-    pub(in crate::kinematics) fn read(&self, work: &BlockState<'_>) -> DVector<f64> {
-        let columns = self.columns.iter();
-        DVector::from_iterator(
-            self.columns.len(),
-            columns.map(|&column| work.at.coordinate(column)),
-        )
-    }
-
-    /// Whether these unknowns put the bodies in the same places, whole turns apart.
-    pub(in crate::kinematics) fn is_same(
-        &self,
-        work: &BlockState<'_>,
-        a: &DVector<f64>,
-        b: &DVector<f64>,
-    ) -> bool {
-        let (size, mut columns) = (work.at.size(), self.columns.iter().enumerate());
-        columns.all(|(k, &column)| is_same(work.system, size, column, a[k], b[k]))
-    }
-
-    pub(in crate::kinematics) fn write(&self, work: &mut BlockState<'_>, values: &DVector<f64>) {
-        for (&column, &value) in self.columns.iter().zip(values) {
-            work.at.set_coordinate(column, value);
-        }
-    }
-
-    /// What a scaled unknown of one stands for, one an unknown.
-    fn scale(&self, work: &BlockState<'_>) -> DVector<f64> {
-        let size = work.at.size();
-        let columns = self.columns.iter();
-        DVector::from_iterator(
-            self.columns.len(),
-            columns.map(|&column| work.system.column_scale(column, size)),
-        )
-    }
-
-    /// Goes to the estimates, or to one of the starts near them. What joints bring with them
-    /// comes last in the list, and starts where it suits the bodies.
-    pub(in crate::kinematics) fn start(
-        &self,
-        work: &mut BlockState<'_>,
-        estimate: &[f64],
-        attempt: usize,
-    ) {
-        self.start_off(work, estimate, |column| shift(attempt, column));
-        self.leave_zero_distances(work);
-    }
-
-    /// Goes to the estimates and as far from them, scaled, as `off` says.
-    fn start_off(&self, work: &mut BlockState<'_>, estimate: &[f64], off: impl Fn(usize) -> f64) {
-        let size = work.at.size();
-        for &column in &self.columns {
-            let start = match work.system.estimate_joint_unknown(column, work.at) {
-                Some(start) => start,
-                None => estimate[column] + off(column) * work.system.column_scale(column, size),
-            };
-            work.at.set_coordinate(column, start);
-        }
-    }
-
-    /// Where points whose distance is held lie on each other, their rows have no slope to go
-    /// along: takes their bodies a little away.
-    fn leave_zero_distances(&self, work: &mut BlockState<'_>) {
-        let size = work.at.size();
-        for &row in &self.rows {
-            let constraint = &work.system.equations()[row].constraint;
-            if !matches!(constraint.relation(), Relation::Distance(_))
-                || constraint.value(work.at) > TOUCHING * size
-            {
-                continue;
-            }
-            let mut gradient = Gradient::new();
-            constraint.gradient(work.at, &mut gradient);
-            for (column, _) in gradient.entries() {
-                if self.columns.binary_search(&column).is_ok() {
-                    let off = shift(1, column) * work.system.column_scale(column, size);
-                    let value = work.at.coordinate(column) + off;
-                    work.at.set_coordinate(column, value);
+        let (rows, columns) = (sorted(rows), sorted(columns));
+        let count = rows.len();
+        let order = count + columns.len();
+        let mut pattern: Vec<Vec<usize>> = (0..order).map(|k| vec![k]).collect();
+        for (local, &row) in rows.iter().enumerate() {
+            for column in system.incidence(row).unknowns {
+                if let Ok(own) = columns.binary_search(&column) {
+                    pattern[local].push(count + own);
+                    pattern[count + own].push(local);
                 }
             }
         }
+        Self {
+            lu: SparseLu::new(pattern),
+            jacobian: vec![Row::new(); count],
+            phi: vec![0.0; count],
+            step: vec![0.0; order],
+            rows,
+            columns,
+        }
     }
 
-    /// Tries to assemble from one of [`ATTEMPTS`] starts at and near the estimates, `correct`
-    /// being Newton–Raphson with at most so many corrections.
-    ///
-    /// # Errors
-    ///
-    /// [`Rejected`] if this did not lead to a pose.
-    pub(in crate::kinematics) fn attempt(
-        &self,
-        work: &mut BlockState<'_>,
-        estimate: &[f64],
-        attempt: usize,
-        correct: impl FnOnce(&mut BlockState<'_>, u32) -> Result<Correction, Rejected>,
-    ) -> Result<Correction, Rejected> {
-        let Some(attempt) = attempt.checked_sub(1) else {
-            // One correction solves linear rows, from wherever it starts, and estimates as good
-            // as that need no more. For a large part Newton is worth a try by itself.
-            self.start(work, estimate, 0);
-            let large = self.columns.len() > SMALL_PART;
-            return correct(work, if large { MAX_ASSEMBLY_ITERATIONS } else { 1 });
-        };
-        self.start(work, estimate, attempt);
-        // The larger the part, the fewer minimisations anyone would wait for.
-        let most = if attempt == 0 {
-            LARGEST_PART
+    /// Makes the storage for these rows and all unknowns.
+    pub(in crate::kinematics) fn of_all(system: &System, rows: &[usize]) -> Self {
+        let columns: Vec<_> = (0..system.unknowns()).collect();
+        Self::new(system, rows, &columns)
+    }
+
+    /// Returns the unknowns at their present values.
+    pub(in crate::kinematics) fn read(&self, state: &BlockState<'_>) -> Vec<f64> {
+        let columns = self.columns.iter();
+        columns.map(|&column| state.at.coordinate(column)).collect()
+    }
+
+    /// Sets the unknowns.
+    pub(in crate::kinematics) fn write(&self, state: &mut BlockState<'_>, values: &[f64]) {
+        for (&column, &value) in self.columns.iter().zip(values) {
+            state.at.set_coordinate(column, value);
+        }
+    }
+
+    /// Minimises the sum of squares of the rows from the present values. Returns `None` if all rows
+    /// hold there, otherwise the largest scaled residual; infinity if it is no number.
+    pub(in crate::kinematics) fn close(&mut self, state: &mut BlockState<'_>) -> Option<f64> {
+        let found = self.minimise(state, None, |_| 1.0, STEPS_TO_CLOSE);
+        if found.holds {
+            None
+        } else if found.largest.is_nan() {
+            Some(f64::INFINITY)
         } else {
-            SMALL_PART
-        };
-        if self.columns.len() <= most {
-            self.minimise_growing(work);
-        }
-        correct(work, MAX_ASSEMBLY_ITERATIONS)
-    }
-
-    /// Tries to assemble from anywhere: angles all around, points within a length or so of the
-    /// estimates.
-    ///
-    /// # Errors
-    ///
-    /// [`Rejected`] if this did not lead to a pose.
-    pub(in crate::kinematics) fn attempt_anywhere(
-        &self,
-        work: &mut BlockState<'_>,
-        estimate: &[f64],
-        attempt: usize,
-        correct: impl FnOnce(&mut BlockState<'_>, u32) -> Result<Correction, Rejected>,
-    ) -> Result<Correction, Rejected> {
-        let anywhere = |column| TAU * (scattered(attempt, column) - 0.5);
-        self.start_off(work, estimate, anywhere);
-        self.minimise(work, None, |_| 1.0, STEPS_FROM_ANYWHERE);
-        correct(work, MAX_ASSEMBLY_ITERATIONS)
-    }
-
-    /// Minimises Eq. 3.6.9 for growing r from where the part is, which counts as the estimate.
-    pub(in crate::kinematics) fn minimise_growing(&self, work: &mut BlockState<'_>) {
-        let start = self.read(work);
-        for weight in WEIGHTS {
-            let pull = Some((&start, weight.recip()));
-            self.minimise(work, pull, |_| 1.0, STEPS_PER_WEIGHT);
+            Some(found.largest)
         }
     }
 
-    /// Levenberg–Marquardt on pull · ‖q − q⁰‖² + Σ (weight(row) Phi_row)², scaled, from where
-    /// the part is.
+    /// Minimises Σ (weight(row) Phi_row)², and the pull, from the present values.
     pub(in crate::kinematics) fn minimise(
-        &self,
-        work: &mut BlockState<'_>,
-        pull: Option<(&DVector<f64>, f64)>,
+        &mut self,
+        state: &mut BlockState<'_>,
+        pull: Option<Pull<'_>>,
         weight: impl Fn(usize) -> f64,
         steps: usize,
-    ) {
-        let order = self.columns.len();
-        let scale = self.scale(work);
+    ) -> Residual {
+        let size = state.at.size();
+        let columns = self.columns.iter();
+        let scales: Vec<_> = columns
+            .map(|&column| state.system.column_scale(column, size))
+            .collect();
+        let mut q = self.read(state);
+        let mut next = q.clone();
         let mut damping = 1e-6;
-        let mut q = self.read(work);
-        let cost_of = |q: &DVector<f64>, residual: &DVector<f64>| {
-            let distance = pull.map_or(0.0, |(estimate, strength)| {
-                strength * (q - estimate).component_div(&scale).norm_squared()
-            });
-            distance + residual.norm_squared()
-        };
-        let (mut residual, mut jacobian) = self.weighted_equations(work, &weight);
-        let mut cost = cost_of(&q, &residual);
+        let mut now = self.evaluate(state, pull, &weight, &scales);
         for _ in 0..steps {
-            let mut gradient = jacobian.tr_mul(&residual);
-            let mut normal = jacobian.tr_mul(&jacobian);
-            if let Some((estimate, strength)) = pull {
-                for k in 0..order {
-                    gradient[k] += strength * (q[k] - estimate[k]) / scale[k];
-                    normal[(k, k)] += strength;
-                }
+            if now.at_rounding || !now.cost.is_finite() {
+                break;
             }
             let improved = loop {
-                let mut damped = normal.clone();
-                for k in 0..order {
-                    damped[(k, k)] += damping;
-                }
-                if let Some(factor) = damped.cholesky() {
-                    let next = &q - factor.solve(&gradient).component_mul(&scale);
-                    self.write(work, &next);
-                    let (new_residual, new_jacobian) = self.weighted_equations(work, &weight);
-                    let new_cost = cost_of(&next, &new_residual);
-                    if new_cost < cost {
-                        let gain = (cost - new_cost) / cost;
-                        (q, residual, jacobian, cost) =
-                            (next, new_residual, new_jacobian, new_cost);
+                if self.solve(pull, damping, &q, &scales) {
+                    let step = &self.step[self.rows.len()..];
+                    for (k, next) in next.iter_mut().enumerate() {
+                        *next = q[k] + step[k] * scales[k];
+                    }
+                    self.write(state, &next);
+                    let there = self.evaluate(state, pull, &weight, &scales);
+                    if there.cost < now.cost {
+                        let gain = 1.0 - there.cost / now.cost;
+                        now = there;
+                        std::mem::swap(&mut q, &mut next);
                         damping = (damping * 0.1).max(1e-15);
                         break gain > 1e-12;
                     }
+                    self.write(state, &q);
+                    self.evaluate(state, pull, &weight, &scales);
                 }
                 damping *= 10.0;
                 if damping > 1e12 {
@@ -264,84 +173,91 @@ impl Part {
                 break;
             }
         }
-        self.write(work, &q);
+        now
     }
 
-    /// Phi and Phi_q of the part, scaled.
-    pub(in crate::kinematics) fn equations(
-        &self,
-        work: &BlockState<'_>,
-    ) -> (DVector<f64>, DMatrix<f64>) {
-        self.weighted_equations(work, |_| 1.0)
-    }
-
-    /// Phi and Phi_q of the part, scaled, each row times its weight.
-    fn weighted_equations(
-        &self,
-        work: &BlockState<'_>,
+    /// Evaluates the rows and their gradients at the present values.
+    fn evaluate(
+        &mut self,
+        state: &BlockState<'_>,
+        pull: Option<Pull<'_>>,
         weight: impl Fn(usize) -> f64,
-    ) -> (DVector<f64>, DMatrix<f64>) {
-        let mut residual = DVector::zeros(self.rows.len());
-        let mut jacobian = DMatrix::zeros(self.rows.len(), self.columns.len());
+        scales: &[f64],
+    ) -> Residual {
+        let mut residual = Residual {
+            cost: 0.0,
+            largest: 0.0,
+            holds: true,
+            at_rounding: pull.is_none(),
+        };
         for (local, &row) in self.rows.iter().enumerate() {
             let weight = weight(row);
-            let entry = |column, value: f64| {
-                if let Ok(column) = self.columns.binary_search(&column) {
-                    jacobian[(local, column)] += value * weight;
-                }
-            };
-            residual[local] = evaluate_smoothly(work, row, entry) * weight;
+            let entries = &mut self.jacobian[local];
+            let value = state.system.sparse_row(row, state.values(), entries);
+            let stretch = stretch(state, row);
+            entries.retain_mut(|(column, value)| {
+                let own = self.columns.binary_search(column);
+                *value *= weight * stretch;
+                own.map(|own| *column = own).is_ok()
+            });
+            // (d·d − u²)/(2u) = (‖d‖ − u)(1 + ‖d‖/u)/2.
+            self.phi[local] = weight * value.value * 0.5 * (1.0 + stretch);
+            residual.cost += self.phi[local].powi(2);
+            residual.largest = nan_or_larger(residual.largest, value.value.abs());
+            residual.holds &= holds(value);
+            residual.at_rounding &= value.value.abs() <= AT_ROUNDING * value.rounding;
         }
-        (residual, jacobian)
+        if let Some(Pull { to, strength }) = pull {
+            let columns = self.columns.iter().zip(to).zip(scales);
+            residual.cost += columns
+                .map(|((&column, to), scale)| {
+                    strength * ((state.at.coordinate(column) - to) / scale).powi(2)
+                })
+                .sum::<f64>();
+        }
+        residual
+    }
+
+    /// Solves for the step from `q`, where the rows were evaluated last. Returns false if it is
+    /// not finite.
+    fn solve(&mut self, pull: Option<Pull<'_>>, damping: f64, q: &[f64], scales: &[f64]) -> bool {
+        let count = self.rows.len();
+        self.lu.clear();
+        for (local, entries) in self.jacobian.iter().enumerate() {
+            self.lu.add(local, local, 1.0);
+            for &(own, value) in entries {
+                self.lu.add(local, count + own, value);
+                self.lu.add(count + own, local, value);
+            }
+        }
+        let strength = pull.map_or(0.0, |pull| pull.strength);
+        for own in count..self.step.len() {
+            self.lu.add(own, own, -(strength + damping));
+        }
+        if self.lu.factorise(0.0).is_err() {
+            return false;
+        }
+        let (sides, below) = self.step.split_at_mut(count);
+        for (side, phi) in sides.iter_mut().zip(&self.phi) {
+            *side = -phi;
+        }
+        below.fill(0.0);
+        if let Some(Pull { to, strength }) = pull {
+            for (k, side) in below.iter_mut().enumerate() {
+                *side = strength * (q[k] - to[k]) / scales[k];
+            }
+        }
+        self.lu.solve(&mut self.step);
+        self.step.iter().all(|step| step.is_finite())
     }
 }
 
-/// A row of Phi and its gradient, scaled as [`System::evaluate_row`] has them. That of a distance
-/// u is (d·d − u²)/(2u), which is smooth where the points lie on each other.
-fn evaluate_smoothly(work: &BlockState<'_>, row: usize, mut entry: impl FnMut(usize, f64)) -> f64 {
-    let equation = &work.system.equations()[row];
-    let distance = matches!(equation.constraint.relation(), Relation::Distance(_));
-    let stretch = if distance {
-        let target = work.system.target(row, work.targets, work.drivers);
-        equation.constraint.value(work.at) / target
+/// Returns ‖d‖/u for the row of a distance u, one for other rows.
+fn stretch(state: &BlockState<'_>, row: usize) -> f64 {
+    let constraint = &state.system.equations()[row].constraint;
+    if matches!(constraint.relation(), Relation::Distance(_)) {
+        constraint.value(state.at) / state.system.target(row, state.targets, state.drivers)
     } else {
         1.0
-    };
-    let entry = |column, value: f64| entry(column, value * stretch);
-    let value = work
-        .system
-        .evaluate_row(row, work.at, work.targets, work.drivers, entry);
-    // (d·d − u²)/(2u) = (‖d‖ − u)(1 + ‖d‖/u)/2.
-    value.value * 0.5 * (1.0 + stretch)
-}
-
-/// Returns whether two values of an unknown put a body in the same place, whole turns apart.
-pub(in crate::kinematics) fn is_same(
-    system: &System,
-    size: f64,
-    column: usize,
-    a: f64,
-    b: f64,
-) -> bool {
-    system.difference(column, size, a, b).abs() < SAME
-}
-
-/// A number from 0 to 1 for attempt and coordinate, one as likely as any other and all of them
-/// as if by chance (the finalizer of SplitMix64).
-fn scattered(attempt: usize, column: usize) -> f64 {
-    let mut z = ((attempt as u64) << 32 | column as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    (z ^ (z >> 31)) as f64 / u64::MAX as f64
-}
-
-/// By how much start `attempt` differs from the estimates in coordinate k, scaled: nothing the
-/// first time, then up to half a length or radian, spread evenly by the golden ratio.
-fn shift(attempt: usize, k: usize) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    if attempt == 0 {
-        0.0
-    } else {
-        (GOLDEN * (attempt * (k + 1)) as f64).fract() - 0.5
     }
 }

@@ -9,8 +9,9 @@
 //! |---|---|
 //! | [`estimate`] | the estimates, and the distance of a pose from them |
 //! | [`turns`] | whole turns of angles |
-//! | [`least_squares`] | minimises Eq. 3.6.9 over a part of the mechanism |
-//! | [`closing`] | closes any rows, for mechanisms of any size |
+//! | [`least_squares`] | damped least squares on rows of Phi |
+//! | [`part`] | assembles a part of the mechanism from several starts |
+//! | [`closure`] | closes a mechanism as a whole on any rows |
 //! | [`gaps`] | the joints that stay open |
 //! | [`loops`] | finds all branches of a block by bounds over intervals |
 //! | [`branches`] | lists the branches of one block |
@@ -18,11 +19,12 @@
 //! | [`nearest`] | finds the nearest pose of a mechanism that does not close |
 
 pub(super) mod branches;
-pub(super) mod closing;
+pub(super) mod closure;
 pub(super) mod estimate;
 pub(super) mod gaps;
 pub(super) mod least_squares;
 mod loops;
 pub(super) mod nearest;
+pub(super) mod part;
 pub(super) mod search;
 pub(super) mod turns;

@@ -1,27 +1,25 @@
 //! The nearest pose of a mechanism that does not close block by block, and the proof that it cannot
 //! close, if there is one.
 
+use std::collections::BTreeSet;
+
 use super::branches::{Branches, SearchEffort};
-use super::closing::close_on;
-use super::gaps::open_joints;
-use super::least_squares::{LARGEST_PART, Part, SMALL_PART, STARTS};
+use super::closure::{close_on, is_small};
+use super::gaps::{STEPS_TO_NEAREST, gather, open_joints};
+use super::least_squares::LeastSquares;
+use super::part::{LARGEST_PART, Part, STARTS};
 use super::search::{Nearest, NoBranch};
-use crate::kinematics::block::{BlockSolver, SolveBlock};
 use crate::kinematics::element::Element;
 use crate::kinematics::error::{Error, OpenJoint, Proof, Verdict};
 use crate::kinematics::model::Model;
 use crate::kinematics::newton::MAX_ASSEMBLY_ITERATIONS;
 use crate::kinematics::state::State;
 
-/// Minimisation steps towards the nearest pose of a mechanism that does not close.
-const STEPS_TO_NEAREST: usize = 200;
-/// A scaled residual below this is no gap that anyone could measure: the mechanism closes, and
-/// Newton–Raphson failed because the position is singular.
+/// A nearest pose with a scaled residual up to this one is closed: no one could measure the gap,
+/// and in a singular position, where Newton–Raphson fails, a minimisation comes no nearer.
 const CLOSED: f64 = 1e-7;
 /// The quantity without a value where squares of lengths overflow.
 const AN_EQUATION: &str = "an equation of the mechanism";
-/// Weight of all other joints when the gap is gathered in one.
-const HOLD_CLOSED: f64 = 1e4;
 
 /// Assembles a mechanism as a whole, after the search over its blocks failed. Returns the most
 /// corrections of a block.
@@ -36,17 +34,16 @@ pub(in crate::kinematics) fn search_at_once(
     estimate: &[f64],
 ) -> Result<u32, Error> {
     let rows: Vec<_> = (0..model.system.equations().len()).collect();
-    let columns: Vec<_> = (0..model.system.unknowns()).collect();
     let nearest = failure.nearest.take();
-    if columns.len() > SMALL_PART {
+    if !is_small(&model.system) {
         return match nearest {
             Some(nearest) => Err(explain_gap(model, state, &failure, &nearest, estimate)),
             None => search_sparsely(model, state, failure, &rows, estimate),
         };
     }
-    let whole = Part::new(&rows, &columns);
+    let mut whole = Part::of_all(&model.system, &rows);
     if !failure.proved || nearest.is_none() {
-        let closed = minimise_from_all(model, state, &whole, failure.proved, estimate);
+        let closed = minimise_from_all(model, state, &mut whole, failure.proved, estimate);
         if let Some(iterations) = closed {
             return Ok(iterations);
         }
@@ -54,7 +51,7 @@ pub(in crate::kinematics) fn search_at_once(
     }
     Err(match nearest {
         Some(nearest) => explain_gap(model, state, &failure, &nearest, estimate),
-        None => explain_failure(model, state, &failure, &whole),
+        None => explain_failure(model, state, &failure, &mut whole.problem),
     })
 }
 
@@ -88,7 +85,7 @@ fn search_sparsely(
 fn minimise_from_all(
     model: &mut Model,
     state: &mut State,
-    whole: &Part,
+    whole: &mut Part,
     proved: bool,
     estimate: &[f64],
 ) -> Option<u32> {
@@ -105,8 +102,10 @@ fn minimise_from_all(
             state.move_to_pose(&model.system);
         }
         let mut block_state = state.block_state(&model.system);
-        whole.minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
-        let gap = whole.equations(&block_state).0.norm();
+        let found = whole
+            .problem
+            .minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
+        let gap = found.cost;
         if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
             state.accept_bodies();
             nearest = Some((gap, state.pose.q.clone()));
@@ -144,23 +143,21 @@ fn explain_gap(
     let Model { system, plan, .. } = &mut *model;
     let mut block_state = state.block_state(system);
     for (index, block) in plan.blocks.iter_mut().enumerate().skip(nearest.block) {
-        let mut branches = Branches::new(block, &mut block_state, estimate, SearchEffort::Near);
-        let behind = index > nearest.block;
-        if behind && branches.next(block, &mut block_state, estimate).is_some() {
-            continue;
+        let block = &mut **block;
+        if index > nearest.block {
+            let effort = SearchEffort::Near;
+            let mut branches = Branches::new(block, &mut block_state, estimate, effort);
+            if branches.next(block, &mut block_state, estimate).is_some() {
+                continue;
+            }
         }
-        match block {
-            BlockSolver::PinnedBody(block) => block.locate(&mut block_state),
-            BlockSolver::RrrDyad(block) => block.stretch(&mut block_state, estimate),
-            BlockSolver::RrpDyad(block) => block.stretch(&mut block_state, estimate),
-            // The pose has no crossings where bodies are at their estimates.
-            BlockSolver::InterpolatedBlock(_) => {}
-            BlockSolver::CoupledBlock(block) => {
-                let part = Part::new(block.rows(), block.columns());
-                part.start(&mut block_state, estimate, 0);
-                if part.unknowns() <= LARGEST_PART {
-                    part.minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
-                }
+        block.stretch(&mut block_state, estimate);
+        if !block.is_closed_form() {
+            let mut part = Part::new(system, block.rows(), block.columns());
+            part.start(&mut block_state, estimate, 0);
+            if part.unknowns() <= LARGEST_PART {
+                part.problem
+                    .minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
             }
         }
     }
@@ -197,34 +194,18 @@ fn judge(model: &mut Model, state: &mut State, failure: &NoBranch, proof: Proof)
 /// Returns the proof that a block does not close, where those before it are at the pose.
 fn proof(model: &Model, state: &mut State, failure: &NoBranch, block: usize) -> Proof {
     let mechanism = model.system.mechanism();
-    let name = |body: usize| mechanism.bodies[body].name.clone();
-    match &model.plan.blocks[block] {
-        BlockSolver::RrrDyad(block) => {
-            let reach = block.reach(&state.block_state(&model.system));
-            let mut ends = block.ends();
-            ends.sort_unstable_by_key(|(body, _)| *body);
-            Proof::Reach {
-                bodies: ends.map(|(body, _)| name(body)),
-                points: ends.map(|(_, anchor)| mechanism.marker_path(anchor)),
-                distance: reach.distance,
-                span: [reach.shortest, reach.longest],
-            }
+    let block = &model.plan.blocks[block];
+    let closed_form = block.proof(&state.block_state(&model.system));
+    closed_form.unwrap_or_else(|| {
+        let columns = block.columns().iter();
+        let bodies: BTreeSet<_> = columns.map(|k| k / 3).collect();
+        // Joint unknowns come behind the bodies.
+        let bodies = bodies.into_iter().filter_map(|k| mechanism.bodies.get(k));
+        Proof::Excluded {
+            bodies: bodies.map(|body| body.name.clone()).collect(),
+            boxes: failure.boxes,
         }
-        BlockSolver::RrpDyad(block) => Proof::Line {
-            body: name(block.body()),
-        },
-        block => {
-            let mut bodies: Vec<_> = block.columns().iter().map(|k| k / 3).collect();
-            // Joint unknowns come behind the bodies.
-            bodies.retain(|&body| body < mechanism.bodies.len());
-            bodies.sort_unstable();
-            bodies.dedup();
-            Proof::Excluded {
-                bodies: bodies.into_iter().map(name).collect(),
-                boxes: failure.boxes,
-            }
-        }
-    }
+    })
 }
 
 fn not_assembled(
@@ -255,29 +236,27 @@ fn explain_failure(
     model: &mut Model,
     state: &mut State,
     failure: &NoBranch,
-    whole: &Part,
+    problem: &mut LeastSquares,
 ) -> Error {
-    let (residual, jacobian) = whole.equations(&state.block_state(&model.system));
     let beyond_numbers = || Error::NotFinite {
         what: AN_EQUATION.to_owned(),
     };
-    let mut numbers = residual.iter().chain(jacobian.iter());
-    if !numbers.all(|x| x.is_finite()) {
+    let largest = state.residual(&model.system);
+    if !largest.is_finite() {
         return beyond_numbers();
     }
-    if !failure.proved && residual.amax() <= CLOSED {
-        let singular = jacobian.singular_values();
+    if !failure.proved && largest <= CLOSED {
         return Error::Singular {
-            rcond: singular.min() / singular.max(),
+            rcond: state.dense_rcond(&model.system, &problem.rows, &problem.columns),
             bodies: Vec::new(),
         };
     }
-    let spread = open_joints(model, state, &whole.rows, residual.amax());
+    let spread = open_joints(model, state, &problem.rows, largest);
     if spread.is_empty() {
         return beyond_numbers();
     }
     let proof = proof(model, state, failure, failure.block);
-    let Some((joint, q)) = gather(model, state, whole, &spread) else {
+    let Some((joint, q)) = gather_in_one(model, state, problem, &spread) else {
         return not_assembled(state, failure, proof, spread);
     };
     state.pose.q.copy_from_slice(&q);
@@ -285,30 +264,19 @@ fn explain_failure(
     not_assembled(state, failure, proof, vec![joint])
 }
 
-/// Gathers the gap in one joint. The minimum spreads it over all joints of a loop, but people look
-/// for one joint that does not meet: the one with the smallest gap, on a tie the one declared
-/// last. Returns that joint, and q with the others closed.
-fn gather(
+/// Gathers the gap in one joint: the one with the smallest gap, on a tie the one declared last.
+/// Returns that joint, and q with the others closed.
+fn gather_in_one(
     model: &Model,
     state: &mut State,
-    part: &Part,
+    problem: &mut LeastSquares,
     spread: &[(Element, OpenJoint)],
 ) -> Option<((Element, OpenJoint), Vec<f64>)> {
     let mut best: Option<(f64, (Element, OpenJoint), Vec<f64>)> = None;
-    let equations = model.system.equations();
     for (element, _) in spread {
         state.move_to_pose(&model.system);
-        let weight = |row: usize| {
-            if equations[row].element == *element {
-                1.0
-            } else {
-                HOLD_CLOSED
-            }
-        };
-        let mut block_state = state.block_state(&model.system);
-        part.minimise(&mut block_state, None, weight, STEPS_TO_NEAREST);
-        let largest = part.equations(&block_state).0.amax();
-        if let [joint] = &open_joints(model, state, &part.rows, largest)[..]
+        let largest = gather(model, state, problem, *element);
+        if let [joint] = &open_joints(model, state, &problem.rows, largest)[..]
             && joint.0 == *element
             && let gap = (joint.1.gap / state.at.size()).max(joint.1.angle)
             && best

@@ -1,192 +1,256 @@
-//! The search for branches of all blocks that go together.
+//! The search for branches of all blocks that fit together.
 //!
-//! A block that does not close can only be helped by another way of the blocks that it reads,
-//! directly or through others: the search jumps back to the last of those, and what lies between
-//! and has nothing to do with it is not tried again (conflict-directed backjumping).
+//! Only another branch of the blocks that a block reads, directly or through others, can help a
+//! block that does not close. The search jumps back to the last of these; blocks in between, which
+//! have no influence, are not tried again (conflict-directed backjumping).
 
 use std::collections::BTreeSet;
 
 use super::branches::{Branches, SearchEffort};
-use crate::kinematics::block::{BlockSolver, SolveBlock};
+use crate::kinematics::block::{BlockSolver, BlockState};
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
 
-/// Behind a block whose reciprocal condition is less, rounding is no longer small enough for a
+/// Least reciprocal condition of a block in closed form behind which rounding is small enough for a
 /// proof.
 const WELL_CONDITIONED: f64 = 1e-5;
-/// How much work is spent on other branches once a block has not closed. A block in closed form
+/// Most work on further branches once a block has not closed. A start of a block in closed form
 /// counts one; this takes well under a second.
 const MOST_WORK: f64 = 2_000.0;
-/// A block of so many unknowns that is minimised counts one for each start.
+/// Number of unknowns of a block whose minimisation from one start counts one.
 const UNIT_OF_WORK: f64 = 9.0;
-
-/// So do so many boxes of angles.
+/// Number of boxes of angles that count one.
 const BOXES_PER_WORK: f64 = 20.0;
 
-/// What is known where the blocks did not all close.
+/// The failure of a search.
 #[derive(Debug)]
 pub(in crate::kinematics) struct NoBranch {
     /// A block that did not close.
     pub(in crate::kinematics) block: usize,
     /// Whether all branches are excluded.
     pub(in crate::kinematics) proved: bool,
-    /// In how many branches of those before them blocks did not close.
+    /// Number of branches of earlier blocks behind which a block did not close.
     pub(super) dead_ends: usize,
-    /// From how many starts the search has looked.
+    /// Number of starts tried in these.
     pub(super) starts: usize,
-    /// Where a block in closed form misses by least.
+    /// The least gap of a block in closed form.
     pub(super) nearest: Option<Nearest>,
-    /// Into how many boxes the angles of `block` were divided to exclude them.
+    /// Number of boxes into which bounds divided the angles of a block to exclude them.
     pub(super) boxes: usize,
 }
 
-/// A block in closed form that misses, behind those before it.
+/// A block in closed form that leaves a gap behind those before it.
 #[derive(Debug)]
 pub(super) struct Nearest {
-    /// \[m\].
+    /// \[m\]
     pub(super) gap: f64,
     pub(super) block: usize,
-    /// q, of what was found before.
+    /// q of the blocks before it.
     pub(super) q: Vec<f64>,
 }
 
-/// A block that stands in one of its branches.
+/// A block on one of its branches.
 #[derive(Debug)]
 struct Level {
     branches: Branches,
     iterations: u32,
-    /// Kernels before it whose branches decide whether those after it close.
+    /// Earlier blocks whose branches decide whether the blocks behind this one close.
     conflict: BTreeSet<usize>,
-    /// Whether something behind it was given up without proof.
+    /// Whether a block behind this one was given up without proof.
     in_doubt: bool,
 }
 
-/// Assembles block by block, each behind those before it. Returns the most corrections
-/// that one needed.
+/// A search over the branches of all blocks.
+pub(in crate::kinematics) struct BranchSearch<'a> {
+    blocks: &'a mut [BlockSolver],
+    state: BlockState<'a>,
+    estimate: &'a [f64],
+    effort: SearchEffort,
+    /// The blocks that are on a branch, in order.
+    levels: Vec<Level>,
+    /// The blocks that each block reads, once a block has not closed.
+    reads: Option<Vec<BTreeSet<usize>>>,
+    work_left: f64,
+    failure: NoBranch,
+    /// Whether the blocks given up have no other branches than those tried.
+    pub(in crate::kinematics) is_complete: bool,
+    /// Most starts of a block of which not all branches are known.
+    pub(in crate::kinematics) starts: usize,
+}
+
+/// Assembles block by block, each behind those before it. Returns the most corrections of a block.
 ///
 /// # Errors
 ///
-/// What is known if they do not all close.
+/// [`NoBranch`] if no branches fit together.
 pub(in crate::kinematics) fn search(
     model: &mut Model,
     state: &mut State,
     estimate: &[f64],
 ) -> Result<u32, NoBranch> {
-    let Model { system, plan, .. } = model;
-    let unknowns = system.unknowns();
-    let mut work = state.block_state(system);
-    let blocks = &mut plan.blocks;
-    let mut levels: Vec<Level> = Vec::with_capacity(blocks.len());
-    let mut reads: Option<Vec<BTreeSet<usize>>> = None;
-    let mut work_left = MOST_WORK;
-    let mut no_branch = NoBranch {
-        block: 0,
-        proved: false,
-        dead_ends: 0,
-        starts: 0,
-        nearest: None,
-        boxes: 0,
-    };
-    while levels.len() < blocks.len() {
-        let branches = Branches::new(
-            &blocks[levels.len()],
-            &mut work,
-            estimate,
-            SearchEffort::Near,
-        );
-        levels.push(Level {
-            branches,
-            iterations: 0,
-            conflict: BTreeSet::new(),
-            in_doubt: false,
-        });
-        // The last block goes to its next way; where there is none, one before it.
-        loop {
-            let index = levels.len() - 1;
-            let level = &mut levels[index];
-            let block = &mut blocks[index];
-            let starts = level.branches.starts;
-            let corrected = level.branches.next(block, &mut work, estimate);
-            if reads.is_some() {
-                work_left -= cost(block) * (1 + level.branches.starts - starts) as f64;
-            }
-            if let Some(correction) = corrected {
-                level.iterations = correction.iterations;
-                let closed_form =
-                    matches!(block, BlockSolver::RrrDyad(_) | BlockSolver::RrpDyad(_));
-                level.in_doubt |= closed_form && block.rcond() < WELL_CONDITIONED;
-                break;
-            }
-            let in_doubt = level.in_doubt || !level.branches.is_complete();
-            let boxes = level.branches.boxes();
-            no_branch.boxes = no_branch.boxes.max(boxes);
-            work_left -= boxes as f64 / BOXES_PER_WORK;
-            if level.branches.given == 0 {
-                if no_branch.dead_ends == 0 {
-                    no_branch.block = index;
-                }
-                no_branch.dead_ends += 1;
-                no_branch.starts += level.branches.starts.max(1);
-                let gap = level.branches.gap().filter(|gap| gap.is_finite());
-                let nearest = no_branch.nearest.as_ref();
-                if let Some(gap) = gap
-                    && nearest.is_none_or(|nearest| gap < nearest.gap)
-                {
-                    let mut q = vec![0.0; unknowns];
-                    work.at.copy_pose(&mut q);
-                    let block = index;
-                    no_branch.nearest = Some(Nearest { gap, block, q });
-                }
-            }
-            let reads = reads.get_or_insert_with(|| reads_of(work.system, blocks));
-            let mut conflict = std::mem::take(&mut level.conflict);
-            conflict.extend(&reads[index]);
-            let Some(back) = conflict.pop_last() else {
-                no_branch.proved = !in_doubt;
-                return Err(no_branch);
-            };
-            if work_left < 0.0 {
-                return Err(no_branch);
-            }
-            levels.truncate(back + 1);
-            levels[back].conflict.extend(conflict);
-            levels[back].in_doubt |= in_doubt;
-        }
+    let mut search = BranchSearch::new(model, state, estimate, SearchEffort::Near, MOST_WORK);
+    if !search.next() {
+        return Err(search.failure);
     }
-    let iterations = levels.iter().map(|level| level.iterations).max();
+    let iterations = search.levels.iter().map(|level| level.iterations).max();
     state.accept_bodies();
     Ok(iterations.unwrap_or(0))
 }
 
-/// What one start of a block costs, in units of a closed form.
-fn cost(block: &BlockSolver) -> f64 {
-    match block {
-        BlockSolver::PinnedBody(_)
-        | BlockSolver::RrrDyad(_)
-        | BlockSolver::RrpDyad(_)
-        | BlockSolver::InterpolatedBlock(_) => 1.0,
-        BlockSolver::CoupledBlock(block) => (block.columns().len() as f64 / UNIT_OF_WORK)
-            .powi(3)
-            .max(1.0),
+impl<'a> BranchSearch<'a> {
+    /// Begins a search. `most_work` limits the work after the first block that does not close.
+    pub(in crate::kinematics) fn new(
+        model: &'a mut Model,
+        state: &'a mut State,
+        estimate: &'a [f64],
+        effort: SearchEffort,
+        most_work: f64,
+    ) -> Self {
+        let Model { system, plan, .. } = model;
+        Self {
+            levels: Vec::with_capacity(plan.blocks.len()),
+            blocks: &mut plan.blocks,
+            state: state.block_state(system),
+            estimate,
+            effort,
+            reads: None,
+            work_left: most_work,
+            failure: NoBranch {
+                block: 0,
+                proved: false,
+                dead_ends: 0,
+                starts: 0,
+                nearest: None,
+                boxes: 0,
+            },
+            is_complete: true,
+            starts: 0,
+        }
+    }
+
+    /// Returns q of the branches found.
+    pub(in crate::kinematics) fn pose(&self) -> Vec<f64> {
+        let mut q = vec![0.0; self.state.system.unknowns()];
+        self.state.at.copy_pose(&mut q);
+        q
+    }
+
+    /// Goes to the next branches of all blocks that fit together. Returns false if there are none,
+    /// or the work is used up.
+    pub(in crate::kinematics) fn next(&mut self) -> bool {
+        if let Some(last) = self.levels.len().checked_sub(1) {
+            // All branches so far fit together: backtracking leaves none of their blocks out.
+            self.levels[last].conflict = (0..last).collect();
+            if !self.next_of_last() {
+                return false;
+            }
+        }
+        while self.levels.len() < self.blocks.len() {
+            let block = &*self.blocks[self.levels.len()];
+            self.levels.push(Level {
+                branches: Branches::new(block, &mut self.state, self.estimate, self.effort),
+                iterations: 0,
+                conflict: BTreeSet::new(),
+                in_doubt: false,
+            });
+            if !self.next_of_last() {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Puts the last block on its next branch, or, where it has none, one before it. Returns false
+    /// if none has, or the work is used up.
+    fn next_of_last(&mut self) -> bool {
+        loop {
+            let index = self.levels.len() - 1;
+            let level = &mut self.levels[index];
+            let block = &mut *self.blocks[index];
+            let starts = level.branches.starts;
+            let corrected = level.branches.next(block, &mut self.state, self.estimate);
+            if self.reads.is_some() {
+                let size = block.columns().len() as f64 / UNIT_OF_WORK;
+                let cost = if block.is_closed_form() {
+                    1.0
+                } else {
+                    size.powi(3).max(1.0)
+                };
+                self.work_left -= cost * (1 + level.branches.starts - starts) as f64;
+            }
+            if let Some(correction) = corrected {
+                level.iterations = correction.iterations;
+                level.in_doubt |= block.is_closed_form() && block.rcond() < WELL_CONDITIONED;
+                return true;
+            }
+            let in_doubt = level.in_doubt || !level.branches.is_complete();
+            if !level.branches.is_complete() {
+                self.is_complete = false;
+                self.starts = self.starts.max(level.branches.starts);
+            }
+            self.note_dead_end(index);
+            let blocks = &*self.blocks;
+            let system = self.state.system;
+            let reads = self.reads.get_or_insert_with(|| reads_of(system, blocks));
+            let mut conflict = std::mem::take(&mut self.levels[index].conflict);
+            conflict.extend(&reads[index]);
+            let Some(back) = conflict.pop_last() else {
+                self.failure.proved = !in_doubt;
+                self.levels.clear();
+                return false;
+            };
+            if self.work_left < 0.0 {
+                self.is_complete = false;
+                return false;
+            }
+            self.levels.truncate(back + 1);
+            self.levels[back].conflict.extend(conflict);
+            self.levels[back].in_doubt |= in_doubt;
+        }
+    }
+
+    /// Notes that the last block has no other branch.
+    fn note_dead_end(&mut self, index: usize) {
+        let branches = &self.levels[index].branches;
+        let failure = &mut self.failure;
+        failure.boxes = failure.boxes.max(branches.boxes());
+        self.work_left -= branches.boxes() as f64 / BOXES_PER_WORK;
+        if branches.given > 0 {
+            return;
+        }
+        if failure.dead_ends == 0 {
+            failure.block = index;
+        }
+        failure.dead_ends += 1;
+        failure.starts += branches.starts.max(1);
+        let gap = branches.gap().filter(|gap| gap.is_finite());
+        let nearest = failure.nearest.as_ref();
+        if let Some(gap) = gap
+            && nearest.is_none_or(|nearest| gap < nearest.gap)
+        {
+            self.failure.nearest = Some(Nearest {
+                gap,
+                block: index,
+                q: self.pose(),
+            });
+        }
     }
 }
 
-/// The blocks that each block reads.
+/// Returns the blocks that each block reads.
 fn reads_of(system: &System, blocks: &[BlockSolver]) -> Vec<BTreeSet<usize>> {
-    let mut finder = vec![0; system.unknowns()];
+    let mut owner = vec![0; system.unknowns()];
     for (index, block) in blocks.iter().enumerate() {
         for &column in block.columns() {
-            finder[column] = index;
+            owner[column] = index;
         }
     }
-    let blocks = blocks.iter().enumerate();
-    blocks
-        .map(|(index, block)| {
-            let rows = block.rows().iter();
-            let unknowns = rows.flat_map(|&row| system.incidence(row).unknowns);
-            let read = unknowns.map(|column| finder[column]);
-            read.filter(|&read| read != index).collect()
-        })
-        .collect()
+    let reads = blocks.iter().enumerate().map(|(index, block)| {
+        let rows = block.rows().iter();
+        let unknowns = rows.flat_map(|&row| system.incidence(row).unknowns);
+        let read = unknowns.map(|column| owner[column]);
+        read.filter(|&read| read != index).collect()
+    });
+    reads.collect()
 }

@@ -13,7 +13,7 @@ pub(super) struct Anchor {
     body: u32,
     /// s, its point in the body's frame.
     s: Vector2<f64>,
-    /// From the body's pivot to the point, in the body's frame, and its length.
+    /// Vector from the body's pivot to the point, in the body's frame, and its length.
     lever: Vector2<f64>,
     length: f64,
 }

@@ -17,7 +17,7 @@ use contraction::ContractionTest;
 use equations::{BlockEquations, ColumnOwner, Jacobian};
 
 use super::elimination::EliminationOrder;
-use super::solve::SolveBlock;
+use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::Configuration;
@@ -191,6 +191,14 @@ impl SolveBlock for CoupledBlock {
             last_excess = excess;
             outcome.iterations += 1;
         }
+    }
+
+    fn branches(&self, _state: &mut BlockState<'_>, _estimate: &[f64]) -> BlockBranches {
+        BlockBranches::Unlisted
+    }
+
+    fn is_closed_form(&self) -> bool {
+        false
     }
 
     fn factorise(&mut self, state: &mut BlockState<'_>) -> Result<(), Rejected> {

@@ -8,8 +8,8 @@ pub(in crate::kinematics) const SEAM: f64 = 1.0 + 1e-9;
 /// The motion of one block of equations through a change point, as a function of the one driver
 /// that moves the block.
 ///
-/// On either side of the point, where the block is regular, position and both derivatives are
-/// known to rounding; between them each unknown is the polynomial of fifth degree with these values.
+/// On either side of the point, where the block is regular, position and both derivatives are known
+/// to rounding; between them each unknown is the polynomial of fifth degree with these values.
 /// Newton–Raphson would lose the position as eps/δ at the distance δ from the point, the velocity
 /// as eps/δ² and the acceleration as eps/δ³.
 #[derive(Clone, Debug, PartialEq)]

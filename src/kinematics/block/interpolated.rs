@@ -56,8 +56,8 @@ impl InterpolatedBlock {
         })
     }
 
-    /// Writes the chord bounds: each unknown deviates by an eighth of its bend along the way, and
-    /// by the deviation of the driver times its slope.
+    /// Writes the chord bounds: an eighth of the second derivative times the squared step, plus the
+    /// slope times the deviation of the driver.
     fn write_bounds(&self, state: &BlockState<'_>, step: &mut Step<'_>) {
         let Step {
             from,
@@ -115,8 +115,8 @@ impl SolveBlock for InterpolatedBlock {
         self.block.columns()
     }
 
-    /// Goes to the driver's value. The crossing is one motion from end to end: there is nothing to
-    /// predict or to prove.
+    /// Moves to the driver's value. The crossing is one motion from end to end and needs neither
+    /// prediction nor proof.
     fn step(
         &mut self,
         state: &mut BlockState<'_>,

@@ -1,7 +1,7 @@
 //! The plan: the blocks of the mechanism in the order of solution, each with its own solver.
 //!
 //! The plan is compiled once from the equations and their structure. A block solver reads only
-//! what those before it have found. Position, velocity and acceleration go through the list once,
+//! the unknowns of those before it. Position, velocity and acceleration go through the list once,
 //! so that the work is proportional to the number of bodies.
 //!
 //! | block solver | unknowns | method |
@@ -49,7 +49,7 @@ use pinned::PinnedBody;
 pub(super) use reach::ClosureGap;
 use rrp_dyad::RrpDyad;
 use rrr_dyad::RrrDyad;
-pub(super) use solve::SolveBlock;
+pub(super) use solve::{BlockBranches, SolveBlock};
 pub(super) use step::{BlockState, Extrapolation, Step};
 
 /// The blocks in the order of solution.
@@ -165,6 +165,12 @@ impl BlockPlan {
         for block in std::iter::once(first).chain(sparse) {
             block.choose_pivots(&mut state);
         }
+    }
+
+    /// Chooses the pivots of sparse matrices again, as if the plan had not been used.
+    pub(super) fn reset_pivots(&mut self, system: &System, at: &Configuration, targets: &Targets) {
+        self.forget_pivots();
+        self.choose_pivots(system, at, targets);
     }
 
     /// Forgets the proofs that hold for several steps.
@@ -320,9 +326,9 @@ mod tests {
         letters.collect::<Vec<_>>().join(" ")
     }
 
-    /// Work is a result, too: a mechanism that falls to a slower solver shows here.
+    /// A mechanism that falls back to a slower solver fails here.
     #[test]
-    fn each_block_has_the_solver_that_suits_it() {
+    fn shipped_mechanisms_get_the_fast_block_solvers() {
         for (name, expected) in [
             ("four_bar", "P D"),
             ("slider_crank", "P S"),

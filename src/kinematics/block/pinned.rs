@@ -57,7 +57,7 @@ impl PinnedBody {
     }
 
     /// Puts the body at the pose that the bodies before it and the target give.
-    pub(in crate::kinematics) fn locate(&self, state: &mut BlockState<'_>) {
+    fn locate(&self, state: &mut BlockState<'_>) {
         let parts = &self.parts;
         let target = state
             .system
@@ -139,6 +139,10 @@ impl SolveBlock for PinnedBody {
     ) -> Result<Correction, Rejected> {
         self.locate(state);
         Ok(Correction::default())
+    }
+
+    fn stretch(&self, state: &mut BlockState<'_>, _estimate: &[f64]) {
+        self.locate(state);
     }
 
     fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]) {

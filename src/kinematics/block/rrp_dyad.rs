@@ -13,11 +13,12 @@ use certify::Before;
 use equation::Known;
 
 use super::anchor::{Anchor, compact};
-use super::solve::SolveBlock;
+use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::constraint::Projection;
+use crate::kinematics::error::Proof;
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::kinematics::system::Targets;
 use crate::mechanism::{Jet, MarkerId, Mechanism};
@@ -177,11 +178,6 @@ impl RrpDyad {
         }
     }
 
-    /// Returns body a, whose angle is the unknown.
-    pub(in crate::kinematics) fn body(&self) -> usize {
-        self.parts.body
-    }
-
     /// Solves for the angle of a by Newton–Raphson.
     fn correct(
         &mut self,
@@ -221,16 +217,6 @@ impl RrpDyad {
             last_gap = open;
             correction.iterations += 1;
         }
-    }
-
-    /// Closes by Newton–Raphson from this angle of body a.
-    pub(in crate::kinematics) fn close_from(
-        &mut self,
-        state: &mut BlockState<'_>,
-        phi: f64,
-        max_iterations: u32,
-    ) -> Result<Correction, Rejected> {
-        Ok(self.correct(state, phi, max_iterations)?.correction)
     }
 }
 
@@ -272,7 +258,37 @@ impl SolveBlock for RrpDyad {
         max_iterations: u32,
     ) -> Result<Correction, Rejected> {
         let phi = state.at.frames()[self.body as usize].phi;
-        self.close_from(state, phi, max_iterations)
+        self.close_from(state, [phi, 0.0], max_iterations)
+    }
+
+    /// Closes from an angle of body a, the first one.
+    fn close_from(
+        &mut self,
+        state: &mut BlockState<'_>,
+        angles: [f64; 2],
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        Ok(self.correct(state, angles[0], max_iterations)?.correction)
+    }
+
+    /// Returns the two angles of body a at which the block closes: the minima of Eq. 3.6.9 for
+    /// r → ∞, where a circle intersects a line.
+    fn branches(&self, state: &mut BlockState<'_>, estimate: &[f64]) -> BlockBranches {
+        match self.angles(state, estimate) {
+            Ok(angles) => BlockBranches::Two(angles.map(|angle| [angle, 0.0])),
+            Err(gap) => BlockBranches::None(gap),
+        }
+    }
+
+    fn stretch(&self, state: &mut BlockState<'_>, estimate: &[f64]) {
+        self.stretch_to_line(state, estimate);
+    }
+
+    fn proof(&self, state: &BlockState<'_>) -> Option<Proof> {
+        let body = &state.system.mechanism().bodies[self.parts.body];
+        Some(Proof::Line {
+            body: body.name.clone(),
+        })
     }
 
     /// Notes the slope.

@@ -8,10 +8,11 @@ use nalgebra::Vector2;
 
 use super::anchor::{Anchor, Moving, compact, larger, largest};
 use super::reach::{ClosureGap, Reach};
-use super::solve::SolveBlock;
+use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Extrapolation, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
+use crate::kinematics::error::Proof;
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::kinematics::system::Targets;
 use crate::mechanism::{Jet, MarkerId, Mechanism};
@@ -80,7 +81,7 @@ fn turned_on(frame: &BodyPose, turn: f64, phi: f64) -> BodyPose {
         return BodyPose::turned(phi);
     }
     let square = turn * turn;
-    // Up to the tenth power: what is left of the series is below 3e-19.
+    // Up to the tenth power: the rest of the series is below 3e-19.
     let cos = 1.0
         - square
             * (1.0 / 2.0
@@ -244,20 +245,6 @@ impl RrrDyad {
         }
     }
 
-    /// Closes the loop by Newton–Raphson from these angles.
-    pub(in crate::kinematics) fn close_from(
-        &mut self,
-        state: &mut BlockState<'_>,
-        phi: [f64; 2],
-        max_iterations: u32,
-    ) -> Result<Correction, Rejected> {
-        let start = Turned {
-            frames: phi.map(BodyPose::turned),
-            exact: true,
-        };
-        Ok(self.correct(state, start, max_iterations)?.correction)
-    }
-
     /// Returns the sine of the angle between the links.
     #[inline(always)]
     fn sine(&self) -> f64 {
@@ -265,48 +252,8 @@ impl RrrDyad {
         self.determinant.abs() / (a.length * b.length)
     }
 
-    /// Returns the two pairs of angles at which the loop closes, nearest the estimates first: the
-    /// minima of Eq. 3.6.9 for r → ∞, where two circles intersect.
-    ///
-    /// # Errors
-    ///
-    /// [`ClosureGap`] if the links do not reach each other.
-    pub(in crate::kinematics) fn branches(
-        &self,
-        state: &BlockState<'_>,
-        estimate: &[f64],
-    ) -> Result<[[f64; 2]; 2], ClosureGap> {
-        let reach = self.reach(state);
-        let gap = ClosureGap::new(reach.gap(), reach.distance + reach.longest);
-        if gap.certain {
-            return Err(gap);
-        }
-        let size = state.at.size();
-        let mut branches = [(0.0, [0.0; 2]); 2];
-        for (branch, side) in branches.iter_mut().zip([1.0, -1.0]) {
-            let links = self.meet(state, estimate, side).ok_or(gap)?;
-            for (k, side) in self.sides.iter().enumerate() {
-                let column = 3 * side.body as usize;
-                let guess = &estimate[column..column + 3];
-                let phi = side.turned_along(links[k], guess[2]);
-                let point = side.anchor.point(state.at.frames());
-                let (sin, cos) = phi.sin_cos();
-                let origin = point - rotate(cos, sin, side.s);
-                branch.0 += ((origin.x - guess[0]) / size).powi(2)
-                    + ((origin.y - guess[1]) / size).powi(2)
-                    + (phi - guess[2]).powi(2);
-                branch.1[k] = phi;
-            }
-        }
-        // The first of two that are equally far.
-        if branches[1].0 < branches[0].0 * (1.0 - 1e-9) {
-            branches.swap(0, 1);
-        }
-        Ok(branches.map(|(_, phi)| phi))
-    }
-
     /// Returns the distance of the anchors and the distances that the links can span.
-    pub(in crate::kinematics) fn reach(&self, state: &BlockState<'_>) -> Reach {
+    fn reach(&self, state: &BlockState<'_>) -> Reach {
         let [a, b] = &self.sides;
         let frames = state.at.frames();
         Reach {
@@ -318,61 +265,6 @@ impl RrrDyad {
             shortest: (a.length - b.length).abs(),
             longest: a.length + b.length,
         }
-    }
-
-    /// Returns its bodies, each with its partner on the bodies found before.
-    pub(in crate::kinematics) fn ends(&self) -> [(usize, MarkerId); 2] {
-        [0, 1].map(|k| (self.parts.sides[k].body, self.parts.sides[k].anchor))
-    }
-
-    /// Puts links that do not reach each other in line, where the gap is least, with all of the
-    /// gap in the joint declared last.
-    pub(in crate::kinematics) fn stretch(&self, state: &mut BlockState<'_>, estimate: &[f64]) {
-        let [a, b] = &self.sides;
-        let frames = state.at.frames_mut();
-        let (point_a, point_b) = (a.anchor.point(frames), b.anchor.point(frames));
-        let span = point_b - point_a;
-        let distance = span.norm();
-        let e = if distance > 0.0 {
-            span / distance
-        } else {
-            let (sin, cos) = estimate[3 * a.body as usize + 2].sin_cos();
-            Vector2::new(cos, sin)
-        };
-        // Both links span too large a distance; in too small a one the longer link overshoots.
-        let (along_a, along_b) = if distance > a.length + b.length {
-            (e, -e)
-        } else if a.length > b.length {
-            (e, e)
-        } else {
-            (-e, -e)
-        };
-        let turned = |side: &Side, along| {
-            let guess = estimate[3 * side.body as usize + 2];
-            BodyPose::turned(side.turned_along(along, guess))
-        };
-        let (frame_a, frame_b) = (turned(a, along_a), turned(b, along_b));
-        let rows = &self.parts.rows;
-        let last = (0..6).max_by_key(|&k| rows[k]).map_or(0, |k| k / 2);
-        let (end_a, end_b) = (frame_a.rotate(a.l), frame_b.rotate(b.l));
-        let outer_a = if last == 0 {
-            point_b + end_b - end_a
-        } else {
-            point_a
-        };
-        let outer_b = if last == 1 {
-            point_a + end_a - end_b
-        } else {
-            point_b
-        };
-        frames[a.body as usize] = BodyPose {
-            origin: outer_a - frame_a.rotate(a.s),
-            ..frame_a
-        };
-        frames[b.body as usize] = BodyPose {
-            origin: outer_b - frame_b.rotate(b.s),
-            ..frame_b
-        };
     }
 
     /// Returns d_a and d_b where the links meet, on one side of the line between the anchors.
@@ -465,6 +357,117 @@ impl SolveBlock for RrrDyad {
     ) -> Result<Correction, Rejected> {
         let phi = [0, 1].map(|k| state.at.frames()[self.sides[k].body as usize].phi);
         self.close_from(state, phi, max_iterations)
+    }
+
+    fn close_from(
+        &mut self,
+        state: &mut BlockState<'_>,
+        angles: [f64; 2],
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        let start = Turned {
+            frames: angles.map(BodyPose::turned),
+            exact: true,
+        };
+        Ok(self.correct(state, start, max_iterations)?.correction)
+    }
+
+    /// Returns the two pairs of angles at which the loop closes: the minima of Eq. 3.6.9 for r → ∞,
+    /// where two circles intersect.
+    fn branches(&self, state: &mut BlockState<'_>, estimate: &[f64]) -> BlockBranches {
+        let reach = self.reach(state);
+        let gap = ClosureGap::new(reach.gap(), reach.distance + reach.longest);
+        if gap.certain {
+            return BlockBranches::None(gap);
+        }
+        let size = state.at.size();
+        let mut branches = [(0.0, [0.0; 2]); 2];
+        for (branch, side) in branches.iter_mut().zip([1.0, -1.0]) {
+            let Some(links) = self.meet(state, estimate, side) else {
+                return BlockBranches::None(gap);
+            };
+            for (k, side) in self.sides.iter().enumerate() {
+                let column = 3 * side.body as usize;
+                let guess = &estimate[column..column + 3];
+                let phi = side.turned_along(links[k], guess[2]);
+                let point = side.anchor.point(state.at.frames());
+                let (sin, cos) = phi.sin_cos();
+                let origin = point - rotate(cos, sin, side.s);
+                branch.0 += ((origin.x - guess[0]) / size).powi(2)
+                    + ((origin.y - guess[1]) / size).powi(2)
+                    + (phi - guess[2]).powi(2);
+                branch.1[k] = phi;
+            }
+        }
+        // The first of two that are equally far.
+        if branches[1].0 < branches[0].0 * (1.0 - 1e-9) {
+            branches.swap(0, 1);
+        }
+        BlockBranches::Two(branches.map(|(_, phi)| phi))
+    }
+
+    /// Puts links that do not reach each other in line, where the gap is least, with all of the
+    /// gap in the joint declared last.
+    fn stretch(&self, state: &mut BlockState<'_>, estimate: &[f64]) {
+        let [a, b] = &self.sides;
+        let frames = state.at.frames_mut();
+        let (point_a, point_b) = (a.anchor.point(frames), b.anchor.point(frames));
+        let span = point_b - point_a;
+        let distance = span.norm();
+        let e = if distance > 0.0 {
+            span / distance
+        } else {
+            let (sin, cos) = estimate[3 * a.body as usize + 2].sin_cos();
+            Vector2::new(cos, sin)
+        };
+        // Both links span too large a distance; in too small a one the longer link overshoots.
+        let (along_a, along_b) = if distance > a.length + b.length {
+            (e, -e)
+        } else if a.length > b.length {
+            (e, e)
+        } else {
+            (-e, -e)
+        };
+        let turned = |side: &Side, along| {
+            let guess = estimate[3 * side.body as usize + 2];
+            BodyPose::turned(side.turned_along(along, guess))
+        };
+        let (frame_a, frame_b) = (turned(a, along_a), turned(b, along_b));
+        let rows = &self.parts.rows;
+        let last = (0..6).max_by_key(|&k| rows[k]).map_or(0, |k| k / 2);
+        let (end_a, end_b) = (frame_a.rotate(a.l), frame_b.rotate(b.l));
+        let outer_a = if last == 0 {
+            point_b + end_b - end_a
+        } else {
+            point_a
+        };
+        let outer_b = if last == 1 {
+            point_a + end_a - end_b
+        } else {
+            point_b
+        };
+        frames[a.body as usize] = BodyPose {
+            origin: outer_a - frame_a.rotate(a.s),
+            ..frame_a
+        };
+        frames[b.body as usize] = BodyPose {
+            origin: outer_b - frame_b.rotate(b.s),
+            ..frame_b
+        };
+    }
+
+    /// Returns the distances that the links span and the distance that they have to.
+    fn proof(&self, state: &BlockState<'_>) -> Option<Proof> {
+        let mechanism = state.system.mechanism();
+        let reach = self.reach(state);
+        let mut sides = [0, 1].map(|k| (self.parts.sides[k].body, self.parts.sides[k].anchor));
+        sides.sort_unstable_by_key(|(body, _)| *body);
+        Some(Proof::Reach {
+            bodies: sides.map(|(body, _)| mechanism.bodies[body].name.clone()),
+            points: sides.map(|(_, anchor)| mechanism.marker_path(anchor)),
+            distance: reach.distance,
+            span: [reach.shortest, reach.longest],
+        })
     }
 
     /// Notes the links and the determinant.

@@ -1,11 +1,26 @@
 //! The interface of block solvers.
 
+use super::reach::ClosureGap;
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::Configuration;
+use crate::kinematics::error::Proof;
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::kinematics::system::Targets;
 use crate::mechanism::Jet;
+
+/// The branches of a block behind the blocks before it.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::kinematics) enum BlockBranches {
+    /// One, which is explicit.
+    One,
+    /// Two, by their angles, nearest the estimates first.
+    Two([[f64; 2]; 2]),
+    /// None: a gap stays open on all of them.
+    None(ClosureGap),
+    /// No closed form lists them.
+    Unlisted,
+}
 
 /// The solver of one block of equations.
 pub(in crate::kinematics) trait SolveBlock:
@@ -47,6 +62,45 @@ pub(in crate::kinematics) trait SolveBlock:
         state: &mut BlockState<'_>,
         max_iterations: u32,
     ) -> Result<Correction, Rejected>;
+
+    /// Returns its branches. May move its bodies.
+    fn branches(&self, state: &mut BlockState<'_>, estimate: &[f64]) -> BlockBranches {
+        let _ = (state, estimate);
+        BlockBranches::One
+    }
+
+    /// Closes by Newton–Raphson on the branch with these angles, of those that
+    /// [`branches`](Self::branches) lists.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] without convergence in `max_iterations`.
+    fn close_from(
+        &mut self,
+        state: &mut BlockState<'_>,
+        angles: [f64; 2],
+        max_iterations: u32,
+    ) -> Result<Correction, Rejected> {
+        let _ = angles;
+        self.close(state, max_iterations)
+    }
+
+    /// Returns whether a closed form lists its branches.
+    fn is_closed_form(&self) -> bool {
+        true
+    }
+
+    /// Puts its bodies at the nearest pose, as far as a closed form gives it, where it has no
+    /// branch.
+    fn stretch(&self, state: &mut BlockState<'_>, estimate: &[f64]) {
+        let _ = (state, estimate);
+    }
+
+    /// Returns the proof that it has no branch, if its closed form gives one.
+    fn proof(&self, state: &BlockState<'_>) -> Option<Proof> {
+        let _ = state;
+        None
+    }
 
     /// Factorises its Jacobian at the pose in `state`.
     ///

@@ -2,9 +2,8 @@
 
 use crate::kinematics::certificate::{Pivots, StepBounds};
 use crate::kinematics::configuration::Configuration;
-use crate::kinematics::linear::Row;
 use crate::kinematics::path::Rates;
-use crate::kinematics::system::{RowValue, System, Targets};
+use crate::kinematics::system::{System, Targets, Values};
 
 /// The mechanism at the pose that is being found: block solvers read it and move its bodies.
 pub(in crate::kinematics) struct BlockState<'a> {
@@ -24,7 +23,7 @@ pub(in crate::kinematics) struct Extrapolation {
     pub(in crate::kinematics) second: f64,
 }
 
-/// One sub-step: the way to its end, and the bounds of the motion on that way.
+/// One sub-step: the prediction of its end, and the bounds of the motion to that end.
 pub(in crate::kinematics) struct Step<'a> {
     pub(in crate::kinematics) extrapolation: Extrapolation,
     /// q at the start.
@@ -49,21 +48,13 @@ impl Step<'_> {
 }
 
 impl BlockState<'_> {
-    /// Evaluates a row of Phi; `entry` receives the entries of its gradient. See
-    /// [`System::evaluate_row`].
+    /// Returns the numbers in the equations.
     #[inline]
-    pub(in crate::kinematics) fn evaluate_row(
-        &self,
-        row: usize,
-        entry: impl FnMut(usize, f64),
-    ) -> RowValue {
-        self.system
-            .evaluate_row(row, self.at, self.targets, self.drivers, entry)
-    }
-
-    /// Evaluates a row of Phi and writes the entries of its gradient; see [`System::sparse_row`].
-    pub(in crate::kinematics) fn sparse_row(&self, row: usize, entries: &mut Row) -> RowValue {
-        self.system
-            .sparse_row(row, self.at, self.targets, self.drivers, entries)
+    pub(in crate::kinematics) fn values(&self) -> Values<'_> {
+        Values {
+            at: self.at,
+            targets: self.targets,
+            drivers: self.drivers,
+        }
     }
 }

@@ -83,7 +83,7 @@ pub(super) struct StepBounds {
 const MARGIN: f64 = 0.9;
 
 impl Pivots {
-    /// No body has a pivot yet.
+    /// Returns the pivots of no body.
     pub(super) fn new(bodies: usize) -> Self {
         Self(vec![None; bodies])
     }

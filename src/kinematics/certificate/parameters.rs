@@ -5,8 +5,8 @@ use crate::kinematics::path::Path;
 use crate::kinematics::system::{System, Target, Targets};
 use crate::mechanism::{Expression, Interval, Jet3, MarkerId};
 
-/// Bounds of the difference of each number in the equations from its value at the end of a sub-step,
-/// over the whole sub-step.
+/// Bounds of the difference of each number in the equations from its value at the end of a
+/// sub-step, over the whole sub-step.
 #[derive(Debug)]
 pub(in crate::kinematics) struct ParameterBounds {
     /// Whether parameters move.
@@ -48,8 +48,8 @@ impl ParameterBounds {
         self.constants[row]
     }
 
-    /// Bounds all numbers over a part of `path`, at whose end the values in force are. Returns false
-    /// if a number is not bounded.
+    /// Bounds all numbers over a part of `path`, at whose end the values in force are. Returns
+    /// false if a number is not bounded.
     #[inline(never)]
     pub(in crate::kinematics) fn bound(
         &mut self,

@@ -1,4 +1,4 @@
-//! The true motion stays within the bounds, and steps of any size keep to it.
+//! The true motion stays within the bounds, and a step of any size follows it.
 
 mod paths;
 
@@ -10,12 +10,13 @@ use crate::kinematics::reference::{assembled, grown, part};
 use crate::kinematics::{Curve, Path, Pose, Progress, Solver};
 use crate::mechanism::{DriverId, Mechanism, Source};
 
-/// In how many places the true motion is looked at during a sub-step.
-const LOOKS: u32 = 12;
-/// Rounding of both motions: some eps times the condition, 1e-3, in metres and radians below ten.
+/// Number of places of a sub-step at which the true motion is compared with the bounds.
+const SAMPLES: u32 = 12;
+/// Rounding of both motions: some eps over the least reciprocal condition, 1e-3, for metres and
+/// radians below ten.
 const ROUNDING: f64 = 1e-11;
 
-/// The part of a path from `from` to `to`.
+/// Returns the part of a path between two places.
 fn piece(path: &Path, mechanism: &Mechanism, [from, to]: [f64; 2]) -> Path {
     let mut piece = path.clone();
     piece.start = path.time(from);
@@ -34,7 +35,7 @@ fn piece(path: &Path, mechanism: &Mechanism, [from, to]: [f64; 2]) -> Path {
             jump,
         } = curve
         {
-            // What is left of the jump goes straight to what is left of it at the end.
+            // The rest of the jump falls linearly along the part.
             let tau = from * path.duration;
             *position += tau * (*velocity + 0.5 * tau * *acceleration) + (1.0 - to) * *jump;
             *velocity += tau * *acceleration;
@@ -44,21 +45,21 @@ fn piece(path: &Path, mechanism: &Mechanism, [from, to]: [f64; 2]) -> Path {
     piece
 }
 
-/// How near the true motion comes to the bounds' walls: one on a wall.
+/// Largest ratio of the deviation of the true motion to its bound.
 #[derive(Clone, Copy, Debug, Default)]
 struct Filled {
     angles: f64,
     points: f64,
 }
 
-/// The pivot of a body in the pose `q`.
+/// Returns the pivot of a body in the pose `q`.
 fn pivot(solver: &Solver, body: usize, q: &[f64]) -> Vector2<f64> {
     let s = solver.model.plan.pivots.get(body);
     Vector2::new(q[3 * body], q[3 * body + 1]) + Rotation2::new(q[3 * body + 2]) * s
 }
 
-/// Asserts that the motion along `path` from `home`, which `solver` has made in one sub-step,
-/// stays within the bounds, `other` going by small steps.
+/// Asserts that the motion along `path` from `home`, which `solver` made in one sub-step, stays
+/// within the bounds; `other` makes it by small steps.
 fn check_inside(
     solver: &Solver,
     other: &mut Solver,
@@ -73,8 +74,8 @@ fn check_inside(
     let deviation = |column| bounds.deviation(column, &solver.model.plan.pivots);
     let mut filled = Filled::default();
     other.restore(home);
-    for look in 1..LOOKS {
-        let [before, s] = [look - 1, look].map(|k| f64::from(k) / f64::from(LOOKS));
+    for look in 1..SAMPLES {
+        let [before, s] = [look - 1, look].map(|k| f64::from(k) / f64::from(SAMPLES));
         let piece = piece(path, mechanism, [before, s]);
         if let Err(blocked) = other.track(&piece) {
             panic!("{what}: certified, but blocked at {s}: {blocked:?}");
@@ -108,8 +109,8 @@ fn check_inside(
     filled
 }
 
-/// Follows `path` if it can be certified at once, else the first part of it that can, and
-/// asserts that the bounds hold the motion. Returns that part, and how the bounds were filled.
+/// Tracks the longest of some first parts of `path` that is certified in one sub-step, and asserts
+/// that the motion stays within the bounds. Returns that part and the ratios to the bounds.
 fn check_path(solver: &mut Solver, other: &mut Solver, path: &Path, what: &str) -> (f64, Filled) {
     let mut home = solver.pose().clone();
     solver.save(&mut home);
@@ -132,7 +133,7 @@ fn check_path(solver: &mut Solver, other: &mut Solver, path: &Path, what: &str) 
     (0.0, Filled::default())
 }
 
-/// A path on which each input driver moves by its part of `by`.
+/// Returns a path on which each input driver moves by its part of `by`.
 fn move_drivers(solver: &Solver, by: f64) -> Path {
     let mut path = Path::new(solver.mechanism());
     path.start = solver.pose().time;
@@ -154,15 +155,15 @@ fn move_drivers(solver: &Solver, by: f64) -> Path {
         {
             *position = now + by / (k + 1) as f64;
             *jump = now - *position;
-            // Along a parabola, too.
+            // On a parabola, too.
             *acceleration = 0.4 / by;
         }
     }
     path
 }
 
-/// Steps of all sizes from several places of the motion. Returns the largest step certified, and
-/// the fullest bound.
+/// Checks steps of all sizes from several places of the motion. Returns the largest certified step
+/// and the largest ratios to the bounds.
 fn sweep(source: &Source, sizes: &[f64], places: u32) -> (f64, Filled) {
     let what = source.name();
     let (mut solver, _) = assembled(source);
@@ -180,7 +181,7 @@ fn sweep(source: &Source, sizes: &[f64], places: u32) -> (f64, Filled) {
         }
         solver.restore(&home);
         let path = move_drivers(&solver, 0.37 * sizes[0]);
-        // A dead point ends the way; where it ended is as good a place to look.
+        // A dead point may stop the motion; the pose in front of it serves as well.
         let _ = solver.track(&path);
     }
     (largest, fullest)
@@ -206,7 +207,7 @@ fn shipped() -> impl Iterator<Item = Source> {
 }
 
 #[test]
-fn every_shipped_mechanism_stays_in_its_tubes() {
+fn every_shipped_mechanism_stays_within_its_bounds() {
     for source in shipped() {
         let (mechanism, _) = Mechanism::parse(&source).expect("it has no errors");
         let angle = mechanism.drivers.iter().all(|driver| {
@@ -222,10 +223,9 @@ fn every_shipped_mechanism_stays_in_its_tubes() {
     }
 }
 
-/// A bound much wider than its motion would shorten sub-steps for nothing: where it is put to the
-/// test most, the motion comes near the walls.
+/// Bounds much wider than the motion would shorten sub-steps without need.
 #[test]
-fn tubes_are_not_much_wider_than_they_have_to_be() {
+fn the_motion_uses_a_large_part_of_its_bounds() {
     for (name, angles) in [
         ("four_bar", 0.5),
         ("slider_crank", 0.3),
@@ -240,7 +240,7 @@ fn tubes_are_not_much_wider_than_they_have_to_be() {
 }
 
 #[test]
-fn chains_and_lifts_stay_in_their_tubes() {
+fn chains_and_lifts_stay_within_their_bounds() {
     for (name, text, size) in [
         ("chain", chain(30, Ground::Straight), 0.4),
         ("lift of one", scissor_lift(1), 0.1),
@@ -251,21 +251,21 @@ fn chains_and_lifts_stay_in_their_tubes() {
     }
 }
 
-/// The angle of a lift's bars is asin(height / (cells · bar)).
+/// Returns the angle of a lift's bars, asin(height / (cells · bar)).
 fn bar_angle(cells: usize, height: f64) -> f64 {
     (height / (cells as f64 * BAR)).asin()
 }
 
-/// Blocks of more than 32 torn unknowns have estimates, and lines along which one holds for many
-/// steps: on and on, back again, and with a long step in between.
+/// Blocks of more than 32 torn unknowns are checked by estimates and segments: in small steps
+/// forward and back, and with long steps in between.
 #[test]
-fn large_lifts_stay_in_their_tubes() {
+fn large_lifts_stay_within_their_bounds() {
     const CELLS: usize = 20;
     let source = Source::new("lift", scissor_lift(CELLS));
     let (mut solver, _) = assembled(&source);
     let (mut other, _) = assembled(&source);
     let mut home = solver.pose().clone();
-    let mut relied = 0;
+    let mut reused = 0;
     for (steps, by) in [(40, 4e-4), (10, 1e-5), (30, -5e-4), (3, 0.05), (20, 1e-3)] {
         for step in 0..steps {
             solver.save(&mut home);
@@ -273,7 +273,7 @@ fn large_lifts_stay_in_their_tubes() {
             let what = format!("step {step} by {by}");
             let progress = solver.track(&path).expect(&what);
             assert!(progress.checked > 0, "{what}");
-            relied += u32::from(solver.tracker.bounds.reused);
+            reused += u32::from(solver.tracker.bounds.reused);
             if progress.substeps == 1 && step % 6 == 2 {
                 check_inside(&solver, &mut other, &home, &path, &what);
             }
@@ -282,13 +282,13 @@ fn large_lifts_stay_in_their_tubes() {
             assert!((found - angle).abs() < ROUNDING, "{what}: {found} {angle}");
         }
     }
-    assert!(relied > 80, "{relied}");
+    assert!(reused > 80, "{reused}");
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn random_mechanisms_stay_in_their_tubes(
+    fn random_mechanisms_stay_within_their_bounds(
         parts in prop::collection::vec(part(), 1..4),
         size in 0.05..1.2_f64,
     ) {
@@ -297,15 +297,15 @@ proptest! {
         let (mechanism, _) = Mechanism::parse(&source).expect("it has no errors");
         let path = Path::new(&mechanism);
         let mut solver = Solver::new(mechanism.into()).expect("the drivers match");
-        // Not each of them closes.
+        // Some of them do not close.
         prop_assume!(solver.assemble(&path).is_ok() && solver.rcond() > 1e-3);
         sweep(&source, &[size, -0.3 * size], 2);
     }
 }
 
-/// Each parameter moves by a part of itself while the drivers move, or stand still.
+/// Each parameter moves by a part of itself, while the drivers move or all but rest.
 #[test]
-fn moving_parameters_stay_in_their_tubes() {
+fn mechanisms_with_moving_parameters_stay_within_their_bounds() {
     let mut moved = 0;
     for source in shipped() {
         let (mut solver, _) = assembled(&source);
@@ -329,9 +329,9 @@ fn moving_parameters_stay_in_their_tubes() {
     assert!(moved > 60, "{moved}");
 }
 
-/// Prescribed motions of every kind: drivers stay as near their chords as it says.
+/// Prescribed motions of every kind deviate from their chords by no more than their bounds.
 #[test]
-fn motions_stay_near_their_chords() {
+fn prescribed_motions_stay_within_their_bounds() {
     let motions = [
         r#""0.5 + 0.8*sin(3*t)*exp(-t/2)""#,
         r#""abs(t - 0.31)""#,
@@ -360,8 +360,8 @@ fn motions_stay_near_their_chords() {
             }
             let to = solver.pose().drivers[0];
             let radius = solver.tracker.bounds.drivers[0];
-            for look in 0..=20 {
-                let s = f64::from(look) / 20.0;
+            for sample in 0..=20 {
+                let s = f64::from(sample) / 20.0;
                 let u = solver.motion(DriverId(0), path.time(s)).value;
                 let off = (u - (from + s * (to - from))).abs();
                 assert!(off <= radius + 1e-15, "{motion}: {off:e} of {radius:e}");
@@ -372,8 +372,8 @@ fn motions_stay_near_their_chords() {
     }
 }
 
-/// How far the crank of the four-bar can turn in one certified sub-step, which depends on the
-/// pose: the fixed matrices of the classical test reach 0.87 to 1.13 rad.
+/// The largest certified turn of the crank of the four-bar depends on the pose. The classical test
+/// with fixed matrices reaches 0.87 to 1.13 rad.
 #[test]
 fn the_crank_of_the_four_bar_turns_far_in_one_substep() {
     let source = shipped()

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::mechanism::{MarkerId, Mechanism};
 
-/// c = theta_j − theta_i, counting turns.
+/// c = theta_j − theta_i, with whole turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Angle {
     /// Marker i.
@@ -33,7 +33,7 @@ impl Constraint for Angle {
         row.add_direction(at.marker(self.from), -1.0);
     }
 
-    /// Zero: the angle is linear in q.
+    /// Returns zero: the angle is linear in q.
     fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
         0.0
     }
@@ -46,7 +46,7 @@ impl Constraint for Angle {
         TurnEffect::Whole
     }
 
-    /// Linear: nothing bends.
+    /// Returns zero: the angle is linear in q.
     fn bend(
         &self,
         _at: &Configuration,

@@ -1,4 +1,4 @@
-//! One of the two equations that hold two points together.
+//! One of the two equations of coincident points.
 
 use nalgebra::Vector2;
 
@@ -10,15 +10,15 @@ use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = the x or y component of P_j − P_i in ground axes.
 ///
-/// Where both components are held at zero it does not matter on whose axes they are measured;
-/// in ground axes the coefficients of x and y are ±1.
+/// If both components are zero, they are zero on any axes; on ground axes the coefficients of x and
+/// y are ±1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coincidence {
     /// Marker i.
     pub from: MarkerId,
     /// Marker j.
     pub to: MarkerId,
-    /// Which component.
+    /// The component.
     pub axis: Axis,
 }
 
@@ -61,7 +61,8 @@ impl Constraint for Coincidence {
         at.marker(self.to).point[component] - at.marker(self.from).point[component]
     }
 
-    /// Only the arms turn: e · perp(A s) changes by the chord of the turn times the arm.
+    /// Bounds the turn of the arms: e · perp(A s) changes by at most the chord of the turn times
+    /// the arm.
     fn bend(
         &self,
         at: &Configuration,

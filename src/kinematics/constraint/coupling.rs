@@ -7,9 +7,9 @@ use super::{
 use crate::kinematics::configuration::CoefficientId;
 use crate::mechanism::{BodyId, MarkerId, Mechanism};
 
-/// c = (theta_j − phi_c) − k (theta_i − phi_c), with k = ±r_i / r_j, counting turns.
+/// c = (theta_j − phi_c) − k (theta_i − phi_c), with k = ±r_i / r_j and whole turns.
 ///
-/// Linear in q, so that the phase is kept to rounding over any number of turns.
+/// It is linear in q, so that the phase keeps its accuracy over any number of turns.
 #[derive(Clone, Debug)]
 pub struct Coupling {
     /// Marker i, on the first wheel.
@@ -20,7 +20,7 @@ pub struct Coupling {
     pub carrier: Option<BodyId>,
     /// r_i and r_j, in metres or teeth.
     pub sizes: [CoefficientId; 2],
-    /// Whether the wheels turn opposite ways as seen from their carrier.
+    /// Whether the wheels turn in opposite senses relative to their carrier.
     pub opposite: bool,
 }
 
@@ -50,7 +50,7 @@ impl Constraint for Coupling {
         row.add_turn(self.carrier, k - 1.0);
     }
 
-    /// Zero: the ratio is linear in q.
+    /// Returns zero: the relation is linear in q.
     fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
         0.0
     }
@@ -71,7 +71,7 @@ impl Constraint for Coupling {
         TurnEffect::Proportional
     }
 
-    /// Linear: nothing bends.
+    /// Returns zero: the relation is linear in q.
     fn bend(
         &self,
         _at: &Configuration,

@@ -11,8 +11,8 @@ use crate::mechanism::{MarkerId, Mechanism, Number};
 
 /// c = ‖P_j − P_i‖.
 ///
-/// Not smooth where the points coincide; there the gradient is taken along the x-axis, so that
-/// an assembly that starts from coinciding points has a direction to leave in.
+/// It is not smooth where the points coincide. There the gradient is taken along the x-axis, so
+/// that an assembly can move coincident points apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Distance {
     /// Marker i.
@@ -22,7 +22,7 @@ pub struct Distance {
 }
 
 impl Distance {
-    /// The vector from i to j, its length and its direction.
+    /// Returns the vector from i to j, its length and its direction.
     fn span(&self, at: &Configuration) -> (f64, Vector2<f64>) {
         let d = at.marker(self.to).point - at.marker(self.from).point;
         let length = d.norm();
@@ -53,13 +53,13 @@ impl Constraint for Distance {
         row.add_point(at.marker(self.from), -e);
     }
 
-    /// (|ḋ|² − (e · ḋ)²) / ‖d‖ + e · d̈, where e = d / ‖d‖.
+    /// Returns (|ḋ|² − (e · ḋ)²) / ‖d‖ + e · d̈ with e = d / ‖d‖.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
         let (i, j) = (at.marker(self.from), at.marker(self.to));
         let (length, e) = self.span(at);
         let d_dot = point_velocity(j, q_dot) - point_velocity(i, q_dot);
         let d_ddot = centripetal(j, q_dot) - centripetal(i, q_dot);
-        // The part of ḋ across e, squared without cancellation.
+        // The square of the component of ḋ across e, without cancellation.
         let across = e.perp(&d_dot);
         across * across / length + e.dot(&d_ddot)
     }
@@ -73,7 +73,7 @@ impl Constraint for Distance {
         value > 0.0
     }
 
-    /// The direction of d turns by asin(reach / ‖d‖) at most:
+    /// Bounds the turn of d by asin(reach / ‖d‖):
     /// |c″| ≤ |ḋ|² / (‖d‖ − reach) + omega_i² |s_i| + omega_j² |s_j|.
     fn bend(
         &self,

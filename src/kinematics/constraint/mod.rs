@@ -1,12 +1,12 @@
-//! The trait that every scalar relation between bodies implements, one kind a file.
+//! The scalar relations between bodies, one per file, and the trait that they implement.
 //!
-//! A relation c(q) supplies its value, its gradient row (a row of the Jacobian, Ec. 3.6.4), the
-//! quadratic term of its second derivative in time (the right-hand side of Ec. 3.6.11) and the
-//! unknowns it contains. It knows nothing of what it is held at: the equation of a constraint is
-//! c(q) − constant = 0, that of a driver c(q) − u(t) = 0.
+//! A relation c(q) gives its value, its gradient (a row of the Jacobian, Eq. 3.6.4), the quadratic
+//! term of its second derivative in time (the right-hand side of Eq. 3.6.11) and its unknowns. It
+//! does not know its target: the equation of a constraint is c(q) − constant = 0, the equation of a
+//! driver c(q) − u(t) = 0.
 //!
-//! A new kind is a new file here with its `impl Constraint`; the tests in `tests.rs` check
-//! it once it is listed in `samples`.
+//! To add a relation, add a file with its `impl Constraint` and list it in `samples` of `tests.rs`,
+//! where all tests of relations run on it.
 
 mod angle;
 mod cam;
@@ -32,7 +32,7 @@ use crate::mechanism::{
     BodyId, Coordinate, CoordinateKind, Expression, MarkerId, Mechanism, ParameterId,
 };
 
-/// What a scalar measures: decides its unit and how its residual is scaled.
+/// The dimension of a relation, which decides its unit and the scale of its residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// Metres.
@@ -51,7 +51,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// This axis of a frame whose x-axis is `u`.
+    /// Returns this axis of a frame whose x-axis is `u`.
     fn of(self, u: Vector2<f64>) -> Vector2<f64> {
         match self {
             Self::X => u,
@@ -59,7 +59,7 @@ impl Axis {
         }
     }
 
-    /// The same of a frame that moves.
+    /// Returns this axis of a moving frame whose x-axis is `u`.
     fn of_varied(self, u: VariedVector) -> VariedVector {
         match self {
             Self::X => u,
@@ -68,55 +68,54 @@ impl Axis {
     }
 }
 
-/// What a whole turn of a body does to a relation.
+/// The effect of a whole turn of a body on a relation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TurnEffect {
-    /// Nothing: the body is back where it was.
+    /// None: the relation depends on places only.
     None,
     /// c changes by a whole turn, so that a joint may hold it at any number of turns.
     Whole,
-    /// c changes by something else, so that turns have to be counted.
+    /// c changes by another amount, so that turns have to be counted.
     Proportional,
 }
 
 /// A scalar relation c(q) between bodies.
 pub trait Constraint: std::fmt::Debug + Send + Sync {
-    /// What the value measures.
+    /// Returns the dimension of c.
     fn dimension(&self) -> Dimension;
 
-    /// c(q) \[m or rad\].
+    /// Returns c(q) \[m or rad\].
     fn value(&self, at: &Configuration) -> f64;
 
-    /// Adds ∂c/∂q, a row of the Jacobian (Ec. 3.6.4), to `row`.
+    /// Adds ∂c/∂q, a row of the Jacobian (Eq. 3.6.4), to `row`.
     fn gradient(&self, at: &Configuration, row: &mut Gradient);
 
-    /// q̇ᵀ (∂²c/∂q²) q̇: what remains of c̈ where q̈ = 0 (Ec. 3.6.11 has it with the opposite
-    /// sign). `q_dot` is as long as q.
+    /// Returns q̇ᵀ (∂²c/∂q²) q̇, which is c̈ for q̈ = 0; Eq. 3.6.11 has it with the opposite sign.
+    /// `q_dot` is as long as q.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
 
-    /// c along a motion, with its changes along a direction. In value and derivatives it agrees
-    /// with all of the above.
+    /// Returns c and its derivatives in time for a motion, each with its change along a direction.
     fn along(&self, at: &VariedConfiguration) -> Varied;
 
-    /// Whether this is one of the relations that special kernels know.
+    /// Returns the kind of the relation, for block solvers in closed form.
     fn relation(&self) -> Relation {
         Relation::Other
     }
 
-    /// Whether c can be held at this value; a distance cannot at zero or below.
+    /// Returns whether c can have this value; a distance must be positive.
     fn admits(&self, value: f64) -> bool {
         let _ = value;
         true
     }
 
-    /// What a whole turn of one of its bodies does to c.
+    /// Returns the effect of a whole turn of one of its bodies on c.
     fn turn_effect(&self) -> TurnEffect {
         TurnEffect::None
     }
 
-    /// Bounds how far c can bend in a region around the present pose: an upper bound of
-    /// |vᵀ (∂²c/∂q²) v| for `v` and of the change of each entry of the gradient, which is added
-    /// to `row`. `None` if the region reaches a place where c is not smooth.
+    /// Bounds the second derivatives of c in a region around the present pose: returns an upper
+    /// bound of |vᵀ (∂²c/∂q²) v|, and adds upper bounds of the changes of the gradient's entries to
+    /// `row`. Returns `None` if c is not smooth in the region.
     fn bend(
         &self,
         at: &Configuration,
@@ -125,12 +124,12 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
         row: &mut Gradient,
     ) -> Option<f64>;
 
-    /// Notes the unknowns and parameters that c contains. What is zero whatever the parameters
-    /// is left out.
+    /// Notes the unknowns and parameters in c, except those whose coefficient is zero for all
+    /// values of the parameters.
     fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence);
 }
 
-/// What a relation is, for kernels that solve particular ones by straight code.
+/// The kind of a relation, for block solvers in closed form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
     /// [`Angle`].
@@ -141,37 +140,37 @@ pub enum Relation {
     Distance(Distance),
     /// [`Projection`].
     Projection(Projection),
-    /// Known by its trait only.
+    /// Any other relation.
     Other,
 }
 
-/// An unknown that a joint brings with it, such as where on a cam the contact is.
+/// A joint unknown, such as the polar angle of the contact on a cam.
 pub trait JointUnknown: std::fmt::Debug + Send + Sync {
-    /// Where to look for it when the bodies are at their estimates \[rad\].
+    /// Returns its estimate \[rad\] for bodies at their estimates.
     fn estimate(&self, at: &Configuration) -> f64;
 }
 
-/// A neighbourhood of a pose: each unknown may be off by a radius of its own.
+/// A neighbourhood of a pose: each unknown differs from the pose by at most its radius.
 #[derive(Clone, Copy, Debug)]
 pub struct Region<'a> {
-    /// One radius an unknown: \[m, m, rad\] for each body, then the joints' own.
+    /// One radius per unknown: \[m, m, rad\] for each body, then the joint unknowns.
     pub radii: &'a [f64],
 }
 
 impl Region<'_> {
-    /// How far the direction of a marker can turn \[rad\].
+    /// Returns the largest turn of a marker \[rad\].
     fn turn(&self, marker: MarkerPose) -> f64 {
         marker
             .body
             .map_or(0.0, |body| self.radii[3 * body.index() + 2])
     }
 
-    /// How far a unit vector fixed to a marker's body can move: the chord of the turn.
+    /// Returns the largest move of a unit vector fixed to a marker's body: the chord of the turn.
     fn sway(&self, marker: MarkerPose) -> f64 {
         chord(self.turn(marker))
     }
 
-    /// How far a marker's point can move \[m\].
+    /// Returns a bound of the move of a marker's point \[m\].
     fn reach(&self, marker: MarkerPose) -> f64 {
         marker.body.map_or(0.0, |body| {
             let k = 3 * body.index();
@@ -180,7 +179,7 @@ impl Region<'_> {
     }
 }
 
-/// The chord of an angle on the unit circle, two at the most.
+/// Returns the chord of an angle on the unit circle, at most two.
 fn chord(angle: f64) -> f64 {
     if angle < std::f64::consts::PI {
         2.0 * (0.5 * angle).sin()
@@ -189,7 +188,8 @@ fn chord(angle: f64) -> f64 {
     }
 }
 
-/// An upper bound of the speed of a marker's point for the rates `v`, wherever its body points.
+/// Returns an upper bound of the speed of one marker's point relative to the point of another for
+/// the rates `v`, at any angles of their bodies.
 fn speed_bound(from: MarkerPose, to: MarkerPose, v: &[f64]) -> f64 {
     let origin = |marker: MarkerPose| {
         marker.body.map_or_else(Vector2::zeros, |body| {
@@ -201,13 +201,13 @@ fn speed_bound(from: MarkerPose, to: MarkerPose, v: &[f64]) -> f64 {
     (origin(to) - origin(from)).norm() + swing(to) + swing(from)
 }
 
-/// An upper bound of the centripetal part of P_j − P_i for the rates `v`.
+/// Returns an upper bound of the centripetal acceleration of P_j − P_i for the rates `v`.
 fn centripetal_bound(from: MarkerPose, to: MarkerPose, v: &[f64]) -> f64 {
     let part = |marker: MarkerPose| angular_velocity(marker, v).powi(2) * marker.arm.norm();
     part(from) + part(to)
 }
 
-/// The relation that a coordinate of the mechanism file measures.
+/// Returns the relation of a coordinate of the mechanism file.
 #[must_use]
 pub fn of_coordinate(coordinate: &Coordinate) -> Box<dyn Constraint> {
     let Coordinate {
@@ -234,31 +234,31 @@ pub fn of_coordinate(coordinate: &Coordinate) -> Box<dyn Constraint> {
     }
 }
 
-/// A row of the Jacobian: the few bodies it touches, without allocation.
+/// A row of the Jacobian: its entries for at most three bodies and one joint unknown.
 ///
-/// Three markers, and so three bodies, take part in a relation at most.
+/// It does not allocate. A relation has at most three markers, hence three bodies.
 #[derive(Clone, Debug, Default)]
 pub struct Gradient {
     len: usize,
     parts: [(usize, [f64; 3]); 3],
-    /// Index in q of a joint's own unknown, and the entry there.
+    /// Index in q of a joint unknown, and its entry.
     joint_unknown: Option<(usize, f64)>,
 }
 
 impl Gradient {
-    /// An empty row.
+    /// Makes an empty row.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Makes the row empty again.
+    /// Removes all entries.
     pub fn clear(&mut self) {
         self.len = 0;
         self.joint_unknown = None;
     }
 
-    /// Adds the gradient of `direction · P`, P being the marker's point and `direction` fixed.
+    /// Adds the gradient of `direction · P` with the marker's point P and a fixed `direction`.
     pub fn add_point(&mut self, marker: MarkerPose, direction: Vector2<f64>) {
         if let Some(part) = self.part(marker.body) {
             part[0] += direction.x;
@@ -276,26 +276,26 @@ impl Gradient {
         }
     }
 
-    /// Adds the gradient of `factor * theta`, theta being the marker's direction.
+    /// Adds the gradient of `factor * theta` with the marker's angle theta.
     pub fn add_direction(&mut self, marker: MarkerPose, factor: f64) {
         self.add_turn(marker.body, factor);
     }
 
-    /// Adds the gradient of `factor * phi`, phi being the body's angle; nothing for ground.
+    /// Adds the gradient of `factor * phi` with the body's angle phi; nothing for ground.
     pub fn add_turn(&mut self, body: Option<BodyId>, factor: f64) {
         if let Some(part) = self.part(body) {
             part[2] += factor;
         }
     }
 
-    /// Adds the entry of a joint's own unknown, of which a relation contains one at most.
+    /// Adds the entry of a joint unknown; a relation contains at most one.
     pub fn add_joint_unknown(&mut self, column: usize, value: f64) {
         let entry = self.joint_unknown.get_or_insert((column, 0.0));
-        debug_assert_eq!(entry.0, column, "a relation has one unknown of its joint's");
+        debug_assert_eq!(entry.0, column, "a relation has at most one joint unknown");
         entry.1 += value;
     }
 
-    /// The entries as pairs of an index in q and a value, body by body.
+    /// Returns the entries as pairs of an index in q and a value, body by body.
     pub fn entries(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.parts[..self.len]
             .iter()
@@ -303,7 +303,7 @@ impl Gradient {
             .chain(self.joint_unknown)
     }
 
-    /// The product of the row with a vector over q.
+    /// Returns the product of the row and a vector as long as q.
     #[must_use]
     pub fn dot(&self, vector: &[f64]) -> f64 {
         self.entries().map(|(k, value)| value * vector[k]).sum()
@@ -321,7 +321,7 @@ impl Gradient {
     }
 }
 
-/// Velocity of a marker's point: ṙ + omega perp(A s).
+/// Returns the velocity of a marker's point: ṙ + omega perp(A s).
 #[must_use]
 pub fn point_velocity(marker: MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
     marker.body.map_or_else(Vector2::zeros, |body| {
@@ -330,13 +330,13 @@ pub fn point_velocity(marker: MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
     })
 }
 
-/// Acceleration of a marker's point: r̈ + alpha perp(A s) − omega² A s.
+/// Returns the acceleration of a marker's point: r̈ + alpha perp(A s) − omega² A s.
 #[must_use]
 pub fn point_acceleration(marker: MarkerPose, q_dot: &[f64], q_ddot: &[f64]) -> Vector2<f64> {
     point_velocity(marker, q_ddot) + centripetal(marker, q_dot)
 }
 
-/// What remains of the point's acceleration where q̈ = 0: −omega² A s.
+/// Returns the acceleration of a marker's point for q̈ = 0: −omega² A s.
 fn centripetal(marker: MarkerPose, q_dot: &[f64]) -> Vector2<f64> {
     let omega = angular_velocity(marker, q_dot);
     -omega * omega * marker.arm
@@ -349,20 +349,20 @@ fn angular_velocity(marker: MarkerPose, q_dot: &[f64]) -> f64 {
 /// The unknowns and parameters in a relation, found without numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Incidence {
-    /// Indices in q; one may come twice.
+    /// Indices in q, possibly repeated.
     pub unknowns: Vec<usize>,
-    /// Parameters, as the expressions name them; one may come twice.
+    /// Parameters in the expressions, possibly repeated.
     pub parameters: Vec<ParameterId>,
 }
 
 impl Incidence {
-    /// Notes what an expression uses.
+    /// Notes the parameters of an expression.
     pub fn expression(&mut self, expression: &Expression) {
         self.parameters.extend(expression.parameters());
     }
 
-    /// Notes what the x (first) and y (second) components of a marker's point contain, as far as
-    /// `components` asks for them.
+    /// Notes the unknowns and parameters in the x (first) and y (second) components of a marker's
+    /// point that `components` selects.
     pub fn point(&mut self, mechanism: &Mechanism, marker: MarkerId, components: [bool; 2]) {
         let marker = &mechanism.markers[marker.index()];
         let at_origin = marker.position.iter().all(|s| s.literal() == Some(0.0));
@@ -385,12 +385,12 @@ impl Incidence {
         }
     }
 
-    /// Notes a joint's own unknown.
+    /// Notes a joint unknown.
     pub fn joint_unknown(&mut self, mechanism: &Mechanism, unknown: JointUnknownId) {
         self.unknowns.push(3 * mechanism.bodies.len() + unknown.0);
     }
 
-    /// Notes what a marker's direction contains.
+    /// Notes the unknowns and parameters in a marker's direction.
     pub fn direction(&mut self, mechanism: &Mechanism, marker: MarkerId) {
         let marker = &mechanism.markers[marker.index()];
         self.unknowns
@@ -399,12 +399,11 @@ impl Incidence {
     }
 }
 
-/// Whether a marker's axis can have a component along the global x and y.
+/// Returns whether a marker's axis can have components along the global x and y.
 fn axis_components(mechanism: &Mechanism, marker: MarkerId, axis: Axis) -> [bool; 2] {
     let marker = &mechanism.markers[marker.index()];
     match (marker.body, marker.angle.literal()) {
-        // On ground with a literal angle the axis has a fixed direction, which often runs along
-        // x or y.
+        // An axis on ground with a literal angle is fixed, and often along x or y.
         (None, Some(angle)) => {
             let e = axis.of(configuration::axis(angle));
             [e.x.abs() > 0.0, e.y.abs() > 0.0]

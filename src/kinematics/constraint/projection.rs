@@ -10,16 +10,16 @@ use super::{
 use crate::kinematics::variation::{dot, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
-/// c = e · (P_j − P_i), e being the x- or y-axis of marker k.
+/// c = e · (P_j − P_i) with the x- or y-axis e of marker k.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Projection {
     /// Marker i.
     pub from: MarkerId,
     /// Marker j.
     pub to: MarkerId,
-    /// Marker k, whose axes these are.
+    /// Marker k, to which the axis belongs.
     pub axes: MarkerId,
-    /// Which axis of marker k.
+    /// The axis of marker k.
     pub axis: Axis,
 }
 
@@ -55,7 +55,7 @@ impl Constraint for Projection {
         row.add_direction(k, perp(e).dot(&(j.point - i.point)));
     }
 
-    /// ë · d + 2 ė · ḋ + e · d̈, where ė = omega_k perp(e) and, for q̈ = 0, ë = −omega_k² e.
+    /// Returns ë · d + 2 ė · ḋ + e · d̈ with ė = omega_k perp(e) and, for q̈ = 0, ë = −omega_k² e.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
         let (i, j, k) = (
             at.marker(self.from),
@@ -75,8 +75,8 @@ impl Constraint for Projection {
         dot(self.axis.of_varied(at.marker(self.axes).axis), d)
     }
 
-    /// The axis turns with marker k, the arms with their bodies, and d grows by the reach of
-    /// both points: |c″| ≤ omega_k² |d| + 2 |omega_k| |ḋ| + omega_i² |s_i| + omega_j² |s_j|.
+    /// Bounds the turns of the axis and of the arms, and the growth of d by the reach of both
+    /// points: |c″| ≤ omega_k² |d| + 2 |omega_k| |ḋ| + omega_i² |s_i| + omega_j² |s_j|.
     fn bend(
         &self,
         at: &Configuration,

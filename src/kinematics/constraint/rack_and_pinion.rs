@@ -7,8 +7,8 @@ use super::{
 use crate::kinematics::configuration::CoefficientId;
 use crate::mechanism::{MarkerId, Mechanism, RackSide};
 
-/// c = s + σ r (theta_p − theta_r): s is the coordinate of the pinion's centre along the rack
-/// marker's x-axis, σ = +1 for a pinion above the rack and −1 for one below.
+/// c = s + σ r (theta_p − theta_r) with the coordinate s of the pinion's centre along the rack
+/// marker's x-axis, and σ = +1 for a pinion above the rack, −1 below.
 #[derive(Clone, Debug)]
 pub struct RackAndPinion {
     /// Marker p at the pinion's centre.
@@ -17,12 +17,12 @@ pub struct RackAndPinion {
     pub rack: MarkerId,
     /// The pinion's radius \[m\].
     pub radius: CoefficientId,
-    /// On which side of the rack the pinion is.
+    /// The side of the rack on which the pinion is.
     pub side: RackSide,
 }
 
 impl RackAndPinion {
-    /// s as a relation of its own.
+    /// Returns the relation s.
     fn travel(&self) -> Projection {
         Projection {
             from: self.rack,
@@ -32,7 +32,7 @@ impl RackAndPinion {
         }
     }
 
-    /// σ r.
+    /// Returns σ r.
     fn arc(&self, at: &Configuration) -> f64 {
         let radius = at.coefficient(self.radius);
         match self.side {
@@ -75,7 +75,7 @@ impl Constraint for RackAndPinion {
         TurnEffect::Proportional
     }
 
-    /// The arc is linear, so that all bending is that of the travel.
+    /// Returns the bound of s: the arc is linear in q.
     fn bend(
         &self,
         at: &Configuration,

@@ -1,4 +1,4 @@
-//! Every relation against differences of itself.
+//! The derivatives and bounds of every relation, against differences of its values.
 
 use proptest::prelude::*;
 
@@ -30,8 +30,8 @@ profile = "0.4 + 0.05*cos(theta) + 0.02*sin(3*theta)"
 /// Generalized coordinates of the three bodies, and the angle of a cam's contact.
 const UNKNOWNS: usize = 10;
 
-/// Every kind of relation between bodies, with ground on either side, and with axes on a third
-/// body. A new kind belongs here.
+/// Returns every kind of relation, with ground on either side, and with axes on a third body. Add a
+/// new relation here.
 fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
     let id = |path: &str| {
         let ids = (0..mechanism.markers.len()).map(MarkerId);
@@ -68,7 +68,7 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
             samples.push(Box::new(Coincidence { from, to, axis }));
         }
     }
-    // Wheels of every sense, their centres on ground or on a body.
+    // Wheels of both senses, with centres on ground or on a body.
     for (from, to, carrier) in [
         ("a.A", "b.B", None),
         ("a.A", "b.B", Some(BodyId(2))),
@@ -119,7 +119,7 @@ fn samples(mechanism: &Mechanism) -> Vec<Box<dyn Constraint>> {
     samples
 }
 
-/// The values of the samples' coefficients.
+/// Returns the coefficients of the samples.
 fn coefficients() -> Vec<Coefficient> {
     [0.3, 0.7]
         .map(|value| Coefficient {
@@ -149,8 +149,9 @@ fn mechanism() -> Mechanism {
         .0
 }
 
-/// A pose and a velocity. Bodies lie at least 0.4 m apart and from ground, so that no distance
-/// comes near zero, where it is not smooth: markers are up to 0.31 m from the origins.
+/// Draws a pose and a velocity. Bodies are at least 0.4 m from each other and from ground, and
+/// markers at most 0.31 m from the origins, so that no distance is near zero, where it is not
+/// smooth.
 fn pose_and_velocity() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
     let body = |x: f64| (x..x + 0.6, -0.3..0.3, -7.0..7.0);
     let pose = (body(1.5), body(3.5), body(5.5), -7.0..7.0);
@@ -164,9 +165,9 @@ fn moved(q: &[f64], direction: &[f64], s: f64) -> Vec<f64> {
     q.iter().zip(direction).map(|(q, d)| q + s * d).collect()
 }
 
-/// Derivative of `f` at 0 by the central difference of fourth order. With h = 1e-3 its truncation
-/// error h⁴ f⁽⁵⁾/30 and its rounding error eps f/h both stay below some 1e-12 for the functions
-/// here, whose derivatives are of the order of one (|q̇| ≤ 1, lengths up to 7 m).
+/// Returns the derivative of `f` at 0 by the central difference of fourth order. With h = 1e-3 its
+/// truncation error h⁴ f⁽⁵⁾/30 and its rounding error eps f/h both stay below some 1e-12 for the
+/// functions here, whose derivatives are of the order of one (|q̇| ≤ 1, lengths up to 7 m).
 fn derivative(f: impl Fn(f64) -> f64) -> f64 {
     const H: f64 = 1e-3;
     (8.0 * (f(H) - f(-H)) - (f(2.0 * H) - f(-2.0 * H))) / (12.0 * H)
@@ -198,8 +199,8 @@ proptest! {
         }
     }
 
-    /// Along a motion, value, rate and acceleration are what value, gradient and quadratic term
-    /// make of it, and their changes along a direction are differences of these.
+    /// For a motion, value, rate and acceleration agree with value, gradient and quadratic term,
+    /// and their changes along a direction agree with differences.
     #[test]
     fn changes_along_a_direction_agree_with_differences(
         (q, q_dot) in pose_and_velocity(),
@@ -244,10 +245,10 @@ proptest! {
         }
     }
 
-    /// At points of the region the gradient has changed by no more than its bound, and the
-    /// quadratic term is no larger than its own.
+    /// At points of the region the gradient changes by no more than its bound, and the quadratic
+    /// term is within its bound.
     #[test]
-    fn nothing_bends_more_than_its_bound(
+    fn bend_bounds_hold_in_their_region(
         (q, v) in pose_and_velocity(),
         radii in prop::collection::vec(0.0..0.4_f64, UNKNOWNS),
         places in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, UNKNOWNS), 10),
@@ -290,7 +291,7 @@ proptest! {
     }
 
     #[test]
-    fn incidence_is_where_the_gradient_is_not_zero((q, _) in pose_and_velocity()) {
+    fn incidence_is_the_pattern_of_the_gradient((q, _) in pose_and_velocity()) {
         let mechanism = mechanism();
         let mut at = configuration(&mechanism);
         at.set_pose(&mechanism, &q);
@@ -313,7 +314,7 @@ proptest! {
 }
 
 #[test]
-fn coinciding_points_have_a_distance_gradient_to_leave_by() {
+fn the_distance_of_coincident_points_has_a_gradient() {
     let mechanism = mechanism();
     let mut at = configuration(&mechanism);
     at.set_pose(&mechanism, &[0.0; UNKNOWNS]);
@@ -331,7 +332,7 @@ fn coinciding_points_have_a_distance_gradient_to_leave_by() {
 }
 
 #[test]
-fn a_distance_is_positive() {
+fn a_distance_admits_positive_values_only() {
     let distance = Distance {
         from: MarkerId(0),
         to: MarkerId(1),

@@ -1,9 +1,9 @@
 //! Estimates of norms of inverses.
 
 use super::factors::Factors;
-use super::norm::{nan_or_larger, norm1, steepest};
+use super::norm::{largest_entry, nan_or_larger, norm1};
 
-/// Work space of condition estimates.
+/// Work space of the estimates.
 #[derive(Clone, Debug)]
 pub struct Condition {
     probe: Vec<f64>,
@@ -12,7 +12,7 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// For matrices of order `order`.
+    /// Makes the work space for matrices of order `order`.
     #[must_use]
     pub fn new(order: usize) -> Self {
         Self {
@@ -22,7 +22,7 @@ impl Condition {
         }
     }
 
-    /// Estimate of 1 / (‖A‖₁ ‖A⁻¹‖₁), by Hager's method with Higham's extra vector
+    /// Estimates 1 / (‖A‖₁ ‖A⁻¹‖₁), by Hager's method with Higham's extra vector
     /// (N. J. Higham, ACM Trans. Math. Softw. 14 (1988) 381–396). Never below the true value.
     pub fn rcond(&mut self, factors: &mut impl Factors) -> f64 {
         if factors.order() == 0 {
@@ -32,13 +32,13 @@ impl Condition {
         if rcond.is_finite() { rcond } else { 0.0 }
     }
 
-    /// Estimate of the largest component of |A⁻¹| b, for b ≥ 0, by the same method: it is the
-    /// 1-norm of diag(b) A⁻ᵀ. Never above the true value.
+    /// Estimates the largest component of |A⁻¹| b, for b ≥ 0, by the same method: it is the 1-norm
+    /// of diag(b) A⁻ᵀ. Never above the true value.
     pub fn largest_row(&mut self, factors: &mut impl Factors, b: &[f64]) -> f64 {
         self.norm(&mut ScaledInverse { factors, b })
     }
 
-    /// Estimate of the largest sum of magnitudes in a row of A⁻¹ B, by the same method: it is the
+    /// Estimates the largest sum of magnitudes in a row of A⁻¹ B, by the same method: it is the
     /// 1-norm of Bᵀ A⁻ᵀ. Never above the true value. B is the sum of `entries`: row, column, value.
     pub fn largest_row_of_product(
         &mut self,
@@ -55,14 +55,14 @@ impl Condition {
         norm
     }
 
-    /// Estimate of the 1-norm of an operator.
+    /// Estimates the 1-norm of an operator.
     fn norm(&mut self, operator: &mut impl Operator) -> f64 {
         let Self { probe, signs, .. } = self;
         let n = probe.len() as f64;
         probe.fill(1.0 / n);
         let mut norm = 0.0_f64;
         let mut previous = usize::MAX;
-        // Higham: more than five rounds are never needed in practice.
+        // Higham: five rounds are enough in practice.
         for _ in 0..5 {
             operator.apply(probe);
             norm = nan_or_larger(norm, norm1(probe));
@@ -71,15 +71,15 @@ impl Condition {
             }
             probe.copy_from_slice(signs);
             operator.apply_transposed(probe);
-            let steepest = steepest(probe);
-            if steepest == previous {
+            let largest_entry = largest_entry(probe);
+            if largest_entry == previous {
                 break;
             }
-            previous = steepest;
+            previous = largest_entry;
             probe.fill(0.0);
-            probe[steepest] = 1.0;
+            probe[largest_entry] = 1.0;
         }
-        // A vector of alternating, growing entries catches what the iteration may miss.
+        // A vector of alternating, growing entries catches cases that the iteration misses.
         for (k, value) in probe.iter_mut().enumerate() {
             let grown = 1.0 + k as f64 / (n - 1.0).max(1.0);
             *value = if k % 2 == 0 { grown } else { -grown };
@@ -89,16 +89,16 @@ impl Condition {
     }
 }
 
-/// A matrix of which only products are to be had.
+/// A matrix known by its products with vectors.
 trait Operator {
-    /// `x` becomes its product with `x`.
+    /// Replaces `x` by the product with `x`.
     fn apply(&mut self, x: &mut [f64]);
 
-    /// The same with its transpose.
+    /// Replaces `x` by the product of the transpose with `x`.
     fn apply_transposed(&mut self, x: &mut [f64]);
 }
 
-/// A⁻¹.
+/// The operator A⁻¹.
 struct Inverse<'a, F>(&'a mut F);
 
 impl<F: Factors> Operator for Inverse<'_, F> {
@@ -111,7 +111,7 @@ impl<F: Factors> Operator for Inverse<'_, F> {
     }
 }
 
-/// diag(b) A⁻ᵀ.
+/// The operator diag(b) A⁻ᵀ.
 struct ScaledInverse<'a, F> {
     factors: &'a mut F,
     b: &'a [f64],
@@ -135,7 +135,7 @@ impl<F: Factors> Operator for ScaledInverse<'_, F> {
     }
 }
 
-/// Bᵀ A⁻ᵀ, B being the sum of `entries`.
+/// The operator Bᵀ A⁻ᵀ; B is the sum of `entries`.
 struct Product<'a, F> {
     factors: &'a mut F,
     entries: &'a [(usize, usize, f64)],
@@ -173,7 +173,7 @@ mod tests {
 
     const ORDER: usize = 12;
 
-    /// A dominant diagonal and some entries beside it.
+    /// Returns a matrix with a dominant diagonal and some entries beside it.
     fn matrix(values: &[f64]) -> (SparseLu, DMatrix<f64>) {
         let beside = |k: usize| [k, (k + 3) % ORDER, (5 * k + 1) % ORDER];
         let mut lu = SparseLu::new((0..ORDER).map(|k| beside(k).to_vec()).collect());
@@ -191,7 +191,7 @@ mod tests {
     }
 
     proptest! {
-        /// Higham: such estimates are hardly ever below a third of the truth.
+        /// Checks Higham's claim that such estimates are hardly ever below a third of the truth.
         #[test]
         fn estimates_come_near_the_truth_from_below(
             values in prop::collection::vec(-1.0..1.0_f64, 3 * ORDER),
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn no_entry_that_is_not_a_number_is_overlooked() {
+    fn the_largest_of_entries_with_nan_is_nan() {
         for place in 0..3 {
             let mut entries = [0.0, 2.0, 0.0];
             let largest = entries.into_iter().fold(0.0, nan_or_larger);
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_number_is_no_small_number() {
+    fn estimates_with_nan_are_nan() {
         let (mut lu, _) = matrix(&[0.0; 3 * ORDER]);
         let mut condition = Condition::new(ORDER);
         let entries = [(0, 0, f64::NAN), (1, 1, 5.0)];

@@ -8,22 +8,22 @@ use super::factors::{Factors, Singular};
 /// A dense matrix and its LU factorisation with partial pivoting.
 ///
 /// Fill with [`clear`](Self::clear) and [`add`](Self::add), then [`factorise`](Self::factorise),
-/// then solve as often as wanted.
+/// then solve any number of times.
 #[derive(Clone, Debug)]
 pub struct DenseLu {
     matrix: DMatrix<f64>,
     /// Row exchanged with row k at step k.
     pivots: Vec<usize>,
-    /// Leading pivots that are taken from the diagonal as they come.
+    /// Number of leading pivots that are taken from the diagonal in order.
     fixed: usize,
-    /// 1-norm of the matrix before factorisation, or what it is measured against if larger.
+    /// 1-norm of the matrix before factorisation, or the least norm if that is larger.
     norm: f64,
 }
 
 impl DenseLu {
-    /// Storage for a matrix of order `order`, whose first `fixed` diagonal entries are ±1
-    /// throughout the elimination: they need no search, and where their rows and columns are
-    /// nearly empty they cost next to nothing.
+    /// Makes the storage of a matrix of order `order`, whose first `fixed` diagonal entries are ±1
+    /// throughout the elimination: they need no search, and cost next to nothing where their rows
+    /// and columns are nearly empty.
     #[must_use]
     pub fn new(order: usize, fixed: usize) -> Self {
         Self {
@@ -48,8 +48,8 @@ impl DenseLu {
     ///
     /// # Errors
     ///
-    /// [`Singular`] on a pivot that is zero or not finite. A matrix that is singular only up to
-    /// rounding passes; its condition tells.
+    /// [`Singular`] on a pivot that is zero or not finite. A matrix that is singular up to rounding
+    /// passes; its condition is then near zero.
     pub fn factorise(&mut self, least_norm: f64) -> Result<(), Singular> {
         self.norm = self
             .matrix
@@ -76,7 +76,7 @@ impl DenseLu {
         Ok(())
     }
 
-    /// Step k of the elimination with the pivot on the diagonal, leaving alone what is zero.
+    /// Does step k of the elimination with the pivot on the diagonal, without the zeros.
     fn eliminate(&mut self, k: usize) -> Result<(), Singular> {
         let pivot = self.matrix[(k, k)];
         if pivot == 0.0 || !pivot.is_finite() {
@@ -98,7 +98,7 @@ impl DenseLu {
         Ok(())
     }
 
-    /// The magnitudes of the smallest and the largest pivot.
+    /// Returns the magnitudes of the smallest and the largest pivot.
     #[must_use]
     pub fn pivot_range(&self) -> (f64, f64) {
         let pivots = (0..self.pivots.len()).map(|k| self.matrix[(k, k)].abs());
@@ -183,7 +183,7 @@ mod tests {
             lu.solve_transposed(x.as_mut_slice());
             let truth = inverse.transpose() * &b;
             prop_assert!((&x - &truth).amax() <= tolerance * truth.amax().max(b.amax()));
-            // Hager's estimate is an upper bound of rcond and seldom off by more than three.
+            // Hager's estimate is an upper bound of rcond, seldom by more than a factor of three.
             let estimate = Condition::new(order).rcond(&mut lu);
             prop_assert!(estimate >= rcond * (1.0 - 1e-6), "{estimate} {rcond}");
             prop_assert!(estimate <= rcond * 10.0, "{estimate} {rcond}");

@@ -1,10 +1,10 @@
 //! The rank of a sparse matrix, found row by row.
 //!
-//! Rows come one after the other; each is reduced by the pivots of those kept before it, and kept
-//! if something is left of it. So of rows that depend on each other the last is left out. Pivots
-//! are chosen within a row among its large entries, as partial pivoting does by columns, which
-//! keeps the multipliers small; of these the one in the column that the fewest rows to come
-//! contain, which keeps the factors sparse: a long chain costs as much per link as a short one.
+//! Each row is reduced by the pivots of the rows kept before it, and kept if something is left of
+//! it. The last of several dependent rows is left out. The pivot of a row is one of its
+//! large entries, as partial pivoting does by columns, which keeps the multipliers small; of these
+//! the one in the column that the fewest later rows contain, which keeps the factors sparse: a long
+//! chain costs as much per link as a short one.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ pub(in crate::kinematics) struct Echelon {
     kept: Vec<ReducedRow>,
     /// The kept row that has its pivot in each column.
     pivot_in: Vec<Option<usize>>,
-    /// How many rows to come contain each column.
+    /// Number of later rows that contain each column.
     to_come: Vec<usize>,
     /// A row while it is reduced; zero otherwise.
     work: Vec<f64>,
@@ -29,19 +29,19 @@ pub(in crate::kinematics) struct Echelon {
 /// A row after reduction.
 #[derive(Clone, Debug)]
 pub(in crate::kinematics) struct ReducedRow {
-    /// Which row it is.
+    /// Index of the row.
     pub(in crate::kinematics) row: usize,
     /// The largest entry that is left of it.
     pub(in crate::kinematics) remainder: f64,
     pivot: usize,
-    /// What is left of it.
+    /// The entries that are left.
     upper: Row,
-    /// The multiples of kept rows' remainders that it had.
+    /// The multiples of kept rows' remainders that were subtracted.
     lower: Vec<(usize, f64)>,
 }
 
 impl Echelon {
-    /// No rows kept yet of those that will come.
+    /// Begins with no rows kept; `rows` are all that will be offered.
     pub(in crate::kinematics) fn new<'a>(
         columns: usize,
         rows: impl IntoIterator<Item = &'a Row>,
@@ -58,12 +58,12 @@ impl Echelon {
         }
     }
 
-    /// The rows kept, in the order in which they came.
+    /// Returns the rows kept, in the order of the offers.
     pub(in crate::kinematics) fn kept(&self) -> &[ReducedRow] {
         &self.kept
     }
 
-    /// Keeps a row if more than `at_least` is left of it, else returns what is left of it.
+    /// Keeps a row if more than `at_least` is left of it, otherwise returns it reduced.
     pub(in crate::kinematics) fn offer(
         &mut self,
         row: usize,
@@ -74,7 +74,7 @@ impl Echelon {
             self.to_come[column] = self.to_come[column].saturating_sub(1);
         }
         let reduced = self.reduce(row, entries);
-        // What is no number is not kept.
+        // A remainder that is no number is not kept.
         if reduced.remainder > at_least {
             self.pivot_in[reduced.pivot] = Some(self.kept.len());
             self.kept.push(reduced);
@@ -84,7 +84,7 @@ impl Echelon {
         }
     }
 
-    /// What the rows kept leave of a row.
+    /// Reduces a row by the rows kept.
     pub(in crate::kinematics) fn reduce(&mut self, row: usize, entries: &Row) -> ReducedRow {
         let work = &mut self.work;
         let mut touched: BTreeSet<usize> = BTreeSet::new();
@@ -95,7 +95,7 @@ impl Echelon {
             pending.extend(self.pivot_in[column]);
         }
         let mut lower = Vec::new();
-        // What is left of a kept row has no entry at the pivots of those before it.
+        // A kept row has no entries at the pivots of those before it.
         while let Some(before) = pending.pop_first() {
             let ReducedRow { pivot, upper, .. } = &self.kept[before];
             let factor = work[*pivot] / value_at(upper, *pivot);
@@ -134,7 +134,7 @@ impl Echelon {
         }
     }
 
-    /// The rows of which a dependent one is a combination, with their factors; those below
+    /// Returns the rows of which a dependent one is a combination, with their factors; those below
     /// `least` times the largest are rounding.
     pub(in crate::kinematics) fn combination(
         &self,
@@ -161,14 +161,14 @@ impl Echelon {
             .collect()
     }
 
-    /// The columns without a pivot.
+    /// Returns the columns without a pivot.
     pub(in crate::kinematics) fn free(&self) -> Vec<usize> {
         let columns = 0..self.pivot_in.len();
         columns.filter(|&k| self.pivot_in[k].is_none()).collect()
     }
 
-    /// The vector that all rows kept map to zero and that has these entries in free columns; its
-    /// largest entry is one.
+    /// Returns the vector that all rows kept map to zero and that has these entries in free
+    /// columns, scaled so that its largest entry is one.
     pub(in crate::kinematics) fn null_vector(&self, free: &[(usize, f64)]) -> Vec<f64> {
         let mut vector = vec![0.0; self.pivot_in.len()];
         for &(column, value) in free {
@@ -212,8 +212,8 @@ mod tests {
     }
 
     proptest! {
-        /// Rank against singular values, null vectors and combinations against their definition,
-        /// for matrices of sparse rows of which some are sums of earlier ones.
+        /// Compares rank with singular values, and null vectors and combinations with their
+        /// definition, for matrices of sparse rows of which some are sums of earlier ones.
         #[test]
         fn rank_null_vectors_and_combinations(
             entries in prop::collection::vec((-3_i32..4, 0.0..1.0_f64), 9 * 8),
@@ -240,7 +240,7 @@ mod tests {
                 let others = matrix.select_rows(&before);
                 let mut with = before.clone();
                 with.push(left_out.row);
-                // Of no rows at all nalgebra finds no rank.
+                // nalgebra has no rank for a matrix without rows.
                 let rank = if before.is_empty() { 0 } else { others.rank(1e-9) };
                 prop_assert_eq!(rank, matrix.select_rows(&with).rank(1e-9));
                 let mut sum = matrix.row(left_out.row).clone_owned();

@@ -1,4 +1,4 @@
-//! A matrix that can be solved with.
+//! The interface of factorised matrices.
 
 /// The matrix has a pivot of exactly zero or a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -6,15 +6,15 @@ pub struct Singular;
 
 /// A factorised matrix A.
 pub trait Factors {
-    /// The number of its rows.
+    /// Returns the number of rows.
     fn order(&self) -> usize;
 
-    /// The 1-norm that A counts as having.
+    /// Returns the 1-norm of A, or its least norm if that is larger.
     fn norm(&self) -> f64;
 
-    /// Solves A x = b, `b` becoming x.
+    /// Solves A x = b and writes x to `b`.
     fn solve(&mut self, b: &mut [f64]);
 
-    /// Solves Aᵀ x = b, `b` becoming x.
+    /// Solves Aᵀ x = b and writes x to `b`.
     fn solve_transposed(&mut self, b: &mut [f64]);
 }

@@ -7,9 +7,9 @@ use super::sparse::SparseLu;
 /// The matrix of a block, dense or sparse.
 #[derive(Clone, Debug)]
 pub enum Lu {
-    /// For few unknowns.
+    /// Dense, for few unknowns.
     Dense(DenseLu),
-    /// For many.
+    /// Sparse, for many unknowns.
     Sparse(Box<SparseLu>),
 }
 
@@ -22,7 +22,7 @@ impl Lu {
         }
     }
 
-    /// Adds to an entry. Entries outside the pattern of a sparse matrix are left out.
+    /// Adds to an entry; one outside the pattern of a sparse matrix is left out.
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
         match self {
             Self::Dense(lu) => lu.add(row, column, value),
@@ -30,8 +30,8 @@ impl Lu {
         }
     }
 
-    /// The entries of this matrix minus those of another sparse one of the same pattern, factorised
-    /// or not: row, column, value.
+    /// Returns the entries of this matrix minus those of another sparse one of the same pattern,
+    /// factorised or not: row, column, value.
     ///
     /// # Panics
     ///
@@ -58,14 +58,14 @@ impl Lu {
         }
     }
 
-    /// Lets the next factorisation choose its pivots, as that of a dense matrix always does.
+    /// Lets the next factorisation choose its pivots; that of a dense matrix always does.
     pub fn forget_pivots(&mut self) {
         if let Self::Sparse(lu) = self {
             lu.forget_pivots();
         }
     }
 
-    /// The magnitudes of the smallest and the largest pivot.
+    /// Returns the magnitudes of the smallest and the largest pivot.
     #[must_use]
     pub fn pivot_range(&self) -> (f64, f64) {
         match self {

@@ -1,8 +1,8 @@
-//! Linear algebra of the solver: square matrices, factorised and solved in place.
+//! Linear algebra: square matrices, factorised and solved in place, and the rank of sparse rows.
 //!
-//! This is the other side of the seam to the equations: it knows numbers only. Storage is made
-//! once; nothing here allocates afterwards, unless a sparse matrix has changed so much that its
-//! pivots have to be chosen again.
+//! It knows numbers only, no equations. Storage of factorised matrices is made once; nothing
+//! allocates afterwards, unless a sparse matrix has changed so much that its pivots have to be
+//! chosen again.
 
 mod condition;
 mod dense;

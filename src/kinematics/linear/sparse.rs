@@ -1,22 +1,22 @@
-//! A sparse matrix and its LU factorisation in an order that is kept.
+//! A sparse matrix and its LU factorisation with fixed pivots.
 //!
 //! The pivots are chosen once, by Markowitz' count among entries that are large enough, which
-//! fixes where the factors have entries. From then on a factorisation is a run over fixed lists,
-//! for as long as its pivots stay large enough; then they are chosen again.
+//! fixes the pattern of the factors. Then each factorisation runs over fixed lists, as long as its
+//! pivots stay large enough; otherwise they are chosen again.
 
 use std::collections::BTreeSet;
 
 use super::factors::{Factors, Singular};
 
-/// A pivot is chosen among entries of at least this part of the largest in its row.
+/// Least magnitude of a new pivot, as part of the largest entry of its row.
 const CHOOSE: f64 = 0.1;
-/// Pivots are chosen again when one falls below this part of the largest in its row.
+/// Least magnitude of a kept pivot, as part of the largest entry of its row.
 const KEEP: f64 = 1e-3;
 
 /// A sparse matrix of fixed pattern and its factors.
 ///
 /// Fill with [`clear`](Self::clear) and [`add`](Self::add), then [`factorise`](Self::factorise),
-/// then solve as often as wanted.
+/// then solve any number of times.
 #[derive(Clone, Debug)]
 pub struct SparseLu {
     /// The matrix by rows.
@@ -79,7 +79,7 @@ impl Rows {
 }
 
 impl SparseLu {
-    /// A matrix with entries at the given columns of each row.
+    /// Makes a matrix with entries at the given columns of each row.
     #[must_use]
     pub fn new(pattern: Vec<Vec<usize>>) -> Self {
         let order = pattern.len();
@@ -108,8 +108,8 @@ impl SparseLu {
         }
     }
 
-    /// The entries of this matrix minus those of another one of the same pattern: row, column,
-    /// value.
+    /// Returns the entries of this matrix minus those of another one of the same pattern: row,
+    /// column, value.
     pub fn differences<'a>(
         &'a self,
         other: &'a Self,
@@ -129,8 +129,8 @@ impl SparseLu {
         })
     }
 
-    /// Computes the factors. Its norm counts as at least `least_norm`. Allocates where pivots
-    /// are chosen: the first time, and when those chosen have become too small.
+    /// Computes the factors. The norm counts as at least `least_norm`. Allocates when pivots are
+    /// chosen: the first time, and when they have become too small.
     ///
     /// # Errors
     ///
@@ -163,8 +163,8 @@ impl SparseLu {
         self.factors = None;
     }
 
-    /// Runs the elimination in the chosen order. False if a pivot is not above `keep` times the
-    /// largest entry of its row.
+    /// Runs the elimination in the chosen order. Returns false if a pivot is not above `keep` times
+    /// the largest entry of its row.
     fn eliminate(&mut self, keep: f64) -> bool {
         let Some(Triangles {
             order,
@@ -199,7 +199,7 @@ impl SparseLu {
                 upper.values[entry] = value;
                 largest = largest.max(value.abs());
             }
-            // Not so for what is not a number.
+            // False for a pivot that is no number.
             kept &= pivot.abs() > keep * largest && largest.is_finite();
         }
         kept
@@ -278,7 +278,7 @@ impl SparseLu {
         })
     }
 
-    /// The magnitudes of the smallest and the largest pivot.
+    /// Returns the magnitudes of the smallest and the largest pivot.
     #[must_use]
     pub fn pivot_range(&self) -> (f64, f64) {
         let pivots = self.diagonal.iter().map(|pivot| pivot.abs());
@@ -288,10 +288,10 @@ impl SparseLu {
     }
 }
 
-/// Rows that are looked at for a pivot: the shortest ones.
+/// Number of rows, the shortest ones, among which a pivot is chosen.
 const LOOK_AT: usize = 4;
 
-/// The next pivot's row and column.
+/// Returns the row and the column of the next pivot.
 fn pick(
     rows: &[Vec<(usize, f64)>],
     rows_with: &[BTreeSet<usize>],
@@ -407,8 +407,8 @@ mod tests {
     }
 
     proptest! {
-        /// The oracle is the dense factorisation. The second set of values is factorised in the
-        /// order chosen for the first, or in another if that has become bad.
+        /// Compares with the dense factorisation. The second set of values is factorised in the
+        /// order chosen for the first, or in another one if its pivots are too small.
         #[test]
         fn agrees_with_dense(
             order in 1_usize..20,
@@ -438,8 +438,8 @@ mod tests {
                 let rcond = condition.rcond(&mut dense);
                 prop_assume!(rcond > 1e-6);
                 sparse.factorise(0.0).unwrap();
-                // Backward stable solves, the sparse one with pivots down to a thousandth of
-                // their row: growth by 1e3 at each of some steps is what it may come to.
+                // Both solves are backward stable. The sparse one admits pivots of a thousandth
+                // of their row, so that entries may grow by 1e3 at some of the pivots.
                 let tolerance = 1e5 * f64::EPSILON / rcond;
                 for transposed in [false, true] {
                     let (mut x, mut y) = (b[..order].to_vec(), b[..order].to_vec());
@@ -466,7 +466,7 @@ mod tests {
         }
     }
 
-    /// The diagonal vanishes, then all: pivots that are gone are replaced while there are any.
+    /// The diagonal vanishes, then all entries: vanished pivots are replaced while others remain.
     #[test]
     fn a_vanishing_pivot_is_chosen_again() {
         let mut lu = SparseLu::new(vec![vec![0, 1], vec![0, 1]]);

@@ -107,7 +107,8 @@ impl Path {
         drivers.iter().map(|driver| driver.value).collect()
     }
 
-    /// Returns the first s after `s` at which a motion begins another piece, or the end of the path.
+    /// Returns the first s after `s` at which a motion begins another piece, or the end of the
+    /// path.
     pub(super) fn next_point(&self, s: f64, motions: &Motions) -> f64 {
         if self.duration <= 0.0 {
             return 1.0;

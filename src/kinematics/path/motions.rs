@@ -1,16 +1,16 @@
-//! The prescribed motions of a mechanism with parameter values in force.
+//! The prescribed motions of a mechanism, with parameter values in force.
 
 use crate::mechanism::{DriverId, Interval, Jet, Jet3, Mechanism, MotionInForce, ParameterId};
 
 /// The motions of all drivers that have one.
 #[derive(Clone, Debug)]
 pub(in crate::kinematics) struct Motions {
-    /// One a driver, `None` for an input.
+    /// One per driver, `None` for an input.
     in_force: Vec<Option<MotionInForce>>,
 }
 
 impl Motions {
-    /// The motions for parameter values still to be given.
+    /// Makes the motions; parameter values are still to be set.
     pub(in crate::kinematics) fn new(mechanism: &Mechanism) -> Self {
         let parameters = mechanism.parameters.len();
         let drivers = mechanism.drivers.iter();
@@ -21,22 +21,22 @@ impl Motions {
         }
     }
 
-    /// Takes over parameter values, with their derivatives with respect to the variable along
-    /// which the motions are to be evaluated. Allocates nothing.
+    /// Sets parameter values, with their derivatives with respect to the variable along which the
+    /// motions are evaluated. Allocates nothing.
     pub(in crate::kinematics) fn set_parameters(&mut self, parameter: impl Fn(ParameterId) -> Jet) {
         for motion in self.in_force.iter_mut().flatten() {
             motion.set_parameters(&parameter);
         }
     }
 
-    /// A driver's prescribed value at time `t`; not a number for an input.
+    /// Returns a driver's prescribed value at time `t`; not a number for an input.
     pub(in crate::kinematics) fn evaluate(&self, driver: DriverId, t: Jet) -> Jet {
         self.in_force[driver.index()]
             .as_ref()
             .map_or(Jet::constant(f64::NAN), |motion| motion.evaluate(t))
     }
 
-    /// An upper bound of a driver's |d²u/dt²| over a stretch of time; see
+    /// Returns an upper bound of a driver's |d²u/dt²| over a stretch of time; see
     /// [`MotionInForce::curvature`].
     pub(in crate::kinematics) fn curvature(
         &self,
@@ -61,7 +61,7 @@ impl Motions {
             .and_then(|motion| motion.enclose(t, parameter))
     }
 
-    /// The next time after `t` at which a motion given by a table begins another piece.
+    /// Returns the next time after `t` at which a motion given by a table begins another piece.
     pub(in crate::kinematics) fn next_point(&self, t: f64) -> f64 {
         let motions = self.in_force.iter().flatten();
         motions

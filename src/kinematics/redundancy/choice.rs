@@ -7,8 +7,8 @@ use super::contradiction::explain_open;
 use super::rank::{
     DEPENDENT, drivers_first, find_freedom, jacobian_rows, singular_position, weakest,
 };
-use crate::kinematics::assembly::closing::holds;
 use crate::kinematics::assembly::estimate::go_to_estimate;
+use crate::kinematics::assembly::least_squares::holds;
 
 use crate::kinematics::Element;
 use crate::kinematics::assembly::gaps::open_joints;
@@ -245,7 +245,7 @@ pub(in crate::kinematics) fn opened(model: &Model, state: &State) -> Option<Open
     let Model {
         system, redundant, ..
     } = model;
-    let is_open = |row: &&usize| !holds(state.row_value(system, **row));
+    let is_open = |row: &&usize| !holds(system.evaluate_row(**row, state.values(), |_, _| {}));
     let first = redundant.now.iter().find(is_open)?;
     let element = system.equations()[*first].element;
     let mut open = open_joints(model, state, &system.rows_of(&[element]), 0.0);
@@ -253,8 +253,8 @@ pub(in crate::kinematics) fn opened(model: &Model, state: &State) -> Option<Open
 }
 
 /// Chooses rows at the present places of the bodies: the drivers', then, in the order of
-/// declaration, those of which more than `fit` is left; where these are too few, those of which
-/// less is left.
+/// declaration, those whose remainder exceeds `fit`; if these are too few, those with a smaller
+/// remainder.
 fn choose_here(model: &Model, state: &State, mut fit: f64) -> Choice {
     let rows = jacobian_rows(model, state);
     let unknowns = model.system.unknowns();

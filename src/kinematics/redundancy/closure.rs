@@ -1,8 +1,9 @@
 //! Closing a mechanism on all its rows, which may be more than enough.
 
 use super::rank::{drivers_first, jacobian_rows};
-use crate::kinematics::assembly::closing::{Closing, close_on, is_small};
-use crate::kinematics::assembly::least_squares::{Part, SMALL_PART};
+use crate::kinematics::assembly::closure::{close_on, is_small};
+use crate::kinematics::assembly::least_squares::LeastSquares;
+use crate::kinematics::assembly::part::{Part, SMALL_PART};
 use crate::kinematics::assembly::search::{NoBranch, search};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::model::Model;
@@ -11,9 +12,9 @@ use crate::kinematics::state::State;
 use crate::kinematics::structure::Structure;
 use crate::kinematics::system::Target;
 
-/// A block with a smaller scaled residual is closed well enough to look for superfluous rows; in
-/// a singular block rows are known to the square root of it.
-const CLOSED: f64 = 1e-6;
+/// A row of a block of which no more than this is left, scaled, is superfluous. Such a block is
+/// singular, and closes to the square root of the residual only.
+const SUPERFLUOUS: f64 = 1e-3;
 
 /// Closes the mechanism on all rows. Returns `None` if they are satisfied, otherwise the largest
 /// scaled residual of the nearest pose found, where the bodies then are.
@@ -22,7 +23,8 @@ pub(super) fn close_on_all(model: &mut Model, state: &mut State, estimate: &[f64
     if !is_small(&model.system) {
         // Too many unknowns for a minimisation to go far: most blocks close by themselves.
         find_start(model, state, estimate);
-        Closing::new(&model.system, &all).close(&mut state.block_state(&model.system))?;
+        let mut problem = LeastSquares::of_all(&model.system, &all);
+        problem.close(&mut state.block_state(&model.system))?;
     }
     close_on(&model.system, state, &all, estimate)
 }
@@ -67,31 +69,32 @@ fn superfluous_in(
     estimate: &[f64],
 ) -> Option<usize> {
     let block = &model.plan.blocks[block];
-    let part = Part::new(block.rows(), block.columns());
-    if part.unknowns() > SMALL_PART {
+    let columns = block.columns();
+    if columns.len() > SMALL_PART {
         return None;
     }
-    let columns = block.columns();
+    let mut part = Part::new(&model.system, block.rows(), columns);
     let mut block_state = state.block_state(&model.system);
     part.start(&mut block_state, estimate, 0);
     part.minimise_growing(&mut block_state);
-    if part.equations(&block_state).0.amax() > CLOSED {
+    if part.problem.close(&mut block_state).is_some() {
         return None;
     }
     let mut rows = jacobian_rows(model, state);
     for row in &mut rows {
         row.retain(|(column, _)| columns.contains(column));
     }
-    let own = part.rows.iter().map(|&row| &rows[row]);
+    let own = part.problem.rows.iter().map(|&row| &rows[row]);
     let mut echelon = Echelon::new(model.system.unknowns(), own);
     let is_driver = |row: &usize| {
         let target = &model.system.equations()[*row].target;
         matches!(target, Target::Driver(_))
     };
-    let (drivers, others): (Vec<_>, Vec<_>) = part.rows.iter().partition(|row| is_driver(row));
+    let (drivers, others): (Vec<_>, Vec<_>) =
+        part.problem.rows.iter().partition(|row| is_driver(row));
     let order = drivers.into_iter().chain(others);
     order.fold(None, |last, row| {
-        let left_out = echelon.offer(row, &rows[row], CLOSED.sqrt());
+        let left_out = echelon.offer(row, &rows[row], SUPERFLUOUS);
         left_out.map(|left_out| left_out.row).or(last)
     })
 }

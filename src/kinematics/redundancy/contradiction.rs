@@ -3,10 +3,11 @@
 use super::closure::find_start;
 use super::rank::{DEPENDENT, constraint_rows, find_freedom, jacobian_rows};
 use crate::kinematics::Element;
-use crate::kinematics::assembly::closing::{Closing, close_on, is_small};
-use crate::kinematics::assembly::gaps::open_joints;
-use crate::kinematics::assembly::least_squares::STARTS;
+use crate::kinematics::assembly::closure::{close_on, is_small};
+use crate::kinematics::assembly::gaps::{gather, open_joints};
+use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::assembly::nearest::search_at_once;
+use crate::kinematics::assembly::part::STARTS;
 use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::model::Model;
@@ -17,8 +18,6 @@ const TAKES_PART: f64 = 1e-3;
 /// Most elements in a large mechanism of which a smallest contradictory set is looked for, by
 /// leaving them out one by one.
 const MOST_ELEMENTS: usize = 12;
-/// Weight of all other elements when the gap is gathered in one.
-const HOLD_CLOSED: f64 = 1e3;
 
 /// Explains why a mechanism does not close. It is at a nearest pose, where its rows are open by up
 /// to `gap`, scaled.
@@ -51,7 +50,7 @@ pub(super) fn explain_open(
         open = elements_open(model, state, &all, 0.0);
     }
     if is_small(system) || open.len() <= MOST_ELEMENTS {
-        // Of two elements that stand in for each other the one declared first stays.
+        // The element declared first stays, of two that can replace each other.
         for element in open.clone().into_iter().rev() {
             let others: Vec<_> = open.iter().copied().filter(|e| *e != element).collect();
             if close_on(system, state, &system.rows_of(&others), estimate).is_some() {
@@ -75,15 +74,8 @@ pub(super) fn explain_open(
     close_on(system, state, &others, estimate);
     let contradict = depend_on(model, state, &rows_of_last, &others);
     close_on(system, state, &rows, estimate);
-    let weight = |row: usize| {
-        if rows_of_last.contains(&row) {
-            1.0
-        } else {
-            HOLD_CLOSED
-        }
-    };
-    let mut closing = Closing::new(system, &rows).weigh(weight);
-    let gap = closing.close(&mut state.block_state(system)).unwrap_or(0.0);
+    let mut problem = LeastSquares::of_all(system, &rows);
+    let gap = gather(model, state, &mut problem, last);
     let gathered = open_joints(model, state, &rows_of_last, gap);
     let gathered = gathered.into_iter().next().map(|(_, joint)| joint);
     match gathered {
@@ -115,7 +107,7 @@ fn not_found(model: &Model, state: &State, open: Vec<OpenJoint>) -> Error {
 fn elements_open(model: &Model, state: &State, rows: &[usize], largest: f64) -> Vec<Element> {
     let system = &model.system;
     let rows = rows.iter().filter(|&&row| {
-        let value = state.row_value(system, row);
+        let value = system.evaluate_row(row, state.values(), |_, _| {});
         value.value.abs() >= TAKES_PART * largest
     });
     let mut elements: Vec<_> = rows.map(|&row| system.equations()[row].element).collect();

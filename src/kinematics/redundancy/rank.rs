@@ -2,8 +2,8 @@
 //! drive, and the constraints that are redundant.
 
 use crate::kinematics::Element;
-use crate::kinematics::assembly::closing::Closing;
-use crate::kinematics::assembly::least_squares::{Part, SMALL_PART};
+use crate::kinematics::assembly::closure::is_small;
+use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::error::Error;
 use crate::kinematics::linear::{Echelon, ReducedRow, Row};
 use crate::kinematics::model::Model;
@@ -38,8 +38,8 @@ struct Ranks {
 ///
 /// # Errors
 ///
-/// [`Error::Structure`] if something is free or more is driven than is free, [`Error::Singular`]
-/// if the constraints lose rank here but let nothing move.
+/// [`Error::Structure`] if the drivers leave a motion free or there are too many,
+/// [`Error::Singular`] if the constraints lose rank here without a free motion.
 pub(super) fn find_freedom(model: &mut Model, state: &mut State) -> Result<Vec<usize>, Error> {
     let unknowns = model.system.unknowns();
     let mut home = vec![0.0; unknowns];
@@ -69,7 +69,7 @@ pub(super) fn find_freedom(model: &mut Model, state: &mut State) -> Result<Vec<u
 fn ranks_with_drivers_moved(model: &Model, state: &mut State, home: &[f64]) -> Vec<Ranks> {
     let drivers = state.pose.drivers.clone();
     let all: Vec<_> = (0..model.system.equations().len()).collect();
-    let mut closing = Closing::new(&model.system, &all);
+    let mut problem = LeastSquares::of_all(&model.system, &all);
     let mut found = Vec::new();
     for sense in [AWAY, -AWAY] {
         if drivers.is_empty() {
@@ -85,7 +85,7 @@ fn ranks_with_drivers_moved(model: &Model, state: &mut State, home: &[f64]) -> V
             value + sense * scale * mixture(k)
         });
         state.pose.drivers = moved.collect();
-        if closing
+        if problem
             .close(&mut state.block_state(&model.system))
             .is_none()
         {
@@ -101,7 +101,7 @@ fn ranks_along_constraints(model: &Model, state: &mut State, home: &[f64]) -> Ve
     let system = &model.system;
     state.at.set_pose(system.mechanism(), home);
     let motion = free_motion(model, state);
-    let mut closing = Closing::new(system, &constraint_rows(system));
+    let mut problem = LeastSquares::of_all(system, &constraint_rows(system));
     let mut found = Vec::new();
     let size = state.at.size();
     let scale = |column: usize| system.column_scale(column, size);
@@ -111,7 +111,7 @@ fn ranks_along_constraints(model: &Model, state: &mut State, home: &[f64]) -> Ve
             .map(|(column, (q, rate))| q + sense * rate * scale(column))
             .collect();
         state.at.set_pose(system.mechanism(), &q);
-        if closing.close(&mut state.block_state(system)).is_some() {
+        if problem.close(&mut state.block_state(system)).is_some() {
             continue;
         }
         let moves = home.iter().enumerate();
@@ -217,13 +217,17 @@ pub(super) fn drivers_first(system: &System) -> Vec<usize> {
 /// Returns the Jacobian by rows at the present places of the bodies, scaled.
 pub(super) fn jacobian_rows(model: &Model, state: &State) -> Vec<Row> {
     let rows = 0..model.system.equations().len();
-    rows.map(|row| state.jacobian_row(&model.system, row))
-        .collect()
+    let gradient = |row| {
+        let mut entries = Row::new();
+        model.system.sparse_row(row, state.values(), &mut entries);
+        entries
+    };
+    rows.map(gradient).collect()
 }
 
 /// Explains a pose at which the rows all together lose rank: names the bodies that can move there
 /// though no driver does.
-pub(super) fn singular_position(model: &Model, state: &mut State) -> Error {
+pub(super) fn singular_position(model: &Model, state: &State) -> Error {
     let system = &model.system;
     let rows = jacobian_rows(model, state);
     let order = drivers_first(system);
@@ -241,12 +245,9 @@ pub(super) fn singular_position(model: &Model, state: &mut State) -> Error {
         rcond = weakest(&echelon);
         echelon = eliminate(rcond);
     }
-    if rows.len() <= SMALL_PART {
+    if is_small(system) {
         let unknowns: Vec<_> = (0..system.unknowns()).collect();
-        let part = Part::new(&order, &unknowns);
-        let (_, jacobian) = part.equations(&state.block_state(system));
-        let singular = jacobian.singular_values();
-        rcond = singular.min() / singular.max();
+        rcond = state.dense_rcond(system, &order, &unknowns);
     }
     Error::Singular {
         rcond,

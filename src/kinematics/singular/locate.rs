@@ -54,10 +54,10 @@ const NO_RANK: f64 = 1e-8;
 pub(super) enum Finding {
     /// No position that stops the motion, which may pass near one.
     Nothing,
-    /// The motion turns back, or comes to a position that has to be refused.
+    /// The motion turns back, or reaches a position that cannot be crossed.
     End(SingularKind, Box<ReducedPoint>),
-    /// Two motions cross. Their slopes dα/dτ, first that of the motion on which the pose lies; the
-    /// other one may be infinite.
+    /// Two motions cross, with these slopes dα/dτ: first the slope of the motion through the pose;
+    /// the other one may be infinite.
     Crossing(Box<ReducedPoint>, [f64; 2]),
 }
 
@@ -225,7 +225,7 @@ fn crossing(equation: &ReducedEquation<'_>, point: ReducedPoint) -> Finding {
     if slopes[0].is_finite() {
         Finding::Crossing(Box::new(point), slopes)
     } else {
-        // The pose is on the motion on which the line stands still.
+        // On the motion through the pose the driver rests.
         refuse(SingularKind::TangentBranches, point)
     }
 }

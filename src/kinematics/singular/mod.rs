@@ -1,15 +1,15 @@
 //! Singular positions: dead points, change points, and positions that are refused.
 //!
 //! Where the Jacobian of a block loses rank, Newton–Raphson does not converge, and the motion may
-//! go on in more than one way. [`reduced`] makes of the block's equations one function of two
-//! numbers that is smooth there, [`locate`] finds the singular position in it to rounding and
-//! tells its kind, [`interpolate`] carries the motion through where two motions cross: on the
-//! smooth continuation, so that parallel links stay parallel.
+//! have more than one continuation. [`reduced`] reduces the block's equations to one smooth
+//! function of two numbers. [`locate`] finds the singular position of this function to rounding,
+//! and its kind. Where two motions cross, [`interpolate`] takes the smooth continuation: parallel
+//! links stay parallel.
 //!
 //! A crossing belongs to the pose: while the driver's value is within its ends, the block's
 //! unknowns and their rates come from it. Blocks that several drivers move, and those with more
-//! than [`LARGEST_BLOCK`] unknowns, are not crossed; nor is anything while parameters move, or
-//! where other rows than those of the first pose are in use.
+//! than [`LARGEST_BLOCK`] unknowns, have no crossings; nor has any block while parameters move, or
+//! while other rows than at the first pose are in use.
 //!
 //! | file | subject |
 //! |---|---|

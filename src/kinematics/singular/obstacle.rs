@@ -19,20 +19,19 @@ use crate::mechanism::{DriverId, Jet};
 /// Distance within which a change point is looked for, in radians and characteristic lengths of
 /// the fastest unknown.
 const REACH: f64 = 0.25;
-/// The same for the position that stops the motion: near a dead point everything runs fast.
+/// The same for the position that stops the motion: near a dead point all unknowns are fast.
 const REACH_TO_END: f64 = 0.5;
 /// A motion is stopped within this distance of a position that it cannot pass.
 const STOPPED: f64 = 0.02;
 /// A singular position at most this far behind the current place on the path counts as reached.
 const JUST_BEHIND: f64 = 1e-9;
-/// Blocks whose regularities differ by less than this factor are near to singular for one and the
-/// same reason.
+/// Ratio of regularities up to which two blocks are nearly singular for the same reason.
 const SAME_ORDER: f64 = 100.0;
-/// Singular values below this part of the largest count as lost in front of a singular position,
-/// to which the mechanism has come within some 1e-12 of its way.
+/// Singular values below this part of the largest one count as lost, some 1e-12 of the path in
+/// front of a singular position.
 const LOST: f64 = 1e-4;
 
-/// A singular position on the way of a motion, located to rounding.
+/// A singular position on a path, located to rounding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SingularPoint {
     /// Its kind.

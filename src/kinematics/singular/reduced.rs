@@ -22,7 +22,7 @@ use crate::kinematics::model::Model;
 use crate::kinematics::newton::MAX_ITERATIONS;
 use crate::kinematics::path::{Motions, Path, Rates};
 use crate::kinematics::state::State;
-use crate::kinematics::system::{System, Targets};
+use crate::kinematics::system::{System, Targets, Values};
 use crate::mechanism::{DriverId, Jet};
 
 /// The line along which the drivers run.
@@ -253,24 +253,14 @@ impl<'a> ReducedEquation<'a> {
 
     /// Returns F and J, scaled.
     fn equations(&self) -> (DVector<f64>, DMatrix<f64>) {
-        let order = self.rows.len();
-        let mut residual = DVector::zeros(order);
-        let mut jacobian = DMatrix::zeros(order, order);
-        for (place, &row) in self.rows.iter().enumerate() {
-            let value = self.system.evaluate_row(
-                row,
-                &self.at,
-                self.targets,
-                &self.drivers,
-                |column, value| {
-                    if let Some(column) = self.place_of[column] {
-                        jacobian[(place, column)] += value;
-                    }
-                },
-            );
-            residual[place] = value.value;
-        }
-        (residual, jacobian)
+        let values = Values {
+            at: &self.at,
+            targets: self.targets,
+            drivers: &self.drivers,
+        };
+        let place = |column: usize| self.place_of[column];
+        let order = self.columns.len();
+        self.system.dense_rows(&self.rows, order, place, values)
     }
 
     /// Returns F_p times first and second derivatives along the line of the unknowns before the

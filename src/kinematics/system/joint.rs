@@ -1,4 +1,4 @@
-//! The equations that each kind of joint stands for.
+//! The equations of each kind of joint.
 
 use crate::kinematics::Element;
 use crate::kinematics::configuration::{
@@ -13,19 +13,19 @@ use crate::mechanism::{
     ParameterId, Profile, ProfileInForce, WheelSizes,
 };
 
-/// What joints bring with them besides their equations.
+/// Coefficients, profiles and unknowns of joints.
 #[derive(Debug, Default)]
 pub(super) struct JointParts {
     pub(super) coefficients: Vec<Coefficient>,
     pub(super) profiles: Vec<CamProfile>,
-    /// The unknowns behind those of the bodies, each with its joint.
+    /// The joint unknowns, behind those of the bodies, each with its joint.
     pub(super) unknowns: Vec<(Element, Box<dyn JointUnknown>)>,
-    /// The parameters used by the joint that is being written down.
+    /// Parameters of the joint whose equations are being written down.
     pub(super) parameters: Vec<ParameterId>,
 }
 
 impl JointParts {
-    /// Registers a number that depends on parameters.
+    /// Adds a coefficient.
     pub(super) fn coefficient(
         &mut self,
         expression: &Expression,
@@ -39,7 +39,7 @@ impl JointParts {
         CoefficientId(self.coefficients.len() - 1)
     }
 
-    /// Registers a cam's profile.
+    /// Adds a cam's profile.
     pub(super) fn profile(
         &mut self,
         profile: &Profile,
@@ -54,18 +54,18 @@ impl JointParts {
         ProfileId(self.profiles.len() - 1)
     }
 
-    /// The id that the next unknown will have.
+    /// Returns the id of the next joint unknown.
     pub(super) fn next_unknown(&self) -> JointUnknownId {
         JointUnknownId(self.unknowns.len())
     }
 
-    /// Registers an unknown of a joint's own.
+    /// Adds a joint unknown.
     pub(super) fn unknown(&mut self, element: Element, unknown: Box<dyn JointUnknown>) {
         self.unknowns.push((element, unknown));
     }
 }
 
-/// The relations of a joint, and what each is held at.
+/// Returns the relations of a joint, each with its target.
 #[must_use]
 pub(super) fn relations(
     mechanism: &Mechanism,
@@ -170,7 +170,7 @@ pub(super) fn relations(
     }
 }
 
-/// Two wheels that turn in a fixed ratio.
+/// Returns the relation of two wheels that turn in a fixed ratio.
 fn couple(
     joint: &Joint,
     sizes: &WheelSizes,

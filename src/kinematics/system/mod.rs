@@ -1,23 +1,25 @@
 //! The mechanism as a system of equations Phi(q, t) = 0 (Eq. 3.6.3).
 //!
-//! This is one side of the seam to the linear algebra: here are the equations, their rows and
-//! their scales, and nothing about how a linear system is solved.
+//! The system knows the equations, their rows and their scales; the linear algebra knows numbers
+//! only.
 
 mod joint;
+mod linearise;
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use joint::JointParts;
+pub(super) use linearise::{RowValue, Values};
 
 use crate::kinematics::configuration::{CamProfile, Configuration};
-use crate::kinematics::constraint::{self, Constraint, Dimension, Gradient, Incidence, TurnEffect};
-use crate::kinematics::linear::{Row, nan_or_larger};
+use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, TurnEffect};
+use crate::kinematics::linear::nan_or_larger;
 use crate::kinematics::variation::{Varied, VariedConfiguration};
 use crate::kinematics::{Element, Error};
 use crate::mechanism::{DriverId, Expression, Jet, Mechanism, ParameterId};
 
-/// What c(q) is held at.
+/// The target of c(q).
 #[derive(Clone, Debug)]
 pub enum Target {
     /// A number that depends on parameters only.
@@ -33,7 +35,7 @@ pub struct Equation {
     pub element: Element,
     /// c(q).
     pub constraint: Box<dyn Constraint>,
-    /// What it is held at.
+    /// The target.
     pub target: Target,
     /// The parameters that it uses besides those of markers and of the target.
     pub parameters: Vec<ParameterId>,
@@ -49,7 +51,7 @@ pub struct System {
     joint_parts: JointParts,
 }
 
-/// The right-hand sides in force: what each c(q) is held at.
+/// The targets in force.
 #[derive(Clone, Debug)]
 pub struct Targets {
     /// Values of the constants, zero for drivers.
@@ -59,18 +61,10 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// What a row that no driver moves is held at, whole turns apart.
+    /// Returns the constant of a row that no driver moves, without whole turns.
     pub(in crate::kinematics) fn constant(&self, row: usize) -> f64 {
         self.constants[row]
     }
-}
-
-/// One entry of Phi, scaled, with the rounding error that it carries anyhow.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::kinematics) struct RowValue {
-    pub(in crate::kinematics) value: f64,
-    /// Estimated rounding error of the value.
-    pub(in crate::kinematics) rounding: f64,
 }
 
 impl System {
@@ -119,25 +113,25 @@ impl System {
         }
     }
 
-    /// The mechanism these are the equations of.
+    /// Returns the mechanism.
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {
         &self.mechanism
     }
 
-    /// The rows of Phi.
+    /// Returns the rows of Phi.
     #[must_use]
     pub fn equations(&self) -> &[Equation] {
         &self.equations
     }
 
-    /// The number of unknowns: three generalized coordinates a body, and what joints bring.
+    /// Returns the number of unknowns: three generalized coordinates per body, and joint unknowns.
     #[must_use]
     pub fn unknowns(&self) -> usize {
         3 * self.mechanism.bodies.len() + self.joint_parts.unknowns.len()
     }
 
-    /// What an unknown belongs to, for messages: a body, or the joint that brought it.
+    /// Returns the name of the body or joint that an unknown belongs to, for messages.
     #[must_use]
     pub fn describe_unknown(&self, column: usize) -> String {
         match self.mechanism.bodies.get(column / 3) {
@@ -149,8 +143,7 @@ impl System {
         }
     }
 
-    /// Returns the names of what moves by more than `least` among these unknowns: bodies, and joints
-    /// with unknowns of their own.
+    /// Returns the names of the bodies and joints whose unknowns move by more than `least`.
     pub(in crate::kinematics) fn describe_moved(
         &self,
         motion: impl Iterator<Item = (usize, f64)>,
@@ -175,7 +168,7 @@ impl System {
         theirs.map(|(row, _)| row).collect()
     }
 
-    /// The unknowns and parameters in row `row`, each unknown once, ascending.
+    /// Returns the unknowns and parameters in a row, each unknown once, ascending.
     pub(in crate::kinematics) fn incidence(&self, row: usize) -> Incidence {
         let mut incidence = Incidence::default();
         let constraint = &self.equations[row].constraint;
@@ -185,7 +178,7 @@ impl System {
         incidence
     }
 
-    /// A configuration for this system, its parameter values still to be set.
+    /// Makes a configuration for this system; its parameter values are still to be set.
     #[must_use]
     pub fn configuration(&self) -> Configuration {
         Configuration::new(
@@ -196,7 +189,7 @@ impl System {
         )
     }
 
-    /// The mechanism in motion, for [`Sensitivity`](super::Sensitivity).
+    /// Makes the mechanism in motion, for [`Sensitivity`](super::Sensitivity).
     pub(in crate::kinematics) fn varied(
         &self,
         parameter: impl Fn(ParameterId) -> Varied,
@@ -207,7 +200,7 @@ impl System {
         VariedConfiguration::new(&self.mechanism, coefficients, profiles, parameter, motion)
     }
 
-    /// Targets of which [`set_parameters`](Self::set_parameters) has still to give the values.
+    /// Makes targets; [`set_parameters`](Self::set_parameters) gives them their values.
     #[must_use]
     pub fn targets(&self) -> Targets {
         Targets {
@@ -253,7 +246,7 @@ impl System {
         Ok(())
     }
 
-    /// Whether every driver's value is one that its coordinate can take.
+    /// Checks that every driver's value is one that its coordinate can take.
     ///
     /// # Errors
     ///
@@ -278,13 +271,13 @@ impl System {
         Ok(())
     }
 
-    /// A driver as messages name it.
+    /// Returns a driver as messages name it.
     pub(in crate::kinematics) fn describe_driver(&self, driver: DriverId) -> String {
         let row = self.driver_rows[driver.index()];
         self.equations[row].element.describe(&self.mechanism)
     }
 
-    /// Fixes the whole turns of each angle row that is not a driver: the ones nearest the present
+    /// Fixes the whole turns of each angle row that is not a driver: those nearest the present
     /// configuration.
     pub fn fix_turns(&self, at: &Configuration, targets: &mut Targets) {
         for (row, equation) in self.equations.iter().enumerate() {
@@ -296,8 +289,8 @@ impl System {
         }
     }
 
-    /// Where to look for the unknown q\[column\] if a joint brought it, the bodies being where
-    /// `at` has them \[rad\].
+    /// Returns an estimate of q\[column\], if it is a joint unknown, for these places of the bodies
+    /// \[rad\].
     #[must_use]
     pub fn estimate_joint_unknown(&self, column: usize, at: &Configuration) -> Option<f64> {
         let place = column.checked_sub(3 * self.mechanism.bodies.len())?;
@@ -305,7 +298,7 @@ impl System {
         Some(unknown.estimate(at))
     }
 
-    /// What row `row` is held at, `drivers` being the values u of all drivers.
+    /// Returns the target of a row, for these values u of all drivers.
     #[must_use]
     pub fn target(&self, row: usize, targets: &Targets, drivers: &[f64]) -> f64 {
         match self.equations[row].target {
@@ -314,63 +307,7 @@ impl System {
         }
     }
 
-    /// Evaluates row `row` of Phi and its gradient, scaled so that metres and radians compare:
-    /// rows in metres are divided by the mechanism's size, columns multiplied by
-    /// [`column_scale`](Self::column_scale).
-    ///
-    /// `entry(column, value)` is called for each entry of the row of the Jacobian (Eq. 3.6.4);
-    /// two calls for the same column add up.
-    pub(in crate::kinematics) fn evaluate_row(
-        &self,
-        row: usize,
-        at: &Configuration,
-        targets: &Targets,
-        drivers: &[f64],
-        mut entry: impl FnMut(usize, f64),
-    ) -> RowValue {
-        let equation = &self.equations[row];
-        let size = at.size();
-        let row_scale = equation.row_scale(at);
-        let target = self.target(row, targets, drivers);
-        let value = (equation.constraint.value(at) - target) * row_scale;
-        // To first order each coordinate's own rounding moves the value by gradient times
-        // q eps; the sines and products inside add some eps of the size.
-        let mut magnitude = target.abs() * row_scale + 1.0;
-        let mut gradient = Gradient::new();
-        equation.constraint.gradient(at, &mut gradient);
-        for (column, partial) in gradient.entries() {
-            magnitude += (partial * at.coordinate(column)).abs() * row_scale;
-            entry(
-                column,
-                partial * row_scale * self.column_scale(column, size),
-            );
-        }
-        RowValue {
-            value,
-            rounding: magnitude * f64::EPSILON,
-        }
-    }
-
-    /// Evaluates row `row` of Phi and writes the entries of its gradient, scaled, each column once.
-    pub(in crate::kinematics) fn sparse_row(
-        &self,
-        row: usize,
-        at: &Configuration,
-        targets: &Targets,
-        drivers: &[f64],
-        entries: &mut Row,
-    ) -> RowValue {
-        entries.clear();
-        self.evaluate_row(row, at, targets, drivers, |column, value| {
-            match entries.iter_mut().find(|(c, _)| *c == column) {
-                Some((_, sum)) => *sum += value,
-                None if value != 0.0 => entries.push((column, value)),
-                None => {}
-            }
-        })
-    }
-
-    /// The magnitude of the largest entry of Phi, scaled; NaN if any entry is.
+    /// Returns the magnitude of the largest entry of Phi, scaled; NaN if any entry is.
     #[must_use]
     pub fn largest_residual(&self, at: &Configuration, targets: &Targets, drivers: &[f64]) -> f64 {
         let rows = self.equations.iter().enumerate();
@@ -381,7 +318,7 @@ impl System {
         .fold(0.0, nan_or_larger)
     }
 
-    /// Whether an unknown is an angle; what joints bring with them is.
+    /// Returns whether an unknown is an angle; joint unknowns are.
     #[must_use]
     pub fn is_angle(&self, column: usize) -> bool {
         column % 3 == 2 || column >= 3 * self.mechanism.bodies.len()
@@ -404,7 +341,7 @@ impl System {
         }
     }
 
-    /// The unknown in metres or radians that a scaled unknown of one stands for.
+    /// Returns the scale factor of an unknown \[m or rad\].
     #[must_use]
     pub fn column_scale(&self, column: usize, size: f64) -> f64 {
         if self.is_angle(column) { 1.0 } else { size }
@@ -420,15 +357,15 @@ impl Equation {
         }
     }
 
-    /// Whether a joint or constraint holds an angle here, at whatever whole turn it was
-    /// assembled. A driver's angle counts turns.
+    /// Returns whether the row holds an angle at the whole turn at which it was assembled. A
+    /// driver's angle counts turns.
     #[must_use]
     pub fn holds_any_turn(&self) -> bool {
         matches!(self.target, Target::Constant(_))
             && self.constraint.turn_effect() == TurnEffect::Whole
     }
 
-    /// A row in metres is divided by the mechanism's size, one in radians is left as it is.
+    /// Returns the scale factor of the row: rows in metres are divided by the mechanism's size.
     pub(in crate::kinematics) fn row_scale(&self, at: &Configuration) -> f64 {
         match self.constraint.dimension() {
             Dimension::Length => 1.0 / at.size(),

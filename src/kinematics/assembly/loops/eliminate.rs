@@ -1,4 +1,4 @@
-//! What is left of a block's rows when x and y of its bodies are eliminated.
+//! The elimination of x and y of the bodies from the rows of a block.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
@@ -9,18 +9,18 @@ use crate::kinematics::block::BlockState;
 use crate::kinematics::constraint::{Axis, Projection, Relation};
 use crate::mechanism::{Interval, MarkerId, Number};
 
-/// How far off, scaled, what was found before may be.
+/// Bound of the error of unknowns found before, scaled.
 const SLACK: f64 = 1e-12;
 
-/// Eliminates what it can of a block's unknowns.
+/// The elimination of a block's unknowns.
 pub(super) struct Builder<'a> {
-    work: &'a BlockState<'a>,
+    state: &'a BlockState<'a>,
     columns: BTreeSet<usize>,
-    /// Those that are not used yet.
+    /// Rows that are not used yet.
     rows: Vec<usize>,
-    /// Of the bodies whose angle is an unknown of the block.
+    /// Angles that are found, of the bodies whose angle is an unknown of the block.
     angles: BTreeMap<usize, Angle>,
-    /// The unknowns x and y of the block that are found.
+    /// Unknowns x and y of the block that are found.
     places: BTreeMap<usize, Form>,
     torn: usize,
     /// Torn angles that were eliminated.
@@ -38,10 +38,10 @@ struct Link {
 }
 
 impl<'a> Builder<'a> {
-    /// Nothing is eliminated yet.
-    pub(super) fn new(rows: &[usize], columns: &[usize], work: &'a BlockState<'a>) -> Self {
+    /// Begins the elimination.
+    pub(super) fn new(rows: &[usize], columns: &[usize], state: &'a BlockState<'a>) -> Self {
         Self {
-            work,
+            state,
             columns: columns.iter().copied().collect(),
             rows: rows.to_vec(),
             angles: BTreeMap::new(),
@@ -51,7 +51,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The equations that are left; `None` if the block has rows or unknowns of other kinds.
+    /// Returns the equations that are left; `None` if the block has rows or unknowns of other
+    /// kinds.
     pub(super) fn loops(&mut self) -> Option<Loops> {
         self.find_angles()?;
         self.find_places();
@@ -68,11 +69,11 @@ impl<'a> Builder<'a> {
         Some(Loops {
             kept,
             closures,
-            margin: MARGIN * self.work.at.size(),
+            margin: MARGIN * self.state.at.size(),
         })
     }
 
-    /// Eliminates a torn angle that two rows contain as that of a link: they become one.
+    /// Eliminates a torn angle that two rows contain as the direction of a link: they become one.
     fn eliminate(&mut self, torn: usize, closures: &mut Vec<Closure>) -> bool {
         let with: Vec<_> = (0..closures.len())
             .filter(|&k| closures[k].contains(torn))
@@ -83,7 +84,7 @@ impl<'a> Builder<'a> {
         let (Closure::Sum(a), Closure::Sum(b)) = (&closures[first], &closures[second]) else {
             return false;
         };
-        // Either may be that of x.
+        // Either row may be the one of x.
         let is_pair = |x: &Form, y: &Form| {
             let ([alpha, beta], turned) = (x.waves[torn], y.waves[torn]);
             turned == [-beta, alpha]
@@ -113,7 +114,7 @@ impl<'a> Builder<'a> {
         true
     }
 
-    /// The unknowns for given torn angles, on the turns nearest the estimates.
+    /// Returns the unknowns for given torn angles, on the turns nearest the estimates.
     pub(super) fn unknowns(
         &self,
         columns: &[usize],
@@ -125,7 +126,7 @@ impl<'a> Builder<'a> {
         for (&k, &angle) in kept.iter().zip(angles) {
             torn[k] = Interval::point(angle);
         }
-        // Those eliminated later may be needed for those before.
+        // An angle may depend on one that was eliminated later.
         for link in self.links.iter().rev() {
             let [x, y] = [0, 1].map(|k| link.rest[k].over(&torn).midpoint());
             let [alpha, beta] = link.wave.map(Interval::midpoint);
@@ -134,7 +135,7 @@ impl<'a> Builder<'a> {
             torn[link.torn] = Interval::point(phi);
         }
         for (&body, angle) in &self.angles {
-            // One of those that turn together decides.
+            // One body of those that turn together decides.
             if let Angle::Torn(k, offset) = angle
                 && *offset == Interval::point(0.0)
             {
@@ -155,7 +156,7 @@ impl<'a> Builder<'a> {
     }
 
     fn relation(&self, row: usize) -> Relation {
-        self.work.system.equations()[row].constraint.relation()
+        self.state.system.equations()[row].constraint.relation()
     }
 
     fn target(&self, row: usize) -> Interval {
@@ -164,25 +165,25 @@ impl<'a> Builder<'a> {
             targets,
             drivers,
             ..
-        } = self.work;
+        } = self.state;
         Interval::point(system.target(row, targets, drivers))
     }
 
     fn body_of(&self, marker: MarkerId) -> Option<usize> {
-        self.work.at.marker(marker).body.map(|body| body.index())
+        self.state.at.marker(marker).body.map(|body| body.index())
     }
 
-    /// A value found before.
+    /// Returns the range of an unknown found before.
     fn known(&self, column: usize) -> Interval {
-        let scale = self.work.system.column_scale(column, self.work.at.size());
-        let value = self.work.at.coordinate(column);
+        let scale = self.state.system.column_scale(column, self.state.at.size());
+        let value = self.state.at.coordinate(column);
         let slack = SLACK * (scale + value.abs());
         Interval::new(value - slack, value + slack)
     }
 
-    /// The direction of a marker, if that of its body is found.
+    /// Returns the direction of a marker, if the angle of its body is found.
     fn direction(&self, marker: MarkerId) -> Option<Angle> {
-        let own = Interval::point(self.work.at.local(marker).1);
+        let own = Interval::point(self.state.at.local(marker).1);
         Some(match self.body_of(marker) {
             None => Angle::Known(own),
             Some(body) => self.angle(body)?.plus(own),
@@ -197,7 +198,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Takes the first unused row for which `use_row` finds something.
+    /// Uses the first row for which `use_row` returns true. Returns whether there is one.
     fn use_one(&mut self, use_row: impl Fn(&mut Self, usize) -> bool) -> bool {
         for place in 0..self.rows.len() {
             let row = self.rows[place];
@@ -209,8 +210,8 @@ impl<'a> Builder<'a> {
         false
     }
 
-    /// Ties angles together by the rows that hold their difference; the rest is torn. `None` if
-    /// that leaves a row of angles.
+    /// Ties angles together by the rows that hold their difference, and tears the rest. `None` if a
+    /// row of angles is left.
     fn find_angles(&mut self) -> Option<()> {
         let bodies: Vec<_> = self
             .columns
@@ -238,7 +239,7 @@ impl<'a> Builder<'a> {
             return false;
         };
         let target = self.target(row);
-        let own = |marker| Interval::point(self.work.at.local(marker).1);
+        let own = |marker| Interval::point(self.state.at.local(marker).1);
         let found = match (self.direction(measured.from), self.direction(measured.to)) {
             (Some(from), None) => (measured.to, from.plus(target - own(measured.to))),
             (None, Some(to)) => (measured.from, to.plus(-target - own(measured.from))),
@@ -248,8 +249,8 @@ impl<'a> Builder<'a> {
         body.map(|body| self.angles.insert(body, found.1)).is_some()
     }
 
-    /// Finds x and y along the rows that give them with a factor of one: first those that hold
-    /// points together, so that a line is left to be met.
+    /// Finds x and y by the rows that contain them with a factor of one: first by those that hold
+    /// points together, so that lines are left as equations.
     fn find_places(&mut self) {
         loop {
             let found = self.use_one(Self::join_points)
@@ -261,7 +262,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// x or y of a body's origin.
+    /// Returns x or y of a body's origin, if it is found.
     fn origin(&self, column: usize) -> Option<Form> {
         if self.columns.contains(&column) {
             self.places.get(&column).cloned()
@@ -270,9 +271,9 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// x (0) or y (1) of a marker's arm.
+    /// Returns x (0) or y (1) of a marker's arm.
     fn arm(&self, marker: MarkerId, component: usize) -> Option<Form> {
-        let s = self.work.at.local(marker).0;
+        let s = self.state.at.local(marker).0;
         let body = self.body_of(marker)?;
         self.turned(
             [s.x, s.y].map(Interval::point),
@@ -281,7 +282,7 @@ impl<'a> Builder<'a> {
         )
     }
 
-    /// x or y of a vector turned by an angle.
+    /// Returns x or y of a vector turned by an angle.
     fn turned(&self, s: [Interval; 2], angle: Angle, component: usize) -> Option<Form> {
         let turn = |angle: Interval| {
             let (cos, sin) = (angle.cos(), angle.sin());
@@ -302,10 +303,10 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// x or y of a marker's point, if it is found.
+    /// Returns x or y of a marker's point, if it is found.
     fn point(&self, marker: MarkerId, component: usize) -> Option<Form> {
         let Some(body) = self.body_of(marker) else {
-            let s = self.work.at.local(marker).0;
+            let s = self.state.at.local(marker).0;
             return Some(Form::constant(Interval::point(s[component]), self.torn));
         };
         let origin = self.origin(3 * body + component)?;
@@ -338,7 +339,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// A pair of rows that give both places on the same axes.
+    /// Places a body by a pair of rows on the same axes.
     fn place_on_axes(&mut self, row: usize) -> bool {
         let Relation::Projection(along @ Projection { axis: Axis::X, .. }) = self.relation(row)
         else {
@@ -371,7 +372,7 @@ impl<'a> Builder<'a> {
         done
     }
 
-    /// A line along x or y of ground.
+    /// Places a body by a row along x or y of ground.
     fn place_on_line(&mut self, row: usize) -> bool {
         let Relation::Projection(on) = self.relation(row) else {
             return false;
@@ -379,7 +380,7 @@ impl<'a> Builder<'a> {
         if self.body_of(on.axes).is_some() {
             return false;
         }
-        let u = self.work.at.marker(on.axes).axis;
+        let u = self.state.at.marker(on.axes).axis;
         let e = match on.axis {
             Axis::X => [u.x, u.y],
             Axis::Y => [-u.y, u.x],
@@ -401,7 +402,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// What the rows that are left ask for.
+    /// Returns the equations of the rows that are left.
     fn closures(&mut self) -> Option<Vec<Closure>> {
         let mut closures = Vec::new();
         while let Some(row) = self.rows.pop() {
@@ -417,7 +418,7 @@ impl<'a> Builder<'a> {
         Some(closures)
     }
 
-    /// The unused row that gives the other place on the same axes.
+    /// Returns the unused row along the other one of the same axes.
     fn place_on_same_axes(&self, row: usize) -> Option<usize> {
         let Relation::Projection(on) = self.relation(row) else {
             return None;
@@ -433,7 +434,7 @@ impl<'a> Builder<'a> {
         rows.find(|&unused| self.relation(unused) == other)
     }
 
-    /// Two rows that give both places on the same axes, as x and y on those of ground.
+    /// Returns two rows on the same axes as rows of x and y on those of ground.
     fn pair(&self, row: usize, other: usize) -> Option<[Closure; 2]> {
         let Relation::Projection(on) = self.relation(row) else {
             return None;
@@ -451,7 +452,7 @@ impl<'a> Builder<'a> {
         Some([sum(0)?, sum(1)?])
     }
 
-    /// x or y from one marker's point to that of another.
+    /// Returns x or y from one marker's point to the point of another.
     fn between(&self, from: MarkerId, to: MarkerId, component: usize) -> Option<Form> {
         Some(
             self.point(to, component)?
@@ -459,7 +460,7 @@ impl<'a> Builder<'a> {
         )
     }
 
-    /// What a row that is left asks for.
+    /// Returns the equation of a row that is left.
     fn closure(&self, row: usize) -> Option<Closure> {
         let both = |from, to| Some([self.between(from, to, 0)?, self.between(from, to, 1)?]);
         let target = self.target(row);

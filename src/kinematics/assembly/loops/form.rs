@@ -6,7 +6,7 @@ use crate::mechanism::{Interval, Number};
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Angle {
     Known(Interval),
-    /// A torn angle and what is added to it.
+    /// A torn angle and a constant that is added to it.
     Torn(usize, Interval),
 }
 
@@ -41,7 +41,7 @@ impl Form {
         }
     }
 
-    /// self + other · factor.
+    /// Returns self + other · factor.
     pub(super) fn plus(mut self, other: &Self, factor: Interval) -> Self {
         self.constant += other.constant * factor;
         for (wave, other) in self.waves.iter_mut().zip(&other.waves) {
@@ -56,7 +56,7 @@ impl Form {
         self.plus(other, Interval::point(-1.0))
     }
 
-    /// Its range over a box of angles.
+    /// Returns its range over a box of angles.
     pub(super) fn over(&self, angles: &[Interval]) -> Interval {
         let waves = self.waves.iter().zip(angles);
         waves.fold(self.constant, |sum, (wave, angle)| {
@@ -66,21 +66,21 @@ impl Form {
 }
 
 impl Form {
-    /// The range of its derivative by an angle over a box.
+    /// Returns the range of its derivative by an angle over a box.
     pub(super) fn slope(&self, angle: usize, angles: &[Interval]) -> Interval {
         let [alpha, beta] = self.waves[angle];
         range([beta, -alpha], angles[angle])
     }
 }
 
-/// The range of α cos φ + β sin φ.
+/// Returns the range of α cos φ + β sin φ.
 pub(super) fn range([alpha, beta]: [Interval; 2], phi: Interval) -> Interval {
     let zero = |x: Interval| x.low == 0.0 && x.high == 0.0;
     if zero(alpha) && zero(beta) {
         return Interval::point(0.0);
     }
     let parts = alpha * phi.cos() + beta * phi.sin();
-    // √(α² + β²) cos(φ − atan2(β, α)), from the side on which the angle does not jump.
+    // √(α² + β²) cos(φ − atan2(β, α)), turned to the side on which the angle does not jump.
     let amplitude = alpha.hypot(beta);
     let wave = if alpha.low > 0.0 || beta.low > 0.0 || beta.high < 0.0 {
         amplitude * (phi - beta.atan2(alpha)).cos()
@@ -91,7 +91,7 @@ pub(super) fn range([alpha, beta]: [Interval; 2], phi: Interval) -> Interval {
     if both.is_finite() { both } else { parts }
 }
 
-/// A row that is left once x and y are eliminated.
+/// A row after the elimination of x and y.
 #[derive(Debug)]
 pub(super) enum Closure {
     /// form = 0.
@@ -110,14 +110,14 @@ impl Closure {
         }
     }
 
-    /// Whether a torn angle is in the row.
+    /// Returns whether the row contains a torn angle.
     pub(super) fn contains(&self, torn: usize) -> bool {
         let zero = [Interval::point(0.0); 2];
         let turns = matches!(self, Self::Projection(Angle::Torn(k, _), ..) if *k == torn);
         turns || self.forms().iter().any(|form| form.waves[torn] != zero)
     }
 
-    /// Counts only the torn angles that are left.
+    /// Drops the waves of torn angles that are eliminated.
     pub(super) fn keep(&mut self, kept: &[usize]) {
         let forms: &mut [Form] = match self {
             Self::Sum(form) => std::slice::from_mut(form),
@@ -131,18 +131,18 @@ impl Closure {
         }
     }
 
-    /// Whether the row has no zero in a box of angles, by more than `margin`.
+    /// Returns whether the row is bounded away from zero by more than `margin` in a box of angles.
     pub(super) fn excludes(&self, angles: &[Interval], margin: f64) -> bool {
         let value = match self {
-            // Sharper than the square of the distance.
+            // The bound of the distance is sharper than that of its square.
             Self::Distance([x, y], u) => x.over(angles).hypot(y.over(angles)) - *u,
             _ => self.over(angles),
         };
-        // What is not defined contains everything.
+        // A range that is not defined excludes nothing.
         value.low > margin || value.high < -margin
     }
 
-    /// The range of the row over a box; that of a distance u is (x² + y² − u²)/(2u).
+    /// Returns the range of the row over a box; the row of a distance u is (x² + y² − u²)/(2u).
     pub(super) fn over(&self, angles: &[Interval]) -> Interval {
         match self {
             Self::Sum(form) => form.over(angles),
@@ -157,7 +157,7 @@ impl Closure {
         }
     }
 
-    /// The range of its derivative by an angle.
+    /// Returns the range of its derivative by an angle.
     pub(super) fn slope(&self, by: usize, angles: &[Interval]) -> Interval {
         match self {
             Self::Sum(form) => form.slope(by, angles),

@@ -1,11 +1,11 @@
-//! All the branches in which a block closes, by bounds over intervals: its angles are divided into
-//! boxes until each holds no solution, as an equation has a bound that keeps it from zero, or
-//! exactly one, by Krawczyk's test.
+//! All branches of a block, by bounds over intervals: boxes of angles are divided until each holds
+//! no solution, because an equation is bounded away from zero in it, or exactly one, by Krawczyk's
+//! test.
 //!
 //! Given the angles, the rows that hold points together give x and y of each body as a sum of
-//! constants and of waves α cos φ + β sin φ, one an angle, whose range over an interval is known
-//! in closed form. The rows that are left must be zero. An angle that only says where a link of a
-//! known length points is eliminated as well: its two rows become one, of a distance.
+//! constants and of waves α cos φ + β sin φ, one per angle, whose range over an interval is known
+//! in closed form. The rows that are left must be zero. An angle that only gives the direction of
+//! a link of a known length is eliminated as well: its two rows become one row of a distance.
 
 mod eliminate;
 mod form;
@@ -19,50 +19,50 @@ use nalgebra::DMatrix;
 use crate::kinematics::block::BlockState;
 use crate::mechanism::{Interval, Number};
 
-/// A block of more unknowns has too many angles for boxes.
+/// Most unknowns of a block whose angles are divided into boxes.
 const MOST_UNKNOWNS: usize = 60;
-/// Into so many boxes angles are divided at the most.
+/// Most boxes of angles.
 const MOST_BOXES: usize = 10_000;
-/// A box narrower than this \[rad\] is not divided: there the block nearly closes, or closes in a
-/// nearly singular position.
+/// Width of a box that is not divided \[rad\]: there the block nearly closes, or closes in a nearly
+/// singular position.
 const NARROWEST: f64 = 1e-6;
-/// Krawczyk's test is of use in boxes narrower than this \[rad\].
+/// Largest width of a box for Krawczyk's test \[rad\].
 const NARROW: f64 = 1.0;
-/// By how much of its width a box is enlarged for that test: a solution may lie on its edge.
+/// Part of its width by which a box is enlarged for that test: a solution may lie on its edge.
 const ENLARGED: f64 = 0.1;
-/// Angles that differ by less than this, in boxes known to hold one solution, are of the same.
+/// Largest difference of angles, in boxes known to hold one solution, that are the same solution.
 const SAME: f64 = 1e-7;
-/// A gap below this, scaled, may be rounding.
+/// Largest gap, scaled, that may be rounding.
 const MARGIN: f64 = 1e-10;
 
-/// The branches in which a block closes.
+/// The branches of a block.
 #[derive(Debug)]
 pub(super) struct AllBranches {
-    /// The unknowns in the order of the block's columns, near a solution each; all there are.
-    /// `None` if that could not be proved.
+    /// The unknowns, in the order of the block's columns, near each solution; `None` if it could
+    /// not be proved that there are no others.
     pub(super) branches: Option<Vec<Vec<f64>>>,
-    /// Into how many boxes the angles were divided.
+    /// Number of boxes into which the angles were divided.
     pub(super) boxes: usize,
 }
 
-/// Finds all branches in which the rows close in the unknowns `columns`. All other unknowns are known
-/// in `work`.
+/// Finds all branches of the rows in the unknowns `columns`. All other unknowns are known in
+/// `state`.
 pub(super) fn all_branches(
     rows: &[usize],
     columns: &[usize],
-    work: &BlockState<'_>,
+    state: &BlockState<'_>,
     estimate: &[f64],
 ) -> AllBranches {
     let unknown = AllBranches {
         branches: None,
         boxes: 0,
     };
-    let bodies = work.system.mechanism().bodies.len();
+    let bodies = state.system.mechanism().bodies.len();
     let from_joints = columns.iter().any(|&column| column >= 3 * bodies);
     if from_joints || columns.len() > MOST_UNKNOWNS {
         return unknown;
     }
-    let mut builder = Builder::new(rows, columns, work);
+    let mut builder = Builder::new(rows, columns, state);
     let Some(loops) = builder.loops() else {
         return unknown;
     };
@@ -77,25 +77,25 @@ pub(super) fn all_branches(
 /// The equations of a block in its torn angles.
 #[derive(Debug)]
 struct Loops {
-    /// The torn angles that are left.
+    /// The torn angles that are not eliminated.
     kept: Vec<usize>,
     closures: Vec<Closure>,
-    /// What a row may be off by \[m\].
+    /// Bound of the rounding of a row \[m\].
     margin: f64,
 }
 
-/// What is known of a box of angles.
+/// The content of a box of angles.
 enum Content {
-    /// It holds no solution.
+    /// No solution.
     None,
-    /// A box around it holds exactly one, near here.
+    /// Exactly one solution in a box around it, near these angles.
     One(Vec<f64>),
     Unknown,
 }
 
 impl Loops {
-    /// All solutions in the angles kept, or `None` if some box could not be decided, and the
-    /// number of boxes.
+    /// Returns all solutions in the angles kept, or `None` if some box could not be decided, and
+    /// the number of boxes.
     fn solve(&self) -> (Option<Vec<Vec<f64>>>, usize) {
         let half_turn = PI.next_up();
         let mut boxes = vec![vec![Interval::new(-half_turn, half_turn); self.kept.len()]];
@@ -135,6 +135,7 @@ impl Loops {
         (Some(solutions), count)
     }
 
+    /// Returns the content of a box.
     fn content(&self, angles: &[Interval]) -> Content {
         let mut rows = self.closures.iter();
         if rows.any(|row| row.excludes(angles, self.margin)) {
@@ -169,7 +170,7 @@ impl Loops {
         if !inner.iter().zip(&around).all(inside) {
             return Content::Unknown;
         }
-        // The solution stays in, however often it is contracted.
+        // Each contraction keeps the solution.
         around = inner;
         for _ in 0..4 {
             if let Some(inner) = self.contract(&around) {
@@ -183,9 +184,9 @@ impl Loops {
         Content::One(around.iter().map(|angle| angle.midpoint()).collect())
     }
 
-    /// Krawczyk's operator: m − Y f(m) + (1 − Y J)(x − m) contains all solutions in the box x, m
-    /// being its middle and Y near the inverse of J(m). Inside x it proves that there is one and
-    /// only one.
+    /// Applies Krawczyk's operator: m − Y f(m) + (1 − Y J)(x − m), with the middle m of the box x
+    /// and Y near the inverse of J(m), contains all solutions in x. If it lies inside x, there is
+    /// one and only one.
     fn contract(&self, angles: &[Interval]) -> Option<Vec<Interval>> {
         let order = self.kept.len();
         let middle: Vec<_> = angles

@@ -1,21 +1,21 @@
 //! One proof for many small steps of a block.
 //!
-//! Around a pose c each unknown of the rows, those found before included, may differ by its width
-//! B. With A = J(c)⁻¹ and the changes δ of the gradients in that box,
+//! In a *certified box* around a pose c each unknown of the rows, upstream ones included, differs
+//! from c by no more than its width B. With A = J(c)⁻¹ and the changes δ of the gradients in the
+//! box, the numbers
 //!
 //! > H = |A| δ B, M = |A ∂F/∂p| B + |A| δ B, h = max H / B, m = max M / B
 //!
-//! are known once and for all. A chord in the box, each unknown moving by λ of its width at the
-//! most, leaves F open by half of what its gradient changes, as it is closed at both ends: so
-//! η ≤ λ H / 2, besides μ M for radii of μ widths upstream, and K r ≤ λ′ H for radii of λ′ widths.
-//! The test of [`certify`](super::certify) becomes
+//! belong to the box. Let a chord in the box move each unknown by at most λ widths. F is zero at
+//! both ends of the chord, so that on it F is at most half the change of its gradient: η ≤ λ H / 2,
+//! plus μ M for upstream radii of μ widths, and K r ≤ λ′ H for radii of λ′ widths. The test of
+//! [`certify`](super::certify) becomes
 //!
-//! > λ h / 2 + μ m + λ′ h < λ′, and nothing leaves the box.
+//! > λ h / 2 + μ m + λ′ h < λ′, and chord and radii lie in the box.
 //!
-//! Its radii are of first order in the step, where those of that test are of second; while steps
-//! are small that does no harm, and where it does that test follows. It decides alone whether a
-//! step is accepted, so that nothing depends on where the last box was: whatever passes here
-//! passes there.
+//! Its radii are of first order in the step, those of `certify` of second order. A step that fails
+//! here is tested there, and a step that passes here passes there too: the accepted steps do not
+//! depend on the box.
 
 use super::CoupledBlock;
 use crate::kinematics::block::step::{BlockState, Step};
@@ -23,33 +23,37 @@ use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::newton::STALLED;
 use crate::kinematics::system::Target;
 
-/// A box is made where the certificate of a single step has a norm of K below this: then it holds
-/// for several.
+/// Largest norm of K of a single step after which a box is made: the box then serves several steps.
 const WORTH_A_BOX: f64 = 0.05;
-/// The h that a box is made for, and the largest it may have.
+/// The h that a box is made for.
 const GOOD_CONTRACTION: f64 = 0.25;
+/// Largest h of a box.
 const LARGEST_CONTRACTION: f64 = 0.4;
-/// The largest width, in radians and characteristic lengths.
+/// Largest width, in radians and characteristic lengths.
 const LARGEST_WIDTH: f64 = 0.2;
-/// The least width as a part of the largest.
+/// Ratio of the least width to the largest.
 const LEAST_PART: f64 = 0.25;
 
-/// A box around a pose in which a block is known to be regular.
+/// A box around a pose in which a block is proved regular.
 #[derive(Debug, Default)]
 pub(super) struct CertifiedBox {
     holds: bool,
-    /// c and 1/B of the block's own unknowns, then of those found before.
+    /// c of the block's own unknowns, then of the upstream ones.
     centre: Vec<f64>,
+    /// 1/B in the same order.
     inverse_width: Vec<f64>,
-    /// h and m.
+    /// h.
     contraction: f64,
+    /// m.
     upstream: f64,
-    /// What a driver off its chord by one adds to λ′, and what rounding adds.
+    /// Increase of λ′ per unit of a driver's deviation from its chord.
     driver: f64,
+    /// Increase of λ′ by rounding.
     rounding: f64,
 }
 
 impl CertifiedBox {
+    /// Makes the storage for this number of unknowns, own and upstream.
     pub(super) fn new(unknowns: usize) -> Self {
         Self {
             centre: vec![0.0; unknowns],
@@ -58,6 +62,7 @@ impl CertifiedBox {
         }
     }
 
+    /// Forgets the box.
     pub(super) fn forget(&mut self) {
         self.holds = false;
     }
@@ -65,7 +70,7 @@ impl CertifiedBox {
 
 impl CoupledBlock {
     /// Proves by the box that one motion joins the two ends of a sub-step, and writes its bound to
-    /// `next`; false if that cannot be had.
+    /// `next`. Returns false without a proof.
     pub(super) fn certify_in_box(&mut self, state: &BlockState<'_>, step: &mut Step<'_>) -> bool {
         let Self {
             equations,
@@ -95,7 +100,7 @@ impl CoupledBlock {
             + uncertain * area.upstream
             + driven * area.driver
             + area.rounding;
-        // A little more than there has to be, as strictly as it is asked for.
+        // The test asks for a strict inequality.
         let radius = 1.001 * open / (1.0 - area.contraction);
         let reach = far + radius.max(uncertain);
         if reach > 1.0 || reach.is_nan() {
@@ -110,8 +115,8 @@ impl CoupledBlock {
         true
     }
 
-    /// Makes a box around the end of a sub-step that was certified with this norm of K, where that
-    /// is worth it. The block is factorised there.
+    /// Makes a box around the end of a sub-step that was certified with this norm of K, if it will
+    /// serve several steps. The block is factorised there.
     pub(super) fn make_box(
         &mut self,
         state: &BlockState<'_>,
@@ -133,7 +138,7 @@ impl CoupledBlock {
                 moved / state.system.column_scale(column, size)
             })
             .fold(0.0, f64::max);
-        // What stands still is given some room, too.
+        // Also a block at rest gets a box.
         let largest = largest.max(f64::EPSILON);
         let test = &mut *self.test;
         self.jacobian.invert(&mut test.inverse, &mut test.row);
@@ -145,7 +150,7 @@ impl CoupledBlock {
             }
             let found = self.certified_box.contraction;
             if found <= LARGEST_CONTRACTION {
-                // One that the next step leaves is no use, and whatever holds there holds again.
+                // Discard a box smaller than two steps: the next step would leave it.
                 self.certified_box.holds = width > 2.0 * largest;
                 return;
             }
@@ -153,8 +158,8 @@ impl CoupledBlock {
         }
     }
 
-    /// Finds h, m and what goes with them for a box of this width; false if a relation is not
-    /// smooth in it.
+    /// Computes the numbers of a box of this width. Returns false if a relation is not smooth in
+    /// it.
     fn measure_box(
         &mut self,
         state: &BlockState<'_>,
@@ -186,8 +191,9 @@ impl CoupledBlock {
         smooth
     }
 
-    /// Writes of each row: δ B to `open`, δ B upstream alone to `slack`, its rounding to `eta`, a
-    /// driver's one to `radii`. False if a relation is not smooth in the box.
+    /// Writes for each row: δ B to `open`, its upstream part to `slack`, the rounding to `eta`, and
+    /// the row scale of a driver's row to `radii`. Returns false if a relation is not smooth in the
+    /// box.
     fn bend_rows_in_box(&mut self, state: &BlockState<'_>, bounds: &StepBounds) -> bool {
         let Self {
             equations, test, ..
@@ -207,7 +213,10 @@ impl CoupledBlock {
             }
             test.open[local] = own + known;
             test.slack[local] = known;
-            let rounding = state.evaluate_row(row, |_, _| {}).rounding;
+            let rounding = state
+                .system
+                .evaluate_row(row, state.values(), |_, _| {})
+                .rounding;
             test.eta[local] = 2.0 * STALLED * rounding;
             test.radii[local] = match state.system.equations()[row].target {
                 Target::Driver(_) => bend.row_scale,
@@ -217,7 +226,7 @@ impl CoupledBlock {
         true
     }
 
-    /// Finds h, m and what goes with them from what is known of each row.
+    /// Computes the numbers of the box from those of the rows.
     fn gather_rows(&mut self, state: &BlockState<'_>, bounds: &StepBounds) {
         let Self {
             equations,

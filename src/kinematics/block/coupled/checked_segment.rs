@@ -1,59 +1,61 @@
 //! One estimate for many small steps of a large block.
 //!
 //! The test of [`estimate`](super::estimate) holds for any line near the motion, not only for the
-//! chord of a step that was taken. Tried along a line that goes on for many steps, from where one
-//! starts to where velocity and acceleration lead, with A where that one ended, it makes a corridor: for each place on the line
-//! there is one root within its radius, and that moves continuously. A step both of whose ends are
-//! in the corridor keeps to the motion.
+//! chord of a step. A *checked segment* is a line over many steps that passed the test: it begins
+//! at the start of one step and follows velocity and acceleration; A belongs to the end of that
+//! step. At each place of the segment there is one root within its radius, and this root moves
+//! continuously. A step with both ends within the radius keeps to the motion.
 //!
-//! The place on the line is told by the unknown that moves most. That stands for the driver, so
-//! that there may be one only, and nothing else that moves the block.
+//! The unknown that moves most measures the place on the segment, in place of the driver. The
+//! block therefore needs a single driver, and upstream unknowns that rest.
 
 use super::CoupledBlock;
 use super::estimate::Passed;
 use crate::kinematics::block::step::{BlockState, Extrapolation, Step};
 use crate::kinematics::linear::nan_or_larger;
 
-/// A corridor is laid where a single step has c and a norm of K of up to this.
-const WORTH_A_CORRIDOR: f64 = 0.05;
-/// The same for the segment, about.
+/// Largest sum of c and the norm of K of a single step after which a segment is laid.
+const WORTH_A_SEGMENT: f64 = 0.05;
+/// The sum of c and the norm of K that a segment is laid for.
 const GOOD_CONTRACTION: f64 = 0.25;
-/// The most steps that it is laid for, and the largest move of an unknown along it, in radians and
-/// characteristic lengths.
+/// Most steps that a segment is laid for.
 const MOST_STEPS: f64 = 200.0;
+/// Largest move of an unknown along a segment, in radians and characteristic lengths.
 const LARGEST_MOVE: f64 = 0.2;
-/// Its radius at first, in parts of how far the motion may be off its line.
+/// Ratio of the first trial radius to the distance of the motion from the line.
 const WIDE: f64 = 4.0;
-/// How much more a driver may stray from its chord in later steps than in the first one.
-const STRAYS: f64 = 2.0;
-/// Ends of steps are in it up to this part of its radius: the place on the line is not quite that
-/// of the driver.
+/// Ratio of the deviation of a driver from its chord that later steps may have to that of the
+/// first.
+const LATER_DEVIATION: f64 = 2.0;
+/// Part of the radius within which the ends of a step lie in the segment: the place measured on the
+/// line differs a little from the driver's place.
 const WITHIN: f64 = 0.5;
-
-/// What is found before rests if it keeps to its place by this, in radians and characteristic
-/// lengths: some rounding.
+/// Upstream unknowns that move by less than this, in radians and characteristic lengths, count as
+/// stationary: some rounding.
 const AT_REST: f64 = 1e-13;
 
-/// A line along which a block is known to be regular.
+/// A line along which a block was tested to be regular.
 #[derive(Debug, Default)]
 pub(super) struct CheckedSegment {
     holds: bool,
-    /// Where the block's own unknowns are at its beginning, then those found before; and what the
-    /// own ones move by.
+    /// The block's own unknowns at its beginning, then the upstream ones.
     start: Vec<f64>,
+    /// The moves of the own unknowns from its beginning to its end.
     way: Vec<f64>,
-    /// Which of them moves most.
+    /// Index of the own unknown that moves most.
     leading: usize,
-    /// The scaled radius within which there is one root.
+    /// Scaled radius within which there is one root.
     radius: f64,
-    /// How far that is off the line, and off the chord of the step that the corridor begins with.
+    /// Scaled bound of the distance of the root from the line.
     off: f64,
+    /// Scaled bound of the distance of the root from the chord of the first step.
     off_single: f64,
-    /// How far the driver may be off the chord of a step.
-    stray: f64,
+    /// Largest deviation of the driver from the chord of a step.
+    driver_deviation: f64,
 }
 
 impl CheckedSegment {
+    /// Makes the storage for this number of own and upstream unknowns.
     pub(super) fn new(own: usize, known: usize) -> Self {
         Self {
             start: vec![0.0; own + known],
@@ -62,12 +64,13 @@ impl CheckedSegment {
         }
     }
 
+    /// Forgets the segment.
     pub(super) fn forget(&mut self) {
         self.holds = false;
     }
 
-    /// How far along it the leading unknown is. A block at rest has a line of no length, at whose
-    /// beginning it stays.
+    /// Returns the place on the segment, from 0 to 1, for a value of the leading unknown. A block
+    /// at rest has a segment of length zero and stays at its beginning.
     fn along(&self, leading: f64) -> f64 {
         let moved = leading - self.start[self.leading];
         if moved == 0.0 {
@@ -79,7 +82,8 @@ impl CheckedSegment {
 }
 
 impl CoupledBlock {
-    /// Whether both ends of a sub-step are in the corridor; writes its bound to `next` then.
+    /// Returns whether both ends of a sub-step lie in the segment. Then writes the bound of the
+    /// deviation from the chord to `next`.
     pub(super) fn certify_in_segment(
         &mut self,
         state: &BlockState<'_>,
@@ -94,8 +98,8 @@ impl CoupledBlock {
             segment,
             ..
         } = self;
-        let strays = |&driver: &usize| step.bounds.drivers[driver] > segment.stray;
-        if test.drivers.iter().any(strays) {
+        let deviates = |&driver: &usize| step.bounds.drivers[driver] > segment.driver_deviation;
+        if test.drivers.iter().any(deviates) {
             return false;
         }
         let leading = equations.columns[segment.leading];
@@ -130,8 +134,9 @@ impl CoupledBlock {
         true
     }
 
-    /// Lays a corridor from the start of a sub-step that was taken with this c and norm of K, where
-    /// that is worth it. The bodies are at the end, where the block is factorised.
+    /// Lays a segment from the start of a sub-step that passed the test with this sum of c and the
+    /// norm of K, if it will serve several steps. The bodies are at the end of the sub-step, where
+    /// the block is factorised.
     pub(super) fn lay_segment(
         &mut self,
         state: &mut BlockState<'_>,
@@ -143,17 +148,15 @@ impl CoupledBlock {
         for (start, &column) in self.segment.start[known].iter_mut().zip(&self.test.known) {
             *start = step.from[column];
         }
-        if contraction > WORTH_A_CORRIDOR
-            || self.test.drivers.len() != 1
-            || !self.rests(state, step)
+        if contraction > WORTH_A_SEGMENT || self.test.drivers.len() != 1 || !self.rests(state, step)
         {
             return;
         }
         let test = &mut *self.test;
         test.known_radii.fill(AT_REST);
-        // The rounding of drivers grows on the way; what it moves does so no more than that.
-        self.segment.off_single = STRAYS * test.next[0];
-        self.segment.stray = STRAYS * step.bounds.drivers[test.drivers[0]];
+        // The rounding of drivers grows along the path, and the unknowns follow it.
+        self.segment.off_single = LATER_DEVIATION * test.next[0];
+        self.segment.driver_deviation = LATER_DEVIATION * step.bounds.drivers[test.drivers[0]];
         let steps = (GOOD_CONTRACTION / contraction).min(MOST_STEPS);
         self.lay_line(state, step, steps);
         let passed = self.test_line(state, step);
@@ -168,7 +171,7 @@ impl CoupledBlock {
         }
     }
 
-    /// Writes the line to the corridor and as chord.
+    /// Writes the line to the segment and to the chord.
     fn lay_line(&mut self, state: &BlockState<'_>, step: &mut Step<'_>, steps: f64) {
         let Self {
             equations, segment, ..
@@ -196,7 +199,7 @@ impl CoupledBlock {
         }
     }
 
-    /// How the line passes the test, if it does.
+    /// Tests the line. Returns `None` if it fails.
     fn test_line(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) -> Option<Passed> {
         self.test.slack.fill(0.0);
         self.move_to_chord(state, step, 1.0);
@@ -205,7 +208,8 @@ impl CoupledBlock {
         self.test_chord(state, step, far, WIDE).ok()
     }
 
-    /// Whether unknowns found before stand where they do in the segment.
+    /// Returns whether the upstream unknowns are stationary where they were when the segment was
+    /// laid.
     fn rests(&self, state: &BlockState<'_>, step: &Step<'_>) -> bool {
         let size = state.at.size();
         let places = &self.segment.start[self.equations.columns.len()..];

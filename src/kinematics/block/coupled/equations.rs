@@ -9,7 +9,7 @@ use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::linear::{Factors, Lu};
 use crate::kinematics::system::RowValue;
 
-/// Most entries of a row: those of three bodies and of an unknown of its own.
+/// Most entries of a row: of three bodies and one joint unknown.
 pub(super) const ENTRIES: usize = 10;
 
 /// The block that finds an unknown, and the index of the unknown in that block.
@@ -100,11 +100,15 @@ impl BlockEquations {
         lu.clear();
         upstream.clear();
         for (local, &row) in self.rows.iter().enumerate() {
-            let value = state.evaluate_row(row, |column, value| match self.own(column) {
-                Some(own) => lu.add(local, own, value),
-                None if value != 0.0 => upstream.push((local, column, value)),
-                None => {}
-            });
+            let value = state
+                .system
+                .evaluate_row(row, state.values(), |column, value| {
+                    match self.own(column) {
+                        Some(own) => lu.add(local, own, value),
+                        None if value != 0.0 => upstream.push((local, column, value)),
+                        None => {}
+                    }
+                });
             found(local, value);
         }
     }

@@ -15,8 +15,8 @@
 //!
 //! > η + k < (1 − c) r, k ≥ |A| δ(r), η ≥ |A F(z̄(½))| + |A| (all other bounds of the rows).
 //!
-//! Norms are estimated from below and one place stands for the whole chord; the factor [`MARGIN`]
-//! makes up for that, and the sub-step is *checked*.
+//! Norms are estimated from below, and one place represents the whole chord. The factor [`MARGIN`]
+//! allows for both, and the sub-step is *checked*, not proved.
 
 use super::CoupledBlock;
 use super::contraction::{

@@ -14,7 +14,7 @@ impl RrpDyad {
     /// # Errors
     ///
     /// [`ClosureGap`] if circle and line do not meet.
-    pub(in crate::kinematics) fn branches(
+    pub(super) fn angles(
         &self,
         state: &mut BlockState<'_>,
         estimate: &[f64],
@@ -53,7 +53,7 @@ impl RrpDyad {
     }
 
     /// Puts the bodies where the gap is least, if the point does not reach its line.
-    pub(in crate::kinematics) fn stretch(&self, state: &mut BlockState<'_>, estimate: &[f64]) {
+    pub(super) fn stretch_to_line(&self, state: &mut BlockState<'_>, estimate: &[f64]) {
         let known = self.known(state);
         let away = if known.kappa > 0.0 { PI } else { 0.0 };
         let angle = known.w.y.atan2(known.w.x) - known.g.y.atan2(known.g.x) + away;

@@ -13,7 +13,7 @@ pub(super) struct Known {
     pub(super) point: SplitPoint,
     /// The frame of b without its origin if that depends on the angle; ground if there is no b.
     pub(super) second: BodyPose,
-    /// For a parallel b: its revolute, and its angle from a.
+    /// Revolute of a parallel b, and its angle from a.
     pub(super) second_point: SplitPoint,
     pub(super) second_turn: f64,
     /// The known part of P_j − P_i.

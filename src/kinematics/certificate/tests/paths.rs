@@ -1,5 +1,5 @@
-//! Random paths with steps between 0.001° and 179°: the branch is that of tiny steps, always, and
-//! nothing is refused where the way is regular.
+//! Random paths with steps between 0.001° and 179°: a step always ends on the branch of tiny steps,
+//! and no step on a regular path is blocked.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,19 +10,19 @@ use crate::kinematics::reference::{Part, assembled, grown, part};
 use crate::kinematics::{Curve, Path, Solver};
 use crate::mechanism::{Mechanism, Source};
 
-/// The tiny steps, in radians or characteristic lengths.
+/// Length of a tiny step, in radians or characteristic lengths.
 const TINY: f64 = 0.01;
-/// Where the reciprocal condition stays above this, nothing may be refused.
+/// Reciprocal condition above which no step may be blocked.
 const REGULAR: f64 = 1e-6;
 
-/// A step: how far the drivers go, and how the way is shared among them.
+/// A step of the drivers: the move of every second one, and the ratio of the others to it.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     way: f64,
     share: f64,
 }
 
-/// From 0.001° to 179°, as many small ones as large ones.
+/// Draws steps from 0.001° to 179°, logarithmically distributed.
 fn step() -> impl Strategy<Value = Step> {
     (-3.0..2.2528_f64, -1.0..1.0_f64, any::<bool>()).prop_map(|(power, share, back)| {
         let way = 10_f64.powf(power).to_radians();
@@ -33,7 +33,7 @@ fn step() -> impl Strategy<Value = Step> {
     })
 }
 
-fn lay(solver: &Solver, path: &mut Path, targets: &[f64]) {
+fn set_targets(solver: &Solver, path: &mut Path, targets: &[f64]) {
     path.start = solver.pose().time;
     path.duration = 0.0;
     let drivers = targets.iter().zip(&solver.pose().drivers);
@@ -47,7 +47,7 @@ fn lay(solver: &Solver, path: &mut Path, targets: &[f64]) {
     }
 }
 
-/// What a run of large and tiny steps side by side met.
+/// Counts of a run of large and tiny steps side by side.
 #[derive(Clone, Copy, Debug, Default)]
 struct Met {
     steps: u32,
@@ -55,8 +55,8 @@ struct Met {
     substeps: u32,
 }
 
-/// Takes each step at once, and by tiny ones.
-fn follow_both(
+/// Takes each step at once with one solver, and by tiny steps with the other.
+fn track_both(
     solver: &mut Solver,
     other: &mut Solver,
     steps: &[Step],
@@ -82,14 +82,14 @@ fn follow_both(
                 .zip(&targets)
                 .map(|(a, b)| a + s * (b - a))
                 .collect();
-            lay(other, &mut path, &now);
+            set_targets(other, &mut path, &now);
             if other.track(&path).is_err() {
                 blocked = true;
                 break;
             }
             regular &= other.rcond() > REGULAR;
         }
-        lay(solver, &mut path, &targets);
+        set_targets(solver, &mut path, &targets);
         let home = solver.pose().clone();
         let large = solver.track(&path);
         met.steps += 1;
@@ -125,7 +125,7 @@ fn follow_both(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Four-bars, slider-cranks, swivels, geared wheels and what hangs on them: a six-bar has two.
+    /// Four-bars, slider-cranks, swivels and geared wheels, one behind another.
     #[test]
     fn random_mechanisms_keep_their_branch(
         parts in prop::collection::vec(part(), 1..3),
@@ -136,11 +136,12 @@ proptest! {
         let path = Path::new(&mechanism);
         let mechanism = std::sync::Arc::new(mechanism);
         let mut solver = Solver::new(mechanism.clone()).expect("the drivers match");
-        // Not each of them closes.
+        // Some of them do not close.
         prop_assume!(solver.assemble(&path).is_ok());
         let mut other = Solver::new(mechanism).expect("the drivers match");
-        let met = follow_both(&mut solver, &mut other, &steps, 1.0, &text);
-        // Half a turn takes a few dozen, failed ones included, unless a singular position is near.
+        let met = track_both(&mut solver, &mut other, &steps, 1.0, &text);
+        // Half a turn takes a few dozen sub-steps, rejected ones included; more near a singular
+        // position.
         prop_assert!(met.substeps < 200 * met.steps, "{met:?}");
     }
 
@@ -156,7 +157,7 @@ proptest! {
         let source = shipped().find(|source| source.name() == name).expect("it is shipped");
         let (mut solver, _) = assembled(&source);
         let (mut other, _) = assembled(&source);
-        follow_both(&mut solver, &mut other, &steps, scale, name);
+        track_both(&mut solver, &mut other, &steps, scale, name);
     }
 
 }
@@ -164,10 +165,10 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { max_global_rejects: 4000, ..ProptestConfig::with_cases(600) })]
 
-    /// By closed form, for any four-bar that closes: the crank's pin and the rocker's pivot have to
-    /// stay nearer than the sum of coupler and rocker and farther than their difference.
+    /// Any four-bar that closes agrees with its closed form: the distance from the crank's pin to
+    /// the rocker's pivot stays between the difference and the sum of coupler and rocker.
     #[test]
-    fn random_four_bars_keep_to_the_closed_form(
+    fn random_four_bars_agree_with_the_closed_form(
         lengths in prop::array::uniform4(0.1..1.0_f64),
         start in 0.0..TAU,
         up in any::<bool>(),
@@ -212,7 +213,7 @@ proptest! {
         for step in steps {
             let now = solver.pose().drivers[0];
             let target = now + step.way;
-            // The distance is extreme at the ends and where crank and base are in line.
+            // The distance has its extremes at the ends and where crank and base line up.
             let [low, high] = [now.min(target), now.max(target)];
             let lined_up = (0..).map(|k| ((low / PI).ceil() + f64::from(k)) * PI);
             let places = lined_up.take_while(|angle| *angle < high).chain([target]);
@@ -222,7 +223,7 @@ proptest! {
                 near |= !closes(distance(angle), 1e-10);
             }
             let home = solver.pose().clone();
-            lay(&solver, &mut path, &[target]);
+            set_targets(&solver, &mut path, &[target]);
             match solver.track(&path) {
                 Ok(progress) => {
                     prop_assert!(!open || near, "passed a dead point: {step:?} from {now}");
@@ -243,10 +244,9 @@ proptest! {
     }
 }
 
-/// Every kind of part meets large steps, and some of them dead points: else the tests above would
-/// show little.
+/// Every kind of part of the random mechanisms takes large steps.
 #[test]
-fn each_kind_of_part_is_followed_through_large_steps() {
+fn each_kind_of_part_takes_large_steps() {
     for kind in 0..4 {
         let parts = [Part {
             kind,
@@ -256,7 +256,7 @@ fn each_kind_of_part_is_followed_through_large_steps() {
         let (mut solver, _) = assembled(&Source::new("grown", grown(&parts)));
         let (mut other, _) = assembled(&Source::new("grown", grown(&parts)));
         let steps = [2.9, -3.1, 1.7, 0.4, 3.0].map(|way| Step { way, share: 1.0 });
-        let met = follow_both(
+        let met = track_both(
             &mut solver,
             &mut other,
             &steps,

@@ -1,4 +1,4 @@
-//! The contour of a cam at the contact, as roller and flat face use it.
+//! The contour of a cam at its contact with a roller or a flat face.
 
 use nalgebra::{Rotation2, Vector2};
 
@@ -9,7 +9,7 @@ use crate::kinematics::variation::{
 };
 use crate::mechanism::{MarkerId, Mechanism, Number, ProfileInForce};
 
-/// A cam's contour with a point of contact on it.
+/// A cam's contour with a contact on it.
 #[derive(Clone, Copy, Debug)]
 pub struct Contour {
     /// The cam's marker: its point is the pole, its x-axis the polar axis.
@@ -23,7 +23,7 @@ pub struct Contour {
 /// A contour at one polar angle.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::kinematics) struct Shape {
-    /// From the pole to the contact \[m\].
+    /// Vector from the pole to the contact \[m\].
     pub(in crate::kinematics) arm: Vector2<f64>,
     /// Unit tangent, counter-clockwise round the cam.
     pub(in crate::kinematics) tangent: Vector2<f64>,
@@ -34,21 +34,21 @@ pub(in crate::kinematics) struct Shape {
     pub(in crate::kinematics) turn: [f64; 2],
 }
 
-/// Upper bounds, in magnitude, over the part of the contour that lies in a region.
+/// Upper bounds of the magnitudes over the part of the contour in a region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContourBounds {
     pub(super) radius: f64,
     pub(super) speed: [f64; 2],
     pub(super) turn: [f64; 2],
-    /// How far the contact's angle can be off \[rad\].
+    /// Bound of the change of the contact's polar angle \[rad\].
     pub(super) slide: f64,
-    /// How far the vector from the pole to the contact can change \[m\].
+    /// Bound of the change of the vector from the pole to the contact \[m\].
     pub(super) arm: f64,
-    /// How far the tangent can turn \[rad\].
+    /// Bound of the turn of the tangent \[rad\].
     pub(super) tangent: f64,
 }
 
-/// How the contact moves for given rates, were all second derivatives of q zero.
+/// The motion of the contact for given rates and q̈ = 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactMotion {
     /// Velocity and acceleration of the point of contact relative to the pole.
@@ -58,17 +58,17 @@ pub(super) struct ContactMotion {
 }
 
 impl Contour {
-    /// From the pole to the contour's point at the polar angle `theta`.
+    /// Returns the vector from the pole to the contour's point at the polar angle `theta`.
     pub(super) fn arm(cam: MarkerPose, theta: f64, radius: f64) -> Vector2<f64> {
         radius * (Rotation2::new(theta) * cam.axis)
     }
 
-    /// The outward normal that belongs to a tangent.
+    /// Returns the outward normal at a tangent.
     pub(in crate::kinematics) fn normal(tangent: Vector2<f64>) -> Vector2<f64> {
         -perp(tangent)
     }
 
-    /// The contour at the polar angle `theta`, `axis` being the polar axis.
+    /// Returns the contour at the polar angle `theta` from the polar axis `axis`.
     pub(in crate::kinematics) fn shape(
         profile: &ProfileInForce,
         theta: f64,
@@ -79,8 +79,8 @@ impl Contour {
         let radial = Rotation2::new(theta) * axis;
         let square = r * r + r1 * r1;
         let v = square.sqrt();
-        // The tangent is ahead of the radial direction by the angle whose tangent is R/R′; so
-        // its direction's derivative is (R² + 2R′² − R R″)/(R² + R′²).
+        // The angle from the radial direction to the tangent is atan(R/R′): the derivative of the
+        // tangent's direction is (R² + 2R′² − R R″)/(R² + R′²).
         let turn = (square + r1 * r1 - r * r2) / square;
         let numerator_rate = 2.0 * r * r1 + 3.0 * r1 * r2 - r * r3;
         let turn_rate = (numerator_rate - 2.0 * turn * (r * r1 + r1 * r2)) / square;
@@ -92,15 +92,14 @@ impl Contour {
         }
     }
 
-    /// The cam's marker, and the contour at the contact.
+    /// Returns the cam's marker and the contour at the contact.
     pub(super) fn at(&self, at: &Configuration) -> (MarkerPose, Shape) {
         let cam = at.marker(self.cam);
         let theta = at.joint_unknown(self.contact);
         (cam, Self::shape(at.profile(self.profile), theta, cam.axis))
     }
 
-    /// The same of a cam that moves: its marker, the arm from there to the contact, and the
-    /// tangent.
+    /// Returns the moving cam's marker, the vector from its point to the contact, and the tangent.
     pub(super) fn along(
         &self,
         at: &VariedConfiguration,
@@ -116,12 +115,12 @@ impl Contour {
         (cam, arm, tangent)
     }
 
-    /// Place of the contact's angle in q.
+    /// Returns the index in q of the contact's polar angle.
     pub(super) fn column(&self, at: &Configuration) -> usize {
         at.joint_unknown_column(self.contact)
     }
 
-    /// `None` where the contour is not smooth.
+    /// Returns the bounds in a region, `None` if the contour is not smooth there.
     pub(super) fn bounds(&self, at: &Configuration, region: &Region<'_>) -> Option<ContourBounds> {
         let theta = at.joint_unknown(self.contact);
         let slide = region.radii[self.column(at)];
@@ -154,8 +153,8 @@ impl Contour {
         })
     }
 
-    /// Notes the unknowns in the contact's point, as far as `components` asks for them, and in
-    /// its tangent.
+    /// Notes the unknowns in the components of the contact's point that `components` selects, and
+    /// in its tangent.
     pub(super) fn incidence(
         &self,
         mechanism: &Mechanism,
@@ -169,12 +168,14 @@ impl Contour {
 }
 
 impl Shape {
+    /// Returns the outward normal.
     pub(super) fn normal(&self) -> Vector2<f64> {
         Contour::normal(self.tangent)
     }
 
-    /// How the contact moves on a cam that turns at `omega`: d/dθ of it is v along the tangent,
-    /// whose direction turns by ψ′.
+    /// Returns the motion of the contact on a cam that turns at `omega`: its derivative with
+    /// respect to θ is v times the tangent, and the derivative of the tangent's direction is
+    /// `turn`.
     pub(super) fn motion(&self, omega: f64, contact_rate: f64) -> ContactMotion {
         let ([v, v1], [turn, turn_rate]) = (self.speed, self.turn);
         let slip = v * contact_rate * self.tangent;
@@ -195,8 +196,8 @@ impl Shape {
 }
 
 impl ContourBounds {
-    /// Bounds of what [`Shape::motion`] gives, as magnitudes: velocity and acceleration of
-    /// the contact relative to the pole, then first and second derivative of the tangent.
+    /// Bounds the magnitudes of [`Shape::motion`]: velocity and acceleration of the contact
+    /// relative to the pole, then first and second derivative of the tangent's direction.
     pub(super) fn motion(&self, omega: f64, contact_rate: f64) -> [f64; 4] {
         let (omega, contact_rate) = (omega.abs(), contact_rate.abs());
         let ([v, v1], [turn, turn_rate]) = (self.speed, self.turn);

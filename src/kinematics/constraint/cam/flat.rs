@@ -11,10 +11,10 @@ use super::contour::{Contour, Shape};
 use crate::kinematics::variation::{add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
-/// The contour's tangent runs along the face: c = sin δ, δ being the angle from the face, the
-/// x-axis of the follower's marker, to the tangent at the contact. Held at zero.
+/// The contour's tangent is parallel to the face: c = sin δ with the angle δ from the face, the
+/// x-axis of the follower's marker, to the tangent at the contact. Its target is zero.
 ///
-/// The sine leaves open on which side of the face the cam is; the estimates decide.
+/// The sine does not tell on which side of the face the cam is; the estimates decide.
 #[derive(Clone, Copy, Debug)]
 pub struct FlatContact {
     /// The cam's contour.
@@ -23,8 +23,8 @@ pub struct FlatContact {
     pub follower: MarkerId,
 }
 
-/// The contact lies in the face: c = n · g, n being the y-axis of the follower's marker and g the
-/// vector from that marker to the contact. Held at zero.
+/// The contact lies in the face: c = n · g with the y-axis n of the follower's marker and the
+/// vector g from that marker to the contact. Its target is zero.
 #[derive(Clone, Copy, Debug)]
 pub struct FlatFace {
     /// The cam's contour.
@@ -33,7 +33,7 @@ pub struct FlatFace {
     pub follower: MarkerId,
 }
 
-/// Sine and cosine of δ.
+/// Returns sine and cosine of δ.
 fn lean(follower: MarkerPose, contact: &Shape) -> (f64, f64) {
     (
         follower.axis.perp(&contact.tangent),
@@ -59,7 +59,7 @@ impl Constraint for FlatContact {
         row.add_joint_unknown(self.contour.column(at), cosine * contact.turn[0]);
     }
 
-    /// cos δ δ̈ − sin δ δ̇².
+    /// Returns cos δ δ̈ − sin δ δ̇².
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
         let follower = at.marker(self.follower);
         let (cam, contact) = self.contour.at(at);
@@ -86,8 +86,8 @@ impl Constraint for FlatContact {
         let (cam, contact) = self.contour.at(at);
         let (sine, _) = lean(follower, &contact);
         let bounds = self.contour.bounds(at, region)?;
-        // |cos(δ + a) − cos δ| ≤ |sin δ| |a| + a²/2, and two at the most: next to nothing while
-        // the contour touches the face.
+        // |cos(δ + a) − cos δ| ≤ |sin δ| |a| + a²/2, at most two; of second order while the contour
+        // touches the face.
         let angle = bounds.tangent + region.turn(follower);
         let cosine = (sine.abs() * angle + 0.5 * angle * angle).min(2.0);
         row.add_direction(cam, cosine);
@@ -112,7 +112,7 @@ struct Face {
     cam: MarkerPose,
     follower: MarkerPose,
     contact: Shape,
-    /// From the follower's marker to the contact.
+    /// Vector from the follower's marker to the contact.
     g: Vector2<f64>,
     normal: Vector2<f64>,
 }
@@ -157,7 +157,7 @@ impl Constraint for FlatFace {
         row.add_joint_unknown(self.contour.column(at), along);
     }
 
-    /// g̈ · n − 2 omega ġ · u − omega² g · n, omega being that of the follower.
+    /// Returns g̈ · n − 2 omega ġ · u − omega² g · n with the follower's omega.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
         let Face {
             cam,
@@ -182,7 +182,7 @@ impl Constraint for FlatFace {
         dot(g, quarter_turn(follower.axis))
     }
 
-    /// The same terms with each factor at its bound.
+    /// Bounds each factor in the terms of gradient and quadratic term.
     fn bend(
         &self,
         at: &Configuration,
@@ -227,7 +227,7 @@ impl Constraint for FlatFace {
 }
 
 impl JointUnknown for FlatContact {
-    /// The point of the contour that reaches furthest towards the face.
+    /// Returns the polar angle of the contour's point that is farthest towards the face.
     fn estimate(&self, at: &Configuration) -> f64 {
         let (cam, follower) = (at.marker(self.contour.cam), at.marker(self.follower));
         let normal = perp(follower.axis);

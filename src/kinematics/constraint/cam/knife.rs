@@ -10,9 +10,9 @@ use crate::kinematics::configuration::ProfileId;
 use crate::kinematics::variation::subtract;
 use crate::mechanism::{Jet3, MarkerId, Mechanism, Number};
 
-/// c = ρ − R(θ), ρ and θ being the polar coordinates of the edge in the cam marker's frame.
+/// c = ρ − R(θ) with the polar coordinates ρ and θ of the edge in the cam marker's frame.
 ///
-/// Not smooth where the edge is at the pole; there the gradient is taken along the x-axis.
+/// It is not smooth where the edge is at the pole; there the gradient is taken along the x-axis.
 #[derive(Clone, Copy, Debug)]
 pub struct KnifeEdge {
     /// The cam's marker: its point is the pole, its x-axis the polar axis.
@@ -26,7 +26,7 @@ pub struct KnifeEdge {
 /// The edge in polar coordinates, and the contour there.
 struct Polar {
     distance: f64,
-    /// From the pole to the edge.
+    /// Unit vector from the pole to the edge.
     radial: Vector2<f64>,
     /// θ \[rad\].
     angle: f64,
@@ -35,12 +35,12 @@ struct Polar {
 }
 
 impl Polar {
-    /// How c changes with the edge's place: radial − R′/ρ across.
+    /// Returns the derivative of c with respect to the edge's point: radial − R′/ρ across.
     fn direction(&self) -> Vector2<f64> {
         self.radial - self.steepness() * perp(self.radial)
     }
 
-    /// R′/ρ.
+    /// Returns R′/ρ.
     fn steepness(&self) -> f64 {
         if self.distance > 0.0 {
             self.contour.first() / self.distance
@@ -88,7 +88,7 @@ impl Constraint for KnifeEdge {
         row.add_direction(at.marker(self.cam), polar.contour.first());
     }
 
-    /// ρ̈ − R″ θ̇² − R′ θ̈, where ρ̈ and θ̈ are those of polar coordinates for q̈ = 0.
+    /// Returns ρ̈ − R″ θ̇² − R′ θ̈ with ρ̈ and θ̈ for q̈ = 0.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
         let polar = self.polar(at);
         let (cam, follower) = (at.marker(self.cam), at.marker(self.follower));
@@ -112,8 +112,8 @@ impl Constraint for KnifeEdge {
         x.hypot(y) - radius
     }
 
-    /// The same terms with each factor at its bound; ρ shrinks by the reach of both points, and
-    /// the radial direction turns by asin(reach/ρ) at the most.
+    /// Bounds each factor in the terms of gradient and quadratic term: ρ shrinks by at most the
+    /// reach of both points, and the radial direction turns by at most asin(reach/ρ).
     fn bend(
         &self,
         at: &Configuration,

@@ -11,16 +11,16 @@ use super::contour::{Contour, Shape};
 use crate::kinematics::variation::{add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
-/// c = e · w, e being the vector from the contact to the roller's centre, w the contour's
-/// tangent (axis X) or outward normal (axis Y) there: the first is held at zero, the second at
-/// the roller's radius.
+/// c = e · w with the vector e from the contact to the roller's centre, and the contour's tangent
+/// (axis X) or outward normal (axis Y) w at the contact. The target is zero for the tangent, the
+/// roller's radius for the normal.
 #[derive(Clone, Copy, Debug)]
 pub struct Roller {
     /// The cam's contour.
     pub contour: Contour,
     /// The marker at the roller's centre.
     pub follower: MarkerId,
-    /// Along which axis of the contact's frame.
+    /// The axis of the contact's frame.
     pub axis: Axis,
 }
 
@@ -38,7 +38,7 @@ struct Touch {
     cam: MarkerPose,
     follower: MarkerPose,
     contact: Shape,
-    /// From the contact to the roller's centre.
+    /// Vector from the contact to the roller's centre.
     e: Vector2<f64>,
     w: Vector2<f64>,
     /// w turned by a quarter turn.
@@ -90,7 +90,7 @@ impl Constraint for Roller {
         row.add_joint_unknown(self.contour.column(at), along);
     }
 
-    /// With Ω the rate of w's direction: ë · w + 2 Ω ė · w⊥ + Ω̇ e · w⊥ − Ω² e · w.
+    /// Returns ë · w + 2 Ω ė · w⊥ + Ω̇ e · w⊥ − Ω² e · w with the rate Ω of w's direction.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
         let Touch {
             cam,
@@ -119,7 +119,7 @@ impl Constraint for Roller {
         }
     }
 
-    /// The roller's radius is positive.
+    /// Returns whether a roller's radius is positive.
     fn admits(&self, value: f64) -> bool {
         match self.axis {
             Axis::X => true,
@@ -127,7 +127,7 @@ impl Constraint for Roller {
         }
     }
 
-    /// The same terms with each factor at its bound.
+    /// Bounds each factor in the terms of gradient and quadratic term.
     fn bend(
         &self,
         at: &Configuration,
@@ -173,8 +173,8 @@ impl Constraint for Roller {
 }
 
 impl JointUnknown for RollerContact {
-    /// The point of the contour that is nearest the roller's centre; for an estimate inside the
-    /// contour the one in its direction, from where it has to come out.
+    /// Returns the polar angle of the contour's point that is nearest the roller's centre. For a
+    /// centre inside the contour it is the centre's own polar angle.
     fn estimate(&self, at: &Configuration) -> f64 {
         let cam = at.marker(self.contour.cam);
         let centre = at.marker(self.follower).point - cam.point;

@@ -1,0 +1,38 @@
+//! Closing a mechanism as a whole on some rows, which may be more than enough, or too few.
+
+use super::part::{Part, SMALL_PART, STARTS};
+use crate::kinematics::state::State;
+use crate::kinematics::system::System;
+
+/// Returns whether the mechanism is small enough for several starts and dense matrices.
+pub(in crate::kinematics) fn is_small(system: &System) -> bool {
+    system.unknowns() <= SMALL_PART
+}
+
+/// Closes the mechanism on these rows from the estimates, or from starts near them. Returns `None`
+/// if they are satisfied, otherwise the largest scaled residual of the nearest pose found, where
+/// the bodies then are.
+pub(in crate::kinematics) fn close_on(
+    system: &System,
+    state: &mut State,
+    rows: &[usize],
+    estimate: &[f64],
+) -> Option<f64> {
+    let mut part = Part::of_all(system, rows);
+    let small = is_small(system);
+    let mut nearest: Option<(f64, Vec<f64>)> = None;
+    for attempt in 0..if small { STARTS } else { 1 } {
+        let mut block_state = state.block_state(system);
+        part.start(&mut block_state, estimate, attempt);
+        if small {
+            part.minimise_growing(&mut block_state);
+        }
+        let gap = part.problem.close(&mut block_state)?;
+        if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
+            nearest = Some((gap, part.problem.read(&block_state)));
+        }
+    }
+    let (gap, q) = nearest?;
+    state.at.set_pose(system.mechanism(), &q);
+    Some(gap)
+}
