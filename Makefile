@@ -50,7 +50,7 @@ help: ## show this list
 demo: setup build ## export, validate and run the example mechanisms
 	@$(PYTHON) demo/demo.py
 
-demo test refresh: export BIELA_BIN := $(CURDIR)/target/release/biela
+demo test refresh test-platforms: export BIELA_BIN := $(CURDIR)/target/release/biela
 test: setup ## run all tests: Rust, documentation, FMPy
 	@if $(CARGO) nextest --version >/dev/null 2>&1; then \
 	    echo '$(CARGO) nextest run --workspace --locked' && $(CARGO) nextest run --workspace --locked && \

@@ -41,7 +41,7 @@ current() {
 
 put() { # PLATFORM/FILE SOURCE
     mkdir -p "$OUT/${1%/*}"
-    sources >"$OUT/${1%/*}/.sources"
+    printf '%s\n' "$BUILT_FROM" >"$OUT/${1%/*}/.sources"
     cp "$2" "$OUT/$1.new"
     mv "$OUT/$1.new" "$OUT/$1"
     local size
@@ -62,6 +62,8 @@ join_mac() { # OUTPUT INPUT...
 
 build() { # PLATFORM
     local path other
+    # Before the build: the sources may change meanwhile.
+    BUILT_FROM=$(sources)
     case $1 in
     linux64) path=$(library x86_64-unknown-linux-gnu libbiela_runtime.so) && put linux64/biela.so "$path" ;;
     aarch64-linux) path=$(library aarch64-unknown-linux-gnu libbiela_runtime.so) && put aarch64-linux/biela.so "$path" ;;

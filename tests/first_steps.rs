@@ -82,9 +82,9 @@ fn who_forgets_to_move_it_is_told_how() {
         let mut arguments = vec!["run", "shaper.toml", "--animate", "shaper.html"];
         arguments.extend(still);
         let (_, message, _) = biela(SHAPER, &arguments);
-        let example = "note: nothing moves; --drive or --input say how drivers move, for example \
-                       --drive 'motor = 30*deg + 2*pi*t'\n";
-        assert_eq!(message, example);
+        let note = "note: nothing moves; --drive or --input say how drivers move, for example \
+                    --drive 'motor = 30*deg + 2*pi*t'\nwrote shaper.html\n";
+        assert_eq!(message, note);
     }
     let drive = ["--drive", "motor = 30*deg + 2*pi*t"];
     let moved = [
@@ -95,23 +95,23 @@ fn who_forgets_to_move_it_is_told_how() {
         drive[0],
         drive[1],
     ];
-    assert_eq!(biela(SHAPER, &moved).1, "");
+    assert_eq!(biela(SHAPER, &moved).1, "wrote shaper.html\n");
 }
 
 #[test]
-fn a_picture_that_nobody_named_is_told_of() {
+fn written_pictures_are_told_of() {
     let (_, message, folder) = biela(SHAPER, &["draw", "shaper.toml"]);
     assert_eq!(message, "wrote shaper.svg\n");
     assert!(folder.path().join("shaper.svg").is_file());
     let (_, message, _) = biela(SHAPER, &["draw", "shaper.toml", "-o", "a.svg"]);
-    assert_eq!(message, "");
+    assert_eq!(message, "wrote a.svg\n");
 }
 
 #[test]
 fn plots_show_what_moves() {
     let run = ["run", "shaper.toml", "-d", "motor = 2*pi*t", "-p", "a.svg"];
     let (_, message, folder) = biela(SHAPER, &run);
-    assert_eq!(message, "");
+    assert_eq!(message, "wrote a.svg\n");
     let picture = std::fs::read_to_string(folder.path().join("a.svg")).expect("it is drawn");
     for (name, shown) in [
         ("crank.phi", true),
