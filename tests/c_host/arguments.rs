@@ -132,7 +132,6 @@ SetReal A 2 @crank_angle.position,@rocker_length 1.3,0 -> cannot be set to 0: ex
 const REFUSED_IN_EXCHANGE: &str = "
 SetTime A nan -> `time` is NaN
 SetTime A inf -> `time` is inf
-SetTime A 1.1 -> the time 1.1 s is beyond the stop time 1 s
 CompletedIntegratorStep A NULL room -> `enterEventMode` is a null pointer
 CompletedIntegratorStep A room NULL -> `terminateSimulation` is a null pointer
 SetContinuousStates A 1 -> there are none

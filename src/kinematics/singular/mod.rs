@@ -19,7 +19,7 @@
 //! | [`interpolate`] | the motion through a change point |
 //! | [`crossings`] | the crossings of a pose |
 //! | [`obstacle`] | the position that stops the motion along a path |
-//! | [`approach`] | the warning of a singular position |
+//! | [`approach`](mod@approach) | the warning of a singular position |
 
 mod approach;
 mod crossings;
