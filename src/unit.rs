@@ -29,7 +29,7 @@ pub struct Dimension {
 pub struct DisplayUnit {
     /// Its symbol, as in `display = "mm"`.
     pub name: &'static str,
-    /// What an SI value is multiplied by to be shown.
+    /// Factor from an SI value to the value shown.
     pub factor: f64,
     /// Its dimension.
     pub dimension: Dimension,

@@ -94,3 +94,55 @@ fn a_long_chain_moves_as_its_first_loop() {
         }
     }
 }
+
+#[test]
+fn a_wheel_rolls_on_either_side_of_a_tilted_track() {
+    const RADIUS: f64 = 0.3;
+    let (tilt, origin) = (0.5_f64, [0.1, -0.2]);
+    for (side, sign) in [("above", 1.0), ("below", -1.0)] {
+        let mechanism = parse(&format!(
+            "format = 1\nname = 'wheel'\n[ground.markers]\ntrack = [0.1, -0.2, {tilt}]\n\
+             [bodies.wheel]\nmarkers = {{ C = [0, 0] }}\nestimate = [0.1, {}, 0.5]\n[joints]\n\
+             W = {{ type = 'rolling', markers = ['wheel.C', 'ground.track'], radius = {RADIUS}, \
+             side = '{side}' }}\n[drivers]\n\
+             u = {{ coordinate = 'x', markers = ['ground.track', 'wheel.C'], start = 0 }}\n",
+            -0.2 + sign * RADIUS
+        ));
+        let (mut solver, mut path) = assembled(&mechanism);
+        let mut rates = Rates::new(3);
+        for travel in [0.4, -3.0, 20.0] {
+            straight_to(&solver, &mut path, travel);
+            solver
+                .track(&path)
+                .expect("a wheel rolls as far as it likes");
+            let along = Jet::new(travel, [1.5, -0.5]);
+            solver
+                .solve_rates(|_| along, &mut rates)
+                .expect("a wheel on its track has a regular Jacobian");
+            let (sine, cosine) = tilt.sin_cos();
+            let state = [
+                solver.pose().q.as_slice(),
+                rates.velocity(),
+                rates.acceleration(),
+            ];
+            for (order, way) in [along.value, along.first(), along.second()]
+                .into_iter()
+                .enumerate()
+            {
+                let at_rest = if order == 0 { 1.0 } else { 0.0 };
+                let truth = [
+                    at_rest * (origin[0] - sign * RADIUS * sine) + way * cosine,
+                    at_rest * (origin[1] + sign * RADIUS * cosine) + way * sine,
+                    at_rest * tilt - sign * way / RADIUS,
+                ];
+                for (found, truth) in state[order].iter().zip(truth) {
+                    // Some ulp of an angle of up to 67 rad.
+                    assert!(
+                        (found - truth).abs() < 1e-13,
+                        "{side}: {found} is not {truth}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! What a bad mechanism file is answered, message by message.
+//! Answers to bad mechanism files, message by message.
 //!
 //! Each file in `tests/diagnostics` is bad in one way; its name is the code of that problem, with
 //! a word after an underscore where a code has several files.
@@ -59,7 +59,7 @@ fn each_bad_file_is_answered_as_reviewed() {
             "{stem}.toml has no `{code}`"
         );
         let shown = match diagnostics.as_slice() {
-            // Of very many the last ones tell enough.
+            // The last ones of very many tell enough.
             [.., last, end] if diagnostics.len() > 20 => &[last.clone(), end.clone()],
             all => all,
         };

@@ -126,7 +126,7 @@ fn plots_show_what_moves() {
     ] {
         assert_eq!(picture.contains(&format!(">{name}<")), shown, "{name}");
     }
-    // What is asked for is shown.
+    // Variables that are asked for are shown.
     let all = [&run[..], &["-v", "ram"]].concat();
     let (_, _, folder) = biela(SHAPER, &all);
     let picture = std::fs::read_to_string(folder.path().join("a.svg")).expect("it is drawn");

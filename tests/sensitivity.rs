@@ -6,11 +6,11 @@ use biela::fmi::{Causality, Interface, Kind, Order, Quantity, Variable};
 use common::{Instance, instance_of, shipped, stems};
 
 /// A quarter of the way over which differences of fourth order are taken, in units of the known.
-/// Of lengths of a centimetre it is a thousandth; the fourth power of that is their truncation,
-/// and they carry rounding of 1e-16 / 1e-5 times the condition.
+/// It is a thousandth of lengths of a centimetre; the truncation is the fourth power of that, and
+/// the rounding 1e-16 / 1e-5 times the condition.
 const STEP: f64 = 1e-5;
-/// What that leaves of a derivative, relative to the largest of the same order of time that any
-/// output has; accelerations near singular positions have the largest third derivatives.
+/// Error of a derivative by these differences, relative to the largest of the same order of time
+/// that any output has; accelerations near singular positions have the largest third derivatives.
 const DIFFERENCE: f64 = 1e-6;
 
 fn references(instance: &Instance, which: impl Fn(&Variable<Quantity>) -> bool) -> Vec<u32> {

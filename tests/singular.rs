@@ -284,7 +284,7 @@ proptest! {
                     prop_assert!((found - expected).abs() < 1e-12, "{found} {expected}");
                     prop_assert!((point.s * TAU - expected).abs() < 1e-12);
                     prop_assert_eq!(&point.bodies, &["body `coupler`", "body `rocker`"]);
-                    // Where it stands is near, and the way back is open.
+                    // Its place is near, and the way back is open.
                     let near = (solver.pose().drivers[0] - crank) * way.signum();
                     prop_assert!(near <= found && near > found - 1e-9);
                     straight_to(&solver, &mut path, crank);

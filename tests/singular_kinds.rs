@@ -1,4 +1,4 @@
-//! What is crossed, what is a dead point, and what is refused by name, on mechanisms of all kinds
+//! Positions that are crossed, dead points, and refusals by name, on mechanisms of all kinds
 //! of blocks.
 
 mod common;

@@ -46,7 +46,7 @@ impl Watched {
         }
     }
 
-    /// What stderr has been told.
+    /// Text on stderr so far.
     fn told(&self) -> String {
         std::fs::read_to_string(self.folder.path().join("stderr")).expect("it is text")
     }

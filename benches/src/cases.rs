@@ -1,4 +1,4 @@
-//! What can be measured, by name; `README.md` lists the names.
+//! Cases to measure, by name; `README.md` lists the names.
 
 use std::time::Duration;
 
@@ -139,6 +139,6 @@ fn cycles(mut cycle: Cycle) -> Run {
 
 /// Sets up a mechanism from its text to its first pose.
 fn set_ups(text: String) -> Run {
-    // What is made is dropped outside of the time.
+    // The result is dropped outside of the time.
     Box::new(move |times| (0..times).map(|_| timed(|| set_up(&text)).1).sum())
 }

@@ -12,7 +12,7 @@ pub struct Comparison {
     pub mark: &'static str,
     /// Case of biela.
     pub biela: Case,
-    /// What biela is measured by: a case in C, or another one of biela.
+    /// Yardstick: a case in C, or another one of biela.
     pub yardstick: Case,
 }
 

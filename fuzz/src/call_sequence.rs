@@ -72,7 +72,7 @@ impl Value {
 ///
 /// # Panics
 ///
-/// Where biela is wrong.
+/// A fault of biela.
 pub fn run(data: &[u8]) {
     // Data that end give the first of all choices.
     let _ = attempt(&mut Unstructured::new(data));

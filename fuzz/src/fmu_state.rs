@@ -9,7 +9,7 @@ use crate::{Instance, instance, reals, shipped};
 ///
 /// # Panics
 ///
-/// Where biela is wrong.
+/// A fault of biela.
 pub fn run(data: &[u8]) {
     let mut data = Unstructured::new(data);
     // Data that end give zeros.
@@ -86,7 +86,7 @@ fn bring_on(instance: &mut Instance, how_far: u8) {
     }
 }
 
-/// What a host might do next; it may fail, but not break.
+/// Does what a host might do next; it may fail, but not break.
 fn go_on(instance: &mut Instance) {
     let reals = reals(instance);
     let _ = instance.reals(&reals).map(|values| values.sum::<f64>());

@@ -15,7 +15,7 @@ const LONGEST: usize = 1 << 14;
 ///
 /// # Panics
 ///
-/// Where biela is wrong.
+/// A fault of biela.
 pub fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;

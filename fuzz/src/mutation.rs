@@ -29,7 +29,7 @@ impl Chance {
     }
 }
 
-/// What numbers and brackets of a text are replaced by.
+/// Replacements of numbers and brackets of a text.
 const TOKENS: [&str; 24] = [
     "0",
     "-1",

@@ -1,4 +1,4 @@
-//! What tests and benches need beside their own code.
+//! Set-up of tests and benches: the program, the library and C code that they use.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

@@ -293,9 +293,10 @@ fn describe_modes(mechanism: &Mechanism, modes: &Modes) -> String {
 }
 
 fn with_unit(kind: CoordinateKind, value: f64) -> String {
-    match kind {
-        CoordinateKind::Angle => format!("{:.6} deg", tidy(value.to_degrees())),
-        _ => format!("{:.6} m", tidy(value)),
+    if kind.is_angle() {
+        format!("{:.6} deg", tidy(value.to_degrees()))
+    } else {
+        format!("{:.6} m", tidy(value))
     }
 }
 

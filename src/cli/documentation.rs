@@ -17,7 +17,7 @@ use crate::drawing::{Scene, Sheet, png, svg};
 use crate::fmi::{Causality, Document, Kind, Quantity, Variable, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
-    CoordinateKind, DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of,
+    DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of,
 };
 
 const MAIN: &str = include_str!("documentation.html");
@@ -97,7 +97,7 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     let mut driven = Mechanism::clone(&own);
     let moves = |motion: &Prescribed| motion.uses_time();
     let is_moved = own.drivers.iter().any(|d| d.motion().is_some_and(moves));
-    let angle = |driver: &usize| own.drivers[*driver].coordinate.kind == CoordinateKind::Angle;
+    let angle = |driver: &usize| own.drivers[*driver].coordinate.kind.is_angle();
     let inputs = || (0..ranges.len()).filter(|driver| ranges[*driver].is_some());
     let first = inputs().find(angle).or_else(|| inputs().next());
     let (duration, moving) = match first.and_then(|first| Some((first, ranges[first].as_ref()?))) {

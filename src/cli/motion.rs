@@ -56,7 +56,7 @@ impl Motion {
     ///
     /// # Errors
     ///
-    /// What stops the mechanism, and where.
+    /// Cause of the mechanism's stop, and its place.
     pub(super) fn advance(&mut self, time: f64) -> Result<(), String> {
         while self.solver.pose().time < time {
             let start = self.solver.pose().time;

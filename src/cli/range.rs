@@ -210,9 +210,10 @@ fn about(kind: CoordinateKind, value: f64) -> String {
 }
 
 fn in_unit(kind: CoordinateKind, value: f64) -> (f64, &'static str) {
-    match kind {
-        CoordinateKind::Angle => (value.to_degrees(), "deg"),
-        _ => (value, "m"),
+    if kind.is_angle() {
+        (value.to_degrees(), "deg")
+    } else {
+        (value, "m")
     }
 }
 
@@ -250,11 +251,7 @@ fn turning(mechanism: &Mechanism, range: &Motion) -> impl Iterator<Item = usize>
 }
 
 fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
-    let kind = mechanism.drivers[driver.index()].coordinate.kind;
-    let unit = match kind {
-        CoordinateKind::Angle => Unit::RADIAN,
-        _ => Unit::METRE,
-    };
+    let unit = mechanism.drivers[driver.index()].coordinate.kind.unit();
     let factor = unit.display.map_or(1.0, |display| display.factor);
     let line = |name: &str, look: usize, of: &dyn Fn(&Sample) -> f64| Line {
         name: name.to_owned(),

@@ -19,9 +19,7 @@ use super::plot::Plot;
 use super::progress::Progress;
 use super::recorder::Recorder;
 use super::stdout::{STDOUT, is_stdout};
-use crate::mechanism::{
-    CoordinateKind, Driver, DriverSource, Mechanism, Motion as Prescribed, shown,
-};
+use crate::mechanism::{Driver, DriverSource, Mechanism, Motion as Prescribed, shown};
 
 /// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
@@ -271,12 +269,11 @@ fn example(driver: &Driver) -> Option<String> {
     let DriverSource::Input { start } = driver.source else {
         return None;
     };
-    let motion = match driver.coordinate.kind {
-        CoordinateKind::Angle => format!("{}*deg + 2*pi*t", round(start.to_degrees())),
-        _ => {
-            let velocity = round(0.1 * start.abs().max(0.01));
-            format!("{} + {velocity}*t", round(start))
-        }
+    let motion = if driver.coordinate.kind.is_angle() {
+        format!("{}*deg + 2*pi*t", round(start.to_degrees()))
+    } else {
+        let velocity = round(0.1 * start.abs().max(0.01));
+        format!("{} + {velocity}*t", round(start))
     };
     let name = &driver.name;
     Some(format!(", for example --drive '{name} = {motion}'"))

@@ -6,22 +6,22 @@ use super::palette::Colour;
 use super::sheet::{CAPITALS, Layer, Mark, Sheet, Stroke, Text, WIDTH};
 use super::ticks::Ticks;
 
-/// What there is to plot.
+/// Chart: panels of lines over a common x-axis.
 #[derive(Clone, Debug)]
 pub struct Chart {
-    /// What the chart is about, in a word.
+    /// Title, in a word.
     pub title: String,
-    /// What it shows, in one line; may be empty.
+    /// Subtitle in one line; may be empty.
     pub description: String,
-    /// What the x-axis has.
+    /// Quantity on the x-axis.
     pub x: Axis,
-    /// Where along the x-axis the points of all lines are.
+    /// Values of x, common to all lines.
     pub at: Vec<f64>,
     /// The panels from top to bottom.
     pub panels: Vec<Panel>,
 }
 
-/// What is measured along an axis.
+/// Quantity on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// The quantity, in a word or two.
@@ -33,7 +33,7 @@ pub struct Axis {
 /// The lines that have a y-axis in common.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What the y-axis has.
+    /// Quantity on the y-axis.
     pub y: Axis,
     /// The lines.
     pub lines: Vec<Line>,
@@ -50,7 +50,7 @@ pub struct Line {
     pub values: Vec<f64>,
 }
 
-/// What stays free at the edges.
+/// Margins of the chart.
 const MARGIN: f64 = 14.0;
 /// From one line of text to the next.
 const LINE_HEIGHT: f64 = 17.0;
@@ -183,7 +183,7 @@ enum Align {
 /// A chart while it is drawn.
 struct Plot<'a> {
     chart: &'a Chart,
-    /// Where the panels begin.
+    /// Left edge of the panels.
     left: f64,
     x: [f64; 2],
     marks: Vec<Mark>,
@@ -217,7 +217,7 @@ impl Plot<'_> {
         self.marks.push(Mark::line(layer, outline, stroke));
     }
 
-    /// What the panel has and its lines' names, wrapped; returns where the panel begins.
+    /// Writes the panel's quantity and its lines' names, wrapped; returns the top of the panel.
     fn legend(&mut self, panel: &Panel, scale: &Scale, top: f64) -> f64 {
         let mut at = Point::new(MARGIN, top + CAPITALS);
         self.text(&scale.header, at, Align::Start);
@@ -310,7 +310,7 @@ fn look(number: usize) -> Stroke {
     }
 }
 
-/// Of many points the first, lowest, highest and last within each small step of x: the picture
+/// Returns the first, lowest, highest and last point within each small step of x: the picture
 /// stays the same.
 fn thinned(points: &[Point]) -> Vec<Point> {
     if points.len() <= THINNED {

@@ -1,11 +1,10 @@
 //! A scene at one pose, fitted on a sheet.
 
-use super::anchor::Disc;
 use super::outline::{Outline, Point};
 use super::palette::Colour;
 use super::scene::Scene;
 use super::sheet::{Bounds, CAPITALS, Layer, MARGIN, Mark, Sheet, Stroke, Text, WIDTH};
-use super::symbol::{Pen, Symbol};
+use super::symbol::{Pen, Symbol, bounds};
 
 /// Greatest height of a sheet as a part of the width.
 const MOST_HEIGHT: f64 = 0.8125;
@@ -85,17 +84,6 @@ pub(super) fn extent<'a>(scene: &Scene, poses: impl Iterator<Item = &'a [f64]>) 
     let size = all.size();
     // A mechanism without any length is drawn at some scale.
     size.map(|length| length.max(1e-6 * size.max()))
-}
-
-fn bounds<'a>(symbols: impl IntoIterator<Item = &'a Symbol>, q: &[f64]) -> Bounds {
-    let mut bounds = Bounds::NONE;
-    for symbol in symbols {
-        for Disc { center, radius } in symbol.shape().extent() {
-            let size = Point::repeat(2.0 * radius);
-            bounds.join(&Bounds::about(center.placed(q).point, size));
-        }
-    }
-    bounds
 }
 
 /// A sheet whose origin is the origin of the mechanism.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::kinematics::{Curve, Path, Solver};
-use crate::mechanism::{CoordinateKind, Motion};
+use crate::mechanism::Motion;
 
 /// Poses along a whole motion: curves look smooth.
 const STEPS: usize = 240;
@@ -35,7 +35,7 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
     let crank = mechanism
         .drivers
         .iter()
-        .position(|driver| driver.coordinate.kind == CoordinateKind::Angle);
+        .position(|driver| driver.coordinate.kind.is_angle());
     let mut poses = vec![home.q.clone()];
     if moves {
         let duration = (mechanism.simulation.stop - home.time).max(0.0);

@@ -170,21 +170,32 @@ impl CoordinateKind {
         }
     }
 
+    /// Whether its values are angles; they are lengths otherwise.
+    #[must_use]
+    pub fn is_angle(self) -> bool {
+        match self {
+            Self::Angle => true,
+            Self::X | Self::Y | Self::Distance => false,
+        }
+    }
+
     /// Returns the unit of its values.
     #[must_use]
     pub fn unit(self) -> Unit {
-        match self {
-            Self::Angle => Unit::RADIAN,
-            Self::X | Self::Y | Self::Distance => Unit::METRE,
+        if self.is_angle() {
+            Unit::RADIAN
+        } else {
+            Unit::METRE
         }
     }
 
     /// Returns a value as text with its unit.
     #[must_use]
     pub fn show(self, value: f64) -> String {
-        match self {
-            Self::Angle => format!("{value:.9} rad ({:.6} deg)", value.to_degrees()),
-            _ => format!("{value:.9} m"),
+        if self.is_angle() {
+            format!("{value:.9} rad ({:.6} deg)", value.to_degrees())
+        } else {
+            format!("{value:.9} m")
         }
     }
 }
@@ -251,6 +262,13 @@ pub enum JointKind {
         /// Side of the rack on which the pinion is.
         side: RackSide,
     },
+    /// A wheel, which has marker i, that rolls on the x-axis of marker j, the track, and stays on it.
+    Rolling {
+        /// Radius of the wheel \[m\].
+        radius: Expression,
+        /// Side of the track on which the wheel is.
+        side: RackSide,
+    },
     /// A follower, which has marker j, on the contour of a cam, which has marker i.
     Cam {
         /// Part of the follower that touches the cam.
@@ -293,12 +311,12 @@ impl WheelSizes {
     }
 }
 
-/// Side of a rack on which its pinion rolls.
+/// Side of a rack, or of a track, on which a wheel rolls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RackSide {
-    /// On the +y side of the rack's marker.
+    /// The side of the y-axis of the rack's marker.
     Above,
-    /// On the −y side of the rack's marker.
+    /// The other side.
     Below,
 }
 

@@ -33,7 +33,7 @@ fn check_describes_a_mechanism() {
     );
 }
 
-/// What stands behind the line that starts with `heading`.
+/// Returns the text behind the line that starts with `heading`.
 fn behind<'a>(text: &'a str, heading: &str) -> &'a str {
     let (_, behind) = text.split_once(heading).expect("it is there");
     behind.split_once('\n').expect("there is more").1
@@ -155,7 +155,7 @@ fn check_tells_scripts_what_it_finds() {
         let mut all = vec!["check", "--format", "json"];
         all.extend(arguments);
         let assert = biela(&all).code(code);
-        // Of a file that cannot be read stderr tells as ever.
+        // stderr names a file that cannot be read, as ever.
         assert_eq!(stderr(&assert).is_empty(), code != 2);
         serde_json::from_str::<serde_json::Value>(&stdout(&assert)).unwrap()
     };

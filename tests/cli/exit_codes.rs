@@ -1,4 +1,4 @@
-//! What is wrong with files and arguments, and the exit code that says so.
+//! Exit codes for faults of files and arguments.
 
 use crate::program::{altered, biela, stderr, stdout};
 
@@ -44,7 +44,7 @@ fn a_mechanism_without_driver_exits_with_1_and_says_what_is_loose() {
     let driver = "crank_angle = { coordinate = \"angle\", markers = [\"ground.O2\", \"crank.O\"], start = \"60*deg\" }";
     let file = altered(folder.path(), "four_bar", &[(driver, "")]);
     let assert = biela(&["check", &file]).code(1);
-    // What can be counted is shown all the same.
+    // The counts are shown all the same.
     assert!(stdout(&assert).contains("constraints            8"));
     assert!(stderr(&assert).contains("free to move: body `crank`"));
 }
@@ -256,7 +256,7 @@ fn a_full_disk_changes_no_status_but_that_of_results() {
         let ended = command.args(arguments).stderr(full()).output().unwrap();
         assert_eq!(ended.status.code(), Some(status), "{arguments:?}");
     }
-    // What is held back until a line or the program ends is missed as well.
+    // The loss of output that is held back until a line or the program ends counts as well.
     for arguments in [
         &["check", "mechanisms/tlv.toml"][..],
         &["run", "mechanisms/tlv.toml"],

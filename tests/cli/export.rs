@@ -60,7 +60,7 @@ fn export_is_reproducible_and_dated_only_on_demand() {
         std::fs::read(path).unwrap()
     };
     let first = export("a.fmu", None);
-    // What is set to nothing counts as not set.
+    // An empty value counts as not set.
     assert!(first == export("b.fmu", Some("")));
     assert!(first != export("c.fmu", Some("1700000000")));
     assert!(export("d.fmu", Some("1700000000")) == export("e.fmu", Some("1700000000")));
@@ -85,7 +85,7 @@ fn only_shared_libraries_of_their_platform_are_packed() {
         let file = "mechanisms/tlv.toml";
         biela(&["export", file, "-o", fmu, "--runtime", libraries])
     };
-    // What files begin with, by the standards of their formats.
+    // First bytes of files, by the standards of their formats.
     let kinds = [
         ("linux64/biela.so", &b"\x7fELF\x02\x01\x01"[..]),
         ("win64/biela.dll", b"MZ\x90\0"),

@@ -1,4 +1,4 @@
-//! What the program tells of itself, of its file format and to shells.
+//! Help texts, the schema of the file format, and completions for shells.
 
 use crate::program::{biela, stderr, stdout};
 

@@ -100,7 +100,7 @@ fn two_results_have_two_places() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     altered(folder, "tlv", &[]);
-    // Of files that are not there yet.
+    // The files are not there yet.
     refused(
         folder,
         &["run", "tlv.toml", "-o", "a.html", "--animate", "./a.html"],

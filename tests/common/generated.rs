@@ -8,7 +8,7 @@ pub const BAR: f64 = 0.4;
 /// Angle of its bars at the start \[rad\].
 pub const BAR_ANGLE: f64 = PI / 6.0;
 
-/// Where the pivots of the rockers of a [`chain`] are on the ground.
+/// Pivots on ground of the rockers of a [`chain`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ground {
     /// Each [`SPACING`] to the right of the one before.

@@ -39,7 +39,7 @@ pub(crate) struct Exact {
     pub(crate) range: (f64, f64),
 }
 
-/// Where a dyad closes a triangle, its angle comes from the law of cosines; the sign is the one
+/// The angle of a dyad that closes a triangle comes from the law of cosines; the sign is the one
 /// of the assembly mode of the file's estimates.
 pub(crate) const EXACT: [Exact; 5] = [
     Exact {

@@ -108,7 +108,7 @@ fn lines_of_a_chart_are_where_their_values_are() {
         let expected = first[1] + part * (last[1] - first[1]);
         assert!((point[1] - expected).abs() < 0.02, "{point:?}");
     }
-    // Where a value is infinite the line has a gap: it starts once, in the middle.
+    // An infinite value leaves a gap in the line: it starts once, in the middle.
     let gap = svg[start..]
         .split("<path d=\"")
         .nth(11)

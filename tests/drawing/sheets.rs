@@ -104,7 +104,7 @@ fn long_chains_get_room_for_their_bars_and_names() {
     for body in &solver.mechanism().bodies {
         assert!(labels.iter().any(|l| l.text == body.name), "{}", body.name);
     }
-    // Where there is no room the names of bodies give way, not that of the driver.
+    // Without room the names of bodies give way, not that of the driver.
     let sheet = Sheet::small(&scene, &solver.pose().q);
     let labels = check_picture("chain", &svg::write(&sheet, sheet.width(), false));
     check_apart("chain", &labels);

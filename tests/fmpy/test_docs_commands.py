@@ -142,6 +142,17 @@ def test_links_lead_somewhere(page):
             assert anchor in anchors(linked), f"{page_name(page)}: {target}"
 
 
+def test_the_inside_names_files_that_exist():
+    page = ROOT / "docs" / "inside.md"
+    named = re.findall(r"`([\w./*-]+/[\w./*-]+)`", page.read_text(encoding="utf-8"))
+    # A path begins at the top, or in one of the folders that a row is about.
+    homes = [ROOT, ROOT / "src", ROOT / "src/kinematics", ROOT / "src/mechanism", ROOT / "src/fmi", ROOT / "src/drawing"]
+    assert len(named) > 20
+    for path in named:
+        found = [match for home in homes for match in home.glob(path)]
+        assert found or "NAME" in path, path
+
+
 def anchors(page):
     """The anchors of a page's headings, made as on GitHub."""
     headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)

@@ -39,6 +39,7 @@ JOINT_TYPES = [
     "gear",
     "belt",
     "rack_and_pinion",
+    "rolling",
     "cam",
 ]
 

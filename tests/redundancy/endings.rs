@@ -81,6 +81,6 @@ fn a_redundancy_that_ends_on_the_way_stops_the_mechanism_there() {
     let theta = 2.0 * (1e-9_f64 * 0.05 / 0.01).powf(1.0 / 40.0).asin();
     let reached = solver.pose().drivers[0];
     assert!((TAU / 4.0 - reached - theta).abs() < 1e-3, "{reached}");
-    // What is told is what was found to be open beyond.
+    // The message names the joint that was found open beyond.
     assert!(open.gap > 5e-11, "{open}");
 }

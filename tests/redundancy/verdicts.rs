@@ -19,7 +19,7 @@ fn solve(text: &str) -> Result<Solver, Error> {
     Ok(solver)
 }
 
-/// What is to be said of a mechanism.
+/// Expected verdict on a mechanism.
 enum Verdict {
     /// It runs, with so many of how many equations of these redundant.
     Redundant(&'static [(&'static str, usize, usize)]),

@@ -1,4 +1,4 @@
-//! What an FMU says of redundant constraints.
+//! Warnings of an FMU with redundant constraints.
 
 use std::f64::consts::TAU;
 use std::sync::{Arc, Mutex};
@@ -8,7 +8,7 @@ use biela::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
 use crate::common::parse;
 use crate::mechanisms::parallelogram;
 
-/// What was said above is said in the FMU's log, once.
+/// The same is in the FMU's log, once.
 #[test]
 fn the_host_is_warned_once() {
     struct Warnings(Arc<Mutex<Vec<String>>>);

@@ -1,4 +1,4 @@
-//! What closes, and where.
+//! Mechanisms that close, with their poses.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -11,7 +11,7 @@ use crate::{Case, case};
 
 pub(crate) fn cases() -> Vec<Case> {
     let root = 3_f64.sqrt();
-    // Of the link's triangle: the crank's tip (0, 1) is √17 from (4, 0).
+    // In the link's triangle the crank's tip (0, 1) is √17 from (4, 0).
     let diagonal = 17_f64.sqrt();
     let direction = (-1_f64).atan2(4.0) + PI;
     vec![

@@ -1,4 +1,4 @@
-//! What is proved not to close, and by how much.
+//! Mechanisms that are proved not to close, with their gaps.
 
 use crate::Expected::Impossible;
 use crate::mechanisms::{

@@ -19,7 +19,7 @@ use biela::kinematics::{Error, OpenJoint, Path, Solver, Verdict};
 use biela::mechanism::{Mechanism, Source};
 use common::parse;
 
-/// What is expected.
+/// Expected verdict.
 enum Expected {
     /// It closes: some coordinates, such as `rocker.phi`.
     Closes(Vec<(&'static str, f64)>),

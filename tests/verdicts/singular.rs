@@ -1,4 +1,4 @@
-//! What closes in a singular position, or nearly.
+//! Mechanisms that close in a singular position, or nearly.
 
 use crate::Expected::{NearlySingular, Singular};
 use crate::mechanisms::{cranked, four_bar, linked, upright};

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::NEARLY_SINGULAR;
 use crate::cli::error::Error;
 use crate::kinematics::{self, Element, Path, Rates, Solver, System};
-use crate::mechanism::{CoordinateKind, Diagnostic, DriverSource, Mechanism, Source};
+use crate::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
 
 /// Returns the report on a file, in SI units, and the outcome of the command.
 ///
@@ -97,7 +97,7 @@ fn describe(mechanism: &Arc<Mechanism>) -> Value {
         json!({
             "name": driver.name,
             "input": matches!(driver.source, DriverSource::Input { .. }),
-            "unit": unit(driver.coordinate.kind),
+            "unit": driver.coordinate.kind.unit().name,
         })
     });
     json!({
@@ -127,7 +127,7 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
             json!({
                 "name": measure.name,
                 "value": solver.measure(index, &still).value,
-                "unit": unit(measure.coordinate.kind),
+                "unit": measure.coordinate.kind.unit().name,
             })
         });
     let texts = |texts: &mut dyn Iterator<Item = String>| texts.collect::<Vec<_>>();
@@ -136,7 +136,7 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
         "drivers": drivers.map(|(driver, value)| json!({
             "name": driver.name,
             "value": value,
-            "unit": unit(driver.coordinate.kind),
+            "unit": driver.coordinate.kind.unit().name,
         })).collect::<Vec<_>>(),
         "bodies": poses(mechanism, &pose.q),
         "measures": measures.collect::<Vec<_>>(),
@@ -167,11 +167,4 @@ fn poses(mechanism: &Mechanism, q: &[f64]) -> Value {
     bodies
         .map(|(body, q)| json!({ "name": body.name, "x": q[0], "y": q[1], "phi": q[2] }))
         .collect()
-}
-
-fn unit(kind: CoordinateKind) -> &'static str {
-    match kind {
-        CoordinateKind::Angle => "rad",
-        _ => "m",
-    }
 }

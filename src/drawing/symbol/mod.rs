@@ -59,6 +59,18 @@ pub(super) trait Shape {
     }
 }
 
+/// Returns the rectangle around everything that some symbols draw to scale at a pose \[m\].
+pub(super) fn bounds<'a>(symbols: impl IntoIterator<Item = &'a Symbol>, q: &[f64]) -> Bounds {
+    let mut bounds = Bounds::NONE;
+    for symbol in symbols {
+        for Disc { center, radius } in symbol.shape().extent() {
+            let size = Point::repeat(2.0 * radius);
+            bounds.join(&Bounds::about(center.placed(q).point, size));
+        }
+    }
+    bounds
+}
+
 macro_rules! symbols {
     ($composer:ident, $ends:ident:
      $($module:ident: $name:ident $(, $joint:pat => $compose:expr)*;)+) => {
@@ -114,6 +126,7 @@ symbols! { composer, ends:
         belt::compose(composer, ends, sizes, *crossed);
     rack: Rack, JointKind::RackAndPinion { radius, side } =>
         rack::compose(composer, ends, radius, *side);
+    track: Track, JointKind::Rolling { radius, .. } => track::compose(composer, ends, radius);
     cam: Cam, JointKind::Cam { follower, profile } =>
         cam::compose(composer, ends, follower, profile);
     knife: Knife;

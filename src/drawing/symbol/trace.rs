@@ -23,7 +23,7 @@ const ROOM: f64 = 0.25;
 
 /// Returns the rectangle around the mechanism, with some room for open paths \[m\].
 pub(super) fn frame(composer: &Composer) -> Bounds {
-    let mut bounds = Bounds::NONE;
+    let mut bounds = bounds(&composer.symbols, composer.q);
     composer.markers().for_each(|(_, point)| bounds.add(point));
     let room = Point::repeat(ROOM * (bounds.high - bounds.low).max());
     Bounds {

@@ -8,7 +8,7 @@ use crate::kinematics::path::{Curve, Path};
 use crate::kinematics::singular::{SingularPoint, bodies_in_line};
 use crate::kinematics::state::{Pose, State};
 use crate::kinematics::system::System;
-use crate::mechanism::{CoordinateKind, DriverId};
+use crate::mechanism::DriverId;
 
 /// The range of a driver from one pose, in both directions.
 #[derive(Clone, Debug, PartialEq)]
@@ -158,7 +158,8 @@ impl Explorer<'_> {
     fn explore(&mut self, sign: f64, samples: &mut Vec<Sample>) -> End {
         let index = self.driver.index();
         let from = self.start.drivers[index];
-        let kind = self.model.system.mechanism().drivers[index].coordinate.kind;
+        let driver = &self.model.system.mechanism().drivers[index];
+        let is_angle = driver.coordinate.kind.is_angle();
         let size = self.state.at.size();
         let per_turn = self.settings.samples.max(1);
         let mut path = held_path(self.start);
@@ -166,7 +167,7 @@ impl Explorer<'_> {
         let mut off = 0.0_f64;
         loop {
             count += 1;
-            off = if kind == CoordinateKind::Angle {
+            off = if is_angle {
                 TAU * f64::from(count) / f64::from(per_turn)
             } else {
                 off + 2.0 * size.max(off) / f64::from(per_turn)
@@ -190,7 +191,7 @@ impl Explorer<'_> {
                 }
                 Ok(_) => {}
             }
-            if kind != CoordinateKind::Angle {
+            if !is_angle {
                 if off > self.settings.lengths * size {
                     return End::NotFound { value };
                 }

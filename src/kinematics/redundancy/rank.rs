@@ -9,7 +9,6 @@ use crate::kinematics::linear::{Echelon, ReducedRow, Row};
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
-use crate::mechanism::CoordinateKind;
 
 /// A row of which no more than this is left, scaled, depends on the others. A singular position
 /// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] from it leaves some
@@ -78,9 +77,10 @@ fn ranks_with_drivers_moved(model: &Model, state: &mut State, home: &[f64]) -> V
         state.at.set_pose(model.system.mechanism(), home);
         let moved = drivers.iter().zip(&model.system.mechanism().drivers);
         let moved = moved.enumerate().map(|(k, (value, driver))| {
-            let scale = match driver.coordinate.kind {
-                CoordinateKind::Angle => 1.0,
-                _ => state.at.size(),
+            let scale = if driver.coordinate.kind.is_angle() {
+                1.0
+            } else {
+                state.at.size()
             };
             value + sense * scale * mixture(k)
         });

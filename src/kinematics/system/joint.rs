@@ -10,7 +10,7 @@ use crate::kinematics::constraint::{
 };
 use crate::mechanism::{
     BodyId, CamFollower, Coordinate, CoordinateKind, Expression, Joint, JointKind, Mechanism,
-    ParameterId, Profile, ProfileInForce, WheelSizes,
+    ParameterId, Profile, ProfileInForce, RackSide, WheelSizes,
 };
 
 /// Coefficients, profiles and unknowns of joints.
@@ -113,13 +113,25 @@ pub(super) fn relations(
             carrier,
         } => vec![couple(joint, sizes, *crossed, *carrier, parts)],
         JointKind::RackAndPinion { radius, side } => {
-            let rolling = RackAndPinion {
-                pinion: from,
-                rack: to,
-                radius: parts.coefficient(radius, format!("the radius of joint `{}`", joint.name)),
-                side: *side,
+            vec![(roll(joint, radius, *side, parts), zero())]
+        }
+        JointKind::Rolling { radius, side } => {
+            let (track, wheel) = (to, from);
+            // The distance from the track to the centre is positive on the side of the wheel.
+            let (from, to) = match side {
+                RackSide::Above => (track, wheel),
+                RackSide::Below => (wheel, track),
             };
-            vec![(Box::new(rolling), zero())]
+            let height = of_coordinate(&Coordinate {
+                kind: CoordinateKind::Y,
+                from,
+                to,
+                axes: track,
+            });
+            vec![
+                (roll(joint, radius, *side, parts), zero()),
+                (height, radius.clone()),
+            ]
         }
         JointKind::Cam { follower, profile } => {
             let profile = parts.profile(profile, mechanism, element.describe(mechanism));
@@ -168,6 +180,21 @@ pub(super) fn relations(
             }
         }
     }
+}
+
+/// Returns the relation of a wheel, which has marker i, that rolls on the x-axis of marker j.
+fn roll(
+    joint: &Joint,
+    radius: &Expression,
+    side: RackSide,
+    parts: &mut JointParts,
+) -> Box<dyn Constraint> {
+    Box::new(RackAndPinion {
+        pinion: joint.from,
+        rack: joint.to,
+        radius: parts.coefficient(radius, format!("the radius of joint `{}`", joint.name)),
+        side,
+    })
 }
 
 /// Returns the relation of two wheels that turn in a fixed ratio.

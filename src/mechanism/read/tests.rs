@@ -1,4 +1,4 @@
-//! What a right file is read as; `tests/diagnostics.rs` has the wrong ones.
+//! Mechanisms read from right files; `tests/diagnostics.rs` has the wrong ones.
 
 use crate::mechanism::{
     BodyId, CoordinateKind, DisplayUnit, DriverSource, JointKind, MarkerId, Mechanism, Motion,

@@ -121,7 +121,7 @@ fn without_yardstick(out: &mut String, counter: Option<&Counter>) {
     );
 }
 
-/// How time, memory and errors grow with the length of a chain.
+/// Measures time, memory and errors over the length of a chain.
 fn chains(out: &mut String) {
     let row = |loops: usize| {
         let each = |bytes: usize| format!("{}", bytes / loops);

@@ -31,7 +31,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What `make` makes, and the bytes on the heap that it keeps.
+/// Returns the value of `make`, and the bytes on the heap that it keeps.
 pub(crate) fn kept<T>(make: impl FnOnce() -> T) -> (T, usize) {
     let before = IN_USE.load(Relaxed);
     let made = make();

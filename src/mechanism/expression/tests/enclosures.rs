@@ -48,7 +48,7 @@ fn bounds_are_near_the_truth_on_a_tenth_of_a_radian() {
                 let what = format!("derivative {order} of {text} from {low}: {bounds:?}, {truth}");
                 assert!(bound >= truth * (1.0 - 1e-12), "{what}");
                 let most = match order {
-                    // Where the third derivative changes its sign its bound may be farther off,
+                    // The bound may be farther off near a change of sign of the third derivative,
                     // but not by what matters beside the rest of the turn.
                     3 => 2.0 * truth.max(0.02 * over_a_turn[order]),
                     _ => 1.5 * truth,
@@ -248,7 +248,7 @@ proptest! {
 
     #[test]
     fn tiny_results_are_rounded_outward(x in -1.0..1.0_f64, y in -1.0..1.0_f64) {
-        // What is computed at 1e-320 must hold what is computed at 1, scaled by powers of two.
+        // The bounds at 1e-320 hold the values at 1, scaled by powers of two.
         let scale = |exponent| Interval::point(2_f64.powi(exponent));
         let (x, y) = (Interval::point(x), Interval::point(y));
         let product = (x * scale(-540)) * (y * scale(-530));

@@ -158,7 +158,7 @@ impl Mul for Interval {
             };
             Self::of_rounded(product, error)
         };
-        // Where signs are known, two of the four products of ends are the bounds.
+        // With known signs, two of the four products of ends are the bounds.
         let (x, y) = (self, other);
         if y == Self::ONE {
             return x;

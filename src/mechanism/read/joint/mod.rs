@@ -7,6 +7,7 @@ mod link;
 mod rack_and_pinion;
 mod revolute;
 mod revolute_translational;
+mod rolling;
 mod slot;
 mod translational;
 mod weld;
@@ -75,7 +76,7 @@ macro_rules! joint_type {
 use joint_type;
 
 /// Every type of joint; a new one is a file and a line here.
-static JOINT_TYPES: [&JointType; 10] = [
+static JOINT_TYPES: [&JointType; 11] = [
     &revolute::TYPE,
     &translational::TYPE,
     &slot::TYPE,
@@ -85,6 +86,7 @@ static JOINT_TYPES: [&JointType; 10] = [
     &gear::TYPE,
     &belt::TYPE,
     &rack_and_pinion::TYPE,
+    &rolling::TYPE,
     &cam::TYPE,
 ];
 

@@ -23,6 +23,6 @@ joint_type! {
     }
 }
 
-const SIDE: Word<RackSide> = Word::new("side", code::ILLEGAL_VALUE, || {
+pub(super) const SIDE: Word<RackSide> = Word::new("side", code::ILLEGAL_VALUE, || {
     vec![("above", RackSide::Above), ("below", RackSide::Below)]
 });
