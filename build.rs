@@ -125,6 +125,8 @@ fn build_library(out: &Path) -> Option<(&'static str, PathBuf)> {
         .args(["build", "--release", "--package", "biela-runtime"])
         .args(["--target", &target, "--target-dir"])
         .arg(&folder)
+        // Cargo passes it on to the build script of the library, which would build itself again.
+        .env_remove("CARGO_FEATURE_CLI")
         .status();
     assert!(
         status.is_ok_and(|status| status.success()),
