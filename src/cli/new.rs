@@ -46,7 +46,7 @@ macro_rules! template {
 }
 
 /// The mechanisms that come with biela.
-static TEMPLATES: [Template; 35] = [
+static TEMPLATES: [Template; 36] = [
     template!("andrews"),
     template!("cam_flat"),
     template!("cam_flat_arm"),
@@ -72,6 +72,7 @@ static TEMPLATES: [Template; 35] = [
     template!("planetary_gear"),
     template!("platform_3rpr"),
     template!("rack_drive"),
+    template!("rolling_wheel"),
     template!("scotch_yoke"),
     template!("slider_crank"),
     template!("slotted_lever"),
