@@ -27,24 +27,6 @@ const LAYERS: [(&str, &[&str]); 6] = [
     ),
 ];
 
-/// Circles that are still to be removed; each file belongs to one of them at most.
-const KNOWN_CIRCLES: &[&[&str]] = &[
-    &[
-        "kinematics/constraint/angle.rs",
-        "kinematics/constraint/cam/contour.rs",
-        "kinematics/constraint/cam/flat.rs",
-        "kinematics/constraint/cam/knife.rs",
-        "kinematics/constraint/cam/roller.rs",
-        "kinematics/constraint/coincidence.rs",
-        "kinematics/constraint/coupling.rs",
-        "kinematics/constraint/distance.rs",
-        "kinematics/constraint/mod.rs",
-        "kinematics/constraint/projection.rs",
-        "kinematics/constraint/rack_and_pinion.rs",
-    ],
-    &["fmi/error.rs", "fmi/log.rs"],
-];
-
 /// The modules of the library, the root first.
 struct Library {
     modules: Vec<Module>,
@@ -395,24 +377,11 @@ fn forbidden_circles(graph: &Uses) -> Vec<BTreeSet<String>> {
 #[test]
 fn imports_form_no_circle() {
     let graph = graph(&Library::read(&source_folder().join("lib.rs")));
-    let found = forbidden_circles(&graph);
-    let known = |circle: &[&str]| -> BTreeSet<String> {
-        circle.iter().map(|&file| file.to_owned()).collect()
-    };
     let mut message = String::new();
-    for circle in &found {
-        let is_known = KNOWN_CIRCLES.iter().any(|k| known(k).is_superset(circle));
-        if !is_known {
-            let _ = writeln!(message, "{circle:#?}:\n{}", describe(&graph, circle));
-        }
+    for circle in forbidden_circles(&graph) {
+        let _ = writeln!(message, "{circle:#?}:\n{}", describe(&graph, &circle));
     }
     assert!(message.is_empty(), "circles of imports:\n{message}");
-    for circle in KNOWN_CIRCLES {
-        assert!(
-            found.iter().any(|found| known(circle).is_superset(found)),
-            "the circle {circle:?} is gone: remove it from the list"
-        );
-    }
 }
 
 #[test]

@@ -1,24 +1,10 @@
-//! Statuses and errors of calls.
+//! Errors of calls.
 
 use super::UriError;
 use super::log::Category;
 use super::state::{Call, Interface, State};
+use super::status::Status;
 use crate::mechanism::shown;
-
-/// Status of a call, in the order of `fmi2Status`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
-    /// Success.
-    Ok = 0,
-    /// Success with a warning. No call of biela returns it: several hosts take it for a failure.
-    Warning = 1,
-    /// Not possible from here; the host may continue another way.
-    Discard = 2,
-    /// Refused or failed.
-    Error = 3,
-    /// A defect of biela; the instance is unusable.
-    Fatal = 4,
-}
 
 /// A model's request failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Messages to the host by category.
 
-use super::Status;
+use super::status::Status;
 
 /// A log category, declared in the model description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -26,11 +26,12 @@ mod model_description;
 mod package;
 mod serialized;
 mod state;
+mod status;
 mod uri;
 mod variable;
 
 pub use codec::{Codec, Unreadable};
-pub use error::{Error, Failure, StateError, Status};
+pub use error::{Error, Failure, StateError};
 pub use instance::{FmuState, Instance};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
@@ -41,5 +42,6 @@ pub use model::{Groups, Model};
 pub use model_description::{Capabilities, DependencyKind, Experiment, ModelDescription, Unknown};
 pub use package::{Document, PackageError, Platform, RuntimeLibrary, write as write_archive};
 pub use state::{Call, Interface, Phase, State};
+pub use status::Status;
 pub use uri::{UriError, resource_path};
 pub use variable::{Causality, Enumeration, Kind, Variability, Variable};

@@ -1,4 +1,4 @@
-//! Warnings of an FMU with redundant constraints.
+//! Advice of an FMU with redundant constraints.
 
 use std::f64::consts::TAU;
 use std::sync::{Arc, Mutex};
@@ -8,23 +8,24 @@ use biela::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
 use crate::common::parse;
 use crate::mechanisms::parallelogram;
 
-/// The same is in the FMU's log, once.
+/// The log says it once to a host that asks for a log.
 #[test]
-fn the_host_is_warned_once() {
-    struct Warnings(Arc<Mutex<Vec<String>>>);
-    impl Sink for Warnings {
-        fn write(&self, status: Status, _: Category, message: &str) {
-            if status == Status::Warning {
-                let mut warnings = self.0.lock().expect("one thread");
-                warnings.push(message.to_owned());
+fn the_log_advises_once() {
+    struct Advice(Arc<Mutex<Vec<String>>>);
+    impl Sink for Advice {
+        fn write(&self, status: Status, category: Category, message: &str) {
+            assert_eq!(status, Status::Ok, "{message}");
+            if category == Category::Warning {
+                let mut advice = self.0.lock().expect("one thread");
+                advice.push(message.to_owned());
             }
         }
     }
-    let warnings = Arc::new(Mutex::new(Vec::new()));
-    let sink = Box::new(Warnings(Arc::clone(&warnings)));
+    let advice = Arc::new(Mutex::new(Vec::new()));
+    let sink = Box::new(Advice(Arc::clone(&advice)));
     let mechanism = parse(&parallelogram(&[[0.2, 0.1]], 60.0, true));
     let model = MechanismModel::new(mechanism, Interface::CoSimulation).expect("it closes");
-    let mut instance = Instance::new(model, sink, false);
+    let mut instance = Instance::new(model, sink, true);
     instance.setup_experiment(0.0, None).expect("legal");
     instance.enter_initialization_mode().expect("legal");
     instance.exit_initialization_mode().expect("it starts");
@@ -60,9 +61,9 @@ fn the_host_is_warned_once() {
         .get_real(&outputs, &mut values[1])
         .expect("readable");
     assert_eq!(values[0], values[1]);
-    let warnings = warnings.lock().expect("one thread");
+    let advice = advice.lock().expect("one thread");
     assert_eq!(
-        warnings[..],
+        advice[..],
         [
             "constraint equations of joint `O5` are redundant: 1 of its 2 follows from the others; \
           it is set aside and watched"

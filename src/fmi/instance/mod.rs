@@ -14,11 +14,12 @@ use std::sync::Arc;
 pub use fmu_state::FmuState;
 pub(super) use values::check_value;
 
-use super::error::{Error, Failure, Status, check_finite};
+use super::error::{Error, Failure, check_finite};
 use super::log::{Category, Logger, Sink};
 use super::model::{Groups, Model};
 use super::resource_path;
 use super::state::{Call, Interface, State};
+use super::status::Status;
 use super::variable::{Variable, derivatives};
 use values::{groups_of, is_continuous_input};
 

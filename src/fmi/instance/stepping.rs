@@ -1,9 +1,9 @@
 //! Co-simulation: steps and their outcome.
 
 use super::{Error, Failure, Instance, check_finite};
-use crate::fmi::error::Status;
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
+use crate::fmi::status::Status;
 
 /// Tolerance of communication points, relative to the larger of time and step: hosts add up step
 /// sizes.

@@ -4,9 +4,9 @@ use super::MechanismModel;
 use super::input::{Extrapolation, RateSource, Rule, Source};
 use super::monitor::Contradiction;
 use super::variables::{Order, is_angle, units};
-use crate::fmi::error::Status;
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
+use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
 use crate::mechanism::{Driver, shown};
 

@@ -255,7 +255,7 @@ impl LeastSquares {
 /// Returns ‖d‖/u for the row of a distance u, one for other rows.
 fn stretch(state: &BlockState<'_>, row: usize) -> f64 {
     let constraint = &state.system.equations()[row].constraint;
-    if matches!(constraint.relation(), Relation::Distance(_)) {
+    if matches!(Relation::of(&**constraint), Relation::Distance(_)) {
         constraint.value(state.at) / state.system.target(row, state.targets, state.drivers)
     } else {
         1.0

@@ -98,7 +98,7 @@ impl Part {
         let size = state.at.size();
         for &row in &self.problem.rows {
             let constraint = &state.system.equations()[row].constraint;
-            if !matches!(constraint.relation(), Relation::Distance(_))
+            if !matches!(Relation::of(&**constraint), Relation::Distance(_))
                 || constraint.value(state.at) > TOUCHING * size
             {
                 continue;

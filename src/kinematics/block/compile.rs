@@ -103,7 +103,7 @@ fn revolutes(system: &System) -> Vec<Option<Revolute>> {
         let equation = equations.get(row)?;
         let at_zero =
             matches!(&equation.target, Target::Constant(value) if value.literal() == Some(0.0));
-        match equation.constraint.relation() {
+        match Relation::of(&*equation.constraint) {
             Relation::Coincidence(c) if at_zero => Some(c),
             _ => None,
         }
@@ -213,7 +213,8 @@ impl Search<'_> {
             (_, Some(revolute)) if revolute.rows == [second, third] => (revolute, first),
             _ => return None,
         };
-        let Relation::Angle(measured) = self.system.equations()[angle].constraint.relation() else {
+        let Relation::Angle(measured) = Relation::of(&*self.system.equations()[angle].constraint)
+        else {
             return None;
         };
         let mine = |marker| self.body_of(marker) == Some(body);
@@ -297,7 +298,7 @@ impl Search<'_> {
     fn rrp_dyad_in(&self, block: usize, a: usize) -> Option<Group> {
         let rows = &self.structure.blocks()[block].rows;
         let met = rows.iter().flat_map(|&row| {
-            let markers = match self.system.equations()[row].constraint.relation() {
+            let markers = match Relation::of(&*self.system.equations()[row].constraint) {
                 Relation::Coincidence(c) => [Some(c.from), Some(c.to), None],
                 Relation::Projection(p) => [Some(p.from), Some(p.to), Some(p.axes)],
                 Relation::Angle(_) | Relation::Distance(_) | Relation::Other => [None; 3],
@@ -320,7 +321,7 @@ impl Search<'_> {
         for &row in &rows {
             match (
                 self.revolutes[row],
-                self.system.equations()[row].constraint.relation(),
+                Relation::of(&*self.system.equations()[row].constraint),
             ) {
                 (Some(revolute), _)
                     if rows.contains(&revolute.rows[1]) && revolute.rows[0] == row =>

@@ -65,7 +65,7 @@ impl EliminationOrder {
         };
         let mut edges: Vec<Vec<(usize, usize)>> = vec![Vec::new(); known + 1];
         for &row in &block.rows {
-            if let Relation::Coincidence(c) = system.equations()[row].constraint.relation()
+            if let Relation::Coincidence(c) = Relation::of(&*system.equations()[row].constraint)
                 && c.axis == axis
             {
                 let (from, to) = (node(c.from), node(c.to));

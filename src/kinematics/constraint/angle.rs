@@ -1,9 +1,10 @@
 //! The angle between two markers.
 
-use super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, TurnEffect,
-    Varied, VariedConfiguration,
-};
+use super::definition::{Constraint, Dimension, Incidence, TurnEffect};
+use super::gradient::Gradient;
+use super::region::Region;
+use crate::kinematics::configuration::Configuration;
+use crate::kinematics::variation::{Varied, VariedConfiguration};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = theta_j − theta_i, with whole turns.
@@ -18,10 +19,6 @@ pub struct Angle {
 impl Constraint for Angle {
     fn dimension(&self) -> Dimension {
         Dimension::Angle
-    }
-
-    fn relation(&self) -> Relation {
-        Relation::Angle(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {

@@ -2,10 +2,12 @@
 
 use nalgebra::Vector2;
 
-use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, Varied,
-    VariedConfiguration, centripetal, centripetal_bound,
-};
+use super::definition::{Axis, Constraint, Dimension, Incidence};
+use super::gradient::Gradient;
+use super::point::centripetal;
+use super::region::{Region, centripetal_bound};
+use crate::kinematics::configuration::Configuration;
+use crate::kinematics::variation::{Varied, VariedConfiguration};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = the x or y component of P_j − P_i in ground axes.
@@ -34,10 +36,6 @@ impl Coincidence {
 impl Constraint for Coincidence {
     fn dimension(&self) -> Dimension {
         Dimension::Length
-    }
-
-    fn relation(&self) -> Relation {
-        Relation::Coincidence(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {

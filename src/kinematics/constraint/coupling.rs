@@ -1,10 +1,10 @@
 //! Two wheels that turn in a fixed ratio: gears, and wheels on a belt.
 
-use super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, Region, TurnEffect, Varied,
-    VariedConfiguration,
-};
-use crate::kinematics::configuration::CoefficientId;
+use super::definition::{Constraint, Dimension, Incidence, TurnEffect};
+use super::gradient::Gradient;
+use super::region::Region;
+use crate::kinematics::configuration::{CoefficientId, Configuration};
+use crate::kinematics::variation::{Varied, VariedConfiguration};
 use crate::mechanism::{BodyId, MarkerId, Mechanism};
 
 /// c = (theta_j − phi_c) − k (theta_i − phi_c), with k = ±r_i / r_j and whole turns.

@@ -2,11 +2,12 @@
 
 use nalgebra::Vector2;
 
-use super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, Varied,
-    VariedConfiguration, centripetal, centripetal_bound, chord, point_velocity, speed_bound,
-};
-use crate::kinematics::variation::subtract;
+use super::definition::{Constraint, Dimension, Incidence};
+use super::gradient::Gradient;
+use super::point::{centripetal, point_velocity};
+use super::region::{Region, centripetal_bound, chord, speed_bound};
+use crate::kinematics::configuration::Configuration;
+use crate::kinematics::variation::{Varied, VariedConfiguration, subtract};
 use crate::mechanism::{MarkerId, Mechanism, Number};
 
 /// c = ‖P_j − P_i‖.
@@ -37,10 +38,6 @@ impl Distance {
 impl Constraint for Distance {
     fn dimension(&self) -> Dimension {
         Dimension::Length
-    }
-
-    fn relation(&self) -> Relation {
-        Relation::Distance(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 
-use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Region, Relation, Varied,
-    VariedConfiguration, angular_velocity, axis_components, centripetal, centripetal_bound, perp,
-    point_velocity, speed_bound,
-};
-use crate::kinematics::variation::{dot, subtract};
+use super::definition::{Axis, Constraint, Dimension, Incidence, axis_components};
+use super::gradient::Gradient;
+use super::point::{angular_velocity, centripetal, point_velocity};
+use super::region::{Region, centripetal_bound, speed_bound};
+use crate::kinematics::configuration::{Configuration, perp};
+use crate::kinematics::variation::{Varied, VariedConfiguration, dot, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · (P_j − P_i) with the x- or y-axis e of marker k.
@@ -32,10 +32,6 @@ impl Projection {
 impl Constraint for Projection {
     fn dimension(&self) -> Dimension {
         Dimension::Length
-    }
-
-    fn relation(&self) -> Relation {
-        Relation::Projection(*self)
     }
 
     fn value(&self, at: &Configuration) -> f64 {

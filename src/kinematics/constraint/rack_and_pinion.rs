@@ -1,10 +1,11 @@
 //! A pinion that rolls on a rack.
 
-use super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, Projection, Region,
-    TurnEffect, Varied, VariedConfiguration,
-};
-use crate::kinematics::configuration::CoefficientId;
+use super::definition::{Axis, Constraint, Dimension, Incidence, TurnEffect};
+use super::gradient::Gradient;
+use super::projection::Projection;
+use super::region::Region;
+use crate::kinematics::configuration::{CoefficientId, Configuration};
+use crate::kinematics::variation::{Varied, VariedConfiguration};
 use crate::mechanism::{MarkerId, Mechanism, RackSide};
 
 /// c = s + σ r (theta_p − theta_r) with the coordinate s of the pinion's centre along the rack

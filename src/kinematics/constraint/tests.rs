@@ -3,8 +3,13 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::kinematics::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
-use crate::mechanism::{JointKind, ProfileInForce, RackSide, Source};
+use crate::kinematics::variation::VariedConfiguration;
+use crate::kinematics::{
+    CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, ProfileId,
+};
+use crate::mechanism::{
+    BodyId, Expression, JointKind, MarkerId, Mechanism, ProfileInForce, RackSide, Source,
+};
 
 /// Three bodies and ground with markers in general position, one of them at its body's origin,
 /// and a cam's profile.

@@ -156,7 +156,7 @@ impl<'a> Builder<'a> {
     }
 
     fn relation(&self, row: usize) -> Relation {
-        self.state.system.equations()[row].constraint.relation()
+        Relation::of(&*self.state.system.equations()[row].constraint)
     }
 
     fn target(&self, row: usize) -> Interval {

@@ -2,8 +2,11 @@
 
 use nalgebra::{Rotation2, Vector2};
 
-use super::super::{Configuration, Incidence, MarkerPose, Region};
-use crate::kinematics::configuration::{JointUnknownId, ProfileId, perp};
+use super::super::definition::Incidence;
+use super::super::region::Region;
+use crate::kinematics::configuration::{
+    Configuration, JointUnknownId, MarkerPose, ProfileId, perp,
+};
 use crate::kinematics::variation::{
     VariedConfiguration, VariedMarker, VariedVector, quarter_turn, rotate,
 };

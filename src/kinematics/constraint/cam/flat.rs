@@ -2,13 +2,15 @@
 
 use nalgebra::Vector2;
 
-use super::super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, JointUnknown, MarkerPose,
-    Region, Varied, VariedConfiguration, angular_velocity, axis_components, centripetal,
-    centripetal_bound, perp, point_velocity, speed_bound,
+use super::super::definition::{
+    Axis, Constraint, Dimension, Incidence, JointUnknown, axis_components,
 };
+use super::super::gradient::Gradient;
+use super::super::point::{angular_velocity, centripetal, point_velocity};
+use super::super::region::{Region, centripetal_bound, speed_bound};
 use super::contour::{Contour, Shape};
-use crate::kinematics::variation::{add, dot, quarter_turn, subtract};
+use crate::kinematics::configuration::{Configuration, MarkerPose, perp};
+use crate::kinematics::variation::{Varied, VariedConfiguration, add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// The contour's tangent is parallel to the face: c = sin δ with the angle δ from the face, the

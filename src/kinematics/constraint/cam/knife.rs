@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 
-use super::super::{
-    Configuration, Constraint, Dimension, Gradient, Incidence, Region, Varied, VariedConfiguration,
-    angular_velocity, centripetal, centripetal_bound, chord, perp, point_velocity, speed_bound,
-};
-use crate::kinematics::configuration::ProfileId;
-use crate::kinematics::variation::subtract;
+use super::super::definition::{Constraint, Dimension, Incidence};
+use super::super::gradient::Gradient;
+use super::super::point::{angular_velocity, centripetal, point_velocity};
+use super::super::region::{Region, centripetal_bound, chord, speed_bound};
+use crate::kinematics::configuration::{Configuration, ProfileId, perp};
+use crate::kinematics::variation::{Varied, VariedConfiguration, subtract};
 use crate::mechanism::{Jet3, MarkerId, Mechanism, Number};
 
 /// c = ρ − R(θ) with the polar coordinates ρ and θ of the edge in the cam marker's frame.

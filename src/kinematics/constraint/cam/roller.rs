@@ -2,13 +2,13 @@
 
 use nalgebra::Vector2;
 
-use super::super::{
-    Axis, Configuration, Constraint, Dimension, Gradient, Incidence, JointUnknown, MarkerPose,
-    Region, Varied, VariedConfiguration, angular_velocity, centripetal, centripetal_bound, chord,
-    perp, point_velocity, speed_bound,
-};
+use super::super::definition::{Axis, Constraint, Dimension, Incidence, JointUnknown};
+use super::super::gradient::Gradient;
+use super::super::point::{angular_velocity, centripetal, point_velocity};
+use super::super::region::{Region, centripetal_bound, chord, speed_bound};
 use super::contour::{Contour, Shape};
-use crate::kinematics::variation::{add, dot, quarter_turn, subtract};
+use crate::kinematics::configuration::{Configuration, MarkerPose, perp};
+use crate::kinematics::variation::{Varied, VariedConfiguration, add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · w with the vector e from the contact to the roller's centre, and the contour's tangent

@@ -1,0 +1,16 @@
+//! Status of a call.
+
+/// Status of a call, in the order of `fmi2Status`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// Success.
+    Ok = 0,
+    /// Success with a warning. No call of biela returns it: several hosts take it for a failure.
+    Warning = 1,
+    /// Not possible from here; the host may continue another way.
+    Discard = 2,
+    /// Refused or failed.
+    Error = 3,
+    /// A defect of biela; the instance is unusable.
+    Fatal = 4,
+}

@@ -1,0 +1,180 @@
+//! The trait of a relation, and the terms in which a relation describes itself.
+
+use std::any::Any;
+
+use nalgebra::Vector2;
+
+use super::gradient::Gradient;
+use super::region::Region;
+use crate::kinematics::configuration::{self, Configuration, JointUnknownId, perp};
+use crate::kinematics::variation::{self, Varied, VariedConfiguration, VariedVector};
+use crate::mechanism::{Expression, MarkerId, Mechanism, ParameterId};
+
+/// The dimension of a relation, which decides its unit and the scale of its residual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Metres.
+    Length,
+    /// Radians.
+    Angle,
+}
+
+/// One of the two axes of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The x-axis, u.
+    X,
+    /// The y-axis, n.
+    Y,
+}
+
+impl Axis {
+    /// Returns this axis of a frame whose x-axis is `u`.
+    pub(super) fn of(self, u: Vector2<f64>) -> Vector2<f64> {
+        match self {
+            Self::X => u,
+            Self::Y => perp(u),
+        }
+    }
+
+    /// Returns this axis of a moving frame whose x-axis is `u`.
+    pub(super) fn of_varied(self, u: VariedVector) -> VariedVector {
+        match self {
+            Self::X => u,
+            Self::Y => variation::quarter_turn(u),
+        }
+    }
+}
+
+/// The effect of a whole turn of a body on a relation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TurnEffect {
+    /// None: the relation depends on places only.
+    None,
+    /// c changes by a whole turn, so that a joint may hold it at any number of turns.
+    Whole,
+    /// c changes by another amount, so that turns have to be counted.
+    Proportional,
+}
+
+/// A scalar relation c(q) between bodies.
+pub trait Constraint: Any + std::fmt::Debug + Send + Sync {
+    /// Returns the dimension of c.
+    fn dimension(&self) -> Dimension;
+
+    /// Returns c(q) \[m or rad\].
+    fn value(&self, at: &Configuration) -> f64;
+
+    /// Adds ∂c/∂q, a row of the Jacobian (Eq. 3.6.4), to `row`.
+    fn gradient(&self, at: &Configuration, row: &mut Gradient);
+
+    /// Returns q̇ᵀ (∂²c/∂q²) q̇, which is c̈ for q̈ = 0; Eq. 3.6.11 has it with the opposite sign.
+    /// `q_dot` is as long as q.
+    fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
+
+    /// Returns c and its derivatives in time for a motion, each with its change along a direction.
+    fn along(&self, at: &VariedConfiguration) -> Varied;
+
+    /// Returns whether c contains the contour of a cam, which may have pieces; all else is analytic.
+    fn has_contour(&self) -> bool {
+        false
+    }
+
+    /// Returns whether c can have this value; a distance must be positive.
+    fn admits(&self, value: f64) -> bool {
+        let _ = value;
+        true
+    }
+
+    /// Returns the effect of a whole turn of one of its bodies on c.
+    fn turn_effect(&self) -> TurnEffect {
+        TurnEffect::None
+    }
+
+    /// Bounds the second derivatives of c in a region around the present pose: returns an upper
+    /// bound of |vᵀ (∂²c/∂q²) v|, and adds upper bounds of the changes of the gradient's entries to
+    /// `row`. Returns `None` if c is not smooth in the region.
+    fn bend(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        v: &[f64],
+        row: &mut Gradient,
+    ) -> Option<f64>;
+
+    /// Notes the unknowns and parameters in c, except those whose coefficient is zero for all
+    /// values of the parameters.
+    fn incidence(&self, mechanism: &Mechanism, incidence: &mut Incidence);
+}
+
+/// A joint unknown, such as the polar angle of the contact on a cam.
+pub trait JointUnknown: std::fmt::Debug + Send + Sync {
+    /// Returns its estimate \[rad\] for bodies at their estimates.
+    fn estimate(&self, at: &Configuration) -> f64;
+}
+
+/// The unknowns and parameters in a relation, found without numbers.
+#[derive(Clone, Debug, Default)]
+pub struct Incidence {
+    /// Indices in q, possibly repeated.
+    pub unknowns: Vec<usize>,
+    /// Parameters in the expressions, possibly repeated.
+    pub parameters: Vec<ParameterId>,
+}
+
+impl Incidence {
+    /// Notes the parameters of an expression.
+    pub fn expression(&mut self, expression: &Expression) {
+        self.parameters.extend(expression.parameters());
+    }
+
+    /// Notes the unknowns and parameters in the x (first) and y (second) components of a marker's
+    /// point that `components` selects.
+    pub fn point(&mut self, mechanism: &Mechanism, marker: MarkerId, components: [bool; 2]) {
+        let marker = &mechanism.markers[marker.index()];
+        let at_origin = marker.position.iter().all(|s| s.literal() == Some(0.0));
+        match marker.body {
+            Some(body) => {
+                let k = 3 * body.index();
+                self.unknowns
+                    .extend((0..2).filter(|&c| components[c]).map(|c| k + c));
+                if !at_origin {
+                    self.unknowns.push(k + 2);
+                    marker.position.iter().for_each(|s| self.expression(s));
+                }
+            }
+            None => marker
+                .position
+                .iter()
+                .zip(components)
+                .filter(|(_, asked)| *asked)
+                .for_each(|(s, _)| self.expression(s)),
+        }
+    }
+
+    /// Notes a joint unknown.
+    pub fn joint_unknown(&mut self, mechanism: &Mechanism, unknown: JointUnknownId) {
+        self.unknowns.push(3 * mechanism.bodies.len() + unknown.0);
+    }
+
+    /// Notes the unknowns and parameters in a marker's direction.
+    pub fn direction(&mut self, mechanism: &Mechanism, marker: MarkerId) {
+        let marker = &mechanism.markers[marker.index()];
+        self.unknowns
+            .extend(marker.body.map(|body| 3 * body.index() + 2));
+        self.expression(&marker.angle);
+    }
+}
+
+/// Returns whether a marker's axis can have components along the global x and y.
+pub(super) fn axis_components(mechanism: &Mechanism, marker: MarkerId, axis: Axis) -> [bool; 2] {
+    let marker = &mechanism.markers[marker.index()];
+    match (marker.body, marker.angle.literal()) {
+        // An axis on ground with a literal angle is fixed, and often along x or y.
+        (None, Some(angle)) => {
+            let e = axis.of(configuration::axis(angle));
+            [e.x.abs() > 0.0, e.y.abs() > 0.0]
+        }
+        _ => [true, true],
+    }
+}

@@ -1,0 +1,93 @@
+//! A row of the Jacobian.
+
+use nalgebra::Vector2;
+
+use crate::kinematics::configuration::{MarkerPose, perp};
+use crate::mechanism::BodyId;
+
+/// A row of the Jacobian: its entries for at most three bodies and one joint unknown.
+///
+/// It does not allocate. A relation has at most three markers, hence three bodies.
+#[derive(Clone, Debug, Default)]
+pub struct Gradient {
+    len: usize,
+    parts: [(usize, [f64; 3]); 3],
+    /// Index in q of a joint unknown, and its entry.
+    joint_unknown: Option<(usize, f64)>,
+}
+
+impl Gradient {
+    /// Makes an empty row.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Removes all entries.
+    pub fn clear(&mut self) {
+        self.len = 0;
+        self.joint_unknown = None;
+    }
+
+    /// Adds the gradient of `direction · P` with the marker's point P and a fixed `direction`.
+    pub fn add_point(&mut self, marker: MarkerPose, direction: Vector2<f64>) {
+        if let Some(part) = self.part(marker.body) {
+            part[0] += direction.x;
+            part[1] += direction.y;
+            part[2] += direction.dot(&perp(marker.arm));
+        }
+    }
+
+    /// Adds bounds of a point's entries: `direction` for x and y, `swing` for phi.
+    pub(super) fn add_point_bound(&mut self, marker: MarkerPose, direction: f64, swing: f64) {
+        if let Some(part) = self.part(marker.body) {
+            part[0] += direction;
+            part[1] += direction;
+            part[2] += swing;
+        }
+    }
+
+    /// Adds the gradient of `factor * theta` with the marker's angle theta.
+    pub fn add_direction(&mut self, marker: MarkerPose, factor: f64) {
+        self.add_turn(marker.body, factor);
+    }
+
+    /// Adds the gradient of `factor * phi` with the body's angle phi; nothing for ground.
+    pub fn add_turn(&mut self, body: Option<BodyId>, factor: f64) {
+        if let Some(part) = self.part(body) {
+            part[2] += factor;
+        }
+    }
+
+    /// Adds the entry of a joint unknown; a relation contains at most one.
+    pub fn add_joint_unknown(&mut self, column: usize, value: f64) {
+        let entry = self.joint_unknown.get_or_insert((column, 0.0));
+        debug_assert_eq!(entry.0, column, "a relation has at most one joint unknown");
+        entry.1 += value;
+    }
+
+    /// Returns the entries as pairs of an index in q and a value, body by body.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.parts[..self.len]
+            .iter()
+            .flat_map(|(body, part)| (0..3).map(move |k| (3 * body + k, part[k])))
+            .chain(self.joint_unknown)
+    }
+
+    /// Returns the product of the row and a vector as long as q.
+    #[must_use]
+    pub fn dot(&self, vector: &[f64]) -> f64 {
+        self.entries().map(|(k, value)| value * vector[k]).sum()
+    }
+
+    fn part(&mut self, body: Option<BodyId>) -> Option<&mut [f64; 3]> {
+        let body = body?.index();
+        let known = self.parts[..self.len].iter().position(|(b, _)| *b == body);
+        let index = known.unwrap_or_else(|| {
+            self.parts[self.len] = (body, [0.0; 3]);
+            self.len += 1;
+            self.len - 1
+        });
+        Some(&mut self.parts[index].1)
+    }
+}
