@@ -1,19 +1,19 @@
 //! Directional derivatives of outputs and calculated parameters.
 
+use super::input::RateSource;
 use super::variables::Order;
 use super::{MechanismModel, Quantity, Signal, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
-use crate::fmi::state::Phase;
+use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Direction, Sensitivity};
 use crate::mechanism::{DriverId, Jet};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.
     ///
-    /// Value, velocity and acceleration of a driver count as independent of each other: an
-    /// estimated rate is not differentiated. Where the rates have extrapolated the value in the
-    /// last step, it depends on them.
+    /// After a step they are those of the step: an estimated rate depends on the position, a
+    /// position that the rates have extrapolated on these.
     ///
     /// # Errors
     ///
@@ -37,20 +37,11 @@ impl MechanismModel {
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
-                    let h = self.extrapolated_over(driver);
+                    let [position, velocity, acceleration] = self.derivatives_by(driver, order);
                     let driver = &mut direction.drivers[driver.index()];
-                    match order {
-                        Order::Position => driver.value += change,
-                        Order::Velocity => {
-                            driver.value += h * change;
-                            driver.derivatives[0] += change;
-                        }
-                        Order::Acceleration => {
-                            driver.value += 0.5 * h * h * change;
-                            driver.derivatives[0] += h * change;
-                            driver.derivatives[1] += change;
-                        }
-                    }
+                    driver.value += position * change;
+                    driver.derivatives[0] += velocity * change;
+                    driver.derivatives[1] += acceleration * change;
                 }
                 Quantity::Parameter(parameter) => {
                     direction.parameters[parameter.index()] += change;
@@ -71,12 +62,18 @@ impl MechanismModel {
         Ok(unknowns.iter().map(change).collect())
     }
 
-    /// Returns the time \[s\] over which the rates have extrapolated a driver's value.
-    fn extrapolated_over(&self, driver: DriverId) -> f64 {
-        if self.at_committed {
-            self.inputs[driver.index()].extrapolated_over()
+    /// Returns the derivatives of a driver's value, velocity and acceleration in force by one of its
+    /// inputs.
+    fn derivatives_by(&self, driver: DriverId, order: Order) -> [f64; 3] {
+        let input = &self.inputs[driver.index()];
+        let rates = match self.interface {
+            Interface::ModelExchange => RateSource::Inputs,
+            Interface::CoSimulation => self.settings.rule.rates,
+        };
+        if self.at_committed && input.has_stepped() {
+            input.change_by_step(rates, self.monitors[driver.index()].sources(), order)
         } else {
-            0.0
+            input.change_by_value(rates, self.time, order)
         }
     }
 }

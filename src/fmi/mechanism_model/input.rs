@@ -276,9 +276,34 @@ impl DriverInput {
         }
     }
 
-    /// Returns the size \[s\] of the last step if the rates extrapolated the position in it, else 0.
-    pub(super) fn extrapolated_over(&self) -> f64 {
-        self.extrapolated_over
+    /// Returns whether a step has ended since the start.
+    pub(super) fn has_stepped(&self) -> bool {
+        !self.history.is_empty()
+    }
+
+    /// Returns the derivatives of position, velocity and acceleration at the end of the last step,
+    /// in which the rates came from `sources`, by one of the three inputs.
+    pub(super) fn change_by_step(
+        &self,
+        rates: RateSource,
+        sources: [Source; 2],
+        order: Order,
+    ) -> [f64; 3] {
+        let h = self.extrapolated_over;
+        let [position, velocity, acceleration] = self.history.change(rates, sources, order);
+        [
+            position + h * (velocity + 0.5 * h * acceleration),
+            velocity + h * acceleration,
+            acceleration,
+        ]
+    }
+
+    /// Returns the derivatives of position, velocity and acceleration in force at `time`, before a
+    /// step, by one of the three inputs.
+    pub(super) fn change_by_value(&self, rates: RateSource, time: f64, order: Order) -> [f64; 3] {
+        let (_, sources) = self.rates(rates, time, 0.0, 0.0);
+        let history = self.history.with(self.sample(rates, time), 0.0);
+        history.change(rates, sources, order)
     }
 
     /// Returns the last recorded sample before `time`.
@@ -384,6 +409,43 @@ impl History {
             },
             _ => DriverRates::default(),
         }
+    }
+
+    /// Returns the derivatives of position, velocity and acceleration at the newest sample by one of
+    /// the three inputs there. With `auto` a rate input counts as in use unless derivatives replace
+    /// it: it is once it is not zero.
+    fn change(&self, rates: RateSource, sources: [Source; 2], order: Order) -> [f64; 3] {
+        let unit = |of: Order| if of == order { 1.0 } else { 0.0 };
+        // Estimates are linear in the positions.
+        let mut by_newest = *self;
+        for (index, sample) in by_newest.0.iter_mut().enumerate() {
+            let position = if index == 0 {
+                unit(Order::Position)
+            } else {
+                0.0
+            };
+            *sample = sample.map(|sample| Sample { position, ..sample });
+        }
+        let estimate = by_newest.estimate();
+        let given = |of: Order, source: Source| match (source, rates) {
+            (Source::Input, _) | (Source::Estimate | Source::Difference, RateSource::Auto) => {
+                unit(of)
+            }
+            _ => 0.0,
+        };
+        let mut velocity = given(Order::Velocity, sources[0]);
+        let mut acceleration = given(Order::Acceleration, sources[1]);
+        if sources[0] == Source::Estimate {
+            velocity += estimate.velocity;
+        }
+        match (sources, self.0) {
+            ([_, Source::Estimate], _) => acceleration += estimate.acceleration,
+            ([Source::Input, Source::Difference], [Some(newest), Some(before), _]) => {
+                acceleration += unit(Order::Velocity) / (newest.time - before.time);
+            }
+            _ => {}
+        }
+        [unit(Order::Position), velocity, acceleration]
     }
 
     /// Returns the backward difference of the last two velocities, if both are no estimates.

@@ -91,6 +91,11 @@ impl Monitor {
         beyond && !was_beyond
     }
 
+    /// Returns the sources of velocity and acceleration in the last step.
+    pub(super) fn sources(&self) -> [Source; 2] {
+        self.sources
+    }
+
     /// Records the sources of the rates. Returns the order and the new source of a rate that
     /// comes from another one than before.
     pub(super) fn changes(
