@@ -39,7 +39,7 @@ pub type Jet3<S = f64> = Taylor<S, 3>;
 macro_rules! by_name {
     ($($name:ident $function:ident),*) => {
         $(
-            #[doc = concat!("Returns [`Unary::", stringify!($function), "`] of this number.")]
+            #[doc = concat!("Returns `", stringify!($name), "` of this number.")]
             fn $name(self) -> Self {
                 self.apply(Unary::$function)
             }
