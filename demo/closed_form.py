@@ -123,7 +123,7 @@ def cross(a, b):
 
 
 class ClosedForm:
-    """What the five have in common: turning vectors and angles into named results."""
+    """Common part of the five: turns vectors and angles into named results."""
 
     driver: ClassVar[str]
     """Name of the driver."""

@@ -45,12 +45,12 @@ class Bar:
 
 @dataclass(frozen=True)
 class Picture:
-    """What to draw of a mechanism, and which of its outputs to plot."""
+    """Drawing of a mechanism, and its outputs to plot."""
 
     title: str
     driver: str
     unit: str
-    """Of the driver, as shown: ° or m."""
+    """Unit of the driver, as shown: ° or m."""
     bars: tuple[Bar, ...]
     """The lowest first."""
     pivots: tuple[Pin, ...]
@@ -241,7 +241,7 @@ STYLE = {
 
 
 def place(outputs: Outputs, parameters: Parameters, sample: int, pin: Pin) -> complex:
-    """Where a pin is at a sample, from the outputs of its body."""
+    """Returns the place of a pin at a sample, from the outputs of its body."""
     point = complex(pin.point(parameters))
     if pin.body == "ground":
         return point

@@ -41,7 +41,7 @@ fn read(instance: &mut Instance, names: &[&str]) -> Vec<f64> {
     values
 }
 
-/// What a host looked at in between does not show in the pose of a discarded step.
+/// Readings of a host in between do not show in the pose of a discarded step.
 #[test]
 fn a_discarded_step_leaves_pose_and_rates_of_the_last_communication_point() {
     let mut instance = running("tlv");

@@ -30,7 +30,7 @@ struct Integrated {
     time: f64,
     u: f64,
     gain: f64,
-    /// Where and when it was last committed.
+    /// Place and time of the last commit.
     from: [f64; 2],
 }
 

@@ -154,7 +154,7 @@ impl Triad {
                 (Some(a), Some(b)) => {
                     count += usize::from(a[0] != b[0]) + usize::from(a[1] != b[1]);
                 }
-                // Where the circles only touch, the two places are one: a sign that differs
+                // Circles that only touch have one common place: a sign that differs
                 // between them changes before that.
                 (Some(ends), None) | (None, Some(ends)) => count += usize::from(ends[0] != ends[1]),
                 (None, None) => {}

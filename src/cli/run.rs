@@ -57,7 +57,7 @@ pub(super) struct Run {
     /// Time between rows in seconds [default: the file's].
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     step: Option<f64>,
-    /// What to write and plot, separated by commas: variables such as crank.phi, or all variables
+    /// Variables to write and plot, separated by commas: one such as crank.phi, or all variables
     /// of a body, marker, driver or measure by its name [default: in the CSV all; in plots drivers
     /// and measures, or points of interest, or bodies].
     #[arg(short, long, value_name = "NAMES", value_delimiter = ',')]

@@ -108,7 +108,7 @@ pub(crate) struct Instantiate {
 }
 
 impl Instantiate {
-    /// What a host passes that does everything right.
+    /// Arguments of a host that does everything right.
     pub(crate) fn right(fmu: &Fmu) -> Self {
         Self {
             name: Some("instance".to_owned()),
@@ -121,12 +121,12 @@ impl Instantiate {
     }
 }
 
-/// How a call ended.
+/// End of a call.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Answer {
     pub(crate) status: Status,
     pub(crate) results: Vec<String>,
-    /// What the logger got during the call.
+    /// Messages to the logger during the call.
     pub(crate) log: Vec<Message>,
 }
 

@@ -1,4 +1,4 @@
-//! What can be instantiated from where, and what cannot.
+//! Instantiation: right and wrong arguments and resource locations.
 
 use biela::fmi::Status;
 

@@ -66,5 +66,5 @@ fn memory_is_used_as_it_should() {
     }
     host.ok(&["EnterEventMode", A]);
     host.ok(&["Lives", "2", &fmu.guid, &fmu.uri()]);
-    // What valgrind finds it tells on stderr, which has to be empty in the end.
+    // valgrind reports on stderr, which has to be empty in the end.
 }

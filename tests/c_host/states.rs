@@ -105,7 +105,7 @@ impl Saved {
     }
 }
 
-/// What a host passes to get an instance for an interface.
+/// Arguments for an instance of an interface.
 fn for_interface(fmu: &Fmu, interface: Interface) -> Instantiate {
     Instantiate {
         model_exchange: interface == Interface::ModelExchange,

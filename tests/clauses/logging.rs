@@ -131,7 +131,7 @@ fn advice_is_switched_by_its_category() {
     assert!(message.text.contains("near a singular position"));
 }
 
-/// What follows two slashes is a host (RFC 3986, 3.2); a drive comes after three.
+/// A host follows two slashes (RFC 3986, 3.2); a drive follows three.
 #[test]
 fn a_drive_in_place_of_a_host_is_refused_with_the_right_form() {
     let error = resource_path("file://C:/temp/resources").expect_err("`C:` is no host");

@@ -15,7 +15,7 @@ fn triangle() -> Instance {
     started(instance_of(shipped("tlv"), Interface::CoSimulation))
 }
 
-/// How a host ended.
+/// End of a host's run.
 #[derive(Debug, PartialEq)]
 enum End {
     /// At the stop time.

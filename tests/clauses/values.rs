@@ -55,7 +55,7 @@ fn a_parameter_outside_its_limits_is_discarded() {
     assert_eq!(error.status(), Status::Discard);
     let error = instance.set_integer(&[rates], &[4]).expect_err("no item");
     assert_eq!(error.status(), Status::Discard);
-    // What no limit says is an error still.
+    // A value that no limit concerns is an error still.
     let error = instance.set_real(&[length], &[f64::NAN]).expect_err("NaN");
     assert_eq!(error.status(), Status::Error);
     let mut instance = started(instance);

@@ -248,7 +248,7 @@ fn a_full_disk_changes_no_status_but_that_of_results() {
         (&["check", "no_such_file.toml"][..], 2),
         (&["check", "tests/diagnostics/syntax.toml"], 1),
         (&["check", "tests/diagnostics/floating-body.toml"], 1),
-        // That nothing moves is noted.
+        // A note says that nothing moves.
         (&["run", "mechanisms/four_bar.toml", "--plot", "-"], 0),
         (&["fly"], 2),
     ] {

@@ -115,7 +115,7 @@ class Server(http.server.SimpleHTTPRequestHandler):
 
 
 def visit(tmp_path, page, script, *, reduced=False, actions=None, behind=None):
-    """What a script's `visit` returns on a page; the page's errors fail the test.
+    """Returns the value of a script's `visit` on a page; the page's errors fail the test.
 
     The script may POST to the name of one of the `actions`, which is called then.
     """

@@ -281,7 +281,7 @@ def collect(rows: list[dict[str, float]]) -> dict[str, np.ndarray]:
 
 POSITION_LIMIT = 1e-12
 RATE_LIMIT = 1e-10
-"""What is promised of positions, and of velocities and accelerations: the largest error over a
+"""Promised accuracy of positions, and of velocities and accelerations: the largest error over a
 motion, relative to the largest magnitude of the same kind of quantity over that motion."""
 
 

@@ -19,7 +19,7 @@ class Block:
 
     language: str
     words: tuple[str, ...]
-    """What follows the language: a file's name, or `norun`."""
+    """Words after the language: a file's name, or `norun`."""
     text: str
     line: int
 
@@ -119,5 +119,5 @@ def tables(page: Path) -> Iterator[tuple[str, list[list[str]]]]:
 
 
 def words(cell: str) -> list[str]:
-    """What stands in backquotes in a cell."""
+    """Returns the texts in backquotes in a cell."""
     return re.findall(r"`([^`]+)`", cell)

@@ -44,7 +44,7 @@ def sources() -> Iterator[tuple[str, str]]:
 
 
 def shown(literal: str) -> str:
-    """How the text of a literal looks, `…` for each placeholder."""
+    """Returns the text of a literal, with `…` for each placeholder."""
     joined = re.sub(r"\\\n\s*", "", literal)
     unescaped = joined.replace('\\"', '"').replace("\\n", " ").replace("\\\\", "\\")
     return PLACEHOLDER.sub("…", unescaped.replace("{{", "{").replace("}}", "}"))

@@ -38,7 +38,7 @@ def test_full_motion_in_simulate_fmu(fmu, name, rates):
     assert set(expected) == set(fmu(name).names("output")), "every output is compared"
     assert_accurate(result, expected)
 
-    # What was in force is what was sent, one step before: the lag that every host has. FMPy
+    # The values in force are those sent one step before: the lag that every host has. FMPy
     # interpolates the signal where its time and the signal's differ by rounding.
     np.testing.assert_allclose(
         result[f"{form.driver}.position"][1:], full_motion(name, time)[0][:-1], atol=1e-13

@@ -11,7 +11,7 @@ from fmpy.ssp.simulation import simulate_ssp
 from harness import simulate
 
 CONNECTIONS = {"phi": "position", "omega": "velocity", "alpha": "acceleration"}
-"""Of the rocker's coordinate and rates to the inputs of the arm's driver."""
+"""Connections from the rocker's coordinate and rates to the inputs of the arm's driver."""
 
 OUTPUTS = ["slider.x", "slider.vx", "slider.ax"]
 

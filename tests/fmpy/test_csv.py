@@ -1,4 +1,4 @@
-"""What `biela run` writes is read as it is by those who are likely to: FMPy and pandas."""
+"""FMPy and pandas read the output of `biela run` as it is."""
 
 import math
 

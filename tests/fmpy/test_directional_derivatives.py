@@ -10,7 +10,7 @@ STEP = 1e-5
 Of lengths of a centimetre it is a thousandth, the fourth power of which is their truncation."""
 
 DIFFERENCE = 1e-6
-"""What differences leave of a derivative, relative to the largest of the same unit."""
+"""Error of a derivative by differences, relative to the largest of the same unit."""
 
 
 def derivatives(slave: Slave, unknowns, known) -> np.ndarray:

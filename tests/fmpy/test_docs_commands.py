@@ -64,7 +64,7 @@ def test_page(page, tmp_path):
 
 
 def checkout(folder):
-    """What pages refer to."""
+    """Makes the files that pages refer to."""
     for name in ("mechanisms", "examples", "demo"):
         ignored = shutil.ignore_patterns("out", "__pycache__", "*.fmu")
         shutil.copytree(ROOT / name, folder / name, ignore=ignored)
@@ -72,7 +72,7 @@ def checkout(folder):
 
 def run_console(at, block: Block, folder):
     for command in commands(block):
-        # What a page shows failing is meant to.
+        # A page means a failure that it shows.
         printed = run(at, ["bash", "-c", command.line], folder, may_fail=bool(command.shown))
         if command.shown:
             compare(f"{at}: {command.line}", command.shown, printed)

@@ -58,7 +58,7 @@ WORDS = {
 
 @pytest.fixture(scope="module")
 def answers(tmp_path_factory):
-    """What the reader says of a file with a wrong key in each table and a wrong word for each
+    """Returns the answer of the reader to a file with a wrong key in each table and a wrong word for each
     choice: pairs of message and help."""
     places = [place for place, _ in TABLES.values()] + list(WORDS.values())
     places += [f"[joints.T_{kind}]\ntype = '{kind}'\nNONE" for kind in JOINT_TYPES]

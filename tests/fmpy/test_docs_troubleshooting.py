@@ -144,7 +144,7 @@ MESSAGES = [
     for literal in literals(name, text)
     if is_message(literal)
 ]
-"""Of the program, the solver and the FMU."""
+"""Messages of the program, the solver and the FMU."""
 
 FILE_MESSAGES = [
     literal
@@ -153,7 +153,7 @@ FILE_MESSAGES = [
     for literal in reported(name, text)
     if re.search(r" .*[a-z]", literal.text)
 ]
-"""Of the reader."""
+"""Messages of the reader."""
 
 ANSWER = re.compile(r"^(?:error|warning)\[([a-z0-9-]+)\]: (.*)$", re.MULTILINE)
 

@@ -26,7 +26,7 @@ def drive(instance, name, steps=60, columns=3):
 
 
 # ---------------------------------------------------------------------------------------------
-# Where it lies
+# Place
 
 
 NOT_ON_WINDOWS = pytest.mark.skipif(os.name == "nt", reason="no such names on Windows")
@@ -63,7 +63,7 @@ def test_run_from_the_archive(fmu):
 
 
 # ---------------------------------------------------------------------------------------------
-# What is refused
+# Refusals
 
 
 @pytest.mark.parametrize("guid", ["{00000000-0000-0000-0000-000000000000}", "", "nonsense"])

@@ -247,7 +247,7 @@ def test_a_watched_file_is_seen_anew(tmp_path):
         watching.kill()
         watching.wait()
     assert seen["atFirst"] is None
-    # What the reader has switched on stays so on the new page.
+    # Switches of the reader stay as they are on the new page.
     assert seen["velocity"]
     # The error with its line, and the last good picture with it.
     assert "no marker `Oo` on `ground`" in seen["broken"] and "watched.toml:" in seen["broken"]

@@ -1,4 +1,4 @@
-"""Where velocities and accelerations of a driver come from, and what happens between samples."""
+"""Sources of velocities and accelerations of a driver, and values between samples."""
 
 import numpy as np
 import pytest
@@ -281,7 +281,7 @@ def test_taylor_takes_the_lag_away(fmu, name, wired):
 
 
 def test_hold_lags_one_step(fmu):
-    """What `taylor` is there for: held inputs are late by h, an error of first order."""
+    """The purpose of `taylor`: held inputs are late by h, an error of first order."""
     errors = []
     for steps in STEPS:
         result = run(fmu, "four_bar", steps, INPUTS, columns=3)

@@ -10,7 +10,7 @@ from jsonschema import Draft202012Validator
 tomllib = pytest.importorskip("tomllib", reason="Python 3.10 has no TOML reader")
 
 # The files of tests/diagnostics that are wrong in one place, or in a choice, a type or a key.
-# What is wrong in the others only the reader knows: names that stand for nothing, values.
+# Only the reader knows the faults of the others: names that stand for nothing, values.
 WRONG = {
     "bad-profile",
     "bad-table",

@@ -51,7 +51,7 @@ def headers():
 
 @dataclass
 class Difference:
-    """How far the numbers of two runs are apart, relative to the size that each column mostly has."""
+    """Returns the largest difference of two runs, relative to the usual size of each column."""
 
     numbers: int = 0
     equal: int = 0

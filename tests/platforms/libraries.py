@@ -1,4 +1,4 @@
-"""What the libraries for other platforms export and need."""
+"""Exports and imports of the libraries for other platforms."""
 
 import re
 import shutil
@@ -8,7 +8,7 @@ from pathlib import Path
 from common import LIBRARIES, ROOT, expect, headers, run
 
 LARGEST_SIZE = 2 * 1024 * 1024
-# What Windows 10 has: the C library, the kernel, synchronization and random numbers.
+# Parts of Windows 10: the C library, the kernel, synchronization and random numbers.
 WINDOWS_LIBRARIES = re.compile(r"kernel32|ntdll|msvcrt|bcryptprimitives|api-ms-win-(core|crt)-.*", re.I)
 
 
@@ -18,7 +18,7 @@ def declared():
 
 
 def inspect(library):
-    """What a library exports and imports; refuses one that is not as promised."""
+    """Returns exports and imports of a library; refuses one that is not as promised."""
     content = library.read_bytes()
     at = library.relative_to(LIBRARIES)
     processors = 2 if at.parts[0] == "darwin64" else 1
@@ -32,7 +32,7 @@ def inspect(library):
 
 
 def loading_time(library):
-    """How long a process takes to load a library for this system [ms], at best of some."""
+    """Returns the time to load a library for this system [ms], the best of some."""
     code = "import ctypes, sys, time; t = time.perf_counter(); ctypes.CDLL(sys.argv[1]); print(time.perf_counter() - t)"
     return 1e3 * min(float(run(sys.executable, "-c", code, library)) for _ in range(10))
 

@@ -104,7 +104,7 @@ def export(name):
 
 
 def answers(fmu, command, library, uri):
-    """What a C host answers, one list of fields per line."""
+    """Returns the answers of a C host, one list of fields per line."""
     lines = "".join("\t".join(map(str, request)) + "\n" for request in fmu.requests(uri))
     started = time.monotonic()
     done = subprocess.run([*map(str, command), str(library)], input=lines.encode(), capture_output=True, env=environment())

@@ -152,7 +152,7 @@ fn rows_are_not_changed_in_a_circle() {
     let driver = angle_driver("u", "ground.O", "crank.O", 245.0);
     let text = file(ground, &bodies, &joints, &driver);
     let (mut solver, _) = assembled(&parse(&text));
-    // How fine the samples are decides where rows are changed.
+    // The density of samples decides where rows are changed.
     let mut range = |samples: u32| {
         let settings = RangeSettings {
             samples,

@@ -1,4 +1,4 @@
-//! What a component is, and the one door through which all calls on it go.
+//! Components, and the one door through which all calls on them go.
 
 use std::any::Any;
 use std::cell::UnsafeCell;
@@ -14,7 +14,7 @@ use crate::fmi::{Error, Status};
 
 type Instance = crate::fmi::Instance<Exported>;
 
-/// What stands behind an `fmi2Component`.
+/// Data behind an `fmi2Component`.
 pub(super) struct Component {
     instance: UnsafeCell<Instance>,
     /// Whether a call is being served: only who has set it touches the instance.
@@ -136,7 +136,7 @@ fn serve(
     })
 }
 
-/// What a caught panic says.
+/// Returns the message of a caught panic.
 pub(super) fn panic_message(payload: &(dyn Any + Send)) -> &str {
     payload
         .downcast_ref::<String>()

@@ -54,7 +54,7 @@ impl Sink for HostLogger {
     }
 }
 
-/// What hosts have room for: a mechanism of thousands of bodies may have as much to say.
+/// Longest message that hosts have room for: a mechanism of thousands of bodies may have as much to say.
 const LONGEST_MESSAGE: usize = 8000;
 
 /// The beginning of a message that is too long.

@@ -6,7 +6,7 @@
 //!
 //! # Safety
 //!
-//! What no function can check is the host's promise, as the standard has it:
+//! The host promises, by the standard, what no function can check:
 //!
 //! - A component that is not null came from `fmi2Instantiate` and has not been freed. A call on it
 //!   while another is being served, from the logger or from another thread, is refused.

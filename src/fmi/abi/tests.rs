@@ -1,4 +1,4 @@
-//! What no host can bring about, or see, by itself. `tests/c_host` has the rest.
+//! Cases that no host can bring about, or see, by itself. `tests/c_host` has the rest.
 
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
@@ -40,7 +40,7 @@ fn component(sink: impl Sink + Send + 'static) -> fmi2Component {
     Component::hand_over(Instance::new(model, Box::new(sink), false))
 }
 
-/// What each function that goes to an instance answers, given nothing.
+/// Answers of each function that goes to an instance, given nothing.
 ///
 /// # Safety
 ///

@@ -28,7 +28,7 @@ use crate::mechanism::{Jet, MarkerId, Mechanism};
 ///
 /// f = e · (P_j − P_i) − target = κ + w · A_a g.
 ///
-/// Where the axis e is known, w = e and g is the turning part of P_j − P_i; where it turns with
+/// With a known axis e, w = e and g is the turning part of P_j − P_i; where it turns with
 /// a, g = e in a's frame and w is the known part of P_j − P_i, as the rest turns with e.
 #[derive(Debug)]
 pub(in crate::kinematics) struct RrpDyad {

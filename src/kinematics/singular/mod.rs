@@ -1,7 +1,7 @@
 //! Singular positions: dead points, change points, and positions that are refused.
 //!
-//! Where the Jacobian of a block loses rank, Newton–Raphson does not converge, and the motion may
-//! have more than one continuation. [`reduced`] reduces the block's equations to one smooth
+//! At a pose where the Jacobian of a block loses rank Newton–Raphson does not converge, and the
+//! motion may have more than one continuation. [`reduced`] reduces the block's equations to one smooth
 //! function of two numbers. [`locate`] finds the singular position of this function to rounding,
 //! and its kind. Where two motions cross, [`interpolate`] takes the smooth continuation: parallel
 //! links stay parallel.

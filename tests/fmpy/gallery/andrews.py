@@ -74,7 +74,7 @@ def motor(time: Taylor) -> Taylor:
     scale = DURATION ** np.arange(3)
     a0, a1, a2 = scale * [START.value[0], START.first[0], START.second[0]]
     b0, b1, b2 = scale * [END.value[0], END.first[0], END.second[0]]
-    # What start value, velocity and acceleration leave to be reached by the last three terms.
+    # Rest for the last three terms, after start value, velocity and acceleration.
     r0, r1, r2 = b0 - a0 - a1 - a2 / 2, b1 - a1 - a2, b2 - a2
     coefficients = (
         6 * r0 - 3 * r1 + r2 / 2, -15 * r0 + 7 * r1 - r2, 10 * r0 - 4 * r1 + r2 / 2, a2 / 2, a1, a0
@@ -87,7 +87,7 @@ def motor(time: Taylor) -> Taylor:
 
 
 def solve(beta: Taylor) -> tuple[Truth, dict[str, Taylor]]:
-    """What the outputs have to be, and the angles as published, at this angle of the motor."""
+    """Returns the true outputs, and the angles as published, at this angle of the motor."""
     f = Taylor.polar(RR, beta)
     e = apex(f, B, D, SS, +1)
     g = apex(e, A, E, ZT, -1)

@@ -49,7 +49,7 @@ def write(rows: list[Row]) -> None:
 
 
 def section(row: Row) -> str:
-    """What the page says of a mechanism."""
+    """Returns the section of a mechanism."""
     mechanism = tomllib.loads(mechanism_file(row.name).read_text(encoding="utf-8"))
     description = mechanism["description"]
     errors = " · ".join(f"{order} {rounded_up(row.errors.get(order))}" for order in ORDERS)

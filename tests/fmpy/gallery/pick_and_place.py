@@ -30,7 +30,7 @@ def modified_sine(tau):
 
 
 def choose(pieces, place):
-    """Of several values the one of each sample."""
+    """Returns for each sample its value among several."""
     orders = ("value", "first", "second")
     return Taylor(*(np.choose(place, [getattr(p, o) for p in pieces]) for o in orders))
 

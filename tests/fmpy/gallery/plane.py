@@ -1,4 +1,4 @@
-"""What closed forms of planar linkages are made of; vectors are complex, x + iy."""
+"""Parts of closed forms of planar linkages; vectors are complex, x + iy."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ def apex(a, b, from_a, from_b, side: int) -> Taylor:
 
 
 def point(name: str, at) -> dict[str, Taylor]:
-    """What a point's place is called."""
+    """Returns the coordinates of a point by their names."""
     at = Taylor.of(at)
     return {f"{name}.x": at.x, f"{name}.y": at.y}
 
 
 def body(name: str, origin, phi) -> dict[str, Taylor]:
-    """What a body's pose is called."""
+    """Returns the pose of a body by its names."""
     return point(name, origin) | {f"{name}.phi": Taylor.of(phi)}

@@ -43,7 +43,7 @@ def sent(given: dict[str, Taylor]) -> Taylor:
 
 
 def truth(time: Taylor, drivers: dict[str, Taylor]) -> Truth:
-    # What a host holds over a step belongs to the time at which it was sent.
+    # A value held over a step belongs to the time at which it was sent.
     time = sent(drivers)
     centre, phi = pose(time)
     motion = body("platform", centre, phi) | {"rotation": phi}

@@ -28,7 +28,7 @@ in these mechanisms."""
 
 @dataclass
 class Row:
-    """What came of a case: a row of the table."""
+    """Result of a case: a row of the table."""
 
     name: str
     source: str
@@ -44,7 +44,7 @@ class Row:
 
     @property
     def failures(self) -> list[str]:
-        """What is not as it should be, in words."""
+        """Returns the faults, in words."""
         found = list(self.problems)
         if not self.residual <= RESIDUAL_LIMIT:
             found.append(f"residual {self.residual:.1e} exceeds {RESIDUAL_LIMIT:.1e}")

@@ -5,7 +5,7 @@
 //! d_b and −d_a over det = d_a × d_b, which is least at one of the ends as the angle between the
 //! links runs straight, too. With z off the chord by r, J changes by l_a r_a and l_b r_b.
 //!
-//! So a gap within G, whatever its direction, makes r_a = l_b G / det and r_b = l_a G / det, and
+//! A gap within G, whatever its direction, makes r_a = l_b G / det and r_b = l_a G / det, and
 //! the test is
 //!
 //! > g + l_a r_a² + l_b r_b² < G,
