@@ -1,6 +1,6 @@
 //! Directional derivatives of outputs and calculated parameters.
 
-use super::input::RateSource;
+use super::rule::RateSource;
 use super::variables::Order;
 use super::{MechanismModel, Quantity, Signal, failed};
 use crate::fmi::error::Failure;

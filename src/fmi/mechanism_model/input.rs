@@ -17,83 +17,10 @@
 
 use std::f64::consts::TAU;
 
+use super::history::{History, Sample};
+use super::rule::{DriverRates, Extrapolation, RateSource, Rule, Source};
 use super::variables::Order;
 use crate::fmi::codec::{Codec, Unreadable};
-
-/// Use of the rate inputs: the FMU's parameter `rates`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RateSource {
-    Auto = 1,
-    Inputs = 2,
-    Estimated = 3,
-}
-
-impl RateSource {
-    pub(super) const ALL: [Self; 3] = [Self::Auto, Self::Inputs, Self::Estimated];
-}
-
-/// Path of positions without input derivatives: the FMU's parameter `extrapolation`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Extrapolation {
-    Hold = 1,
-    Taylor = 2,
-}
-
-impl Extrapolation {
-    pub(super) const ALL: [Self; 2] = [Self::Hold, Self::Taylor];
-}
-
-/// The FMU's parameters that decide about paths and rates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Rule {
-    pub(super) rates: RateSource,
-    pub(super) extrapolation: Extrapolation,
-}
-
-/// Source of a rate in force.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Source {
-    /// The rate input.
-    Input,
-    /// Input derivatives.
-    Derivatives,
-    /// The backward difference of velocities that are no estimates.
-    Difference,
-    /// The parabola through the last three positions.
-    #[default]
-    Estimate,
-}
-
-impl Source {
-    pub(super) const ALL: [Self; 4] = [
-        Self::Input,
-        Self::Derivatives,
-        Self::Difference,
-        Self::Estimate,
-    ];
-}
-
-/// Velocity and acceleration of a driver.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct DriverRates {
-    pub(super) velocity: f64,
-    pub(super) acceleration: f64,
-}
-
-/// The inputs at one communication point.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Sample {
-    pub(super) time: f64,
-    pub(super) position: f64,
-    /// Velocity in force, unless it is an estimate.
-    pub(super) velocity: Option<f64>,
-    /// Acceleration in force, if it is an input.
-    pub(super) acceleration: Option<f64>,
-}
-
-/// The last three samples, newest first.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct History([Option<Sample>; 3]);
 
 /// The three FMI inputs of one driver.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,10 +37,6 @@ pub(super) struct DriverInput {
     /// Size \[s\] of the last step if the rates extrapolated the position in it, else 0.
     extrapolated_over: f64,
 }
-
-/// Ratio of two consecutive steps below which the shorter one is left out of estimates. Hosts mark
-/// a jump by a step of 1e-12 s; step size controls change steps by a factor of ten at most.
-const SHORT_STEP: f64 = 0.01;
 
 impl DriverInput {
     /// Returns the inputs at their start values: rates of zero.
@@ -214,7 +137,8 @@ impl DriverInput {
             };
             return (rates, [of_velocity, of_acceleration]);
         }
-        let history = self.history.with(self.sample(rates, time), h);
+        let mut history = self.history;
+        history.push(self.sample(rates, time), h);
         let estimate = history.estimate();
         let (velocity, of_velocity) = velocity.unwrap_or((estimate.velocity, Source::Estimate));
         let difference = || Some((history.difference()?, Source::Difference));
@@ -302,21 +226,19 @@ impl DriverInput {
     /// step, by one of the three inputs.
     pub(super) fn change_by_value(&self, rates: RateSource, time: f64, order: Order) -> [f64; 3] {
         let (_, sources) = self.rates(rates, time, 0.0, 0.0);
-        let history = self.history.with(self.sample(rates, time), 0.0);
+        let mut history = self.history;
+        history.push(self.sample(rates, time), 0.0);
         history.change(rates, sources, order)
     }
 
     /// Returns the last recorded sample before `time`.
     pub(super) fn last_sample(&self, time: f64) -> Option<Sample> {
-        self.history.0[0].filter(|last| last.time < time)
+        self.history.newest().filter(|last| last.time < time)
     }
 
     /// Returns the change of the position in the last recorded step.
     pub(super) fn last_change(&self) -> f64 {
-        match self.history.0 {
-            [Some(newest), Some(before), _] => newest.position - before.position,
-            _ => 0.0,
-        }
+        self.history.last_change()
     }
 
     /// Ends a step of size `h` from `time`: records and returns the inputs, and clears the
@@ -324,7 +246,7 @@ impl DriverInput {
     pub(super) fn record(&mut self, rule: Rule, time: f64, h: f64) -> Sample {
         let sample = self.sample(rule.rates, time);
         self.extrapolated_over = if self.is_extrapolated(rule) { h } else { 0.0 };
-        self.history = self.history.with(sample, 0.0);
+        self.history.push(sample, 0.0);
         self.derivatives = [[None; 2]; 3];
         sample
     }
@@ -348,112 +270,7 @@ impl DriverInput {
         for flag in used {
             codec.flag(flag)?;
         }
-        let samples = history.0.iter_mut();
-        samples.into_iter().try_for_each(|sample| {
-            codec.option(sample, Sample::default(), |codec, sample| {
-                codec.finite(&mut sample.time)?;
-                codec.finite(&mut sample.position)?;
-                for rate in [&mut sample.velocity, &mut sample.acceleration] {
-                    codec.option(rate, 0.0, |codec, value| codec.finite(value))?;
-                }
-                Ok(())
-            })
-        })
-    }
-}
-
-impl History {
-    fn is_empty(&self) -> bool {
-        self.0[0].is_none()
-    }
-
-    /// Returns the history with a new sample, from which a step of size `h` starts. Leaves out the
-    /// earlier end of a step that is short beside the one before or after.
-    fn with(&self, sample: Sample, h: f64) -> Self {
-        let short = |step: f64, neighbour: f64| step < SHORT_STEP * neighbour;
-        match self.0 {
-            // The same communication point.
-            [Some(newest), b, c] if newest.time >= sample.time => Self([Some(sample), b, c]),
-            [Some(newest), Some(b), c]
-                if short(sample.time - newest.time, newest.time - b.time) =>
-            {
-                Self([Some(sample), Some(b), c])
-            }
-            [Some(newest), Some(b), None]
-                if short(newest.time - b.time, sample.time - newest.time) =>
-            {
-                Self([Some(sample), Some(newest), None])
-            }
-            [Some(newest), None, None] if short(sample.time - newest.time, h) => {
-                Self([Some(sample), None, None])
-            }
-            [a, b, _] => Self([Some(sample), a, b]),
-        }
-    }
-
-    /// Returns the derivatives of the polynomial through all samples at the newest one.
-    fn estimate(&self) -> DriverRates {
-        let slope = |a: Sample, b: Sample| (a.position - b.position) / (a.time - b.time);
-        match self.0 {
-            [Some(newest), Some(before), Some(oldest)] => {
-                let last = slope(newest, before);
-                let curvature = (last - slope(before, oldest)) / (newest.time - oldest.time);
-                DriverRates {
-                    velocity: last + curvature * (newest.time - before.time),
-                    acceleration: 2.0 * curvature,
-                }
-            }
-            [Some(newest), Some(before), None] => DriverRates {
-                velocity: slope(newest, before),
-                acceleration: 0.0,
-            },
-            _ => DriverRates::default(),
-        }
-    }
-
-    /// Returns the derivatives of position, velocity and acceleration at the newest sample by one of
-    /// the three inputs there. With `auto` a rate input counts as in use unless derivatives replace
-    /// it: it is once it is not zero.
-    fn change(&self, rates: RateSource, sources: [Source; 2], order: Order) -> [f64; 3] {
-        let unit = |of: Order| if of == order { 1.0 } else { 0.0 };
-        // Estimates are linear in the positions.
-        let mut by_newest = *self;
-        for (index, sample) in by_newest.0.iter_mut().enumerate() {
-            let position = if index == 0 {
-                unit(Order::Position)
-            } else {
-                0.0
-            };
-            *sample = sample.map(|sample| Sample { position, ..sample });
-        }
-        let estimate = by_newest.estimate();
-        let given = |of: Order, source: Source| match (source, rates) {
-            (Source::Input, _) | (Source::Estimate | Source::Difference, RateSource::Auto) => {
-                unit(of)
-            }
-            _ => 0.0,
-        };
-        let mut velocity = given(Order::Velocity, sources[0]);
-        let mut acceleration = given(Order::Acceleration, sources[1]);
-        if sources[0] == Source::Estimate {
-            velocity += estimate.velocity;
-        }
-        match (sources, self.0) {
-            ([_, Source::Estimate], _) => acceleration += estimate.acceleration,
-            ([Source::Input, Source::Difference], [Some(newest), Some(before), _]) => {
-                acceleration += unit(Order::Velocity) / (newest.time - before.time);
-            }
-            _ => {}
-        }
-        [unit(Order::Position), velocity, acceleration]
-    }
-
-    /// Returns the backward difference of the last two velocities, if both are no estimates.
-    fn difference(&self) -> Option<f64> {
-        let [Some(newest), Some(before), _] = self.0 else {
-            return None;
-        };
-        Some((newest.velocity? - before.velocity?) / (newest.time - before.time))
+        history.visit(codec)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Messages about poses and steps.
 
 use super::MechanismModel;
-use super::input::{Extrapolation, RateSource, Rule, Source};
 use super::monitor::Contradiction;
+use super::rule::{Extrapolation, RateSource, Rule, Source};
 use super::variables::{Order, is_angle, units};
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;

@@ -4,6 +4,8 @@
 //! |---|---|
 //! | `variables` | the table of variables |
 //! | `description`, `guid`, `resource` | the FMU's files |
+//! | `rule` | the parameters `rates` and `extrapolation`, and the sources of rates |
+//! | `history` | the last samples of one driver, and the rates estimated from them |
 //! | `input` | one driver's inputs: their path during a step and their rates |
 //! | `monitor` | one driver's observations: contradictions, falls, limits |
 //! | `pose` | initialization, steps, and the pose and rates of the values set |
@@ -15,12 +17,14 @@
 mod derivatives;
 mod description;
 mod guid;
+mod history;
 mod input;
 mod messages;
 mod monitor;
 mod outputs;
 mod pose;
 mod resource;
+mod rule;
 mod state;
 mod variables;
 
@@ -41,9 +45,10 @@ use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Path, Pose, Progress, Rates, Solver};
 use crate::mechanism::{DriverSource, Jet, Mechanism};
-use input::{DriverInput, Extrapolation, RateSource, Rule, Source};
+use input::DriverInput;
 use monitor::Monitor;
 use outputs::Reals;
+use rule::{Extrapolation, RateSource, Rule, Source};
 
 /// A mechanism at the values that a host has set.
 #[derive(Debug)]

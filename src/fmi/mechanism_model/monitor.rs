@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::input::{Sample, Source};
+use super::history::Sample;
+use super::rule::Source;
 use super::variables::Order;
 use crate::fmi::codec::{Codec, Unreadable};
 

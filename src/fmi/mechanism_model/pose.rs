@@ -1,6 +1,6 @@
 //! Initialization, steps, and the pose and rates of the values set.
 
-use super::input::DriverRates;
+use super::rule::DriverRates;
 use super::{Freshness, MechanismModel, RateSource, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::input::{DriverInput, Extrapolation, RateSource};
+use super::input::DriverInput;
 use super::monitor::Monitor;
+use super::rule::{Extrapolation, RateSource};
 use super::{Freshness, MechanismModel, Quantity, Settings};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
