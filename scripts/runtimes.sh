@@ -40,15 +40,15 @@ current() {
 }
 
 put() { # PLATFORM/FILE SOURCE
-    mkdir -p "$OUT/${1%/*}"
-    printf '%s\n' "$BUILT_FROM" >"$OUT/${1%/*}/.sources"
-    cp "$2" "$OUT/$1.new"
-    mv "$OUT/$1.new" "$OUT/$1"
     local size
-    size=$(wc -c <"$OUT/$1")
+    size=$(wc -c <"$2")
     say "$1: $size bytes"
     case $1 in darwin64/*) size=$((size / 2)) ;; esac
     [ "$size" -le "$LIMIT" ] || fail "$1 is larger than $LIMIT bytes"
+    mkdir -p "$OUT/${1%/*}"
+    cp "$2" "$OUT/$1.new"
+    mv "$OUT/$1.new" "$OUT/$1"
+    printf '%s\n' "$BUILT_FROM" >"$OUT/${1%/*}/.sources"
 }
 
 # Joins libraries of several processors in one file.

@@ -186,7 +186,7 @@ fn bare_value(line: &str, at: usize, message: &str) -> Option<Slip> {
             let product = format!("{number}*{constant}");
             return slip("an expression needs quotes", write_quoted(&product));
         }
-        if Unit::ALL.iter().any(|known| known.name == unit) {
+        if Unit::by_name(unit).is_some() {
             return slip(
                 "values are written in SI units, without the unit",
                 format!("write `{number}`"),

@@ -19,7 +19,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 import urllib.parse
 import zipfile
 from dataclasses import dataclass, field
@@ -106,13 +105,11 @@ def export(name):
 def answers(fmu, command, library, uri):
     """Returns the answers of a C host, one list of fields per line."""
     lines = "".join("\t".join(map(str, request)) + "\n" for request in fmu.requests(uri))
-    started = time.monotonic()
     done = subprocess.run([*map(str, command), str(library)], input=lines.encode(), capture_output=True, env=environment())
-    seconds = time.monotonic() - started
     text = done.stdout.decode("utf-8")
     expect(done.returncode == 0, f"{fmu.name}: the host ends with {done.returncode}: {done.stderr.decode(errors='replace')}")
     expect(not done.stderr.strip(), f"{fmu.name}: something is written to stderr: {done.stderr[:500]}")
-    return [line.rstrip("\r").split("\t") for line in text.split("\n") if line.strip()], seconds
+    return [line.rstrip("\r").split("\t") for line in text.split("\n") if line.strip()]
 
 
 def split(lines):
@@ -251,8 +248,8 @@ def main():
 
     def record_host(host, results):
         difference = Difference()
-        for name, (lines, _) in results.items():
-            compare(f"{host}, {name}", lines, reference[name][0], difference)
+        for name, lines in results.items():
+            compare(f"{host}, {name}", lines, reference[name], difference)
         record(host, fmus, difference)
 
     if OLD_SYSTEM.is_dir():

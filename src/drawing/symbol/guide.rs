@@ -104,7 +104,7 @@ fn back(
     radius: f64,
     side: RackSide,
 ) -> Option<SlideWay> {
-    let teeth = rack::range(composer, [pinion, rack], radius);
+    let teeth = rack::range(composer, [pinion, rack], rack::END * radius);
     let ends = teeth.map(|s| rack.moved_to(rack.on_axis(s).into()));
     let near = 1e-6 * (teeth[1] - teeth[0]);
     let is_off = |end: &Anchor| to.coordinates(end.position.into())[1].abs() > near;

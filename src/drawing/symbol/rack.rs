@@ -18,7 +18,7 @@ const TOOTH: [f64; 2] = [9.0, 5.0];
 /// Distance of the back from the pitch line.
 pub(super) const BACK: f64 = 0.5 * TOOTH[1] + 2.0 * BAR;
 /// Length of a rack beyond its points of contact, as a part of the pinion's radius.
-const END: f64 = 0.6;
+pub(super) const END: f64 = 0.6;
 
 /// Composes a rack and its pinion.
 pub(super) fn compose(
@@ -29,7 +29,7 @@ pub(super) fn compose(
 ) {
     let radius = composer.value(radius);
     wheel::add(composer, pinion, radius, false);
-    let range = range(composer, [pinion, rack], radius);
+    let range = range(composer, [pinion, rack], END * radius);
     composer.add(Rack {
         along: rack,
         range,
@@ -37,12 +37,11 @@ pub(super) fn compose(
     });
 }
 
-/// Returns the part of a rack's axis with teeth: its points of contact over the motion, and its
-/// body's markers on the axis \[m\].
-pub(super) fn range(composer: &Composer, [pinion, rack]: [Anchor; 2], radius: f64) -> [f64; 2] {
-    let [low, high] = composer.range(rack, pinion);
-    let end = END * radius;
-    composer.with_markers(rack, [low - end, high + end])
+/// Returns the part of an axis that a wheel uses: its points of contact over the motion and `end`
+/// beyond them, and its body's markers on the axis \[m\].
+pub(super) fn range(composer: &Composer, [wheel, along]: [Anchor; 2], end: f64) -> [f64; 2] {
+    let [low, high] = composer.range(along, wheel);
+    composer.with_markers(along, [low - end, high + end])
 }
 
 impl Shape for Rack {

@@ -20,9 +20,7 @@ const END: f64 = 0.5;
 pub(super) fn compose(composer: &mut Composer, [wheel, along]: [Anchor; 2], radius: &Expression) {
     let radius = composer.value(radius);
     wheel::add(composer, wheel, radius, false);
-    let [low, high] = composer.range(along, wheel);
-    let end = END * radius;
-    let range = composer.with_markers(along, [low - end, high + end]);
+    let range = rack::range(composer, [wheel, along], END * radius);
     composer.add(Track {
         along,
         range,

@@ -15,11 +15,6 @@ pub enum Motion {
     Table(MotionTable),
 }
 
-/// Returns the number that decides which piece of a motion is in force.
-fn number<N: Number>(x: N) -> f64 {
-    x.real()
-}
-
 /// A motion through given points.
 #[derive(Clone, Debug)]
 pub struct MotionTable {
@@ -176,15 +171,15 @@ impl<N: Number> MotionInForce<N> {
             return f64::INFINITY;
         };
         let times = spline.knots();
-        let (start, end) = (number(times[0]), number(times[times.len() - 1]));
+        let (start, end) = (times[0].real(), times[times.len() - 1].real());
         let laps = match motion.ends {
             Ends::Periodic => ((t - start) / (end - start)).floor() * (end - start),
             _ => 0.0,
         };
-        let next = times.partition_point(|&time| number(time) + laps <= t);
+        let next = times.partition_point(|time| time.real() + laps <= t);
         times
             .get(next)
-            .map_or(f64::INFINITY, |&time| number(time) + laps)
+            .map_or(f64::INFINITY, |time| time.real() + laps)
     }
 }
 
@@ -207,13 +202,13 @@ impl MotionTable {
         match self.ends {
             Ends::Periodic => {
                 let period = end - start;
-                let laps = ((number(t) - number(start)) / number(period)).floor();
+                let laps = ((t.real() - start.real()) / period.real()).floor();
                 let laps = N::constant(laps);
                 let gained = laps * (values[last] - values[0]);
                 gained + self.between(spline, t - laps * period)
             }
-            _ if number(t) < number(start) => self.beyond(spline, 0, t),
-            _ if number(t) >= number(end) => self.beyond(spline, last, t),
+            _ if t.real() < start.real() => self.beyond(spline, 0, t),
+            _ if t.real() >= end.real() => self.beyond(spline, last, t),
             _ => self.between(spline, t),
         }
     }
@@ -252,7 +247,7 @@ impl MotionTable {
     }
 
     fn between<N: Number>(&self, spline: &Spline<N>, t: N) -> N {
-        let segment = spline.segment(number(t));
+        let segment = spline.segment(t.real());
         let Interpolation::Law(law) = self.interpolation else {
             return spline.on_segment(segment, t);
         };

@@ -6,8 +6,8 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::motion::not_finite;
 use crate::mechanism::wording::shown;
 use crate::mechanism::{
-    CoordinateKind, Ends, Interpolation, Jet, Law, Motion, MotionInForce, MotionTable, Span,
-    Variable,
+    CoordinateKind, Ends, Expression, Interpolation, Jet, Law, Motion, MotionInForce, MotionTable,
+    Span, Variable,
 };
 
 use super::context::Context;
@@ -58,17 +58,19 @@ pub(super) struct PrescribedMotion;
 
 /// Motion before it is checked for its coordinate.
 pub(super) struct ReadMotion {
-    motion: Motion,
-    /// Points of a table.
-    points: Option<PointTable>,
+    course: Course,
     span: Span,
+}
+
+enum Course {
+    Expression(Expression),
+    Points(PointTable, Interpolation, Ends),
 }
 
 impl<'a> Kind<'a> for PrescribedMotion {
     type Value = ReadMotion;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<ReadMotion> {
-        let mut points = None;
         let not_a_motion = match item.value.get_ref() {
             DeValue::Array(_) => Some("an array of points is no motion by itself"),
             DeValue::String(text) if text.ends_with(".csv") => {
@@ -85,16 +87,15 @@ impl<'a> Kind<'a> for PrescribedMotion {
                 );
             return None;
         }
-        let motion = if item.value.get_ref().is_table() {
+        let course = if item.value.get_ref().is_table() {
             let fields = context.fields(item.span(), item.value, "the motion".to_owned())?;
             let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
-            Motion::Table(context.motion_table(keys, &mut points)?)
+            context.motion_table(keys)?
         } else {
-            Motion::Expression(context.expression(item.value, Some(Variable::Time))?)
+            Course::Expression(context.expression(item.value, Some(Variable::Time))?)
         };
         Some(ReadMotion {
-            motion,
-            points,
+            course,
             span: item.span(),
         })
     }
@@ -106,8 +107,7 @@ impl<'a> Context<'a> {
     fn motion_table(
         &mut self,
         (point_keys, keys): (PointKeys<'a>, MotionKeys<'a>),
-        points: &mut Option<PointTable>,
-    ) -> Option<MotionTable> {
+    ) -> Option<Course> {
         let ends_place = keys.ends.span.clone();
         let interpolation = keys.law.or(Interpolation::Spline);
         let ends = keys.ends.or(Ends::Clamped);
@@ -117,12 +117,8 @@ impl<'a> Context<'a> {
                 .suggest("the other laws come to rest at each point");
             return None;
         }
-        let points = points.insert(self.points(point_keys)?);
-        Some(MotionTable {
-            table: points.table.clone(),
-            interpolation: interpolation?,
-            ends: ends?,
-        })
+        let points = self.points(point_keys)?;
+        Some(Course::Points(points, interpolation?, ends?))
     }
 
     /// Refuses a motion whose value or rates at the start time are not finite, and a distance
@@ -133,15 +129,21 @@ impl<'a> Context<'a> {
         kind: Option<CoordinateKind>,
         start_time: f64,
     ) -> Option<Motion> {
-        let ReadMotion {
-            motion,
-            points,
-            span,
-        } = read;
+        let ReadMotion { course, span } = read;
         let is_distance = kind == Some(CoordinateKind::Distance);
-        if let Some(points) = points.filter(|_| is_distance) {
-            self.check_ordinates_positive(&points, "a distance")?;
-        }
+        let motion = match course {
+            Course::Expression(expression) => Motion::Expression(expression),
+            Course::Points(points, interpolation, ends) => {
+                if is_distance {
+                    self.check_ordinates_positive(&points, "a distance")?;
+                }
+                Motion::Table(MotionTable {
+                    table: points.table,
+                    interpolation,
+                    ends,
+                })
+            }
+        };
         if !self.knows(motion.parameters()) {
             return Some(motion);
         }
