@@ -194,19 +194,26 @@ impl State {
     /// # Errors
     ///
     /// [`Error::Singular`] where a Jacobian is singular to the last bit.
+    #[inline]
     pub(super) fn refresh(&mut self, model: &mut Model) -> Result<(), Error> {
-        if !self.factorised {
-            let single = self.has_single_driver();
-            let Model { system, plan, .. } = model;
-            let mut state = self.block_state(system);
-            plan.factorise(&mut state)
-                .map_err(|Rejected| SINGULAR_HERE)?;
-            if single {
-                plan.solve_rates(&mut state, &UNIT_RATE);
-            }
-            self.regularity = plan.regularity();
-            self.factorised = true;
+        if self.factorised {
+            return Ok(());
         }
+        self.factorise(model)
+    }
+
+    #[inline(never)]
+    fn factorise(&mut self, model: &mut Model) -> Result<(), Error> {
+        let single = self.has_single_driver();
+        let Model { system, plan, .. } = model;
+        let mut state = self.block_state(system);
+        plan.factorise(&mut state)
+            .map_err(|Rejected| SINGULAR_HERE)?;
+        if single {
+            plan.solve_rates(&mut state, &UNIT_RATE);
+        }
+        self.regularity = plan.regularity();
+        self.factorised = true;
         Ok(())
     }
 

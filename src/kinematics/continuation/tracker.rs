@@ -189,19 +189,26 @@ impl Run<'_> {
     /// # Errors
     ///
     /// A position right ahead that cannot be passed.
+    #[inline]
     fn look_ahead(&mut self) -> Result<(), Reason> {
         self.limit = None;
         if self.state.regularity < NEAR && !self.drivers.parameters_move {
-            let limit = singular::look_ahead(
-                self.model,
-                self.state,
-                &self.drivers.here,
-                self.path,
-                self.s,
-            );
-            self.limit = limit.map_err(Reason::Singular)?;
+            self.limit = self.limit_near()?;
         }
         Ok(())
+    }
+
+    /// Returns the limit of the next sub-step near a singular position.
+    #[cold]
+    fn limit_near(&mut self) -> Result<Option<DriverLimit>, Reason> {
+        let limit = singular::look_ahead(
+            self.model,
+            self.state,
+            &self.drivers.here,
+            self.path,
+            self.s,
+        );
+        limit.map_err(Reason::Singular)
     }
 
     /// Prepares the next sub-step from the pose.
@@ -295,12 +302,21 @@ impl Run<'_> {
                 unit_rates,
             )
             .map_err(|Rejected| Failure::NotCertified)?;
+        if !self.model.redundant.is_empty() {
+            self.watch_rows()?;
+        }
+        Ok(correction)
+    }
+
+    /// Watches the rows set aside at the end of a sub-step, and between its ends.
+    // Inlined, its loop invariants would be computed in steps without such rows.
+    #[inline(never)]
+    fn watch_rows(&mut self) -> Result<(), Failure> {
         if let Some(joint) = redundancy::opened(self.model, self.state) {
             return Err(Failure::Contradiction(joint));
         }
         redundancy::watch_between(self.model, self.state, self.bounds)
-            .map_err(|Rejected| Failure::NotCertified)?;
-        Ok(correction)
+            .map_err(|Rejected| Failure::NotCertified)
     }
 
     /// Makes the end of a sub-step the pose.
@@ -352,6 +368,7 @@ impl Run<'_> {
     /// A value for which no mechanism exists.
     fn set_values(&mut self, s: f64) -> Result<(), Error> {
         self.evaluate_drivers(s);
+        self.drivers.take_values();
         if self.drivers.parameters_move {
             self.state
                 .try_parameters(self.model, &self.drivers.parameters)?;

@@ -11,7 +11,7 @@ pub(in crate::kinematics) struct PathDrivers {
     pub(in crate::kinematics) here: Vec<Jet>,
     /// The drivers at the place evaluated last.
     pub(in crate::kinematics) ahead: Vec<Jet>,
-    /// The values of `ahead`.
+    /// The values of the drivers at the end of the sub-step.
     pub(in crate::kinematics) values: Vec<f64>,
     /// Whether the parameters differ between the ends of the path.
     pub(in crate::kinematics) parameters_move: bool,
@@ -57,6 +57,10 @@ impl PathDrivers {
         } else {
             path.drivers(s, motions, &mut self.ahead);
         }
+    }
+
+    /// Takes over the values of the place evaluated last, where a sub-step is to end.
+    pub(in crate::kinematics) fn take_values(&mut self) {
         for (value, jet) in self.values.iter_mut().zip(&self.ahead) {
             *value = jet.value;
         }

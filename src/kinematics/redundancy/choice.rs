@@ -7,11 +7,10 @@ use super::contradiction::explain_open;
 use super::rank::{
     DEPENDENT, drivers_first, find_freedom, jacobian_rows, singular_position, weakest,
 };
-use crate::kinematics::assembly::estimate::go_to_estimate;
-use crate::kinematics::assembly::least_squares::holds;
-
 use crate::kinematics::Element;
+use crate::kinematics::assembly::estimate::go_to_estimate;
 use crate::kinematics::assembly::gaps::open_joints;
+use crate::kinematics::assembly::least_squares::holds;
 use crate::kinematics::error::{Error, OpenJoint};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::model::{Model, RedundantRows};
@@ -204,13 +203,12 @@ pub(in crate::kinematics) fn return_to_fit_rows(
 /// Takes other rows if those in use are much nearer to dependence here. Returns whether it did.
 /// Allocates, but only where redundant rows leave a choice.
 pub(in crate::kinematics) fn change_rows(model: &mut Model, state: &mut State) -> bool {
-    let choice = fitter_rows(model, state);
-    let better = choice.is_some();
-    if let Some(choice) = choice {
-        model.redundant.now = choice.set_aside;
-        state.compile(model);
-    }
-    better
+    let Some(choice) = fitter_rows(model, state) else {
+        return false;
+    };
+    model.redundant.now = choice.set_aside;
+    state.compile(model);
+    true
 }
 
 /// Returns whether a change point of the rows in use may be one of the mechanism: they are those

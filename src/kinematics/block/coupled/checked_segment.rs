@@ -161,10 +161,7 @@ impl CoupledBlock {
         self.lay_line(state, step, steps);
         let passed = self.test_line(state, step);
         self.test.return_to_ends(state);
-        for &column in self.equations.columns.iter().chain(&self.test.known) {
-            step.bounds.region[column] = 0.0;
-            step.bounds.chord[column] = 0.0;
-        }
+        self.clear_region(step);
         if let Some(Passed { radius, next, .. }) = passed {
             (self.segment.radius, self.segment.off) = (radius, next);
             self.segment.holds = true;
