@@ -41,6 +41,48 @@ fn a_crank_turns_fully() {
     assert!((worst - spanned(0.3).min(spanned(0.5))).abs() < 1e-3);
 }
 
+/// The angle between coupler and rocker is extreme where the crank lies along the base; the
+/// coupler's links then span 0.3 m or 0.5 m. Some rounding of the angle: 4e-16 for each radian.
+#[test]
+fn extremes_of_measures_are_located_to_rounding() {
+    let (_, range) = range("four_bar");
+    let [[least, greatest]] = range.measures[..] else {
+        panic!("{:?}", range.measures)
+    };
+    for (found, spanned, crank) in [(least, 0.3_f64, TAU), (greatest, 0.5, PI)] {
+        let cosine = (0.25 * 0.25 + 0.3 * 0.3 - spanned * spanned) / (2.0 * 0.25 * 0.3);
+        assert!((found.value - cosine.acos()).abs() < 4e-15, "{found:?}");
+        assert!((found.driver - crank).abs() < 1e-13, "{found:?}");
+    }
+}
+
+#[test]
+fn a_range_ends_at_the_bounds_of_the_search_and_of_the_driver() {
+    let (mut solver, _) = assembled(&shipped("tlv"));
+    let bounds = |from, to| RangeSettings {
+        bounds: [from, to],
+        ..RangeSettings::default()
+    };
+    // The side starts at 0.35 m.
+    let range = solver.range(DriverId(0), &bounds(Some(0.2), Some(0.5)));
+    assert_eq!(range.lower, End::Bound { value: 0.2 });
+    assert_eq!(range.upper, End::Bound { value: 0.5 });
+    let ends = [0, range.samples.len() - 1].map(|k| range.samples[k].driver);
+    assert_eq!(ends, [0.2, 0.5]);
+    // Beyond the start.
+    let range = solver.range(DriverId(0), &bounds(Some(0.4), Some(0.5)));
+    let ends = [0, range.samples.len() - 1].map(|k| range.samples[k].driver);
+    assert_eq!(ends, [0.4, 0.5]);
+    assert!(range.samples.is_sorted_by(|a, b| a.driver < b.driver));
+
+    let text = include_str!("../mechanisms/tlv.toml");
+    let text = text.replace("start = 0.35", "start = 0.35, min = 0.3, max = 0.6");
+    let (mut solver, _) = assembled(&parse(&text));
+    let range = solver.range(DriverId(0), &RangeSettings::default());
+    assert_eq!(range.lower, End::Bound { value: 0.3 });
+    assert_eq!(range.upper, End::Bound { value: 0.6 });
+}
+
 #[test]
 fn a_side_of_a_triangle_ends_where_the_others_line_up() {
     let (_, range) = range("tlv");

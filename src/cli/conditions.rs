@@ -84,6 +84,25 @@ impl Conditions {
         solver.map_err(|error| input.error(error))
     }
 
+    /// Returns the value of an expression over the parameters in force, given by `option`.
+    pub(super) fn value(
+        &self,
+        mechanism: &Mechanism,
+        option: &str,
+        text: &str,
+    ) -> Result<f64, Error> {
+        let parameters = self.parameters(mechanism)?;
+        let expression = mechanism.parse_expression(text, None);
+        let expression = expression.map_err(|error| refuse(option, text, &error))?;
+        let value = expression.evaluate(&|p: ParameterId| parameters[p.index()], 0.0);
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            let text = quoted(text);
+            Err(Error::Usage(format!("{option}: {text} is not finite")))
+        }
+    }
+
     /// Returns the parameters in force \[SI\].
     fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
         let mut values = mechanism.default_parameters();
@@ -218,16 +237,20 @@ impl Assigning {
         Ok(assignments)
     }
 
-    /// Returns the error of an expression, with a mark under its place.
     fn refuse(&self, text: &str, error: &ExpressionError) -> Error {
-        let column = text[..error.span.start].chars().count();
-        let help = (error.help.as_ref()).map_or_else(String::new, |help| format!("; {help}"));
-        let mut message = format!("{}: {}{help}", self.option, error.message);
-        if !text.is_empty() {
-            message += &format!("\n  {text}\n  {:column$}^", "");
-        }
-        Error::Usage(message)
+        refuse(self.option, text, error)
     }
+}
+
+/// Returns the error of an expression, with a mark under its place.
+fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
+    let column = text[..error.span.start].chars().count();
+    let help = (error.help.as_ref()).map_or_else(String::new, |help| format!("; {help}"));
+    let mut message = format!("{option}: {}{help}", error.message);
+    if !text.is_empty() {
+        message += &format!("\n  {text}\n  {:column$}^", "");
+    }
+    Error::Usage(message)
 }
 
 /// Refuses a value that the FMU refuses, in its words.

@@ -40,6 +40,7 @@ const RANGE: RangeSettings = RangeSettings {
     samples: 120,
     turns: 8,
     lengths: 3.0,
+    bounds: [None; 2],
 };
 /// Part of the range that a motion between two limits leaves out at each end: at a dead point
 /// there is no velocity.
@@ -249,7 +250,7 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
                 format!("turns fully; the mechanism is back after {turns} turns")
             }
             Some(range) => {
-                let end = |end| end_text(end, DriverId(index), kind);
+                let end = |end| end_text(end, driver, DriverId(index));
                 format!("down to {}; up to {}", end(&range.lower), end(&range.upper))
             }
         };

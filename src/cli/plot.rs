@@ -95,6 +95,7 @@ impl Plot {
                 name: column.name,
                 look,
                 values,
+                marks: Vec::new(),
             });
         }
         panels.sort_by_key(|(unit, _)| (-unit.dimension.s, unit.dimension.rad));

@@ -18,15 +18,17 @@ use super::picture::Format;
 use super::plot::{MOST_BODIES, axis, varies};
 use super::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
-use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, in_line};
-use crate::mechanism::{CoordinateKind, DriverId, Mechanism, Unit, shown};
+use crate::kinematics::{End, Extreme, Range as Motion, RangeSettings, Reason, Sample, in_line};
+use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, shown};
 
 /// Find how far a driver can go.
 ///
 /// biela follows the driver both ways from the start, and holds the others, until the mechanism
 /// returns to its pose or meets a limit. A dead point is located to rounding, and the bodies that
-/// line up there are named. The transmission angle is that of the worst pair of links, from 0 deg
-/// at a dead point to 90 deg at best; the reciprocal condition is that of `check`.
+/// line up there are named. A driver's `min` and `max` are limits too, unless --from and --to say
+/// otherwise. The least and the greatest value of each measure are told with their places. The
+/// transmission angle is that of the worst pair of links, from 0 deg at a dead point to 90 deg at
+/// best; the reciprocal condition is that of `check`.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela range tlv.toml --driver side_length --plot range.svg")]
 pub(super) struct Range {
@@ -35,14 +37,21 @@ pub(super) struct Range {
     /// The driver to follow [default: each in turn].
     #[arg(long, value_name = "DRIVER")]
     driver: Option<String>,
+    /// The value of the driver from which it is followed, such as '30*deg' or 0.4 [m or rad].
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    from: Option<String>,
+    /// The value of the driver up to which it is followed.
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    to: Option<String>,
     #[command(flatten)]
     conditions: Conditions,
     /// Write the poses of the motion: the driver's value, transmission angle, reciprocal condition,
-    /// and the position of every body, in SI units; `-` for stdout.
+    /// the measures, and the position of every body, in SI units; `-` for stdout.
     #[arg(long, value_name = "CSV")]
     csv: Option<PathBuf>,
-    /// Plot angles of bodies, transmission angle and reciprocal condition over the driver's value;
-    /// the picture's extension, .svg or .png, decides, and `-` is SVG to stdout.
+    /// Plot the measures, or angles of bodies if there are none, and the transmission angle over
+    /// the driver's value; the picture's extension, .svg or .png, decides, and `-` is SVG to
+    /// stdout.
     #[arg(short, long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
 }
@@ -54,20 +63,24 @@ impl Range {
         InputFiles::new(&self.file, &input.mechanism)
             .refuse_as_outputs(&[self.csv.as_deref(), self.plot.as_deref()])?;
         let drivers = self.drivers(&input.mechanism)?;
+        let settings = RangeSettings {
+            bounds: self.bounds(&input.mechanism)?,
+            ..RangeSettings::default()
+        };
         let mut solver = self.conditions.solver_at_start(&input)?;
         let driven = Arc::clone(solver.mechanism());
         let mut text = String::new();
         for &driver in &drivers {
             let start = solver.pose().drivers[driver.index()];
-            let range = solver.range(driver, &RangeSettings::default());
+            let range = solver.range(driver, &settings);
             describe(&mut text, &driven, driver, start, &range);
             if let Some(path) = &self.csv {
                 write(path, table(&driven, driver, &range).as_bytes())?;
                 tell_written(path);
             }
             if let (Some(path), Some(format)) = (&self.plot, format) {
-                let turning = turning(&driven, &range).count();
-                if turning > MOST_BODIES {
+                let turning = turning(&driven, driver, &range).count();
+                if driven.measures.is_empty() && turning > MOST_BODIES {
                     let note = format!(
                         "the plot shows {MOST_BODIES} of {turning} bodies that turn; --csv has all"
                     );
@@ -103,7 +116,30 @@ impl Range {
                     .to_owned(),
             ));
         }
+        if count > 1 && (self.from.is_some() || self.to.is_some()) {
+            return Err(Error::Usage(
+                "there are several drivers: --from and --to need one, named by --driver".to_owned(),
+            ));
+        }
         Ok((0..count).map(DriverId).collect())
+    }
+
+    /// Returns the values of --from and --to [m or rad].
+    fn bounds(&self, mechanism: &Mechanism) -> Result<[Option<f64>; 2], Error> {
+        let value = |option, text: &Option<String>| {
+            let text = text.as_deref();
+            text.map(|text| self.conditions.value(mechanism, option, text))
+                .transpose()
+        };
+        let bounds = [value("--from", &self.from)?, value("--to", &self.to)?];
+        match bounds {
+            [Some(from), Some(to)] if from >= to => Err(Error::Usage(format!(
+                "--from, {}, must be less than --to, {}",
+                shown(from),
+                shown(to)
+            ))),
+            _ => Ok(bounds),
+        }
     }
 }
 
@@ -114,9 +150,10 @@ fn describe(
     start: f64,
     range: &Motion,
 ) {
-    let kind = mechanism.drivers[driver.index()].coordinate.kind;
+    let of_driver = &mechanism.drivers[driver.index()];
+    let kind = of_driver.coordinate.kind;
     let value = |value: f64| with_unit(kind, value);
-    let name = &mechanism.drivers[driver.index()].name;
+    let name = &of_driver.name;
     let gap = if text.is_empty() { "" } else { "\n" };
     let _ = writeln!(text, "{gap}{name}, from {}", value(start));
     if let End::Turns(turns) = range.upper {
@@ -130,7 +167,7 @@ fn describe(
         );
     } else {
         for (way, end) in [("down to", &range.lower), ("up to", &range.upper)] {
-            let _ = writeln!(text, "  {way:<8}{}", end_text(end, driver, kind));
+            let _ = writeln!(text, "  {way:<8}{}", end_text(end, of_driver, driver));
         }
     }
     for point in &range.crossings {
@@ -140,6 +177,20 @@ fn describe(
             value(point.value),
             in_line(&point.bodies, "")
         );
+    }
+    for (measure, [least, greatest]) in mechanism.measures.iter().zip(&range.measures) {
+        let name = &measure.name;
+        let of_measure = |extreme: &Extreme| about(measure.coordinate.kind, extreme.value);
+        let [low, high] = [least, greatest].map(of_measure);
+        let [at, high_at] = [least, greatest].map(|extreme| about(kind, extreme.driver));
+        let _ = if low == high {
+            writeln!(text, "  {name} {low} everywhere")
+        } else {
+            writeln!(
+                text,
+                "  {name} from {low}, at {at}, to {high}, at {high_at}"
+            )
+        };
     }
     let extreme = |of: fn(&Sample) -> Option<f64>| {
         let known = range
@@ -154,7 +205,7 @@ fn describe(
         let _ = if worst == best {
             writeln!(text, "  transmission angle {worst} everywhere")
         } else {
-            let [at, best_at] = [at, best_at].map(value);
+            let [at, best_at] = [at, best_at].map(|at| about(kind, at));
             writeln!(
                 text,
                 "  transmission angle from {worst}, at {at}, to {best}, at {best_at}"
@@ -166,17 +217,18 @@ fn describe(
         let _ = if worst == best {
             writeln!(text, "  reciprocal condition {worst} everywhere")
         } else {
-            let at = value(at);
+            let at = about(kind, at);
             writeln!(text, "  reciprocal condition {worst} at worst, at {at}")
         };
     }
 }
 
-pub(super) fn end_text(end: &End, driver: DriverId, kind: CoordinateKind) -> String {
+pub(super) fn end_text(end: &End, driver: &Driver, id: DriverId) -> String {
+    let kind = driver.coordinate.kind;
     let value = |value: f64| with_unit(kind, value);
     match end {
         End::Turns(_) => "no limit".to_owned(),
-        End::Singular(point) => format!("{}: {point}", value(point.drivers[driver.index()])),
+        End::Singular(point) => format!("{}: {point}", value(point.drivers[id.index()])),
         End::Blocked { value: at, reason } => {
             let reason = match reason {
                 Reason::Value(error) => error.to_string(),
@@ -185,9 +237,19 @@ pub(super) fn end_text(end: &End, driver: DriverId, kind: CoordinateKind) -> Str
             };
             format!("{}: {reason}", value(*at))
         }
+        End::Bound { value: at } => {
+            let bound = match Some(*at) {
+                own if own == driver.min => "its `min`",
+                own if own == driver.max => "its `max`",
+                _ => "as far as asked",
+            };
+            format!("{}: {bound}", value(*at))
+        }
         // The end of the search is no property of the mechanism: four digits are enough.
         End::NotFound { value: at } => {
-            format!("{} and farther: no limit was found", about(kind, *at))
+            let (value, unit) = in_unit(kind, *at);
+            let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+            format!("{} {unit} and farther: no limit was found", shown(rounded))
         }
     }
 }
@@ -202,11 +264,12 @@ pub(super) fn with_unit(kind: CoordinateKind, value: f64) -> String {
     format!("{text} {unit}")
 }
 
-/// Formats a value in deg or m with four digits.
+/// Formats a value in deg or m with six digits.
 fn about(kind: CoordinateKind, value: f64) -> String {
     let (value, unit) = in_unit(kind, value);
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    format!("{} {unit}", shown(rounded))
+    // Smaller values are rounding beside those of any mechanism.
+    let value = if value.abs() < 1e-12 { 0.0 } else { value };
+    format!("{} {unit}", shown(value))
 }
 
 fn in_unit(kind: CoordinateKind, value: f64) -> (f64, &'static str) {
@@ -224,6 +287,9 @@ fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
         text.push_str(",transmission_angle");
     }
     text.push_str(",rcond");
+    for measure in &mechanism.measures {
+        let _ = write!(text, ",{}.position", measure.name);
+    }
     for body in &mechanism.bodies {
         let name = &body.name;
         let _ = write!(text, ",{name}.x,{name}.y,{name}.phi");
@@ -234,6 +300,9 @@ fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
             let _ = write!(text, ",{transmission:?}");
         }
         let _ = write!(text, ",{:?}", sample.rcond);
+        for value in &sample.measures {
+            let _ = write!(text, ",{value:?}");
+        }
         for value in &sample.q[..3 * mechanism.bodies.len()] {
             let _ = write!(text, ",{value:?}");
         }
@@ -242,67 +311,85 @@ fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
     text
 }
 
-/// Returns the bodies whose angles change.
-fn turning(mechanism: &Mechanism, range: &Motion) -> impl Iterator<Item = usize> {
-    (0..mechanism.bodies.len()).filter(|body| {
-        let angles: Vec<f64> = range.samples.iter().map(|s| s.q[3 * body + 2]).collect();
-        varies(&angles)
+/// Returns the bodies whose angles change, other than as the driver does.
+fn turning(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> impl Iterator<Item = usize> {
+    let is_angle = mechanism.drivers[driver.index()].coordinate.kind.is_angle();
+    (0..mechanism.bodies.len()).filter(move |body| {
+        let angle = |s: &Sample| s.q[3 * body + 2];
+        let changes = |of: &dyn Fn(&Sample) -> f64| {
+            let values: Vec<f64> = range.samples.iter().map(of).collect();
+            varies(&values)
+        };
+        changes(&angle)
+            && !(is_angle
+                && (!changes(&|s| angle(s) - s.driver) || !changes(&|s| angle(s) + s.driver)))
     })
 }
 
+/// Returns the chart: the measures by unit or, without any, angles of bodies; and the transmission
+/// angle.
 fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
-    let unit = mechanism.drivers[driver.index()].coordinate.kind.unit();
-    let factor = unit.display.map_or(1.0, |display| display.factor);
-    let line = |name: &str, look: usize, of: &dyn Fn(&Sample) -> f64| Line {
+    let of_driver = &mechanism.drivers[driver.index()];
+    let [x_unit, angle] = [of_driver.coordinate.kind.unit(), Unit::RADIAN];
+    let factor = |unit: Unit| unit.display.map_or(1.0, |display| display.factor);
+    let line = |name: &str, look: usize, unit: Unit, of: &dyn Fn(&Sample) -> f64| Line {
         name: name.to_owned(),
         look,
-        values: range.samples.iter().map(of).collect(),
+        values: (range.samples.iter())
+            .map(|s| factor(unit) * of(s))
+            .collect(),
+        marks: Vec::new(),
     };
-    let mut panels = Vec::new();
-    let angles: Vec<Line> = turning(mechanism, range)
-        .take(MOST_BODIES)
-        .map(|body| {
-            let name = format!("{}.phi", mechanism.bodies[body].name);
-            line(&name, body, &|s| s.q[3 * body + 2].to_degrees())
-        })
-        .collect();
-    if !angles.is_empty() {
-        panels.push(Panel {
-            y: axis(Unit::RADIAN),
-            lines: angles,
+    let mut panels: Vec<(Unit, Panel)> = Vec::new();
+    let mut add = |unit: Unit, line: Line| {
+        let panel = panels.iter().position(|(known, _)| *known == unit);
+        let panel = panel.unwrap_or_else(|| {
+            let (y, lines) = (axis(unit), Vec::new());
+            panels.push((unit, Panel { y, lines }));
+            panels.len() - 1
         });
+        panels[panel].1.lines.push(line);
+    };
+    for (index, (measure, extremes)) in mechanism.measures.iter().zip(&range.measures).enumerate() {
+        let kind = measure.coordinate.kind;
+        let unit = kind.unit();
+        let mut line = line(&measure.name, index, unit, &|s| s.measures[index]);
+        if varies(&line.values) {
+            line.marks.extend(extremes.iter().map(|extreme| {
+                let at = factor(x_unit) * extreme.driver;
+                let value = factor(unit) * extreme.value;
+                (at, value, shown(value))
+            }));
+        }
+        add(unit, line);
     }
+    if mechanism.measures.is_empty() {
+        for body in turning(mechanism, driver, range).take(MOST_BODIES) {
+            let name = format!("{}.phi", mechanism.bodies[body].name);
+            add(angle, line(&name, body, angle, &|s| s.q[3 * body + 2]));
+        }
+    }
+    let mut panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();
     if range.samples.iter().any(|s| s.transmission.is_some()) {
         panels.push(Panel {
             y: Axis {
                 label: "transmission angle".to_owned(),
                 unit: "deg".to_owned(),
             },
-            lines: vec![line("worst pair of links", 0, &|s| {
-                s.transmission.map_or(f64::NAN, f64::to_degrees)
+            lines: vec![line("worst pair of links", 0, angle, &|s| {
+                s.transmission.unwrap_or(f64::NAN)
             })],
         });
     }
-    panels.push(Panel {
-        y: Axis {
-            label: "reciprocal condition".to_owned(),
-            unit: "1".to_owned(),
-        },
-        lines: vec![line("rcond", 0, &|s| s.rcond)],
-    });
     Chart {
-        title: format!(
-            "{}: range of {}",
-            mechanism.name,
-            mechanism.drivers[driver.index()].name
-        ),
+        title: format!("{}: range of {}", mechanism.name, of_driver.name),
         description: mechanism.description.clone(),
         x: Axis {
-            label: mechanism.drivers[driver.index()].name.clone(),
-            unit: axis(unit).unit,
+            label: of_driver.name.clone(),
+            unit: axis(x_unit).unit,
         },
         at: (range.samples.iter())
-            .map(|sample| sample.driver * factor)
+            .map(|sample| sample.driver * factor(x_unit))
             .collect(),
         panels,
     }

@@ -48,6 +48,8 @@ pub struct Line {
     pub look: usize,
     /// One value for each point of the x-axis; where one is not finite the line has a gap.
     pub values: Vec<f64>,
+    /// Points to be marked: x, value and a text, such as an extreme value.
+    pub marks: Vec<(f64, f64, String)>,
 }
 
 /// Margins of the chart.
@@ -65,6 +67,8 @@ const THINNED: usize = 2000;
 /// Steps of the sheet's unit within which lines are thinned.
 const STEPS: f64 = 2.0;
 
+/// Half the diagonal of the diamond at a marked point.
+const DIAMOND: f64 = 3.2;
 const CURVE: f64 = 1.5;
 const FRAME: f64 = 0.9;
 const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[2.0, 2.5], &[8.0, 2.5, 2.0, 2.5]];
@@ -274,8 +278,47 @@ impl Plot<'_> {
                 outline.add_line(&thinned(piece));
             }
             self.line(Layer::Curve, outline, look(line.look));
+            for (x, y, text) in &line.marks {
+                let at = Point::new(self.on_x(*x), on_y(y * factor));
+                if at.x.is_finite() && at.y.is_finite() {
+                    self.mark(at, text, line.look, top);
+                }
+            }
         }
         self.line(Layer::Scale, frame, Stroke::solid(Colour::GROUND, FRAME));
+    }
+
+    /// Marks a point with a diamond and, where there is room, its text: above it, or below it near
+    /// the top of the panel.
+    fn mark(&mut self, at: Point, text: &str, number: usize, top: f64) {
+        let corner = |x, y| at + Point::new(x, y);
+        let diamond = Outline::polygon(&[
+            corner(DIAMOND, 0.0),
+            corner(0.0, DIAMOND),
+            corner(-DIAMOND, 0.0),
+            corner(0.0, -DIAMOND),
+        ]);
+        self.marks.push(Mark {
+            fill: Some((look(number).colour, 1.0)),
+            ..Mark::line(Layer::Scale, diamond, look(number))
+        });
+        let half = 0.5 * width(text);
+        let x =
+            at.x.clamp(self.left + half + 3.0, self.right() - half - 3.0);
+        let above = at.y - 6.0;
+        let y = if above - CAPITALS > top + 2.0 {
+            above
+        } else {
+            at.y + 6.0 + CAPITALS
+        };
+        let is_free = self.texts.iter().all(|other| {
+            let right = other.start.x + width(&other.content);
+            let beside = right < x - half - 2.0 || other.start.x > x + half + 2.0;
+            beside || (other.start.y - y).abs() > CAPITALS + 2.0
+        });
+        if is_free {
+            self.text(text, Point::new(x, y), Align::Middle);
+        }
     }
 
     fn x_ticks(&self) -> Ticks {

@@ -70,7 +70,7 @@ mod system;
 pub mod variation;
 
 pub use analysis::{
-    ChangePoint, Direction, End, GeometryWarning, GeometryWarningKind, Mode, Modes, Range,
+    ChangePoint, Direction, End, Extreme, GeometryWarning, GeometryWarningKind, Mode, Modes, Range,
     RangeSettings, Sample, Sensitivity,
 };
 pub use assembly::estimate::Move;

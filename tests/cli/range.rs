@@ -38,7 +38,7 @@ fn range_tells_the_limits() {
             .all(|rcond| (0.0..=1.0).contains(rcond))
     );
     let picture = std::fs::read_to_string(plot).unwrap();
-    assert!(picture.contains(">side_length [m]<") && picture.contains(">arm.phi<"));
+    assert!(picture.contains(">side_length [m]<") && picture.contains(">arm_angle<"));
 
     // A table on stdout stands alone.
     let printed = stdout(&range(&["mechanisms/four_bar.toml", "--csv", "-"]).success());

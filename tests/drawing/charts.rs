@@ -11,6 +11,7 @@ fn chart() -> Chart {
         name: name.to_owned(),
         look,
         values: at.iter().map(|t| f(*t)).collect(),
+        marks: vec![(1.0, f(1.0), "a mark".to_owned())],
     };
     let axis = |label: &str, unit: &str| Axis {
         label: label.to_owned(),

@@ -17,5 +17,5 @@ pub use geometry_check::{GeometryWarning, GeometryWarningKind};
 pub(super) use modes::modes;
 pub use modes::{Mode, Modes};
 pub(super) use range::range;
-pub use range::{ChangePoint, End, Range, RangeSettings, Sample};
+pub use range::{ChangePoint, End, Extreme, Range, RangeSettings, Sample};
 pub use sensitivity::{Direction, Sensitivity};

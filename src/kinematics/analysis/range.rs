@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use crate::kinematics::continuation::{PathTracker, Reason};
 use crate::kinematics::model::Model;
-use crate::kinematics::path::{Curve, Path};
+use crate::kinematics::path::{Curve, Path, Rates};
 use crate::kinematics::singular::{SingularPoint, bodies_in_line};
 use crate::kinematics::state::{Pose, State};
 use crate::kinematics::system::System;
-use crate::mechanism::DriverId;
+use crate::mechanism::{DriverId, Jet};
 
 /// The range of a driver from one pose, in both directions.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,8 +19,21 @@ pub struct Range {
     pub upper: End,
     /// The change points passed, by the driver's value, ascending.
     pub crossings: Vec<ChangePoint>,
-    /// The motion, by the driver's value, ascending; one of them is the start.
+    /// The motion, by the driver's value, ascending; one of them is the start, unless the bounds
+    /// leave it out.
     pub samples: Vec<Sample>,
+    /// The least and the greatest value of each measure, located to rounding where the measure is
+    /// smooth.
+    pub measures: Vec<[Extreme; 2]>,
+}
+
+/// An extreme value of a measure in a range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// Value of the measure \[m or rad\].
+    pub value: f64,
+    /// The driver's value there \[m or rad\].
+    pub driver: f64,
 }
 
 /// The end of the range in one direction.
@@ -37,6 +50,11 @@ pub enum End {
         value: f64,
         /// The cause of the stop.
         reason: Reason,
+    },
+    /// A bound of the search, or the driver's own `min` or `max`, at this value \[m or rad\].
+    Bound {
+        /// The driver's value that was reached \[m or rad\].
+        value: f64,
     },
     /// None up to this value \[m or rad\].
     NotFound {
@@ -69,6 +87,8 @@ pub struct Sample {
     /// between the two links of an RRR dyad, or between a link and the normal of the line along
     /// which its end slides. `None` if the mechanism has no such pair.
     pub transmission: Option<f64>,
+    /// Values of the measures \[m or rad\].
+    pub measures: Vec<f64>,
 }
 
 /// The resolution and the extent of a range.
@@ -81,6 +101,9 @@ pub struct RangeSettings {
     pub turns: u32,
     /// Largest change of a length, in characteristic lengths of the mechanism.
     pub lengths: f64,
+    /// Values of the driver between which the range is sought \[m or rad\]; in place of one left
+    /// out the driver's own `min` or `max` bounds it, if it has one.
+    pub bounds: [Option<f64>; 2],
 }
 
 impl Default for RangeSettings {
@@ -90,6 +113,7 @@ impl Default for RangeSettings {
             samples: 360,
             turns: 64,
             lengths: 100.0,
+            bounds: [None; 2],
         }
     }
 }
@@ -97,6 +121,9 @@ impl Default for RangeSettings {
 /// A mechanism is at its start if no unknown differs by more, scaled and whole turns apart: after
 /// some thousand sub-steps, and up to a thousand turns, rounding is below that.
 const SAME_PLACE: f64 = 1e-9;
+
+/// Most steps of Newton–Raphson towards an extreme; from a sample a degree away four are enough.
+const NEWTON_STEPS: usize = 12;
 
 /// Finds the range of one driver from the present pose, with the other drivers, time and
 /// parameters held. See [`Solver::range`](crate::kinematics::Solver::range).
@@ -108,7 +135,10 @@ pub(in crate::kinematics) fn range(
     settings: &RangeSettings,
 ) -> Range {
     let start = state.pose.clone();
+    let of_driver = &model.system.mechanism().drivers[driver.index()];
+    let [from, to] = settings.bounds;
     let mut explorer = Explorer {
+        bounds: [from.or(of_driver.min), to.or(of_driver.max)],
         model,
         state,
         tracker,
@@ -132,6 +162,8 @@ pub(in crate::kinematics) fn range(
     samples.reverse();
     samples.push(here);
     samples.extend(up);
+    samples.retain(|sample| explorer.is_within_bounds(sample.driver));
+    let measures = explorer.extremes(&samples);
     let mut crossings = explorer.crossings;
     crossings.sort_by(|a, b| a.value.total_cmp(&b.value));
     Range {
@@ -139,6 +171,7 @@ pub(in crate::kinematics) fn range(
         upper,
         crossings,
         samples,
+        measures,
     }
 }
 
@@ -149,6 +182,8 @@ struct Explorer<'a> {
     tracker: &'a mut PathTracker,
     driver: DriverId,
     settings: &'a RangeSettings,
+    /// Values of the driver that end the range, if there are any.
+    bounds: [Option<f64>; 2],
     start: &'a Pose,
     crossings: Vec<ChangePoint>,
 }
@@ -162,34 +197,39 @@ impl Explorer<'_> {
         let is_angle = driver.coordinate.kind.is_angle();
         let size = self.state.at.size();
         let per_turn = self.settings.samples.max(1);
-        let mut path = held_path(self.start);
+        let [behind, end] = if sign > 0.0 {
+            self.bounds
+        } else {
+            let [below, above] = self.bounds;
+            [above, below]
+        };
+        let is_beyond = |value: f64, bound: f64| sign * (value - bound) >= 0.0;
+        if let Some(end) = end.filter(|end| is_beyond(from, *end)) {
+            return End::Bound { value: end };
+        }
         let mut count = 0_u32;
         let mut off = 0.0_f64;
         loop {
+            let before = self.state.pose.drivers[index];
             count += 1;
             off = if is_angle {
                 TAU * f64::from(count) / f64::from(per_turn)
             } else {
                 off + 2.0 * size.max(off) / f64::from(per_turn)
             };
-            let value = from + sign * off;
-            path.curves[index] = Curve::held(value, self.state.pose.drivers[index]);
-            let tracked = self.tracker.track(self.model, self.state, &path);
-            let crossed = self.tracker.crossed().iter();
-            self.crossings.extend(crossed.map(|crossing| ChangePoint {
-                value: crossing.center,
-                bodies: bodies_in_line(self.model, crossing),
-            }));
-            samples.push(self.sample());
-            match tracked.map_err(|blocked| blocked.reason) {
-                Err(Reason::Singular(point)) => return End::Singular(point),
-                Err(reason) => {
-                    return End::Blocked {
-                        value: self.state.pose.drivers[index],
-                        reason,
-                    };
-                }
-                Ok(_) => {}
+            let next = from + sign * off;
+            // A start before the bounds: their first value is a sample of its own.
+            if let Some(first) = behind.filter(|b| is_beyond(*b, before) && !is_beyond(*b, next))
+                && let Some(end) = self.move_to(first, samples)
+            {
+                return end;
+            }
+            let value = end.map_or(next, |end| if is_beyond(next, end) { end } else { next });
+            if let Some(end) = self.move_to(value, samples) {
+                return end;
+            }
+            if end == Some(value) {
+                return End::Bound { value };
             }
             if !is_angle {
                 if off > self.settings.lengths * size {
@@ -197,7 +237,7 @@ impl Explorer<'_> {
                 }
             } else if count.is_multiple_of(per_turn) {
                 let turns = count / per_turn;
-                if is_same_place(&self.model.system, self.state, self.start) {
+                if end.is_none() && is_same_place(&self.model.system, self.state, self.start) {
                     return End::Turns(turns);
                 }
                 if turns >= self.settings.turns {
@@ -205,6 +245,110 @@ impl Explorer<'_> {
                 }
             }
         }
+    }
+
+    /// Moves the driver to a value and adds the pose that is reached to the samples. Returns the
+    /// end of the range if it lies before the value.
+    fn move_to(&mut self, value: f64, samples: &mut Vec<Sample>) -> Option<End> {
+        let tracked = self.track(value);
+        let crossed = self.tracker.crossed().iter();
+        self.crossings.extend(crossed.map(|crossing| ChangePoint {
+            value: crossing.center,
+            bodies: bodies_in_line(self.model, crossing),
+        }));
+        samples.push(self.sample());
+        Some(match tracked {
+            Ok(()) => return None,
+            Err(Reason::Singular(point)) => End::Singular(point),
+            Err(reason) => End::Blocked {
+                value: self.state.pose.drivers[self.driver.index()],
+                reason,
+            },
+        })
+    }
+
+    /// Moves the driver to a value.
+    fn track(&mut self, value: f64) -> Result<(), Reason> {
+        let index = self.driver.index();
+        let mut path = held_path(self.start);
+        path.curves[index] = Curve::held(value, self.state.pose.drivers[index]);
+        let tracked = self.tracker.track(self.model, self.state, &path);
+        tracked.map(drop).map_err(|blocked| blocked.reason)
+    }
+
+    /// Returns whether a value of the driver lies within the bounds.
+    fn is_within_bounds(&self, value: f64) -> bool {
+        let [below, above] = self.bounds;
+        below.is_none_or(|below| value >= below) && above.is_none_or(|above| value <= above)
+    }
+
+    /// Returns the least and the greatest value of each measure: the best of the samples, then the
+    /// place nearby where the derivative by the driver is zero.
+    fn extremes(&mut self, samples: &[Sample]) -> Vec<[Extreme; 2]> {
+        let count = if samples.is_empty() {
+            0
+        } else {
+            self.model.measures.len()
+        };
+        let mut extremes = Vec::with_capacity(count);
+        for measure in 0..count {
+            extremes.push([1.0, -1.0].map(|sign| {
+                let value = |sample: &Sample| sign * sample.measures[measure];
+                let best = (0..samples.len())
+                    .min_by(|a, b| value(&samples[*a]).total_cmp(&value(&samples[*b])))
+                    .expect("there are samples");
+                let found = Extreme {
+                    value: samples[best].measures[measure],
+                    driver: samples[best].driver,
+                };
+                let interior = best > 0 && best + 1 < samples.len();
+                let refined = interior.then(|| {
+                    let around = [best - 1, best + 1].map(|k| samples[k].driver);
+                    self.refine(measure, sign, found.driver, around)
+                });
+                let refined = refined.flatten();
+                refined
+                    .filter(|refined| sign * refined.value <= sign * found.value)
+                    .unwrap_or(found)
+            }));
+            self.restore();
+        }
+        extremes
+    }
+
+    /// Finds the minimum (`sign` 1) or maximum (−1) of a measure between two values of the driver
+    /// by Newton–Raphson on its derivative. `None` where it is not smooth.
+    fn refine(
+        &mut self,
+        measure: usize,
+        sign: f64,
+        from: f64,
+        [low, high]: [f64; 2],
+    ) -> Option<Extreme> {
+        self.restore();
+        let mut rates = Rates::new(self.state.pose.q.len());
+        let mut at = from;
+        for _ in 0..NEWTON_STEPS {
+            self.track(at).ok()?;
+            let unit = |driver| {
+                let rate = f64::from(u8::from(driver == self.driver));
+                Jet::new(0.0, [rate, 0.0])
+            };
+            (self.state.solve_rates(self.model, unit, &mut rates)).ok()?;
+            let jet = (self.state).measure(&*self.model.measures[measure], &rates);
+            let next = (at - jet.first() / jet.second()).clamp(low, high);
+            if next.is_nan() || sign * jet.second() <= 0.0 {
+                return None;
+            }
+            if (next - at).abs() <= f64::EPSILON * at.abs().max(high - low) {
+                return Some(Extreme {
+                    value: jet.value,
+                    driver: at,
+                });
+            }
+            at = next;
+        }
+        None
     }
 
     /// Returns to the start.
@@ -219,6 +363,9 @@ impl Explorer<'_> {
             rcond: self.state.rcond(self.model),
             residual: self.state.residual(&self.model.system),
             transmission: self.model.plan.transmission(),
+            measures: (self.model.measures.iter())
+                .map(|measure| measure.value(&self.state.at))
+                .collect(),
             q: self.state.pose.q.clone(),
         }
     }
