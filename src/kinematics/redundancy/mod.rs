@@ -31,4 +31,5 @@ pub(super) use choice::{
     assemble_on_all, change_rows, choose_rows, is_nearly_singular, may_cross, opened, redundancies,
     return_to_fit_rows,
 };
+pub(super) use rank::{DEPENDENT, drivers_first, jacobian_rows};
 pub(super) use watch::watch_between;
