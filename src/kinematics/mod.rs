@@ -85,9 +85,7 @@ pub use element::Element;
 #[cfg(feature = "cli")]
 pub(crate) use error::in_line;
 pub use error::{Error, OpenJoint, Proof, Verdict};
-pub use forces::{
-    ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, Reported,
-};
+pub use forces::{ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, Reported};
 pub use initial_pose::{Assembly, Start};
 pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;

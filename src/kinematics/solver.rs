@@ -312,7 +312,7 @@ impl Solver {
         &'a self,
         forces: &'a Forces,
     ) -> impl Iterator<Item = (usize, f64)> + 'a {
-        forces.contacts(&self.state)
+        forces.contact_forces(&self.state)
     }
 
     /// Returns the derivatives of motion and forces at the present pose along a direction, along

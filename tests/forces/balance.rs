@@ -35,7 +35,9 @@ impl Balance<'_> {
     }
 
     fn phi(&self, body: Option<BodyId>) -> f64 {
-        body.map_or(0.0, |body| self.loaded.solver.pose().q[3 * body.index() + 2])
+        body.map_or(0.0, |body| {
+            self.loaded.solver.pose().q[3 * body.index() + 2]
+        })
     }
 
     fn point(&self, marker: MarkerId) -> Vector2<f64> {
@@ -119,16 +121,25 @@ fn check(name: &str, mut loaded: Loaded) {
             &joint.kind
         {
             let parameters = &loaded.solver.pose().parameters;
-            let [first, second] = sizes.expressions().each_ref().map(|size: &Expression| {
-                size.evaluate(&|p| parameters[p.index()], 0.0)
-            });
+            let [first, second] = sizes
+                .expressions()
+                .each_ref()
+                .map(|size: &Expression| size.evaluate(&|p| parameters[p.index()], 0.0));
             let same_sense = match joint.kind {
                 JointKind::Gear { internal, .. } => internal,
                 JointKind::Belt { crossed, .. } => !crossed,
                 _ => unreachable!(),
             };
-            let k = if same_sense { first / second } else { -first / second };
-            for (body, torque) in [(j, torque), (i, -k * torque), (*carrier, (k - 1.0) * torque)] {
+            let k = if same_sense {
+                first / second
+            } else {
+                -first / second
+            };
+            for (body, torque) in [
+                (j, torque),
+                (i, -k * torque),
+                (*carrier, (k - 1.0) * torque),
+            ] {
                 balance.add(body, at, Vector2::zeros(), torque);
             }
             continue;
@@ -140,7 +151,11 @@ fn check(name: &str, mut loaded: Loaded) {
         let along = |direction: Vector2<f64>| direction.normalize().dot(&force).abs();
         let u = balance.axis(joint.from);
         if !Reported::of(&joint.kind).has(2) {
-            assert!(torque.abs() <= slack, "{name}.{}: torque {torque}", joint.name);
+            assert!(
+                torque.abs() <= slack,
+                "{name}.{}: torque {torque}",
+                joint.name
+            );
         }
         match &joint.kind {
             JointKind::Slot
@@ -151,14 +166,22 @@ fn check(name: &str, mut loaded: Loaded) {
             JointKind::Link { .. } => {
                 let d = at - balance.point(joint.from);
                 let across = Vector2::new(-d.y, d.x);
-                assert!(along(across) <= slack, "{name}.{}: across the link", joint.name);
+                assert!(
+                    along(across) <= slack,
+                    "{name}.{}: across the link",
+                    joint.name
+                );
             }
             JointKind::Cam {
                 follower: CamFollower::Flat,
                 ..
             } => {
                 let face = balance.axis(joint.to);
-                assert!(along(face) <= slack, "{name}.{}: along the face", joint.name);
+                assert!(
+                    along(face) <= slack,
+                    "{name}.{}: along the face",
+                    joint.name
+                );
             }
             JointKind::RackAndPinion { .. } => {
                 // Along the teeth.
@@ -195,7 +218,11 @@ fn check(name: &str, mut loaded: Loaded) {
         let k = 3 * index;
         let (v, a) = (loaded.rates.velocity(), loaded.rates.acceleration());
         let (omega, alpha) = (v[k + 2], a[k + 2]);
-        let [x, y] = body.center.as_ref().map(|c| c.each_ref().map(of)).expect("it has one");
+        let [x, y] = body
+            .center
+            .as_ref()
+            .map(|c| c.each_ref().map(of))
+            .expect("it has one");
         let arm = Rotation2::new(pose.q[k + 2]) * Vector2::new(x, y);
         let center = Vector2::new(pose.q[k], pose.q[k + 1]) + arm;
         let across = Vector2::new(-arm.y, arm.x);

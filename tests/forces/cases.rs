@@ -51,7 +51,9 @@ fn at_start(text: &str, rates: &[[f64; 2]], inputs: &[f64]) -> Result<(Solver, F
 
 #[track_caller]
 fn assert_forces(forces: &Forces, expected: &[(ForceQuantity, f64)]) {
-    let largest = expected.iter().fold(1.0, |most: f64, (_, v)| most.max(v.abs()));
+    let largest = expected
+        .iter()
+        .fold(1.0, |most: f64, (_, v)| most.max(v.abs()));
     for &(quantity, expected) in expected {
         let value = forces.value(quantity);
         let error = (value - expected).abs();
@@ -179,12 +181,16 @@ fn each_force_adds_its_generalized_force() {
         ),
     ];
     for (line, generalized, inputs) in cases {
-        let text = format!("{PENDULUM}\n[forces]\n{line}\n").replace("O = [0, 0]\n", "O = [0, 0]\nP = [0, 0.1]\n");
+        let text = format!("{PENDULUM}\n[forces]\n{line}\n")
+            .replace("O = [0, 0]\n", "O = [0, 0]\nP = [0, 0.1]\n");
         let inputs = &[5.0, 6.0, 7.0][..inputs];
         let (_, forces) = at_start(&text, &[[omega, 0.0]], inputs).expect(line);
         let effort = forces.value(ForceQuantity::Effort(SWING));
         let expected = base - generalized;
-        assert!((effort - expected).abs() < 1e-12, "{line}: {effort}, not {expected}");
+        assert!(
+            (effort - expected).abs() < 1e-12,
+            "{line}: {effort}, not {expected}"
+        );
     }
 }
 
@@ -194,7 +200,9 @@ fn a_spring_without_length_has_no_direction() {
         "{PENDULUM}\n[forces]\ns = {{ coordinate = \"distance\", markers = [\"ground.O\", \
          \"rod.O\"], stiffness = 3, free = 0.1 }}\n"
     );
-    let error = at_start(&text, &[[0.0, 0.0]], &[]).err().map(|error| error.to_string());
+    let error = at_start(&text, &[[0.0, 0.0]], &[])
+        .err()
+        .map(|error| error.to_string());
     let expected = "force `s` has no direction: the distance of its markers is zero";
     assert_eq!(error.as_deref(), Some(expected));
 }

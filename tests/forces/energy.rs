@@ -65,8 +65,7 @@ fn power_becomes_energy() {
                     let theta = axes.map_or(0.0, |axes| {
                         let own = &mechanism.markers[axes.index()].angle;
                         let parameters = &solver.pose().parameters;
-                        turn(axes, &solver.pose().q)
-                            + own.evaluate(&|p| parameters[p.index()], 0.0)
+                        turn(axes, &solver.pose().q) + own.evaluate(&|p| parameters[p.index()], 0.0)
                     });
                     let (sin, cos) = theta.sin_cos();
                     let fx = cos * size[0] - sin * size[1];
@@ -79,7 +78,10 @@ fn power_becomes_energy() {
         }
         // The condition loses digits of rates, and once more of efforts.
         let limit = 1e-14 / solver.rcond() * largest * (1.0 + mechanism.bodies.len() as f64);
-        assert!((growth - power).abs() <= limit, "{name}: {growth} and {power}");
+        assert!(
+            (growth - power).abs() <= limit,
+            "{name}: {growth} and {power}"
+        );
     }
 }
 
@@ -113,8 +115,14 @@ fn coordinate_of(
     let [x, y] = [0, 1].map(|k| j[k] - i[k]);
     let [theta, omega] = angle(axes);
     let (sin, cos) = theta.sin_cos();
-    let along = [cos * x.value + sin * y.value, cos * x.first() + sin * y.first()];
-    let across = [cos * y.value - sin * x.value, cos * y.first() - sin * x.first()];
+    let along = [
+        cos * x.value + sin * y.value,
+        cos * x.first() + sin * y.first(),
+    ];
+    let across = [
+        cos * y.value - sin * x.value,
+        cos * y.first() - sin * x.first(),
+    ];
     match kind {
         CoordinateKind::X => [along[0], along[1] + omega * across[0]],
         CoordinateKind::Y => [across[0], across[1] - omega * along[0]],

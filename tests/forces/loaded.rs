@@ -121,7 +121,9 @@ impl Loaded {
         let driver_rates: Vec<Jet> = driver_rates.collect();
         let rates = Rates::new(solver.pose().q.len());
         let forces = solver.forces();
-        let inputs = (0..forces.inputs()).map(|k| 5.0 * spread(k) - 2.0).collect();
+        let inputs = (0..forces.inputs())
+            .map(|k| 5.0 * spread(k) - 2.0)
+            .collect();
         let mut loaded = Self {
             solver,
             rates,
@@ -152,13 +154,5 @@ impl Loaded {
         solver
             .solve_forces(motion, ForceParts::ALL, forces)
             .expect("forces have values");
-    }
-
-    pub(crate) fn motion(&self) -> KnownMotion<'_> {
-        KnownMotion {
-            rates: &self.rates,
-            driver_rates: &self.driver_rates,
-            inputs: &self.inputs,
-        }
     }
 }

@@ -7,6 +7,7 @@ mod common;
 mod balance;
 mod cases;
 mod energy;
+mod fmu;
 mod loaded;
 mod published;
 mod redundant;

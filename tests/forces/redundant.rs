@@ -45,7 +45,9 @@ fn solved(mechanism: Mechanism) -> (Solver, Forces) {
 }
 
 fn parse(text: &str) -> Mechanism {
-    Mechanism::parse(&Source::new("test.toml", text)).expect("the file is right").0
+    Mechanism::parse(&Source::new("test.toml", text))
+        .expect("the file is right")
+        .0
 }
 
 fn reaction(forces: &Forces, joint: usize) -> [f64; 3] {
@@ -56,7 +58,10 @@ fn reaction(forces: &Forces, joint: usize) -> [f64; 3] {
 fn indeterminate_reactions_are_found_and_efforts_are_exact() {
     let (mut solver, forces) = solved(parse(SLAB));
     // The two slides can press against each other and twist each other.
-    assert_eq!(solver.indeterminate(), [Element::Joint(3), Element::Joint(4)]);
+    assert_eq!(
+        solver.indeterminate(),
+        [Element::Joint(3), Element::Joint(4)]
+    );
     let (_, single) = solved(parse(&SLAB.replace("joints.T =", "# ")));
     let mut same = vec![
         (ForceQuantity::Effort(DriverId(0)), 0.0),
@@ -68,7 +73,10 @@ fn indeterminate_reactions_are_found_and_efforts_are_exact() {
     }
     for (quantity, _) in same {
         let (with, without) = (forces.value(quantity), single.value(quantity));
-        assert!((with - without).abs() < 1e-12, "{quantity:?}: {with} and {without}");
+        assert!(
+            (with - without).abs() < 1e-12,
+            "{quantity:?}: {with} and {without}"
+        );
     }
 }
 

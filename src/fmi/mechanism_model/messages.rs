@@ -148,6 +148,7 @@ impl MechanismModel {
                 log.advise(|| describe_contradiction(driver, contradiction, start, advice));
             }
         }
+        self.report_contacts(log);
         self.log_crossings(log);
         self.log_effort(log);
     }

@@ -91,9 +91,7 @@ impl AppliedForces {
         let forces = mechanism.forces.iter().zip(inputs);
         let list = forces.map(|(force, &input)| AppliedForce {
             place: match &force.load {
-                Load::Coordinate { coordinate, .. } => {
-                    Place::Coordinate(of_coordinate(coordinate))
-                }
+                Load::Coordinate { coordinate, .. } => Place::Coordinate(of_coordinate(coordinate)),
                 Load::Marker { marker, axes, .. } => Place::Marker(*marker, *axes),
             },
             input,
@@ -120,9 +118,7 @@ impl AppliedForces {
         demand: &mut [f64],
     ) -> Result<f64, Error> {
         let mut energy = 0.0;
-        for ((applied, definition), size) in
-            self.list.iter().zip(&mechanism.forces).zip(sizes)
-        {
+        for ((applied, definition), size) in self.list.iter().zip(&mechanism.forces).zip(sizes) {
             let fault = |reason| {
                 Err(Error::NoForce {
                     force: definition.name.clone(),

@@ -6,8 +6,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::kinematics::element::Element;
 use crate::kinematics::continuation::PathTracker;
+use crate::kinematics::element::Element;
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::model::Model;
 use crate::kinematics::path::{Curve, Path};
@@ -54,7 +54,9 @@ pub(in crate::kinematics) fn indeterminate(
     }
     // At a singular position there are more self-stresses than elsewhere.
     let fewest = stressed.iter().map(|(count, _)| *count).min();
-    let generic = stressed.into_iter().filter(|(count, _)| Some(*count) == fewest);
+    let generic = stressed
+        .into_iter()
+        .filter(|(count, _)| Some(*count) == fewest);
     let elements: BTreeSet<Element> = generic.flat_map(|(_, elements)| elements).collect();
     elements.into_iter().collect()
 }

@@ -63,9 +63,8 @@ impl<N: Number> Masses<N> {
         parameter: &impl Fn(ParameterId) -> N,
     ) {
         let value = |expression: &Expression| expression.evaluate(parameter, N::constant(0.0));
-        let optional = |expression: &Option<Expression>| {
-            expression.as_ref().map_or(N::constant(0.0), value)
-        };
+        let optional =
+            |expression: &Option<Expression>| expression.as_ref().map_or(N::constant(0.0), value);
         self.gravity = mechanism.simulation.gravity.each_ref().map(value);
         for of_body in &mut self.bodies {
             let Body {
@@ -96,7 +95,9 @@ impl Masses<f64> {
         }
         for of_body in &self.bodies {
             let name = &mechanism.bodies[of_body.body].name;
-            let values = [of_body.mass, of_body.inertia].into_iter().chain(of_body.center);
+            let values = [of_body.mass, of_body.inertia]
+                .into_iter()
+                .chain(of_body.center);
             if !values.fold(0.0, |sum, value| sum + value).is_finite() {
                 return Err(Error::NotFinite {
                     what: format!("the mass, inertia or center of body `{name}`"),
@@ -104,7 +105,12 @@ impl Masses<f64> {
             }
             for (quantity, value, holds, demand) in [
                 ("mass", of_body.mass, of_body.mass > 0.0, "be positive"),
-                ("inertia", of_body.inertia, of_body.inertia >= 0.0, "not be negative"),
+                (
+                    "inertia",
+                    of_body.inertia,
+                    of_body.inertia >= 0.0,
+                    "not be negative",
+                ),
             ] {
                 if !holds {
                     return Err(Error::Mass {
@@ -157,6 +163,9 @@ impl<N: Number> MassProperties<N> {
         let product = momentum[0] * motion.velocity[0]
             + momentum[1] * motion.velocity[1]
             + momentum[2] * motion.velocity[2];
-        [product * 0.5, -(self.mass * (gx * (px + x) + gy * (py + y)))]
+        [
+            product * 0.5,
+            -(self.mass * (gx * (px + x) + gy * (py + y))),
+        ]
     }
 }

@@ -125,7 +125,8 @@ impl Forces {
         let reactions = joints.map(|joint| {
             let own = self.rows.joints[joint].iter();
             let own = own.map(|&row| (&*rows[row], multipliers[row]));
-            self.varied_reaction(at, joint, own).map(|value| value.first())
+            self.varied_reaction(at, joint, own)
+                .map(|value| value.first())
         });
         let held = self.rows.constraints.iter();
         let change = |values: [Dual; 3]| values.map(|value| value.first());

@@ -24,6 +24,8 @@ pub struct Forces {
     pub(super) mechanism: Arc<Mechanism>,
     /// Parameters for which the masses are evaluated.
     parameters: Vec<f64>,
+    /// Whether the masses are valid for them.
+    has_parameters: bool,
     masses: Masses<f64>,
     pub(super) applied: AppliedForces,
     inputs: usize,
@@ -107,11 +109,15 @@ impl Forces {
         let system = &model.system;
         let mechanism = Arc::clone(system.mechanism());
         let places = input_places(&mechanism);
-        let inputs = mechanism.forces.iter().filter(|force| force.load.is_input());
+        let inputs = mechanism
+            .forces
+            .iter()
+            .filter(|force| force.load.is_input());
         let inputs = inputs.map(|force| force.load.variables().len()).sum();
         let (unknowns, drivers) = (system.unknowns(), mechanism.drivers.len());
         Self {
-            parameters: Vec::new(),
+            parameters: Vec::with_capacity(mechanism.parameters.len()),
+            has_parameters: false,
             masses: Masses::new(&mechanism, &|p: ParameterId| {
                 mechanism.parameters[p.index()].default
             }),
@@ -171,15 +177,22 @@ impl Forces {
         }
     }
 
-    /// Returns whether any joint can only push.
+    /// Returns the number of joints that can only push.
     #[must_use]
-    pub fn has_contacts(&self) -> bool {
-        !self.contacts.is_empty()
+    pub fn contacts(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// Returns the largest component of a reaction \[N or N m\].
+    #[must_use]
+    pub fn largest_reaction(&self) -> f64 {
+        let components = self.results.reactions.as_flattened().iter();
+        components.fold(0.0, |most: f64, component| most.max(component.abs()))
     }
 
     /// Returns each joint that can only push, by its index, with the force between its two parts
     /// \[N\], negative where it would have to pull.
-    pub(in crate::kinematics) fn contacts(
+    pub(in crate::kinematics) fn contact_forces(
         &self,
         state: &State,
     ) -> impl Iterator<Item = (usize, f64)> {
@@ -217,14 +230,16 @@ impl Forces {
     /// Evaluates the masses, if parameters have changed.
     fn set_parameters(&mut self, state: &State) -> Result<(), Error> {
         let now = &state.pose.parameters;
-        if !self.parameters.is_empty() && self.parameters == *now {
+        if self.has_parameters && self.parameters == *now {
             return Ok(());
         }
         self.masses
             .set_parameters(&self.mechanism, &|p: ParameterId| now[p.index()]);
         self.parameters.clear();
-        self.masses.check(&self.mechanism)?;
         self.parameters.extend_from_slice(now);
+        self.has_parameters = false;
+        self.masses.check(&self.mechanism)?;
+        self.has_parameters = true;
         Ok(())
     }
 

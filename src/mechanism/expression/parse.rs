@@ -343,8 +343,10 @@ impl<'a> Parser<'a> {
             };
         }
         if name == Variable::Time.name() {
-            let error =
-                ExpressionError::new(span, "only a `motion` or the `value` of a force may use time `t`");
+            let error = ExpressionError::new(
+                span,
+                "only a `motion` or the `value` of a force may use time `t`",
+            );
             return match self.scope.variables {
                 [own, ..] => error.help(format!("here the variable is `{}`", own.name())),
                 [] => error,
@@ -354,7 +356,10 @@ impl<'a> Parser<'a> {
         if name == Variable::PolarAngle.name() {
             return error.help("only a cam's `profile` may use `theta`, its polar angle");
         }
-        if [Variable::Position, Variable::Velocity].map(Variable::name).contains(&name) {
+        if [Variable::Position, Variable::Velocity]
+            .map(Variable::name)
+            .contains(&name)
+        {
             return error.help(format!(
                 "only the `value` of a force along a coordinate may use the coordinate's `{name}`"
             ));

@@ -100,10 +100,7 @@ impl<'a> Context<'a> {
             (true, true) => ("both", "and"),
             (false, false) => ("neither", "nor"),
         };
-        let message = format!(
-            "{} has {place} `coordinate` {has} `marker`",
-            fields.subject
-        );
+        let message = format!("{} has {place} `coordinate` {has} `marker`", fields.subject);
         self.error(code::FORCE_SHAPE, fields.place.clone(), message)
             .suggest(
                 "give `coordinate` and `markers` for a force between two bodies, such as a spring, \

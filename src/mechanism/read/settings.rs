@@ -2,9 +2,7 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::wording::shown_apart;
-use crate::mechanism::{
-    BodyId, Expression, Indeterminate, MarkerId, Outputs, Simulation, Unit,
-};
+use crate::mechanism::{BodyId, Expression, Indeterminate, MarkerId, Outputs, Simulation, Unit};
 
 use super::context::Context;
 use super::kind::{Array, Fields, List, Word};
@@ -66,11 +64,13 @@ impl<'a> Context<'a> {
         let all = || (0..self.body_names.len()).map(BodyId).collect();
         let mut bodies: Vec<BodyId> = bodies.unwrap_or_else(all);
         bodies.sort_unstable();
-        let mut reactions = reactions.unwrap_or_else(|| (0..self.holder_counts.iter().sum()).collect());
+        let mut reactions =
+            reactions.unwrap_or_else(|| (0..self.holder_counts.iter().sum()).collect());
         reactions.sort_unstable();
         let [joint_count, _] = self.holder_counts;
-        let (joints, constraints): (Vec<_>, Vec<_>) =
-            reactions.into_iter().partition(|&place| place < joint_count);
+        let (joints, constraints): (Vec<_>, Vec<_>) = reactions
+            .into_iter()
+            .partition(|&place| place < joint_count);
         let constraints = constraints.into_iter();
         Outputs {
             bodies,
