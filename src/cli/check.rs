@@ -1,21 +1,20 @@
 //! `biela check`
 
+mod forces;
 mod json;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use forces::Forces;
 
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::output::print;
 use super::suggested_estimates::as_estimates;
-use crate::fmi::{Kind, Quantity, variables};
-use crate::kinematics::{self, Element, ForceParts, KnownMotion, Modes, Path, Rates, Solver};
-use crate::mechanism::{
-    CoordinateKind, DriverSource, Expression, Indeterminate, Jet, Mechanism, Unit, shown,
-};
+use crate::kinematics::{self, Element, Modes, Path, Rates, Solver};
+use crate::mechanism::{CoordinateKind, DriverSource, Mechanism};
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
 ///
@@ -88,8 +87,12 @@ impl Check {
         warn_of_misfits(&solver);
         print(&describe_pose(&mut solver))?;
         if mechanism.has_dynamics() {
-            let forces = describe_forces(&mut solver);
-            print(&forces.map_err(|error| input.error(error))?)?;
+            let forces = Forces::at_rest(&mut solver);
+            print(
+                &forces
+                    .map_err(|error| input.error(error))?
+                    .describe(mechanism),
+            )?;
         }
         if self.estimates {
             print(&estimates(&solver))?;
@@ -236,74 +239,6 @@ fn describe_pose(solver: &mut Solver) -> String {
         );
     }
     out
-}
-
-/// Lists masses, and the forces of the mechanism at rest; names reactions that are indeterminate.
-fn describe_forces(solver: &mut Solver) -> Result<String, kinematics::Error> {
-    let mechanism = std::sync::Arc::clone(solver.mechanism());
-    let still = Rates::new(solver.pose().q.len());
-    let rates = vec![Jet::constant(0.0); mechanism.drivers.len()];
-    let mut forces = solver.forces();
-    let inputs = vec![0.0; forces.inputs()];
-    let motion = KnownMotion {
-        rates: &still,
-        driver_rates: &rates,
-        inputs: &inputs,
-    };
-    solver.solve_forces(motion, ForceParts::ALL, &mut forces)?;
-    let parameters = &solver.pose().parameters;
-    let value = |expression: &Expression| expression.evaluate(&|p| parameters[p.index()], 0.0);
-    let mut out = String::from("\nforces at rest\n");
-    for body in &mechanism.bodies {
-        if let Some(mass) = &body.mass {
-            let inertia = body.inertia.as_ref().map_or(0.0, value);
-            let _ = writeln!(
-                out,
-                "  {}: mass {} kg, inertia {} kg.m2",
-                body.name,
-                shown(value(mass)),
-                shown(inertia)
-            );
-        }
-    }
-    for variable in variables(&mechanism) {
-        let (Quantity::Force(force), Kind::Real { unit, .. }) = (variable.quantity, variable.kind)
-        else {
-            continue;
-        };
-        // Power and kinetic energy are zero at rest, the bias is the effort.
-        if variable.name.ends_with(".power")
-            || variable.name.ends_with(".bias")
-            || variable.name == "energy.kinetic"
-        {
-            continue;
-        }
-        let number = scientific(tidy_force(forces.value(force)), 6);
-        let unit = unit.map_or("", |unit: Unit| unit.name);
-        let _ = writeln!(out, "  {} = {number} {unit}", variable.name);
-    }
-    let open = solver.indeterminate();
-    if !open.is_empty() {
-        let names: Vec<_> = open
-            .iter()
-            .map(|element| element.describe(&mechanism))
-            .collect();
-        let treatment = match mechanism.outputs.indeterminate {
-            Indeterminate::Omit => "they are no outputs",
-            Indeterminate::MinimumNorm => "outputs are those with the least sum of squares",
-        };
-        let _ = writeln!(
-            out,
-            "  redundant constraints leave the reactions of {} indeterminate: {treatment}",
-            names.join(", ")
-        );
-    }
-    Ok(out)
-}
-
-/// Returns zero for a force that is rounding.
-fn tidy_force(value: f64) -> f64 {
-    if value.abs() < 1e-12 { 0.0 } else { value }
 }
 
 /// Returns a table of the bodies in the solver's pose, with their distance from the estimates.
