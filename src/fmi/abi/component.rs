@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::types::{fmi2Component, fmi2Error, fmi2Status};
 
 use super::Exported;
+use super::floating_point::StandardEnvironment;
 use super::host::status_code;
 use crate::fmi::{Error, Status};
 
@@ -98,6 +99,7 @@ pub(super) unsafe fn with_instance(
         // The instance's logger cannot be reached now; who is being served will tell of it.
         return fmi2Error;
     }
+    let _environment = StandardEnvironment::set();
     // SAFETY: seized, and calls come from one thread at a time, so that this is the only reference
     // to the instance until `busy` is false again.
     let instance = unsafe { &mut *component.instance.get() };

@@ -11,6 +11,7 @@ use super::types::{
 use super::Exported;
 use super::arguments::{slice, text};
 use super::component::{CallError, Component, panic_message, silence_panics, with_instance};
+use super::floating_point::StandardEnvironment;
 use super::host::HostLogger;
 use crate::fmi::{Call, Category, Instance, Interface, Sink, Status};
 
@@ -44,6 +45,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     logging_on: fmi2Boolean,
 ) -> fmi2Component {
     silence_panics();
+    let _environment = StandardEnvironment::set();
     if functions.is_null() || !functions.is_aligned() {
         return std::ptr::null_mut();
     }

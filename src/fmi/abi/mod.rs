@@ -32,6 +32,7 @@ mod access;
 mod arguments;
 mod component;
 mod exchange;
+mod floating_point;
 mod fmu_state;
 mod host;
 mod lifecycle;
