@@ -74,7 +74,7 @@ pub use analysis::{
     RangeSettings, Sample, Sensitivity,
 };
 pub use assembly::estimate::Move;
-pub use block::Crossing;
+pub use block::{BlockCarryover, CheckedSegment, Crossing};
 pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
@@ -84,10 +84,11 @@ pub use element::Element;
 pub(crate) use error::in_line;
 pub use error::{Error, OpenJoint, Proof, Verdict};
 pub use initial_pose::{Assembly, Start};
+pub use linear::PivotOrder;
 pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::Solver;
-pub use state::Pose;
+pub use state::{Carryover, Pose};
 pub use structure::{Dependencies, Structure};
 pub use system::{Equation, System, Target, Targets};

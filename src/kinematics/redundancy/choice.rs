@@ -175,7 +175,7 @@ pub(in crate::kinematics) fn assemble_on_all(
 /// # Errors
 ///
 /// [`Error::Singular`] if the rows all together lose rank here.
-pub(in crate::kinematics) fn return_to_fit_rows(
+fn return_to_fit_rows(
     model: &mut Model,
     state: &mut State,
 ) -> Result<(), Error> {

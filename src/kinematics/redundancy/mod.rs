@@ -29,6 +29,5 @@ mod watch;
 pub use choice::Redundancy;
 pub(super) use choice::{
     assemble_on_all, change_rows, choose_rows, is_nearly_singular, may_cross, opened, redundancies,
-    return_to_fit_rows,
 };
 pub(super) use watch::watch_between;
