@@ -2,7 +2,7 @@
 
 use crate::kinematics::linear::PivotOrder;
 
-/// What a block with a sparse matrix takes over from earlier steps besides the pose.
+/// Numbers that a block with a sparse matrix takes over from earlier steps, besides the pose.
 ///
 /// Proofs of smaller blocks that hold for several steps have no effect on further results and are
 /// no part of it.
