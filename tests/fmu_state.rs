@@ -161,10 +161,16 @@ fn getting_a_state_leaves_no_trace() {
         go_on(&mut other, 0);
         for step in 0..40 {
             let state = watched.fmu_state().expect("allowed in this state");
-            other.set_fmu_state(&state).expect("it is the same mechanism");
+            other
+                .set_fmu_state(&state)
+                .expect("it is the same mechanism");
             let expected = act(&mut straight, step);
             assert_eq!(act(&mut watched, step), expected, "{name}, step {step}");
-            assert_eq!(act(&mut other, step), expected, "{name}, step {step}: restored");
+            assert_eq!(
+                act(&mut other, step),
+                expected,
+                "{name}, step {step}: restored"
+            );
         }
     }
 }

@@ -82,7 +82,7 @@ pub use continuation::{Blocked, Progress, Reason};
 pub use element::Element;
 #[cfg(feature = "cli")]
 pub(crate) use error::in_line;
-pub use error::{Error, OpenJoint, Proof, Verdict};
+pub use error::{Error, Fit, OpenJoint, Proof, Verdict};
 pub use initial_pose::{Assembly, Start};
 pub use linear::PivotOrder;
 pub use path::{Curve, Path, Rates};

@@ -272,12 +272,7 @@ impl State {
 
     /// Goes to a pose with the choices that were in use there. Returns false if these are of
     /// another mechanism; the choices in use are then any.
-    pub(super) fn resume(
-        &mut self,
-        model: &mut Model,
-        pose: &Pose,
-        carryover: &Carryover,
-    ) -> bool {
+    pub(super) fn resume(&mut self, model: &mut Model, pose: &Pose, carryover: &Carryover) -> bool {
         let same_rows = model.redundant.now == carryover.set_aside;
         if !same_rows {
             self.release_crossings(model);

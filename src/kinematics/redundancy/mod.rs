@@ -16,6 +16,7 @@
 //! |---|---|
 //! | [`closure`] | closes a mechanism on all its rows |
 //! | [`rank`] | finds degrees of freedom and redundant rows |
+//! | [`slip`] | explains redundant rows that are open by little |
 //! | [`contradiction`] | explains rows that cannot be satisfied together |
 //! | [`choice`] | chooses the rows that are solved |
 //! | [`watch`] | bounds rows set aside between the ends of a sub-step |
@@ -24,6 +25,7 @@ mod choice;
 mod closure;
 mod contradiction;
 mod rank;
+mod slip;
 mod watch;
 
 pub use choice::Redundancy;
