@@ -4,9 +4,9 @@ use super::types::{
     fmi2Boolean, fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2ValueReference,
 };
 
-use super::arguments::{Room, slice};
-use super::component::with_instance;
 use crate::fmi::Call;
+use crate::fmi::abi::arguments::{Room, slice};
+use crate::fmi::abi::component::with_instance;
 
 /// The access functions of types that variables have: those that get, with the method that
 /// computes, and those that set.
@@ -20,7 +20,7 @@ macro_rules! with_variables {
             ///
             /// # Safety
             ///
-            /// The [host's promise](super#safety).
+            /// The [host's promise](crate::fmi::abi#safety).
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn $get(
                 c: fmi2Component,
@@ -43,7 +43,7 @@ macro_rules! with_variables {
             ///
             /// # Safety
             ///
-            /// The [host's promise](super#safety).
+            /// The [host's promise](crate::fmi::abi#safety).
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn $set(
                 c: fmi2Component,
@@ -78,7 +78,7 @@ macro_rules! without_variables {
             ///
             /// # Safety
             ///
-            /// The [host's promise](super#safety). `value` is not touched.
+            /// The [host's promise](crate::fmi::abi#safety). `value` is not touched.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn $function(
                 c: fmi2Component,
@@ -113,7 +113,7 @@ without_variables! {
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,
