@@ -206,8 +206,9 @@ impl fmt::Display for Fit {
             length,
             present,
         } = self;
-        // As many digits as tell the two apart.
-        let apart = (1e3 * (length - present)).abs().log10().floor();
+        // As many digits as tell the two apart; rounding decides about none.
+        let apart = (1e3 * (length - present)).abs().log10() + 1e-3;
+        let apart = apart.floor();
         let decimals = (1.0 - apart).clamp(1.0, 12.0) as usize;
         let show = |value: f64| format!("{:.decimals$} mm", 1e3 * value);
         let (length, present) = (show(*length), show(*present));
