@@ -20,7 +20,8 @@ FILES_WITHOUT_MESSAGES = {
     "cli/documentation.rs": "the page in the FMU",
     "cli/watch/server.rs": "what a browser is told",
     "fmi/mechanism_model/variables.rs": "descriptions in the FMU",
-    "fmi/model_description.rs": "the FMU's XML",
+    "fmi/model_description/fmi2.rs": "the FMU's XML",
+    "fmi/model_description/xml.rs": "likewise",
     "fmi/log.rs": "descriptions of the log categories",
     "kinematics/reference.rs": "the oracle of the tests",
 }

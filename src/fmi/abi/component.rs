@@ -2,19 +2,24 @@
 
 use std::any::Any;
 use std::cell::UnsafeCell;
+use std::ffi::{c_uint, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::types::{fmi2Component, fmi2Error, fmi2Status};
-
 use super::Exported;
-use super::host::status_code;
+use super::floating_point::StandardEnvironment;
 use crate::fmi::{Error, Status};
+
+/// An instance as the host sees it: an `fmi2Component`.
+pub(super) type Handle = *mut c_void;
+
+/// A status as the host sees it. The versions of the standard number them alike.
+pub(super) type StatusCode = c_uint;
 
 type Instance = crate::fmi::Instance<Exported>;
 
-/// Data behind an `fmi2Component`.
+/// Data behind a handle.
 pub(super) struct Component {
     instance: UnsafeCell<Instance>,
     /// Whether a call is being served: only who has set it touches the instance.
@@ -23,7 +28,7 @@ pub(super) struct Component {
     disturbed: AtomicBool,
 }
 
-/// Why a call did not return `fmi2OK`.
+/// Why a call did not succeed.
 pub(super) enum CallError {
     /// The instance said no.
     Refused(Error),
@@ -39,7 +44,7 @@ impl From<Error> for CallError {
 
 impl Component {
     /// Hands an instance over to the host.
-    pub(super) fn hand_over(instance: Instance) -> fmi2Component {
+    pub(super) fn hand_over(instance: Instance) -> Handle {
         let component = Self {
             instance: UnsafeCell::new(instance),
             busy: AtomicBool::new(false),
@@ -67,7 +72,7 @@ impl Component {
     /// # Safety
     ///
     /// `c` is null or a component that has not been freed, and is not used any more.
-    pub(super) unsafe fn take_back(c: fmi2Component) {
+    pub(super) unsafe fn take_back(c: Handle) {
         let component: *mut Self = c.cast();
         // SAFETY: promised by the caller.
         let seized = unsafe { component.as_ref() }.is_some_and(Self::seize);
@@ -80,24 +85,25 @@ impl Component {
 }
 
 /// Runs `f` on the instance behind `c`; its error goes to the host's logger, a panic becomes
-/// `fmi2Fatal`.
+/// a fatal status.
 ///
 /// # Safety
 ///
 /// `c` is null or a component that has not been freed, and no other thread uses it meanwhile.
 pub(super) unsafe fn with_instance(
-    c: fmi2Component,
+    c: Handle,
     call: &str,
     f: impl FnOnce(&mut Instance) -> Result<(), CallError>,
-) -> fmi2Status {
+) -> StatusCode {
     // SAFETY: promised by the caller.
     let Some(component) = (unsafe { c.cast::<Component>().as_ref() }) else {
-        return fmi2Error;
+        return status_code(Status::Error);
     };
     if !component.seize() {
         // The instance's logger cannot be reached now; who is being served will tell of it.
-        return fmi2Error;
+        return status_code(Status::Error);
     }
+    let _environment = StandardEnvironment::set();
     // SAFETY: seized, and calls come from one thread at a time, so that this is the only reference
     // to the instance until `busy` is false again.
     let instance = unsafe { &mut *component.instance.get() };
@@ -134,6 +140,12 @@ fn serve(
         let _ = catch_unwind(AssertUnwindSafe(|| instance.mark_fatal(&what)));
         Status::Fatal
     })
+}
+
+/// Returns the standard's number of a status.
+#[inline]
+pub(super) fn status_code(status: Status) -> StatusCode {
+    status as StatusCode
 }
 
 /// Returns the message of a caught panic.

@@ -28,17 +28,11 @@
     reason = "the names are those of the standard"
 )]
 
-mod access;
 mod arguments;
 mod component;
-mod exchange;
-mod fmu_state;
-mod host;
-mod lifecycle;
-mod stepping;
-#[cfg(test)]
-mod tests;
-mod types;
+mod floating_point;
+mod fmi2;
+mod message;
 
 /// The model whose C interface this is.
 type Exported = super::MechanismModel;

@@ -3,7 +3,7 @@
 use super::elimination::EliminationOrder;
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::Gradient;
-use crate::kinematics::linear::{Factors, Lu};
+use crate::kinematics::linear::{Factors, Lu, PivotOrder};
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::structure::Structure;
 use crate::kinematics::system::System;
@@ -25,6 +25,9 @@ struct BlockFactors {
     rows: Vec<usize>,
     columns: Vec<usize>,
     lu: Lu,
+    /// Pivots that a sparse matrix tries first, chosen at a pose that belongs to no motion: results
+    /// depend on the pose alone.
+    first_pivots: PivotOrder,
     /// Entries at unknowns of earlier blocks: row of the block, column, value.
     upstream: Vec<(usize, usize, f64)>,
     work: Vec<f64>,
@@ -48,13 +51,33 @@ impl JacobianFactors {
                 rows,
                 columns,
                 lu,
+                first_pivots: PivotOrder::default(),
             }
         });
         let blocks = blocks.collect();
-        Self {
+        let mut factors = Self {
             blocks,
             owners,
             gradients: vec![Gradient::new(); system.equations().len()],
+        };
+        factors.choose_pivots(system);
+        factors
+    }
+
+    /// Chooses the pivots that sparse matrices try first, for the file's parameters.
+    fn choose_pivots(&mut self, system: &System) {
+        let mut blocks = self.blocks.iter();
+        if !blocks.any(|block| matches!(block.lu, Lu::Sparse(_))) {
+            return;
+        }
+        let (mut at, mut targets) = (system.configuration(), system.targets());
+        let parameters = system.mechanism().default_parameters();
+        let set = system.set_parameters(&parameters, &mut at, &mut targets);
+        // Without pivots at hand each factorisation chooses its own.
+        if set.is_ok() && self.factorise(system, &system.anywhere(&at)).is_ok() {
+            for block in &mut self.blocks {
+                block.lu.copy_pivots(&mut block.first_pivots);
+            }
         }
     }
 
@@ -93,6 +116,8 @@ impl JacobianFactors {
                     }
                 }
             }
+            let fits = block.lu.use_pivots(&block.first_pivots);
+            debug_assert!(fits, "they were chosen for this matrix");
             block.lu.factorise(0.0).map_err(|_| Rejected)?;
         }
         Ok(())

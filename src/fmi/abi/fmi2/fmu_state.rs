@@ -7,9 +7,9 @@ use std::ptr::null_mut;
 
 use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Status};
 
-use super::Exported;
-use super::arguments::{Room, slice, write};
-use super::component::{CallError, with_instance};
+use crate::fmi::abi::Exported;
+use crate::fmi::abi::arguments::{Room, slice, write};
+use crate::fmi::abi::component::{CallError, with_instance};
 use crate::fmi::{Call, Error, Model, StateError};
 
 type FmuState = crate::fmi::FmuState<<Exported as Model>::State>;
@@ -18,7 +18,7 @@ type FmuState = crate::fmi::FmuState<<Exported as Model>::State>;
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety) for an `fmi2FMUstate`, while the reference is used.
+/// The [host's promise](crate::fmi::abi#safety) for an `fmi2FMUstate`, while the reference is used.
 unsafe fn state<'a>(handle: fmi2FMUstate) -> Result<&'a FmuState, CallError> {
     // SAFETY: promised by the caller.
     unsafe { handle.cast::<FmuState>().as_ref() }
@@ -30,7 +30,7 @@ unsafe fn state<'a>(handle: fmi2FMUstate) -> Result<&'a FmuState, CallError> {
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety). `*fmu_state` holds a value, other than in functions that
+/// The [host's promise](crate::fmi::abi#safety). `*fmu_state` holds a value, other than in functions that
 /// write only.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, fmu_state: fmi2FMUstate) -> fmi2Status {
     // SAFETY: the host's promise.
@@ -72,7 +72,7 @@ pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, fmu_state: fmi2FMUsta
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(
     c: fmi2Component,
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     c: fmi2Component,
@@ -119,7 +119,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(
     c: fmi2Component,
@@ -148,7 +148,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: fmi2Component,

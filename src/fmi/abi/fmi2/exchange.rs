@@ -2,15 +2,15 @@
 
 use super::types::{fmi2Boolean, fmi2Component, fmi2EventInfo, fmi2False, fmi2Real, fmi2Status};
 
-use super::arguments::Room;
-use super::component::with_instance;
 use crate::fmi::Call;
+use crate::fmi::abi::arguments::Room;
+use crate::fmi::abi::component::with_instance;
 
 /// `fmi2EnterEventMode`.
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2EnterEventMode(c: fmi2Component) -> fmi2Status {
     // SAFETY: the host's promise.
@@ -26,7 +26,7 @@ pub unsafe extern "C" fn fmi2EnterEventMode(c: fmi2Component) -> fmi2Status {
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2NewDiscreteStates(
     c: fmi2Component,
@@ -55,7 +55,7 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2EnterContinuousTimeMode(c: fmi2Component) -> fmi2Status {
     // SAFETY: the host's promise.
@@ -71,7 +71,7 @@ pub unsafe extern "C" fn fmi2EnterContinuousTimeMode(c: fmi2Component) -> fmi2St
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
     c: fmi2Component,
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetTime(c: fmi2Component, time: fmi2Real) -> fmi2Status {
     // SAFETY: the host's promise.
@@ -113,7 +113,7 @@ macro_rules! of_none {
             ///
             /// # Safety
             ///
-            /// The [host's promise](super#safety). The array is not touched.
+            /// The [host's promise](crate::fmi::abi#safety). The array is not touched.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn $function(
                 c: fmi2Component,

@@ -27,16 +27,6 @@ pub const fmi2False: fmi2Boolean = 0;
 
 /// Outcome of a call.
 pub type fmi2Status = c_uint;
-/// The call did its work.
-pub const fmi2OK: fmi2Status = 0;
-/// The call did its work; the log has a warning.
-pub const fmi2Warning: fmi2Status = 1;
-/// The call could not do its work; the instance is as before.
-pub const fmi2Discard: fmi2Status = 2;
-/// The call was refused, or its computation failed.
-pub const fmi2Error: fmi2Status = 3;
-/// No instance of this library can be used any more.
-pub const fmi2Fatal: fmi2Status = 4;
 
 /// Interface of an instance.
 pub type fmi2Type = c_uint;

@@ -8,10 +8,13 @@ use super::types::{
     fmi2Real, fmi2Status, fmi2String, fmi2Type,
 };
 
-use super::Exported;
-use super::arguments::{slice, text};
-use super::component::{CallError, Component, panic_message, silence_panics, with_instance};
 use super::host::HostLogger;
+use crate::fmi::abi::Exported;
+use crate::fmi::abi::arguments::{slice, text};
+use crate::fmi::abi::component::{
+    CallError, Component, panic_message, silence_panics, with_instance,
+};
+use crate::fmi::abi::floating_point::StandardEnvironment;
 use crate::fmi::{Call, Category, Instance, Interface, Sink, Status};
 
 /// `fmi2GetTypesPlatform`: always `"default"`.
@@ -32,7 +35,7 @@ pub extern "C" fn fmi2GetVersion() -> *const c_char {
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
     instance_name: fmi2String,
@@ -44,6 +47,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     logging_on: fmi2Boolean,
 ) -> fmi2Component {
     silence_panics();
+    let _environment = StandardEnvironment::set();
     if functions.is_null() || !functions.is_aligned() {
         return std::ptr::null_mut();
     }
@@ -102,7 +106,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     // SAFETY: the host's promise.
@@ -113,7 +117,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetDebugLogging(
     c: fmi2Component,
@@ -139,7 +143,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetupExperiment(
     c: fmi2Component,
@@ -162,7 +166,7 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
     // SAFETY: the host's promise.
@@ -177,7 +181,7 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2St
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
     // SAFETY: the host's promise.
@@ -192,7 +196,7 @@ pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Sta
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
     // SAFETY: the host's promise.
@@ -203,7 +207,7 @@ pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
     // SAFETY: the host's promise.

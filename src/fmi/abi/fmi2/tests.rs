@@ -6,14 +6,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fmi_sys::fmi2 as header;
+use fmi_sys::fmi2::{
+    fmi2Status_fmi2Error as fmi2Error, fmi2Status_fmi2Fatal as fmi2Fatal,
+    fmi2Status_fmi2OK as fmi2OK,
+};
 
 use super::access::*;
-use super::component::Component;
 use super::exchange::*;
 use super::fmu_state::*;
 use super::lifecycle::*;
 use super::stepping::*;
 use super::types::*;
+use crate::fmi::abi::component::{Component, status_code};
 use crate::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
 use crate::mechanism::{Mechanism, Source};
 
@@ -34,7 +38,7 @@ impl Sink for Breaking {
 }
 
 fn component(sink: impl Sink + Send + 'static) -> fmi2Component {
-    let text = include_str!("../../../mechanisms/pendulum.toml");
+    let text = include_str!("../../../../mechanisms/pendulum.toml");
     let (mechanism, _) = Mechanism::parse(&Source::new("pendulum.toml", text)).unwrap();
     let model = MechanismModel::new(mechanism.into(), Interface::CoSimulation).unwrap();
     Component::hand_over(Instance::new(model, Box::new(sink), false))
@@ -252,7 +256,14 @@ const _: header::fmi2NewDiscreteStatesTYPE = None::<NewDiscreteStates<header::fm
 #[test]
 fn constants_are_those_of_the_header() {
     assert_eq!(
-        [fmi2OK, fmi2Warning, fmi2Discard, fmi2Error, fmi2Fatal],
+        [
+            Status::Ok,
+            Status::Warning,
+            Status::Discard,
+            Status::Error,
+            Status::Fatal
+        ]
+        .map(status_code),
         [
             header::fmi2Status_fmi2OK,
             header::fmi2Status_fmi2Warning,

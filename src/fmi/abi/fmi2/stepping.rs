@@ -5,16 +5,16 @@ use super::types::{
     fmi2Status, fmi2StatusKind, fmi2String, fmi2Terminated, fmi2ValueReference,
 };
 
-use super::arguments::{Room, slice, write};
-use super::component::with_instance;
-use super::host::status_code;
+use crate::fmi::abi::arguments::{Room, slice, write};
+use crate::fmi::abi::component::status_code;
+use crate::fmi::abi::component::with_instance;
 use crate::fmi::{Call, Error};
 
 /// `fmi2SetRealInputDerivatives`.
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: fmi2Component,
@@ -37,7 +37,7 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
@@ -62,7 +62,7 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DoStep(
     c: fmi2Component,
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn fmi2DoStep(
 ///
 /// # Safety
 ///
-/// The [host's promise](super#safety).
+/// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
     // SAFETY: the host's promise.
@@ -104,7 +104,7 @@ macro_rules! status {
             ///
             /// # Safety
             ///
-            /// The [host's promise](super#safety).
+            /// The [host's promise](crate::fmi::abi#safety).
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn $function(
                 c: fmi2Component,

@@ -1,120 +1,20 @@
-//! `modelDescription.xml` (FMI 2.0, 2.2, 3.3.1 and 4.3.1).
+//! The model description of FMI 2.0 (2.2, 3.3.1 and 4.3.1).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::io;
 
-use quick_xml::events::{BytesDecl, Event};
-use quick_xml::writer::{ElementWriter, Writer};
-
-use super::log::Category;
-use super::variable::{Causality, Enumeration, Kind, Variability, Variable};
+use super::xml::{WithOptional, Xml, boolean, non_empty, number};
+use super::{Capabilities, Experiment, ModelDescription, Unknown};
+use crate::fmi::log::Category;
+use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
 use crate::unit::Unit;
 
-type Xml = Writer<Vec<u8>>;
-
-/// Content of `modelDescription.xml`.
-#[derive(Clone, Debug)]
-pub struct ModelDescription<'a, Q> {
-    /// FMI modelName and modelIdentifier: a C identifier.
-    pub name: &'a str,
-    /// One line for people; may be empty.
-    pub description: &'a str,
-    /// Author of the model.
-    pub author: Option<&'a str>,
-    /// Version of the model.
-    pub version: Option<&'a str>,
-    /// Copyright notice of the model.
-    pub copyright: Option<&'a str>,
-    /// License of the model.
-    pub license: Option<&'a str>,
-    /// GUID, which the resources must have too.
-    pub guid: String,
-    /// Default experiment.
-    pub experiment: Experiment,
-    /// Capabilities of the model.
-    pub capabilities: Capabilities,
-    /// Variables in the order of their value references.
-    pub variables: Vec<Variable<Q>>,
-    /// All outputs.
-    pub outputs: Vec<Unknown>,
-    /// All outputs and calculated parameters.
-    pub initial_unknowns: Vec<Unknown>,
-}
-
-/// The default experiment \[s, s, s, 1\].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Experiment {
-    /// Start time.
-    pub start: f64,
-    /// Stop time.
-    pub stop: f64,
-    /// Communication step size.
-    pub step: f64,
-    /// Relative tolerance of the host's solver.
-    pub tolerance: f64,
-}
-
-/// Optional capabilities of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Capabilities {
-    /// Whether input derivatives have an effect.
-    pub interpolates_inputs: bool,
-    /// Highest order of output derivatives.
-    pub output_derivatives: u32,
-    /// Whether the model provides directional derivatives.
-    pub directional_derivatives: bool,
-}
-
-/// A computed variable and its dependencies, as indices counted from 1.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unknown {
-    /// Index of the variable.
-    pub index: usize,
-    /// Indices of the variables that it depends on, and the kind of each dependency.
-    pub dependencies: BTreeMap<usize, DependencyKind>,
-}
-
-/// Kind of a dependency (FMI 2.0, 2.2.8).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DependencyKind {
-    /// Without a particular structure.
-    Dependent,
-    /// With a constant factor.
-    Constant,
-}
-
-impl DependencyKind {
-    /// Returns the kind's name in the model description.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Dependent => "dependent",
-            Self::Constant => "constant",
-        }
-    }
-}
-
-impl<Q> ModelDescription<'_, Q> {
-    /// Returns the file's content.
-    ///
-    /// `generated` is the attribute `generationDateAndTime`. Without it the same model gives the
-    /// same bytes.
-    #[must_use]
-    pub fn write(&self, generated: Option<&str>) -> Vec<u8> {
-        let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
-        let written = write_document(&mut xml, self, generated);
-        written.expect("writing to memory does not fail");
-        let mut bytes = xml.into_inner();
-        bytes.push(b'\n');
-        bytes
-    }
-}
-
-fn write_document<Q>(
+/// Writes the root element; `generated` is the attribute `generationDateAndTime`.
+pub(super) fn write<Q>(
     xml: &mut Xml,
     description: &ModelDescription<'_, Q>,
     generated: Option<&str>,
 ) -> io::Result<()> {
-    xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     let optional = [
         ("description", non_empty(description.description)),
         ("author", description.author),
@@ -152,31 +52,6 @@ fn write_document<Q>(
             write_structure(xml, description)
         })?;
     Ok(())
-}
-
-/// Attributes that an element has only if they have a value.
-trait WithOptional {
-    fn with_optional(self, attributes: &[(&str, Option<&str>)]) -> Self;
-}
-
-impl WithOptional for ElementWriter<'_, Vec<u8>> {
-    fn with_optional(mut self, attributes: &[(&str, Option<&str>)]) -> Self {
-        for &(name, value) in attributes {
-            if let Some(value) = value {
-                self = self.with_attribute((name, value));
-            }
-        }
-        self
-    }
-}
-
-fn non_empty(text: &str) -> Option<&str> {
-    Some(text).filter(|text| !text.is_empty())
-}
-
-/// Formats a number so that reading it gives the same bits.
-fn number(value: f64) -> String {
-    format!("{value:?}")
 }
 
 fn write_model_exchange<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
@@ -218,10 +93,6 @@ fn write_co_simulation<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) 
         ])
         .write_empty()?;
     Ok(())
-}
-
-fn boolean(value: bool) -> &'static str {
-    if value { "true" } else { "false" }
 }
 
 fn real_unit<Q>(variable: &Variable<Q>) -> Option<Unit> {

@@ -1,0 +1,42 @@
+//! Messages to the host as C strings.
+
+use std::borrow::Cow;
+use std::ffi::CString;
+
+/// Longest message that hosts have room for: a mechanism of thousands of bodies may have as much to say.
+const LONGEST_MESSAGE: usize = 8000;
+
+/// Returns a message as the standard wants it: it reads `#12#` as a reference to a variable, and
+/// `##` as one `#`.
+pub(super) fn message_text(message: &str) -> CString {
+    c_string(&shortened(message).replace('#', "##"))
+}
+
+/// Returns a C string; leaves out NUL characters inside, which it could not carry.
+pub(super) fn c_string(text: &str) -> CString {
+    CString::new(text.replace('\0', "")).unwrap_or_default()
+}
+
+/// Returns the beginning of a message that is too long.
+fn shortened(message: &str) -> Cow<'_, str> {
+    if message.len() <= LONGEST_MESSAGE {
+        return message.into();
+    }
+    let end = message.floor_char_boundary(LONGEST_MESSAGE);
+    let left = message.len() - end;
+    format!("{}… ({left} bytes more)", &message[..end]).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LONGEST_MESSAGE, shortened};
+
+    #[test]
+    fn long_messages_are_cut_between_characters() {
+        assert_eq!(shortened("manivela"), "manivela");
+        let long = "á".repeat(LONGEST_MESSAGE);
+        let cut = shortened(&long);
+        assert!(cut.len() < LONGEST_MESSAGE + 30);
+        assert!(cut.ends_with("á… (8000 bytes more)"), "{cut}");
+    }
+}

@@ -1,0 +1,105 @@
+//! `modelDescription.xml`: its content, and one writer per version of the standard.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `xml` | helpers of the writers |
+//! | `fmi2` | FMI 2.0, 2.2, 3.3.1 and 4.3.1 |
+
+mod fmi2;
+mod xml;
+
+use std::collections::BTreeMap;
+
+use super::variable::Variable;
+
+/// Content of `modelDescription.xml`.
+#[derive(Clone, Debug)]
+pub struct ModelDescription<'a, Q> {
+    /// FMI modelName and modelIdentifier: a C identifier.
+    pub name: &'a str,
+    /// One line for people; may be empty.
+    pub description: &'a str,
+    /// Author of the model.
+    pub author: Option<&'a str>,
+    /// Version of the model.
+    pub version: Option<&'a str>,
+    /// Copyright notice of the model.
+    pub copyright: Option<&'a str>,
+    /// License of the model.
+    pub license: Option<&'a str>,
+    /// GUID, which the resources must have too.
+    pub guid: String,
+    /// Default experiment.
+    pub experiment: Experiment,
+    /// Capabilities of the model.
+    pub capabilities: Capabilities,
+    /// Variables in the order of their value references.
+    pub variables: Vec<Variable<Q>>,
+    /// All outputs.
+    pub outputs: Vec<Unknown>,
+    /// All outputs and calculated parameters.
+    pub initial_unknowns: Vec<Unknown>,
+}
+
+/// The default experiment \[s, s, s, 1\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Experiment {
+    /// Start time.
+    pub start: f64,
+    /// Stop time.
+    pub stop: f64,
+    /// Communication step size.
+    pub step: f64,
+    /// Relative tolerance of the host's solver.
+    pub tolerance: f64,
+}
+
+/// Optional capabilities of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capabilities {
+    /// Whether input derivatives have an effect.
+    pub interpolates_inputs: bool,
+    /// Highest order of output derivatives.
+    pub output_derivatives: u32,
+    /// Whether the model provides directional derivatives.
+    pub directional_derivatives: bool,
+}
+
+/// A computed variable and its dependencies, as indices counted from 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unknown {
+    /// Index of the variable.
+    pub index: usize,
+    /// Indices of the variables that it depends on, and the kind of each dependency.
+    pub dependencies: BTreeMap<usize, DependencyKind>,
+}
+
+/// Kind of a dependency (FMI 2.0, 2.2.8).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DependencyKind {
+    /// Without a particular structure.
+    Dependent,
+    /// With a constant factor.
+    Constant,
+}
+
+impl DependencyKind {
+    /// Returns the kind's name in the model description.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Dependent => "dependent",
+            Self::Constant => "constant",
+        }
+    }
+}
+
+impl<Q> ModelDescription<'_, Q> {
+    /// Returns the file's content.
+    ///
+    /// `generated` is the attribute `generationDateAndTime`. Without it the same model gives the
+    /// same bytes.
+    #[must_use]
+    pub fn write(&self, generated: Option<&str>) -> Vec<u8> {
+        xml::document(|xml| fmi2::write(xml, self, generated))
+    }
+}
