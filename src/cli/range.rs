@@ -1,10 +1,13 @@
 //! `biela range`
 
+mod forces;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
+use forces::describe_largest;
 
 use super::check::scientific;
 
@@ -45,6 +48,10 @@ pub(super) struct Range {
     to: Option<String>,
     #[command(flatten)]
     conditions: Conditions,
+    /// Speed of the driver in m/s or rad/s, for the largest effort and reaction of a mechanism with
+    /// masses or forces [default: at rest].
+    #[arg(long, value_name = "SPEED", allow_negative_numbers = true)]
+    speed: Option<f64>,
     /// Write the poses of the motion: the driver's value, transmission angle, reciprocal condition,
     /// the measures, and the position of every body, in SI units; `-` for stdout.
     #[arg(long, value_name = "CSV")]
@@ -67,6 +74,7 @@ impl Range {
             bounds: self.bounds(&input.mechanism)?,
             ..RangeSettings::default()
         };
+        self.check_speed(&input.mechanism)?;
         let mut solver = self.conditions.solver_at_start(&input)?;
         let driven = Arc::clone(solver.mechanism());
         let mut text = String::new();
@@ -74,6 +82,10 @@ impl Range {
             let start = solver.pose().drivers[driver.index()];
             let range = solver.range(driver, &settings);
             describe(&mut text, &driven, driver, start, &range);
+            if driven.has_dynamics() {
+                let speed = self.speed.unwrap_or(0.0);
+                describe_largest(&mut text, &mut solver, driver, &range, speed);
+            }
             if let Some(path) = &self.csv {
                 write(path, table(&driven, driver, &range).as_bytes())?;
                 tell_written(path);
@@ -99,6 +111,20 @@ impl Range {
             print(&text)?;
         }
         Ok(())
+    }
+
+    /// Refuses a speed that is not finite, or that has no effect.
+    fn check_speed(&self, mechanism: &Mechanism) -> Result<(), Error> {
+        match self.speed {
+            Some(speed) if !speed.is_finite() => Err(Error::Usage(format!(
+                "--speed is {speed}; expected a finite number"
+            ))),
+            Some(_) if !mechanism.has_dynamics() => Err(Error::Usage(
+                "--speed is of forces, but the mechanism has neither `mass` nor `[forces]`"
+                    .to_owned(),
+            )),
+            _ => Ok(()),
+        }
     }
 
     fn drivers(&self, mechanism: &Mechanism) -> Result<Vec<DriverId>, Error> {

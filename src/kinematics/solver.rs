@@ -6,13 +6,15 @@ use super::analysis::{self, Direction, GeometryWarning, Modes, Range, RangeSetti
 use super::assembly::estimate::{Move, estimate, moves};
 use super::block::Crossing;
 use super::continuation::{Blocked, PathTracker, Progress};
+use super::element::Element;
 use super::error::Error;
+use super::forces::{self, Along, ForceParts, ForceSensitivity, Forces, KnownMotion};
 use super::initial_pose::{self, Assembly, Start};
 use super::model::Model;
 use super::path::{Path, Rates};
 use super::redundancy::{self, Redundancy};
 use super::singular::{self, Approach};
-use super::state::{Pose, State};
+use super::state::{Carryover, Pose, State};
 use super::structure::Structure;
 use super::system::System;
 use crate::mechanism::{DriverId, Jet, MarkerId, Mechanism};
@@ -151,15 +153,25 @@ impl Solver {
         self.state.restore(&mut self.model, pose);
     }
 
-    /// Forgets all traces of the motion to the present pose: pivots of sparse matrices, proofs that
-    /// hold for several steps, the choice among redundant rows. All further results depend on the
-    /// pose alone, to the last bit.
-    pub fn forget_way(&mut self) {
-        self.model.plan.forget_pivots();
-        self.model.plan.forget_proofs();
-        self.state.move_to_pose(&self.model.system);
-        // If no choice of rows is regular, the next step says so.
-        let _ = redundancy::return_to_fit_rows(&mut self.model, &mut self.state);
+    /// Copies the effects of earlier motion besides the pose into `carryover`. Allocates the first
+    /// time and when choices have changed.
+    pub fn carry_over(&self, carryover: &mut Carryover) {
+        let Model {
+            redundant, plan, ..
+        } = &self.model;
+        carryover.set_aside.clone_from(&redundant.now);
+        plan.carry_over(&mut carryover.blocks);
+    }
+
+    /// Puts the mechanism back to a pose with the choices that were in use there: all further
+    /// results have the same bits. Returns false if these choices are of another mechanism.
+    /// Allocates nothing, unless the choices have changed.
+    ///
+    /// # Panics
+    ///
+    /// If the pose belongs to another mechanism.
+    pub fn resume(&mut self, pose: &Pose, carryover: &Carryover) -> bool {
+        self.state.resume(&mut self.model, pose, carryover)
     }
 
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates
@@ -279,6 +291,73 @@ impl Solver {
     ) -> Result<Sensitivity<'_>, Error> {
         self.state
             .sensitivity(&self.model, rates, driver_rates, direction)
+    }
+
+    /// Makes the storage for forces of this mechanism.
+    #[must_use]
+    pub fn forces(&self) -> Forces {
+        Forces::new(&self.model)
+    }
+
+    /// Solves the forces at the present pose for a motion that [`solve_rates`](Self::solve_rates)
+    /// gave. Allocates nothing, unless other rows have become redundant.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] and [`Error::Mass`] for masses without a meaning, [`Error::NoForce`] for
+    /// a force without direction or size, [`Error::Singular`] where the pose is singular.
+    pub fn solve_forces(
+        &mut self,
+        motion: KnownMotion<'_>,
+        parts: ForceParts,
+        forces: &mut Forces,
+    ) -> Result<(), Error> {
+        forces.solve(&mut self.model, &mut self.state, motion, parts)
+    }
+
+    /// Returns each joint that can only push, by its index, with the force between its two parts
+    /// at the present pose \[N\]: negative where it would have to pull. The reactions in `forces`
+    /// must be up to date.
+    pub fn contact_forces<'a>(
+        &'a self,
+        forces: &'a Forces,
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        forces.contact_forces(&self.state)
+    }
+
+    /// Returns the derivatives of motion and forces at the present pose along a direction, along
+    /// which the sizes of forces that are inputs change by `inputs`. Exact to rounding.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`sensitivity`](Self::sensitivity) and [`solve_forces`](Self::solve_forces).
+    pub fn force_sensitivity(
+        &mut self,
+        motion: KnownMotion<'_>,
+        direction: &Direction,
+        inputs: &[f64],
+        forces: &mut Forces,
+    ) -> Result<ForceSensitivity, Error> {
+        let Self { model, state, .. } = self;
+        forces.solve(model, state, motion, ForceParts::ALL)?;
+        let along = state.sensitivity(model, motion.rates, motion.driver_rates, direction)?;
+        let along = Along {
+            motion: &along,
+            time: direction.time,
+            inputs,
+        };
+        forces.sensitivity(model, state, motion, &along)
+    }
+
+    /// Returns the joints and constraints whose reactions redundant constraints leave
+    /// indeterminate, known once the solver is [assembled](Self::assemble). The pose is unchanged.
+    pub fn indeterminate(&mut self) -> Vec<Element> {
+        let Self {
+            model,
+            state,
+            tracker,
+        } = self;
+        forces::indeterminate(model, state, tracker)
     }
 
     /// Finds the range of one driver up and down from the present pose, with the other drivers,

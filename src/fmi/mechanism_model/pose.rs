@@ -23,8 +23,7 @@ impl MechanismModel {
     pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
         let start = self.time;
         if !self.at_committed {
-            self.solver.restore(&self.committed);
-            self.at_committed = true;
+            self.return_to_committed();
         }
         self.set_path(start, h);
         self.report_falls(log);
@@ -33,6 +32,7 @@ impl MechanismModel {
                 self.path_progress = progress;
                 self.progress = progress;
                 self.set_driver_rates(start, h, 1.0);
+                self.advance_forces(h);
                 self.time = end;
                 self.commit_pose();
                 self.complete_step(start, h, log);
@@ -151,9 +151,25 @@ impl MechanismModel {
         self.set_freshness(Freshness::Pose);
     }
 
+    /// Puts the solver back to the committed pose, with the choices that it had there.
+    pub(super) fn return_to_committed(&mut self) {
+        let resumed = (self.solver).resume(&self.committed, &self.committed_carryover);
+        debug_assert!(resumed, "the choices are the solver's own");
+        self.at_committed = true;
+    }
+
+    /// Lets the solver leave the committed pose: notes its choices, and begins with them.
+    fn leave_committed(&mut self) {
+        if self.at_committed {
+            self.solver.carry_over(&mut self.committed_carryover);
+        }
+        self.return_to_committed();
+        self.at_committed = false;
+    }
+
     /// Restores the committed pose and its rates.
     fn restore_committed(&mut self) {
-        self.solver.restore(&self.committed);
+        self.leave_committed();
         self.driver_rates.copy_from_slice(&self.committed_rates);
         self.at_committed = true;
     }
@@ -176,6 +192,7 @@ impl MechanismModel {
                 } => jump.abs() > SEAM * (h * (velocity + 0.5 * h * acceleration)).abs(),
                 Curve::Motion => false,
             });
+        self.advance_forces(if jumped { 0.0 } else { blocked.s * h });
         if jumped {
             self.restore_committed();
         } else {
@@ -184,6 +201,13 @@ impl MechanismModel {
         }
         self.commit_pose();
         Failure::Discarded(message)
+    }
+
+    /// Moves the inputs of forces on by a time `h`.
+    fn advance_forces(&mut self, h: f64) {
+        for input in &mut self.force_inputs {
+            input.advance(h);
+        }
     }
 
     /// Brings the solver to the pose of the values set.
@@ -240,6 +264,8 @@ impl MechanismModel {
                 (*velocity, *acceleration) = (0.0, 0.0);
             }
         }
+        self.committed_carryover.clone_from(&self.file_carryover);
+        self.return_to_committed();
         self.at_committed = false;
         let start = self.solver.start(&self.start_pose, &self.path);
         match start.map_err(failed)? {
@@ -273,14 +299,13 @@ impl MechanismModel {
     ///
     /// [`Failure::Discarded`] if no continuous motion leads there.
     fn evaluate(&mut self) -> Result<(), Failure> {
-        self.solver.restore(&self.committed);
+        self.leave_committed();
         let (start, h) = match self.interface {
             Interface::ModelExchange => (self.committed.time, self.time - self.committed.time),
             Interface::CoSimulation => (self.time, 0.0),
         };
         self.set_path(start, h);
         let followed = self.solver.track(&self.path);
-        self.at_committed = false;
         self.set_driver_rates(start, h, 1.0);
         match followed {
             Ok(progress) => {

@@ -16,10 +16,12 @@
 //! recognition in [`compile`].
 
 mod anchor;
+mod carryover;
 mod compile;
 mod coupled;
 mod crossing;
 mod elimination;
+mod factors;
 mod interpolated;
 mod jacobian;
 mod pinned;
@@ -40,9 +42,11 @@ use super::path::Rates;
 use super::system::{System, Targets};
 use crate::mechanism::Jet;
 
+pub use carryover::{BlockCarryover, CheckedSegment};
 pub(super) use coupled::CoupledBlock;
 pub use crossing::Crossing;
 pub(super) use crossing::SEAM;
+pub(super) use factors::JacobianFactors;
 pub(super) use interpolated::InterpolatedBlock;
 pub(super) use jacobian::BlockJacobian;
 use pinned::PinnedBody;
@@ -148,13 +152,7 @@ impl BlockPlan {
         let Some(first) = sparse.next() else {
             return;
         };
-        // Spread evenly by the golden ratio: nothing is in line or at right angles there.
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let q: Vec<_> = (1..=system.unknowns())
-            .map(|k| at.size() * (GOLDEN * k as f64).fract() + (k % 3) as f64)
-            .collect();
-        let mut anywhere = at.clone();
-        anywhere.set_pose(system.mechanism(), &q);
+        let mut anywhere = system.anywhere(at);
         let mut state = BlockState {
             system,
             targets,
@@ -180,8 +178,29 @@ impl BlockPlan {
         }
     }
 
+    /// Copies what blocks take over from earlier steps. Allocates the first time and when pivots
+    /// were chosen.
+    pub(super) fn carry_over(&self, to: &mut Vec<BlockCarryover>) {
+        let blocks = || self.blocks.iter().filter(|block| block.keeps_pivots());
+        to.resize_with(blocks().count(), BlockCarryover::default);
+        for (block, to) in blocks().zip(to) {
+            block.carry_over(to);
+        }
+    }
+
+    /// Lets blocks take over what those of another plan for the same rows have copied. Returns
+    /// false if it is of another plan.
+    pub(super) fn take_over(&mut self, from: &[BlockCarryover]) -> bool {
+        let blocks = self.blocks.iter_mut();
+        let mut blocks = blocks.filter(|block| block.keeps_pivots());
+        let fits = from
+            .iter()
+            .all(|from| blocks.next().is_some_and(|block| block.take_over(from)));
+        fits && blocks.next().is_none()
+    }
+
     /// Lets sparse matrices choose their pivots again at the next factorisation.
-    pub(super) fn forget_pivots(&mut self) {
+    fn forget_pivots(&mut self) {
         for block in &mut self.blocks {
             block.forget_pivots();
         }
