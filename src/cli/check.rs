@@ -14,7 +14,10 @@ use super::input::{Input, warn_of_misfits};
 use super::output::print;
 use super::suggested_estimates::as_estimates;
 use crate::kinematics::{self, Element, Modes, Path, Rates, Solver};
-use crate::mechanism::{CoordinateKind, DriverSource, Mechanism};
+use crate::mechanism::{
+    CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, ParameterId, Signal, Unit,
+    shown,
+};
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
 ///
@@ -214,7 +217,8 @@ fn describe_pose(solver: &mut Solver) -> String {
     }
     out += &describe_bodies(solver);
     let still = Rates::new(solver.pose().q.len());
-    if !mechanism.measures.is_empty() {
+    let at_rest = derived_at_rest(solver);
+    if !mechanism.measures.is_empty() || !at_rest.is_empty() {
         out.push('\n');
     }
     for (index, measure) in mechanism.measures.iter().enumerate() {
@@ -225,6 +229,11 @@ fn describe_pose(solver: &mut Solver) -> String {
             measure.name,
             with_unit(measure.coordinate.kind, value)
         );
+    }
+    for (measure, value) in at_rest {
+        let unit = measure.unit.filter(|unit| *unit != Unit::ONE);
+        let unit = unit.map_or_else(String::new, |unit| format!(" {}", unit.name));
+        let _ = writeln!(out, "  {} = {}{unit}", measure.name, shown(value));
     }
     let _ = writeln!(
         out,
@@ -239,6 +248,19 @@ fn describe_pose(solver: &mut Solver) -> String {
         );
     }
     out
+}
+
+/// Returns the measures that are computed from positions, with their values at the solver's pose.
+fn derived_at_rest(solver: &Solver) -> Vec<(&DerivedMeasure, f64)> {
+    let still = Rates::new(solver.pose().q.len());
+    let drivers = vec![Jet::constant(0.0); solver.pose().drivers.len()];
+    let parameter = |id: ParameterId| solver.pose().parameters[id.index()];
+    let signal = |signal: Signal, order: Order| order.of(signal.jet(solver, &still, &drivers));
+    let derived = solver.mechanism().derived.iter();
+    let positions = derived.filter(|measure| measure.order() == Order::Position);
+    positions
+        .map(|measure| (measure, measure.evaluate(&parameter, &signal)))
+        .collect()
 }
 
 /// Returns a table of the bodies in the solver's pose, with their distance from the estimates.

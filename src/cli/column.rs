@@ -4,7 +4,7 @@ use super::error::Error;
 use super::motion::Motion;
 use crate::fmi::{Kind, Order, Quantity, Signal, variables};
 use crate::kinematics::ForceQuantity;
-use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
+use crate::mechanism::{BodyId, MarkerId, Mechanism, ParameterId, Unit, help};
 
 /// One quantity of a run.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub(super) struct Column {
 pub(super) enum Source {
     /// A signal or a time derivative of it.
     Signal(Signal, Order),
+    /// A measure that is computed from others, by its index.
+    Derived(usize),
     /// A force, an energy or an inertia.
     Force(ForceQuantity),
 }
@@ -47,6 +49,7 @@ impl Column {
                     // In a run an input follows a motion.
                     Quantity::Input(driver, order) => Source::Signal(Signal::Motion(driver), order),
                     Quantity::Output(signal, order) => Source::Signal(signal, order),
+                    Quantity::Derived(index, _) => Source::Derived(index),
                     Quantity::Force(force) => Source::Force(force),
                     _ => return None,
                 };
@@ -89,19 +92,19 @@ impl Column {
     /// Returns the columns that a plot shows by default: the drivers with their efforts, and of
     /// measures, points of interest and bodies the first kind that the mechanism has.
     pub(super) fn plotted(columns: &[Self]) -> Vec<Self> {
-        let select = |is_wanted: fn(&Signal) -> bool| -> Vec<Self> {
-            let wanted = columns.iter().filter(|column| match &column.source {
-                Source::Signal(signal, _) => is_wanted(signal),
-                Source::Force(_) => false,
-            });
+        let select = |is_wanted: fn(&Source) -> bool| -> Vec<Self> {
+            let wanted = columns.iter().filter(|column| is_wanted(&column.source));
             wanted.cloned().collect()
         };
-        let kinds: [fn(&Signal) -> bool; 3] = [
-            |signal| matches!(signal, Signal::Measure(_)),
-            |signal| matches!(signal, Signal::Marker(..)),
-            |signal| matches!(signal, Signal::Body(..)),
+        let kinds: [fn(&Source) -> bool; 3] = [
+            |source| {
+                let is_measure = matches!(source, Source::Signal(Signal::Measure(_), _));
+                is_measure || matches!(source, Source::Derived(_))
+            },
+            |source| matches!(source, Source::Signal(Signal::Marker(..), _)),
+            |source| matches!(source, Source::Signal(Signal::Body(..), _)),
         ];
-        let mut plotted = select(|signal| matches!(signal, Signal::Motion(_)));
+        let mut plotted = select(|source| matches!(source, Source::Signal(Signal::Motion(_), _)));
         let further = kinds.into_iter().map(select).find(|kind| !kind.is_empty());
         plotted.extend(further.unwrap_or_default());
         let is_effort = |c: &&Self| matches!(c.source, Source::Force(ForceQuantity::Effort(_)));
@@ -112,9 +115,11 @@ impl Column {
     /// Returns the columns that a film tells in numbers by default: positions of drivers, points
     /// of interest and measures.
     pub(super) fn told(columns: &[Self]) -> Vec<Self> {
-        let columns = columns.iter().filter(|column| {
-            matches!(column.source, Source::Signal(signal, Order::Position)
-                if !matches!(signal, Signal::Body(..)))
+        let columns = columns.iter().filter(|column| match column.source {
+            Source::Signal(Signal::Body(..), _) => false,
+            Source::Signal(_, order) => order == Order::Position,
+            Source::Derived(_) => true,
+            Source::Force(_) => false,
         });
         columns.cloned().collect()
     }
@@ -134,6 +139,10 @@ impl Column {
         } = motion;
         match self.source {
             Source::Signal(signal, order) => order.of(signal.jet(solver, rates, driver_rates)),
+            Source::Derived(index) => solver.mechanism().derived[index].evaluate(
+                &|p: ParameterId| solver.pose().parameters[p.index()],
+                &|signal, order| order.of(signal.jet(solver, rates, driver_rates)),
+            ),
             Source::Force(force) => motion.force(force),
         }
     }

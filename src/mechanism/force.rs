@@ -80,7 +80,7 @@ impl ForceLaw {
             Some(value) => value.evaluate_at(parameter, &|variable| match variable {
                 Variable::Position => position,
                 Variable::Velocity => velocity,
-                Variable::Time | Variable::PolarAngle => time,
+                _ => time,
             }),
             None => N::constant(0.0),
         };

@@ -41,6 +41,7 @@ impl Mechanism {
         let scope = Scope {
             parameters: &parameters,
             variables: variable.as_slice(),
+            signals: None,
         };
         Expression::parse(text, scope)
     }

@@ -9,11 +9,14 @@
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
+//! | `signal` | [`Signal`]: what moves, and the names of its variables |
+//! | `derived` | [`DerivedMeasure`]: functions of signals |
 //! | `names`, `reserved`, `lookup`, `id` | names, and what they stand for |
 //! | `wording` | names and numbers in messages |
 //!
 //! Nothing here computes a pose.
 
+mod derived;
 mod diagnostic;
 mod encoding;
 mod expression;
@@ -27,6 +30,7 @@ mod parameter;
 mod profile;
 mod read;
 mod reserved;
+mod signal;
 mod source;
 mod spline;
 mod syntax;
@@ -35,6 +39,7 @@ mod toml_error;
 mod wording;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
+pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use expression::{Expression, ExpressionError, Variable};
 pub use force::{Force, ForceLaw, Load, Spring};
@@ -48,6 +53,8 @@ pub use names::is_identifier;
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::Parameter;
 pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
+pub(crate) use signal::{COMPONENTS, SUFFIXES};
+pub use signal::{Order, Signal};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 #[cfg(feature = "cli")]
@@ -92,6 +99,8 @@ pub struct Mechanism {
     pub drivers: Vec<Driver>,
     /// Coordinates that are outputs.
     pub measures: Vec<Measure>,
+    /// Outputs computed from signals.
+    pub derived: Vec<DerivedMeasure>,
     /// Forces.
     pub forces: Vec<Force>,
     /// Outputs of the FMU besides measures and solver quantities.

@@ -9,6 +9,7 @@
 mod common;
 
 mod dependencies;
+mod derived;
 mod exchange;
 mod logging;
 mod masters;

@@ -7,7 +7,7 @@ use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Direction, Sensitivity};
-use crate::mechanism::{DriverId, Jet};
+use crate::mechanism::{DriverId, Jet, ParameterId};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.
@@ -59,6 +59,18 @@ impl MechanismModel {
         } else {
             None
         };
+        // Values at the pose, of what measures are computed from.
+        let mut signals: Vec<((Signal, Order), f64)> = Vec::new();
+        for unknown in unknowns {
+            if let Quantity::Derived(index, _) = *unknown {
+                signals.extend(self.mechanism.derived[index].signals().map(|of| {
+                    let (signal, order) = of;
+                    let jet = signal.jet(&self.solver, &self.rates, &self.driver_rates);
+                    (of, order.of(jet))
+                }));
+            }
+        }
+        let parameters = self.solver.pose().parameters.clone();
         let sensitivity = self
             .solver
             .sensitivity(&self.rates, &self.driver_rates, &direction)
@@ -66,6 +78,18 @@ impl MechanismModel {
         let change = |&unknown: &Quantity| match unknown {
             Quantity::Output(signal, order) => order.of(signal.change(&sensitivity)),
             Quantity::Parameter(parameter) => sensitivity.parameter(parameter),
+            Quantity::Derived(index, _) => {
+                let parameter = |id: ParameterId| {
+                    Jet::linear(parameters[id.index()], sensitivity.parameter(id))
+                };
+                let signal = |signal: Signal, order: Order| {
+                    let known = signals.iter().find(|(of, _)| *of == (signal, order));
+                    let value = known.map_or(f64::NAN, |(_, value)| *value);
+                    Jet::linear(value, order.of(signal.change(&sensitivity)))
+                };
+                let measure = &self.mechanism.derived[index];
+                measure.evaluate(&parameter, &signal).first()
+            }
             Quantity::Force(force) => of_forces.as_ref().map_or(0.0, |f| f.change(force)),
             _ => unreachable!("unknowns are outputs and parameters"),
         };

@@ -33,7 +33,7 @@ pub fn describe<'a>(
     let mut initial_unknowns = Vec::new();
     for (index, variable) in (1..).zip(&variables) {
         let order = match (variable.quantity, variable.causality) {
-            (Quantity::Output(_, order), _) => order,
+            (Quantity::Output(_, order) | Quantity::Derived(_, order), _) => order,
             (Quantity::Force(quantity), _) => order_of(quantity),
             (_, Causality::CalculatedParameter) => Order::Position,
             _ => continue,
@@ -182,9 +182,9 @@ impl Indices {
             indices.insert(index, DependencyKind::Constant);
         }
         let mut add = |index| indices.insert(index, DependencyKind::Dependent);
-        // A quantity that no driver moves has rates of zero for any parameters.
-        let is_force = matches!(quantity, Quantity::Force(_));
-        if order == Order::Position || is_force || !dependencies.drivers.is_empty() {
+        // A signal that no driver moves has rates of zero for any parameters.
+        let is_signal = matches!(quantity, Quantity::Output(..));
+        if order == Order::Position || !is_signal || !dependencies.drivers.is_empty() {
             for id in &dependencies.parameters {
                 add(self.parameters[id.index()]);
             }

@@ -27,8 +27,11 @@ const EFFORTS: Groups = 1 << 9;
 /// Reactions of joints and efforts of constraints.
 const REACTIONS: Groups = 1 << 10;
 
+/// Measures computed from positions; one bit higher those that use rates.
+const DERIVED: Groups = 1 << 11;
+
 const FORCES: Groups = LOADS | EFFORTS | REACTIONS;
-const POSES: Groups = BODIES | MARKERS | COORDINATES;
+const POSES: Groups = BODIES | MARKERS | COORDINATES | DERIVED;
 const RATES: Groups = POSES << 1;
 
 /// Values of all variables by value reference.
@@ -42,6 +45,8 @@ pub(super) struct Reals {
     signals: Box<[SignalPlace]>,
     /// Value references of all other Reals.
     others: Box<[(u32, Quantity)]>,
+    /// Value references and groups of measures computed from others.
+    derived: Box<[(u32, Groups)]>,
     /// Value references of forces.
     forces: Box<[(u32, ForceQuantity)]>,
 }
@@ -84,6 +89,8 @@ pub(super) fn group(quantity: Quantity) -> Groups {
         Quantity::Force(force) if force.needs_reactions() => REACTIONS,
         Quantity::Force(_) => LOADS,
         Quantity::Residual | Quantity::Rcond => SOLVER,
+        Quantity::Derived(_, Order::Position) => DERIVED,
+        Quantity::Derived(..) => DERIVED << 1,
         Quantity::Output(signal, Order::Position) => signal.group(),
         Quantity::Output(signal, _) => signal.group() << 1,
         Quantity::RateSource
@@ -100,6 +107,7 @@ impl Reals {
         let mut bodies = Vec::new();
         let mut signals = Vec::new();
         let mut others = Vec::new();
+        let mut derived = Vec::new();
         let mut forces = Vec::new();
         for (vr, variable) in (0_u32..).zip(variables) {
             match variable.quantity {
@@ -115,6 +123,7 @@ impl Reals {
                     let references = [vr, derivative(vr), derivative(derivative(vr))];
                     signals.push(SignalPlace { signal, references });
                 }
+                Quantity::Derived(..) => derived.push((vr, group(variable.quantity))),
                 Quantity::Force(force) => forces.push((vr, force)),
                 quantity if group(quantity) & (SETTINGS | SOLVER) != 0 => {
                     others.push((vr, quantity));
@@ -128,6 +137,7 @@ impl Reals {
             bodies: bodies.into(),
             signals: signals.into(),
             others: others.into(),
+            derived: derived.into(),
             forces: forces.into(),
         }
     }
@@ -222,6 +232,7 @@ impl MechanismModel {
             values,
             signals,
             others,
+            derived,
             ..
         } = &mut self.reals;
         for SignalPlace { signal, references } in signals.iter() {
@@ -234,6 +245,17 @@ impl MechanismModel {
                 if rates {
                     values[references[1] as usize] = jet.first();
                     values[references[2] as usize] = jet.second();
+                }
+            }
+        }
+        if groups & (DERIVED | DERIVED << 1) != 0 {
+            let signal = |signal: Signal, order: Order| {
+                order.of(signal.jet(&self.solver, &self.rates, &self.driver_rates))
+            };
+            let parameters = &self.solver.pose().parameters;
+            for (&(vr, group), measure) in derived.iter().zip(&self.mechanism.derived) {
+                if groups & group != 0 {
+                    values[vr as usize] = measure.evaluate(&|p| parameters[p.index()], &signal);
                 }
             }
         }

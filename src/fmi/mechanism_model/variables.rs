@@ -8,9 +8,10 @@ use crate::kinematics::{
     Dependencies, Element, ForceQuantity, Path, Rates, Reported, Solver, Structure, System,
 };
 use crate::mechanism::{
-    BodyId, Coordinate, CoordinateKind, DriverId, DriverSource, Indeterminate, Jet, Load, MarkerId,
-    Mechanism, ParameterId, Unit,
+    COMPONENTS, Coordinate, CoordinateKind, DriverId, DriverSource, Indeterminate, Jet, Load,
+    Mechanism, ParameterId, SUFFIXES, Unit,
 };
+pub use crate::mechanism::{Order, Signal};
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
 pub const TABLE_VERSION: u32 = 2;
@@ -32,6 +33,9 @@ pub enum Quantity {
     Extrapolation,
     /// A signal of the mechanism, or a time derivative of it.
     Output(Signal, Order),
+    /// A measure that is computed from others, by its index in [`Mechanism::derived`], and the
+    /// highest order of the signals that it uses.
+    Derived(usize, Order),
     /// A force, an energy or an inertia.
     Force(ForceQuantity),
     /// Largest scaled residual of the constraint equations.
@@ -46,19 +50,6 @@ pub enum Quantity {
     Proved,
     /// Time.
     Time,
-}
-
-/// A scalar signal of the mechanism, which has a velocity and an acceleration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Signal {
-    /// A generalized coordinate of a body: x (component 0), y (1) or phi (2).
-    Body(BodyId, usize),
-    /// A marker's global x (component 0) or y (1).
-    Marker(MarkerId, usize),
-    /// A measure, by its index in [`Mechanism::measures`].
-    Measure(usize),
-    /// The value of a driver with a prescribed motion.
-    Motion(DriverId),
 }
 
 impl Signal {
@@ -83,41 +74,6 @@ impl Signal {
     }
 }
 
-/// Order of a time derivative.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Order {
-    /// The quantity itself.
-    Position,
-    /// Its first derivative.
-    Velocity,
-    /// Its second derivative.
-    Acceleration,
-}
-
-impl Order {
-    /// All three, in order.
-    pub const ALL: [Self; 3] = [Self::Position, Self::Velocity, Self::Acceleration];
-
-    /// Returns the derivative of this order.
-    #[inline]
-    #[must_use]
-    pub fn of(self, jet: Jet) -> f64 {
-        match self {
-            Self::Position => jet.value,
-            Self::Velocity => jet.first(),
-            Self::Acceleration => jet.second(),
-        }
-    }
-
-    /// Returns the last part of the name of a driver's or measure's variable.
-    #[must_use]
-    pub fn suffix(self) -> &'static str {
-        SUFFIXES[self as usize]
-    }
-}
-
-/// Last parts of the names of a driver's or measure's variables, by order.
-const SUFFIXES: [&str; 3] = ["position", "velocity", "acceleration"];
 const LENGTHS: [Unit; 3] = [
     Unit::METRE,
     Unit::METRE_PER_SECOND,
@@ -159,8 +115,8 @@ pub static EXTRAPOLATIONS: Enumeration = Enumeration {
 };
 
 /// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
-/// inputs of forces, parameters, settings, bodies, markers, measures, motions, forces, solver,
-/// time; in the file's order within each group.
+/// inputs of forces, parameters, settings, bodies, markers, measures, motions, measures computed
+/// from others, forces, solver, time; in the file's order within each group.
 #[must_use]
 pub fn variables(mechanism: &Mechanism) -> Vec<Variable<Quantity>> {
     let mut table = Table::default();
@@ -171,6 +127,7 @@ pub fn variables(mechanism: &Mechanism) -> Vec<Variable<Quantity>> {
         table.add_settings();
     }
     table.add_outputs(mechanism);
+    table.add_derived(mechanism);
     if mechanism.has_dynamics() {
         table.add_forces(mechanism);
     }
@@ -323,9 +280,7 @@ impl Table {
     }
 
     fn add_outputs(&mut self, mechanism: &Mechanism) {
-        const X: [&str; 3] = ["x", "vx", "ax"];
-        const Y: [&str; 3] = ["y", "vy", "ay"];
-        const PHI: [&str; 3] = ["phi", "omega", "alpha"];
+        let [x, y, phi] = COMPONENTS;
         for &id in &mechanism.outputs.bodies {
             let body = &mechanism.bodies[id.index()].name;
             let entry = |component, names: [&'static str; 3], units, what: &str| SignalEntry {
@@ -335,15 +290,15 @@ impl Table {
                 units,
             };
             let entries = [
-                entry(0, X, LENGTHS, "x of the origin"),
-                entry(1, Y, LENGTHS, "y of the origin"),
-                entry(2, PHI, ANGLES, "the angle"),
+                entry(0, x, LENGTHS, "x of the origin"),
+                entry(1, y, LENGTHS, "y of the origin"),
+                entry(2, phi, ANGLES, "the angle"),
             ];
             self.add_signals(body, &entries);
         }
         for &id in &mechanism.outputs.markers {
             let marker = mechanism.marker_path(id);
-            let entries = [X, Y].into_iter().enumerate().map(|(component, names)| {
+            let entries = [x, y].into_iter().enumerate().map(|(component, names)| {
                 let signal = Signal::Marker(id, component);
                 SignalEntry {
                     signal,
@@ -382,6 +337,18 @@ impl Table {
                     &driver.coordinate,
                 );
             }
+        }
+    }
+
+    fn add_derived(&mut self, mechanism: &Mechanism) {
+        for (index, measure) in mechanism.derived.iter().enumerate() {
+            self.add(
+                &*measure.name,
+                &*measure.description,
+                Quantity::Derived(index, measure.order()),
+                (Causality::Output, Variability::Continuous),
+                Kind::real(measure.unit, None),
+            );
         }
     }
 
@@ -587,6 +554,14 @@ impl Quantity {
                 }
             }
             Self::Parameter(parameter) => dependencies.add_parameter(mechanism, parameter),
+            Self::Derived(index, _) => {
+                let measure = &mechanism.derived[index];
+                dependencies.add_expression(mechanism, &measure.value);
+                for (signal, order) in measure.signals() {
+                    let of_signal = Self::Output(signal, order);
+                    dependencies.extend(&of_signal.dependencies(mechanism, structure));
+                }
+            }
             Self::Force(quantity) => {
                 add_force_dependencies(mechanism, structure, quantity, &mut dependencies)
             }

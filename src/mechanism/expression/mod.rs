@@ -4,7 +4,7 @@
 //! constants `pi deg rpm mm cm inch`, parameters, the functions `sin cos tan asin acos atan atan2
 //! sinh cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and variables: time `t`
 //! in a motion, the polar angle `theta` in a cam's profile, `t`, `position` and `velocity` in a
-//! force. Powers bind tighter than a sign and
+//! force, signals such as `crank.omega` in a measure. Powers bind tighter than a sign and
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod display;
@@ -22,8 +22,8 @@ use function::Binary;
 pub(super) use function::{CONSTANTS, function_names};
 pub(super) use parse::Scope;
 
-use super::ParameterId;
 use super::number::{self, Interval, Jet3, Number, Unary};
+use super::{Order, ParameterId, Signal};
 
 /// Variable of an expression, besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,10 +36,12 @@ pub enum Variable {
     Position,
     /// Its rate \[m/s or rad/s\], `velocity` there.
     Velocity,
+    /// A signal of the mechanism, in a measure that is computed.
+    Signal(Signal, Order),
 }
 
 impl Variable {
-    /// Returns the name in the language.
+    /// Returns the name in the language; a signal has that of its FMU variable.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -47,6 +49,7 @@ impl Variable {
             Self::PolarAngle => "theta",
             Self::Position => "position",
             Self::Velocity => "velocity",
+            Self::Signal(..) => "a signal",
         }
     }
 }
@@ -191,6 +194,14 @@ impl Expression {
     /// Returns the parameters that it uses, ascending, each once.
     pub fn parameters(&self) -> impl Iterator<Item = ParameterId> {
         self.parameters.iter().copied()
+    }
+
+    /// Returns the variables that it uses, each as often as it does.
+    pub fn variables(&self) -> impl Iterator<Item = Variable> {
+        self.program.iter().filter_map(|operation| match operation {
+            Operation::Variable(variable) => Some(*variable),
+            _ => None,
+        })
     }
 
     /// Returns whether it uses a variable.

@@ -18,6 +18,8 @@ pub(in crate::mechanism) struct Scope<'a> {
     pub(in crate::mechanism) parameters: &'a NameTable<'a, ParameterId>,
     /// Variables that the expression may use.
     pub(in crate::mechanism) variables: &'a [Variable],
+    /// Signals that it may use, by the names of their FMU variables.
+    pub(in crate::mechanism) signals: Option<&'a NameTable<'a, Variable>>,
 }
 
 impl Expression {
@@ -192,7 +194,8 @@ impl<'a> Parser<'a> {
 
     fn variable(&self, name: &str) -> Option<Variable> {
         let mut variables = self.scope.variables.iter().copied();
-        variables.find(|variable| variable.name() == name)
+        let variable = variables.find(|variable| variable.name() == name);
+        variable.or_else(|| self.scope.signals?.get(name))
     }
 
     fn parse_call(&mut self, function: Function, name: Span) -> Result<Span, ExpressionError> {
@@ -350,6 +353,14 @@ impl<'a> Parser<'a> {
             return match self.scope.variables {
                 [own, ..] => error.help(format!("here the variable is `{}`", own.name())),
                 [] => error,
+            };
+        }
+        if name.contains('.') {
+            let error = ExpressionError::new(span, format!("no variable {}", quoted(name)));
+            return match self.scope.signals.map(|signals| signals.help(name, &[])) {
+                Some(None) => error,
+                Some(Some(help)) => error.help(help),
+                None => error.help("only the `value` of a measure may use variables that move"),
             };
         }
         let error = ExpressionError::new(span, format!("no parameter {}", quoted(name)));

@@ -7,6 +7,7 @@ use crate::mechanism::wording::quoted;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TokenKind<'a> {
     Number(f64),
+    /// A name, or names joined by points, such as `crank.omega`.
     Name(&'a str),
     /// One of `+ - * / ^ ( ) ,`.
     Symbol(u8),
@@ -53,7 +54,11 @@ pub(super) fn scan(text: &str, from: usize) -> Result<Token<'_>, ExpressionError
             (TokenKind::Symbol(first), start + 1)
         }
         b'a'..=b'z' | b'A'..=b'Z' | b'_' => {
-            let end = run(start, |b| b.is_ascii_alphanumeric() || *b == b'_');
+            let word = |from| run(from, |b| b.is_ascii_alphanumeric() || *b == b'_');
+            let mut end = word(start);
+            while let [b'.', b'a'..=b'z' | b'A'..=b'Z', ..] = bytes[end..] {
+                end = word(end + 1);
+            }
             (TokenKind::Name(&text[start..end]), end)
         }
         b'0'..=b'9' => scan_number(text, start)?,

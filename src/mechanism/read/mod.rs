@@ -17,6 +17,7 @@
 mod body;
 mod context;
 mod coordinate;
+mod derived;
 mod driver;
 mod force;
 mod joint;
@@ -37,6 +38,7 @@ mod usage;
 mod tests;
 
 use context::Context;
+use derived::is_derived;
 use kind::{Entry, Fields};
 use root::Root;
 use table::Field;
@@ -115,7 +117,11 @@ impl<'a> Context<'a> {
         let (bodies, markers) = self.bodies(root.ground.value.as_ref(), &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
         let force = |context: &mut Self, entry| context.force(entry, simulation.start);
-        let mechanism = Mechanism {
+        let measure = |context: &mut Self, entry| match is_derived(&entry) {
+            true => None,
+            false => context.measure(entry),
+        };
+        let mut mechanism = Mechanism {
             name: root.name.value.unwrap_or_default(),
             description: root.description.value.unwrap_or_default(),
             author: root.author.value,
@@ -129,7 +135,8 @@ impl<'a> Context<'a> {
             joints: self.each(&root.joints, Self::joint),
             constraints: self.each(&root.constraints, Self::constraint),
             drivers: self.each(&root.drivers, driver),
-            measures: self.each(&root.measures, Self::measure),
+            measures: self.each(&root.measures, measure),
+            derived: Vec::new(),
             forces: self.each(&root.forces, force),
             outputs: self.outputs(root.outputs.value.as_ref()),
             simulation,
@@ -137,6 +144,7 @@ impl<'a> Context<'a> {
             table_files: std::mem::take(&mut self.table_files),
         };
         if !self.failed {
+            mechanism.derived = self.derived(root.measures.items(), &mechanism);
             self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
         }
         Some(mechanism)

@@ -6,6 +6,7 @@ use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::expression::Scope;
+use crate::mechanism::names::NameTable;
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::{quoted, shown};
 use crate::mechanism::{Expression, Jet, Span, Unit, Variable};
@@ -154,6 +155,16 @@ impl<'a> Context<'a> {
         value: &'a Value<'a>,
         variables: &[Variable],
     ) -> Option<Expression> {
+        self.expression_of(value, variables, None)
+    }
+
+    /// Reads a number or an expression over the parameters, variables and signals.
+    pub(super) fn expression_of(
+        &mut self,
+        value: &'a Value<'a>,
+        variables: &[Variable],
+        signals: Option<&NameTable<'_, Variable>>,
+    ) -> Option<Expression> {
         if let Some(number) = syntax::number(value.get_ref()) {
             if number.is_finite() {
                 return Some(Expression::constant(number));
@@ -168,6 +179,7 @@ impl<'a> Context<'a> {
         let scope = Scope {
             parameters: &self.parameters,
             variables,
+            signals,
         };
         match Expression::parse(text, scope) {
             Ok(expression) => {

@@ -58,7 +58,7 @@ const DISPLAY_UNIT: Word<DisplayUnit> = Word::new("display unit", code::UNKNOWN_
 });
 
 /// SI unit; of a display unit the message says how to use it.
-struct SiUnit;
+pub(super) struct SiUnit;
 
 impl<'a> Kind<'a> for SiUnit {
     type Value = Unit;

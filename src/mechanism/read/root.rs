@@ -11,7 +11,8 @@ use crate::mechanism::wording::quoted;
 
 use super::body::{BodyKeys, GroundKeys};
 use super::context::Context;
-use super::coordinate::{ConstraintKeys, CoordinateKeys, MeasureKeys};
+use super::coordinate::{ConstraintKeys, CoordinateKeys};
+use super::derived::AnyMeasure;
 use super::driver::DriverKeys;
 use super::force::AnyForce;
 use super::joint::AnyJoint;
@@ -54,7 +55,7 @@ table! {
         /// Coordinates that are driven.
         drivers: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, DriverKeys<'static>)>),
         /// Coordinates that are outputs.
-        measures: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, MeasureKeys<'static>)>),
+        measures: Vec<Entry<'a>> = Named(PhantomData::<AnyMeasure>),
         /// Forces on the bodies, besides gravity.
         forces: Vec<Entry<'a>> = Named(PhantomData::<AnyForce>),
         /// Outputs of the FMU.

@@ -1,0 +1,90 @@
+//! Measures that are computed from others.
+
+use crate::mechanism::names::NameTable;
+use crate::mechanism::syntax::Value;
+use crate::mechanism::{DerivedMeasure, Mechanism, Unit, Variable};
+
+use super::context::Context;
+use super::coordinate::{CoordinateKeys, MeasureKeys};
+use super::kind::{Described, Entry, Item, Kind, Text, schema};
+#[cfg(feature = "cli")]
+use super::number::NUMBER;
+use super::parameter::SiUnit;
+use super::table::table;
+
+table! {
+    /// An output computed from others, without velocity and acceleration.
+    struct DerivedKeys<'a> {
+        /// Expression over the parameters and the variables of bodies, markers, drivers and
+        /// measures, such as "-travel.velocity/shock.velocity".
+        #[required("\"-travel.velocity/shock.velocity\"")]
+        value: &'a Value<'a> = Formula,
+        /// SI unit of the value.
+        unit: Unit = SiUnit,
+        /// Description in one line.
+        description: String = Text,
+    }
+}
+
+/// Number or expression over the parameters and signals, not read yet.
+struct Formula;
+
+impl<'a> Kind<'a> for Formula {
+    type Value = &'a Value<'a>;
+
+    fn read(&self, _: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<&'a Value<'a>> {
+        Some(item.value)
+    }
+
+    schema! { NUMBER.schema() }
+}
+
+/// A measure: a coordinate, or computed from others.
+pub(super) struct AnyMeasure;
+
+impl Described for AnyMeasure {
+    #[cfg(feature = "cli")]
+    fn schema() -> serde_json::Value {
+        serde_json::json!({ "anyOf": [
+            <(CoordinateKeys<'_>, MeasureKeys<'_>)>::schema(),
+            DerivedKeys::schema(),
+        ] })
+    }
+}
+
+/// Returns whether a measure is computed from others.
+pub(super) fn is_derived(entry: &Entry<'_>) -> bool {
+    let table = entry.value.get_ref().as_table();
+    table.is_some_and(|table| table.contains_key("value") && !table.contains_key("coordinate"))
+}
+
+impl<'a> Context<'a> {
+    /// Reads the measures that are computed from others, in a mechanism that is complete but for
+    /// these.
+    pub(super) fn derived(
+        &mut self,
+        measures: &[Entry<'a>],
+        mechanism: &Mechanism,
+    ) -> Vec<DerivedMeasure> {
+        let entries: Vec<_> = measures.iter().filter(|entry| is_derived(entry)).collect();
+        if entries.is_empty() {
+            return Vec::new();
+        }
+        let signals = mechanism.signals();
+        let signals = signals.iter().map(|(name, signal, order)| {
+            let variable = Variable::Signal(*signal, *order);
+            (name.as_str(), variable)
+        });
+        let signals: NameTable<'_, Variable> = signals.collect();
+        let read = |entry: &Entry<'a>| {
+            let keys = self.entry::<DerivedKeys<'a>>(*entry, "measure")?;
+            Some(DerivedMeasure {
+                name: entry.name().to_owned(),
+                description: keys.description.value.unwrap_or_default(),
+                value: self.expression_of(keys.value.value?, &[], Some(&signals))?,
+                unit: keys.unit.optional()?,
+            })
+        };
+        entries.into_iter().filter_map(read).collect()
+    }
+}
