@@ -21,6 +21,7 @@ TABLES = {
     "Constraints": ("[constraints.c]\nNONE", "constraint `c`"),
     "Drivers": ("[drivers.d]\nNONE", "driver `d`"),
     "Measures": ("[measures.m]\nNONE", "measure `m`"),
+    "Computed measures": ("[measures.n]\nvalue = 1\nNONE", "measure `n`"),
     "Forces along a coordinate": ("[forces.f]\ncoordinate = 'angle'\nNONE", "force `f`"),
     "Forces at a marker": ("[forces.g]\nmarker = 'ground.O'\nNONE", "force `g`"),
     "Motions": ("[drivers.e]\nmotion = { NONE }", "the motion"),
@@ -119,6 +120,7 @@ def test_required_keys(answers, heading):
     # Some probes have a required key already.
     given = {"Joints": "type", "Forces along a coordinate": "coordinate"}
     given["Forces at a marker"] = "marker"
+    given["Computed measures"] = "value"
     known = missed(answers, TABLES[heading][1]) | ({given[heading]} if heading in given else set())
     assert required == known
 

@@ -60,7 +60,7 @@ pub(super) fn is_derived(entry: &Entry<'_>) -> bool {
 
 impl<'a> Context<'a> {
     /// Reads the measures that are computed from others, in a mechanism that is complete but for
-    /// these.
+    /// these; after an error elsewhere it may lack what they use, so that only their keys are read.
     pub(super) fn derived(
         &mut self,
         measures: &[Entry<'a>],
@@ -70,6 +70,7 @@ impl<'a> Context<'a> {
         if entries.is_empty() {
             return Vec::new();
         }
+        let is_complete = !self.failed;
         let signals = mechanism.signals();
         let signals = signals.iter().map(|(name, signal, order)| {
             let variable = Variable::Signal(*signal, *order);
@@ -78,10 +79,11 @@ impl<'a> Context<'a> {
         let signals: NameTable<'_, Variable> = signals.collect();
         let read = |entry: &Entry<'a>| {
             let keys = self.entry::<DerivedKeys<'a>>(*entry, "measure")?;
+            let value = keys.value.value.filter(|_| is_complete)?;
             Some(DerivedMeasure {
                 name: entry.name().to_owned(),
                 description: keys.description.value.unwrap_or_default(),
-                value: self.expression_of(keys.value.value?, &[], Some(&signals))?,
+                value: self.expression_of(value, &[], Some(&signals))?,
                 unit: keys.unit.optional()?,
             })
         };

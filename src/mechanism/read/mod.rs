@@ -143,8 +143,8 @@ impl<'a> Context<'a> {
             canonical: syntax::canonical(document) + &self.file_tables,
             table_files: std::mem::take(&mut self.table_files),
         };
+        mechanism.derived = self.derived(root.measures.items(), &mechanism);
         if !self.failed {
-            mechanism.derived = self.derived(root.measures.items(), &mechanism);
             self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
         }
         Some(mechanism)
