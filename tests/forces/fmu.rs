@@ -123,8 +123,8 @@ const LIFT: &str = r#"
 struct Warnings(Arc<Mutex<Vec<String>>>);
 
 impl Sink for Warnings {
-    fn write(&self, status: Status, _: Category, message: &str) {
-        if status == Status::Warning {
+    fn write(&self, _: Status, category: Category, message: &str) {
+        if category == Category::Warning {
             self.0.lock().expect("one thread").push(message.to_owned());
         }
     }
