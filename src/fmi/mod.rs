@@ -32,7 +32,7 @@ mod variable;
 
 pub use codec::{Codec, Unreadable};
 pub use error::{Error, Failure, StateError};
-pub use instance::{FmuState, Instance};
+pub use instance::{CoSimulation, FmuState, Instance, StepOutcome, StepProgress};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
     MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal, TABLE_VERSION, describe,
@@ -41,7 +41,7 @@ pub use mechanism_model::{
 pub use model::{Groups, Model};
 pub use model_description::{Capabilities, DependencyKind, Experiment, ModelDescription, Unknown};
 pub use package::{Document, PackageError, Platform, RuntimeLibrary, write as write_archive};
-pub use state::{Call, Interface, Phase, State};
+pub use state::{Call, Interface, Phase, State, Version};
 pub use status::Status;
 pub use uri::{UriError, resource_path};
 pub use variable::{Causality, Enumeration, Kind, Variability, Variable};

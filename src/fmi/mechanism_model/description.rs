@@ -9,6 +9,7 @@ use crate::fmi::model::Model;
 use crate::fmi::model_description::{
     Capabilities, DependencyKind, Experiment, ModelDescription, Unknown,
 };
+use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable};
 use crate::kinematics::{Dependencies, Structure, System};
 use crate::mechanism::{DriverId, Mechanism, Unit};
@@ -18,9 +19,11 @@ const CAPABILITIES: Capabilities = Capabilities {
     interpolates_inputs: true,
     output_derivatives: MechanismModel::OUTPUT_DERIVATIVES as u32,
     directional_derivatives: true,
+    intermediate_update: MechanismModel::INTERMEDIATE_UPDATE,
 };
 
-/// Returns the model description of a mechanism's FMU.
+/// Returns the model description of a mechanism's FMU of FMI 2.0. Its field `standard` makes it one
+/// of FMI 3.0.
 #[must_use]
 pub fn describe<'a>(
     mechanism: &'a Mechanism,
@@ -32,25 +35,26 @@ pub fn describe<'a>(
     let mut outputs = Vec::new();
     let mut initial_unknowns = Vec::new();
     for (index, variable) in (1..).zip(&variables) {
-        let order = match (variable.quantity, variable.causality) {
-            (Quantity::Output(_, order), _) => order,
-            (_, Causality::CalculatedParameter) => Order::Position,
-            _ => continue,
+        let Some(order) = order_of_unknown(variable) else {
+            continue;
         };
         let dependencies = variable.quantity.dependencies(mechanism, structure);
         if variable.causality == Causality::Output {
             outputs.push(Unknown {
                 index,
                 dependencies: indices.outputs(&dependencies),
+                parameters: indices.parameters_of_output(&dependencies, order),
             });
         }
         initial_unknowns.push(Unknown {
             index,
             dependencies: indices.initial(mechanism, variable.quantity, &dependencies, order),
+            parameters: BTreeMap::new(),
         });
     }
     let simulation = &mechanism.simulation;
     ModelDescription {
+        standard: Version::Fmi2,
         name: &mechanism.name,
         description: &mechanism.description,
         author: mechanism.author.as_deref(),
@@ -71,6 +75,47 @@ pub fn describe<'a>(
     }
 }
 
+impl MechanismModel {
+    /// Returns the value references that an output or a calculated parameter depends on, in
+    /// initialization mode or after it.
+    pub(super) fn dependencies_of(
+        &self,
+        value_reference: u32,
+        initializing: bool,
+    ) -> Option<Vec<(u32, DependencyKind)>> {
+        let variable = &self.variables[value_reference as usize];
+        let order = order_of_unknown(variable)?;
+        let mechanism = self.mechanism();
+        let of_quantity = variable
+            .quantity
+            .dependencies(mechanism, self.solver.structure());
+        let indices = Indices::new(mechanism, &self.variables);
+        let is_output = variable.causality == Causality::Output;
+        let found = if is_output && !initializing {
+            let mut all = indices.outputs(&of_quantity);
+            all.extend(indices.parameters_of_output(&of_quantity, order));
+            all
+        } else {
+            indices.initial(mechanism, variable.quantity, &of_quantity, order)
+        };
+        let found = found.into_iter();
+        Some(
+            found
+                .map(|(index, kind)| (index as u32 - 1, kind))
+                .collect(),
+        )
+    }
+}
+
+/// Returns the order of an output or a calculated parameter.
+fn order_of_unknown(variable: &Variable<Quantity>) -> Option<Order> {
+    match (variable.quantity, variable.causality) {
+        (Quantity::Output(_, order), _) => Some(order),
+        (_, Causality::CalculatedParameter) => Some(Order::Position),
+        _ => None,
+    }
+}
+
 /// Indices of variables in the model description, counted from 1.
 struct Indices {
     /// First of the three inputs of each driver that is an input.
@@ -78,6 +123,7 @@ struct Indices {
     /// Each parameter.
     parameters: Vec<usize>,
     rate_source: Option<usize>,
+    extrapolation: Option<usize>,
     time: usize,
 }
 
@@ -87,6 +133,7 @@ impl Indices {
             inputs: vec![None; mechanism.drivers.len()],
             parameters: vec![0; mechanism.parameters.len()],
             rate_source: None,
+            extrapolation: None,
             time: 0,
         };
         for (index, variable) in (1..).zip(variables) {
@@ -96,6 +143,7 @@ impl Indices {
                 }
                 Quantity::Parameter(parameter) => indices.parameters[parameter.index()] = index,
                 Quantity::RateSource => indices.rate_source = Some(index),
+                Quantity::Extrapolation => indices.extrapolation = Some(index),
                 Quantity::Time => indices.time = index,
                 _ => {}
             }
@@ -107,6 +155,42 @@ impl Indices {
     /// `extrapolation`: estimated rates depend on positions, extrapolated positions on rates.
     fn outputs(&self, dependencies: &Dependencies) -> BTreeMap<usize, DependencyKind> {
         self.drivers(dependencies, Order::Acceleration)
+    }
+
+    /// Returns the parameters that an output of this order depends on after initialization.
+    fn parameters_of_output(
+        &self,
+        dependencies: &Dependencies,
+        order: Order,
+    ) -> BTreeMap<usize, DependencyKind> {
+        let mut indices = BTreeMap::new();
+        let mut add = |index: usize| {
+            indices.insert(index, DependencyKind::Dependent);
+        };
+        self.mechanism_parameters(dependencies, order, &mut add);
+        let mut drivers = dependencies.drivers.iter();
+        if drivers.any(|id| self.inputs[id.index()].is_some()) {
+            [self.rate_source, self.extrapolation]
+                .into_iter()
+                .flatten()
+                .for_each(add);
+        }
+        indices
+    }
+
+    /// Adds the mechanism's own parameters that a quantity of this order depends on: one that no
+    /// driver moves has rates of zero for any parameters.
+    fn mechanism_parameters(
+        &self,
+        dependencies: &Dependencies,
+        order: Order,
+        add: &mut impl FnMut(usize),
+    ) {
+        if order == Order::Position || !dependencies.drivers.is_empty() {
+            for id in &dependencies.parameters {
+                add(self.parameters[id.index()]);
+            }
+        }
     }
 
     /// Returns the inputs up to an order, and the time.
@@ -141,16 +225,13 @@ impl Indices {
         {
             indices.insert(index, DependencyKind::Constant);
         }
-        let mut add = |index| indices.insert(index, DependencyKind::Dependent);
-        // A quantity that no driver moves has rates of zero for any parameters.
-        if order == Order::Position || !dependencies.drivers.is_empty() {
-            for id in &dependencies.parameters {
-                add(self.parameters[id.index()]);
-            }
-        }
+        let mut add = |index: usize| {
+            indices.insert(index, DependencyKind::Dependent);
+        };
+        self.mechanism_parameters(dependencies, order, &mut add);
         let mut drivers = dependencies.drivers.iter();
         if order > Order::Position && drivers.any(|id| self.inputs[id.index()].is_some()) {
-            self.rate_source.map(add);
+            self.rate_source.into_iter().for_each(add);
         }
         indices
     }
