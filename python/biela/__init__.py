@@ -13,10 +13,8 @@ import sysconfig
 def program() -> str:
     """Returns the path of the program `biela` that was installed with this package."""
     name = "biela" + (sysconfig.get_config_var("EXE") or "")
-    schemes = [None, os.name + "_user"]
-    folders = [
-        sysconfig.get_path("scripts", **({"scheme": scheme} if scheme else {})) for scheme in schemes
-    ]
+    user = os.name + "_user"
+    folders = [sysconfig.get_path("scripts"), sysconfig.get_path("scripts", user)]
     # `pip install --target` puts programs beside packages.
     folders.append(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "bin"))
     for folder in folders:

@@ -32,7 +32,7 @@ mod variable;
 
 pub use codec::{Codec, Unreadable};
 pub use error::{Error, Failure, StateError};
-pub use instance::{CoSimulation, FmuState, Instance, StepOutcome, StepProgress};
+pub use instance::{CoSimulation, FmuState, Instance, Reals, StepOutcome, StepProgress};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
     MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal, TABLE_VERSION, describe,

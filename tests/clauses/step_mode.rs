@@ -16,7 +16,7 @@ use crate::{get, set, vr};
 const CYLINDER: &str = "tlv";
 
 fn instance_of(name: &str, agreed: CoSimulation, heard: &Heard) -> Instance {
-    let model = MechanismModel::new(shipped(name), Interface::CoSimulation).unwrap();
+    let model = MechanismModel::new(shipped(name), Interface::CoSimulation).expect("it assembles");
     let sink = Box::new(heard.clone());
     let mut instance = Instance::of_version(Version::Fmi3, model, sink, true);
     instance.agree(agreed).expect("known variables");
@@ -26,12 +26,14 @@ fn instance_of(name: &str, agreed: CoSimulation, heard: &Heard) -> Instance {
 fn running(name: &str, agreed: CoSimulation) -> Instance {
     let event_mode_used = agreed.event_mode_used;
     let mut instance = instance_of(name, agreed, &Heard::default());
-    instance.enter_initialization_mode_at(0.0, None).unwrap();
-    instance.exit_initialization_mode().unwrap();
+    instance
+        .enter_initialization_mode_at(0.0, None)
+        .expect("legal");
+    instance.exit_initialization_mode().expect("it starts");
     if event_mode_used {
         assert_eq!(instance.state(), State::EventMode);
-        assert!(!instance.new_discrete_states().unwrap());
-        instance.enter_step_mode().unwrap();
+        assert!(!instance.new_discrete_states().expect("legal"));
+        instance.enter_step_mode().expect("legal");
     }
     assert_eq!(instance.state(), State::StepMode);
     instance

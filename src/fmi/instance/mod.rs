@@ -24,6 +24,7 @@ use std::sync::Arc;
 
 pub use fmu_state::FmuState;
 pub use step_mode::{CoSimulation, StepOutcome, StepProgress};
+pub use values::Reals;
 pub(super) use values::check_value;
 
 use super::error::{Error, Failure, check_finite};

@@ -224,10 +224,11 @@ impl Model for MechanismModel {
     }
 
     fn set_reals(&mut self, values: impl Iterator<Item = (Quantity, f64)>) {
-        let mut parameters_changed = false;
+        let (mut inputs_changed, mut parameters_changed) = (false, false);
         for (quantity, value) in values {
             match quantity {
                 Quantity::Input(driver, order) => {
+                    inputs_changed = true;
                     let index = driver.index();
                     let input = &mut self.inputs[index];
                     if order == Order::Position && self.mechanism.drivers[index].wrapped {
@@ -242,11 +243,13 @@ impl Model for MechanismModel {
                 }
                 _ => unreachable!("only inputs and parameters are settable"),
             }
-            self.set_freshness(Freshness::Stale);
         }
         if parameters_changed {
             self.mechanism
                 .derive_parameters(&mut self.settings.parameters);
+        }
+        if inputs_changed || parameters_changed {
+            self.set_freshness(Freshness::Stale);
         }
     }
 

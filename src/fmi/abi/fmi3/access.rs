@@ -45,7 +45,7 @@ pub unsafe extern "C" fn fmi3GetFloat64(
             check_count("nValues", n_values, n_value_references)?;
             let references = slice("valueReferences", value_references, n_value_references)?;
             let room = Room::new("values", values, n_values)?;
-            room.fill(instance.reals(references)?);
+            instance.reals(references)?.write_to(room.items());
             Ok(())
         })
     }

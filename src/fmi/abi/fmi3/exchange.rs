@@ -2,7 +2,7 @@
 
 use super::types::{fmi3Boolean, fmi3Float64, fmi3Instance, fmi3Status};
 use crate::fmi::Call;
-use crate::fmi::abi::arguments::{Room, write};
+use crate::fmi::abi::arguments::{check_room, write};
 use crate::fmi::abi::component::with_instance;
 
 /// `fmi3EnterEventMode`.
@@ -70,28 +70,30 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
     unsafe {
         with_instance(instance, "fmi3UpdateDiscreteStates", |instance| {
             instance.allow(Call::NewDiscreteStates)?;
-            let never = [
-                Room::new("discreteStatesNeedUpdate", discrete_states_need_update, 1)?,
-                Room::new(
+            let flags = [
+                ("discreteStatesNeedUpdate", discrete_states_need_update),
+                (
                     "nominalsOfContinuousStatesChanged",
                     nominals_of_continuous_states_changed,
-                    1,
-                )?,
-                Room::new(
+                ),
+                (
                     "valuesOfContinuousStatesChanged",
                     values_of_continuous_states_changed,
-                    1,
-                )?,
-                Room::new("nextEventTimeDefined", next_event_time_defined, 1)?,
+                ),
+                ("nextEventTimeDefined", next_event_time_defined),
             ];
-            let terminate = Room::new("terminateSimulation", terminate_simulation, 1)?;
-            let time = Room::new("nextEventTime", next_event_time, 1)?;
-            let must_end = instance.new_discrete_states()?;
-            for flag in never {
-                flag.fill([false]);
+            // One after the other: a host may give the same place for results that it ignores.
+            for (name, flag) in flags {
+                check_room(name, flag)?;
             }
-            terminate.fill([must_end]);
-            time.fill([0.0]);
+            check_room("terminateSimulation", terminate_simulation)?;
+            check_room("nextEventTime", next_event_time)?;
+            let must_end = instance.new_discrete_states()?;
+            for (_, flag) in flags {
+                flag.write(false);
+            }
+            next_event_time.write(0.0);
+            terminate_simulation.write(must_end);
             Ok(())
         })
     }
@@ -114,11 +116,11 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
     unsafe {
         with_instance(instance, "fmi3CompletedIntegratorStep", |instance| {
             instance.allow(Call::CompletedIntegratorStep)?;
-            let enter = Room::new("enterEventMode", enter_event_mode, 1)?;
-            let terminate = Room::new("terminateSimulation", terminate_simulation, 1)?;
+            check_room("enterEventMode", enter_event_mode)?;
+            check_room("terminateSimulation", terminate_simulation)?;
             let must_end = instance.completed_integrator_step()?;
-            enter.fill([false]);
-            terminate.fill([must_end]);
+            enter_event_mode.write(false);
+            terminate_simulation.write(must_end);
             Ok(())
         })
     }

@@ -1,17 +1,9 @@
 //! Steps, with the host's intermediate update.
 
 use super::types::{fmi3Boolean, fmi3Float64, fmi3Instance, fmi3Status};
-use crate::fmi::abi::arguments::Room;
+use crate::fmi::abi::arguments::check_room;
 use crate::fmi::abi::component::{Component, with_instance};
-use crate::fmi::{Call, StepOutcome, StepProgress};
-
-/// Memory of the host for the outcome of a step.
-struct OutcomeRoom {
-    event_handling_needed: Room<fmi3Boolean>,
-    terminate_simulation: Room<fmi3Boolean>,
-    early_return: Room<fmi3Boolean>,
-    last_successful_time: Room<fmi3Float64>,
-}
+use crate::fmi::{Call, StepProgress};
 
 /// `fmi3DoStep`. Nothing is kept for going back, so that
 /// `no_set_fmu_state_prior_to_current_point` makes no difference.
@@ -33,17 +25,16 @@ pub unsafe extern "C" fn fmi3DoStep(
     early_return: *mut fmi3Boolean,
     last_successful_time: *mut fmi3Float64,
 ) -> fmi3Status {
-    let (mut room, mut progress) = (None, None);
+    let mut progress = None;
     // SAFETY: the host's promise.
     let mut status = unsafe {
         with_instance(instance, "fmi3DoStep", |instance| {
             instance.allow(Call::DoStep)?;
-            room = Some(OutcomeRoom {
-                event_handling_needed: Room::new("eventHandlingNeeded", event_handling_needed, 1)?,
-                terminate_simulation: Room::new("terminateSimulation", terminate_simulation, 1)?,
-                early_return: Room::new("earlyReturn", early_return, 1)?,
-                last_successful_time: Room::new("lastSuccessfulTime", last_successful_time, 1)?,
-            });
+            // One after the other: a host may give the same place for results that it ignores.
+            check_room("eventHandlingNeeded", event_handling_needed)?;
+            check_room("terminateSimulation", terminate_simulation)?;
+            check_room("earlyReturn", early_return)?;
+            check_room("lastSuccessfulTime", last_successful_time)?;
             let (point, size) = (current_communication_point, communication_step_size);
             progress = Some(instance.begin_step(point, size)?);
             Ok(())
@@ -66,17 +57,14 @@ pub unsafe extern "C" fn fmi3DoStep(
             })
         };
     }
-    if let (Some(StepProgress::Done(outcome)), Some(room)) = (progress, room) {
-        let StepOutcome {
-            event_handling_needed,
-            terminate_simulation,
-            early_return,
-            last_successful_time,
-        } = outcome;
-        room.event_handling_needed.fill([event_handling_needed]);
-        room.terminate_simulation.fill([terminate_simulation]);
-        room.early_return.fill([early_return]);
-        room.last_successful_time.fill([last_successful_time]);
+    if let Some(StepProgress::Done(outcome)) = progress {
+        // SAFETY: the places were checked above.
+        unsafe {
+            event_handling_needed.write(outcome.event_handling_needed);
+            terminate_simulation.write(outcome.terminate_simulation);
+            early_return.write(outcome.early_return);
+            last_successful_time.write(outcome.last_successful_time);
+        }
     }
     status
 }
