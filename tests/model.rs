@@ -380,6 +380,7 @@ fn it_is_described_and_packed() {
         variables: model.variables().to_vec(),
         outputs: vec![unknown.clone()],
         initial_unknowns: vec![unknown],
+        terminals: Vec::new(),
     };
     let mut archive = Cursor::new(Vec::new());
     let resources = [("numbers.txt", &b"1 2 3"[..])];

@@ -23,7 +23,8 @@ use crate::kinematics::Solver;
 /// file, its outputs position, velocity and acceleration of all bodies. The mechanism is
 /// assembled first; one that does not close is not exported.
 ///
-/// The FMU contains its picture (model.png) and its documentation (documentation/index.html): the
+/// The FMU contains its picture (model.png; with --fmi 3 documentation/diagram.png), its terminals,
+/// and its documentation (documentation/index.html): the
 /// mechanism in motion, its variables and parameters, the limits of its drivers.
 ///
 /// The FMU runs on the platforms that `biela platforms` lists with a library.
@@ -82,7 +83,7 @@ impl Export {
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
-        let documents = documentation::documents(&input, &solver)?;
+        let documents = documentation::documents(&input, &solver, self.fmi)?;
         let mut archive = Cursor::new(Vec::new());
         write_fmu(
             &mut archive,

@@ -6,7 +6,7 @@ use std::io::{Seek, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::model_description::ModelDescription;
+use super::model_description::{Document, ModelDescription, terminals};
 use super::state::Version;
 
 /// A platform that FMUs run on.
@@ -107,16 +107,7 @@ pub enum PackageError {
     Write(#[from] std::io::Error),
 }
 
-/// A file in the archive that documents the FMU.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Document {
-    /// Path in the archive: `model.png`, `documentation/index.html`.
-    pub path: String,
-    /// Content of the file.
-    pub content: Vec<u8>,
-}
-
-/// Writes an FMU: model description, documents, runtime libraries and resources, each resource
+/// Writes an FMU: model description, terminals, documents, runtime libraries and resources, each resource
 /// with its name in `resources/`.
 ///
 /// The same input gives the same bytes: entries have a fixed order and a fixed date.
@@ -141,6 +132,10 @@ pub fn write<Q>(
 
     zip.start_file("modelDescription.xml", text)?;
     zip.write_all(&description.write(generated))?;
+    if let Some(file) = terminals::write(&description.terminals, documents) {
+        zip.start_file(terminals::PATH, text)?;
+        zip.write_all(&file)?;
+    }
     for Document { path, content } in documents {
         zip.start_file(path.as_str(), text)?;
         zip.write_all(content)?;

@@ -7,7 +7,7 @@ use super::variables::{Order, Quantity, Signal, is_angle, variables};
 use super::{MechanismModel, guid};
 use crate::fmi::model::Model;
 use crate::fmi::model_description::{
-    Capabilities, DependencyKind, Experiment, ModelDescription, Unknown,
+    Capabilities, DependencyKind, Experiment, Member, ModelDescription, Terminal, Unknown,
 };
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable};
@@ -69,10 +69,47 @@ pub fn describe<'a>(
             tolerance: simulation.tolerance,
         },
         capabilities: CAPABILITIES,
+        terminals: terminals(mechanism, &variables),
         variables,
         outputs,
         initial_unknowns,
     }
+}
+
+/// Returns a terminal per driver, with all variables of the driver that cross the interface, and one
+/// per marker among the outputs.
+fn terminals(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Vec<Terminal> {
+    let drivers = mechanism.drivers.iter().map(|driver| {
+        let description = if driver.description.is_empty() {
+            format!("driver `{}`", driver.name)
+        } else {
+            driver.description.clone()
+        };
+        (driver.name.clone(), description)
+    });
+    let markers = mechanism.outputs.markers.iter().map(|&id| {
+        let path = mechanism.marker_path(id);
+        let description = format!("marker `{path}`");
+        (path, description)
+    });
+    let terminals = drivers.chain(markers).map(|(name, description)| {
+        let members = variables.iter().filter_map(|variable| {
+            let member = variable.name.strip_prefix(&name)?.strip_prefix('.')?;
+            let crosses = matches!(variable.causality, Causality::Input | Causality::Output);
+            (crosses && !member.contains('.')).then(|| Member {
+                name: member.to_owned(),
+                variable: variable.name.clone(),
+                is_flow: member == "effort",
+            })
+        });
+        let members = members.collect();
+        Terminal {
+            name,
+            description,
+            members,
+        }
+    });
+    terminals.collect()
 }
 
 impl MechanismModel {

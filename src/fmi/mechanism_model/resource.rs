@@ -5,7 +5,8 @@ use std::path::Path;
 
 use super::describe;
 use crate::fmi::error::Failure;
-use crate::fmi::package::{self, Document, PackageError, RuntimeLibrary};
+use crate::fmi::model_description::Document;
+use crate::fmi::package::{self, PackageError, RuntimeLibrary};
 use crate::fmi::state::Version;
 use crate::kinematics::Structure;
 use crate::mechanism::{Diagnostic, Mechanism, Severity, Source};

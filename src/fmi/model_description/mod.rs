@@ -5,14 +5,18 @@
 //! | `xml` | helpers of the writers |
 //! | `elements` | elements that the versions have alike |
 //! | `fmi2` | FMI 2.0: 2.2, 3.3.1 and 4.3.1 |
+//! | `terminals` | terminals and icon |
 //! | `fmi3` | FMI 3.0: 2.4, 3.4 and 4.4 |
 
 mod elements;
 mod fmi2;
 mod fmi3;
+pub(super) mod terminals;
 mod xml;
 
 use std::collections::BTreeMap;
+
+pub use terminals::{Member, Terminal};
 
 use super::state::Version;
 use super::variable::Variable;
@@ -46,6 +50,17 @@ pub struct ModelDescription<'a, Q> {
     pub outputs: Vec<Unknown>,
     /// All outputs and calculated parameters.
     pub initial_unknowns: Vec<Unknown>,
+    /// Groups of variables that are connected together.
+    pub terminals: Vec<Terminal>,
+}
+
+/// A file in the archive that documents the FMU.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Document {
+    /// Path in the archive: `model.png`, `documentation/index.html`.
+    pub path: String,
+    /// Content of the file.
+    pub content: Vec<u8>,
 }
 
 /// The default experiment \[s, s, s, 1\].
