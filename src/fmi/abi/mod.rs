@@ -40,6 +40,7 @@
 
 mod arguments;
 mod component;
+mod floating_point;
 mod fmi2;
 mod fmi3;
 mod intermediate;

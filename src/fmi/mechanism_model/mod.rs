@@ -46,7 +46,7 @@ use super::model::{Groups, Model};
 use super::model_description::DependencyKind;
 use super::state::{Interface, Phase};
 use super::variable::Variable;
-use crate::kinematics::{self, Path, Pose, Progress, Rates, Solver};
+use crate::kinematics::{self, Carryover, Path, Pose, Progress, Rates, Solver};
 use crate::mechanism::{DriverSource, Jet, Mechanism};
 use input::DriverInput;
 use monitor::Monitor;
@@ -77,6 +77,10 @@ pub struct MechanismModel {
     /// Pose from which the mechanism goes on; in co-simulation that of the last communication
     /// point.
     committed: Pose,
+    /// The solver's choices at the committed pose, while it is at another one.
+    committed_carryover: Carryover,
+    /// The solver's choices after it was made.
+    file_carryover: Carryover,
     /// Whether the solver is at the committed pose.
     at_committed: bool,
     /// Rates of all drivers at the solver's pose; `value` has no meaning.
@@ -128,6 +132,8 @@ impl MechanismModel {
         let mut solver = Solver::new(Arc::clone(&mechanism))?;
         solver.assemble(&path)?;
         let file_pose = Arc::new(solver.pose().clone());
+        let mut file_carryover = Carryover::default();
+        solver.carry_over(&mut file_carryover);
         let variables = variables(&mechanism);
         Ok(Self {
             guid: guid(&mechanism),
@@ -139,6 +145,8 @@ impl MechanismModel {
             monitors: vec![Monitor::default(); mechanism.drivers.len()],
             sources: vec![[Source::default(); 2]; mechanism.drivers.len()],
             committed: Pose::clone(&file_pose),
+            committed_carryover: file_carryover.clone(),
+            file_carryover,
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
@@ -211,8 +219,8 @@ impl Model for MechanismModel {
         self.inputs = start_inputs(&self.mechanism);
         self.monitors.fill(Monitor::default());
         self.committed.clone_from(&self.start_pose);
-        self.solver.restore(&self.start_pose);
-        self.at_committed = true;
+        self.committed_carryover.clone_from(&self.file_carryover);
+        self.return_to_committed();
         self.driver_rates.fill(Jet::constant(0.0));
         self.committed_rates.fill(Jet::constant(0.0));
         self.set_freshness(Freshness::Stale);

@@ -5,12 +5,12 @@
 //! of a whole step does. Values that the host sets on the way hold from there on: the mechanism
 //! goes to them at that time, and the path starts anew.
 
+use super::MechanismModel;
 use super::input::DriverInput;
 use super::monitor::Monitor;
-use super::{Freshness, MechanismModel};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
-use crate::kinematics::{Curve, Path, Pose, Progress};
+use crate::kinematics::{Carryover, Curve, Path, Pose, Progress};
 use crate::mechanism::Jet;
 
 /// A step that is being taken in parts.
@@ -30,6 +30,7 @@ pub(super) struct Parts {
 struct Before {
     time: f64,
     committed: Pose,
+    committed_carryover: Carryover,
     committed_rates: Vec<Jet>,
     inputs: Vec<DriverInput>,
     monitors: Vec<Monitor>,
@@ -42,20 +43,21 @@ struct Before {
 impl MechanismModel {
     /// Begins a step of size `h` to the time `end`.
     pub(super) fn begin_parts(&mut self, h: f64, end: f64, log: &Logger) {
+        let was_current = self.note_committed();
         let before = Before {
             time: self.time,
             committed: self.committed.clone(),
+            committed_carryover: self.committed_carryover.clone(),
             committed_rates: self.committed_rates.clone(),
             inputs: self.inputs.clone(),
             monitors: self.monitors.clone(),
-            was_current: self.at_committed && self.freshness != Freshness::Stale,
+            was_current,
             near_singular: self.near_singular,
             path_progress: self.path_progress,
             progress: self.progress,
         };
         if !self.at_committed {
-            self.solver.restore(&self.committed);
-            self.at_committed = true;
+            self.return_to_committed();
         }
         self.set_path(self.time, h);
         self.report_falls(log);
@@ -128,6 +130,7 @@ impl MechanismModel {
         let Before {
             time,
             committed,
+            committed_carryover,
             committed_rates,
             inputs,
             monitors,
@@ -138,13 +141,14 @@ impl MechanismModel {
         } = parts.before;
         self.time = time;
         self.committed = committed;
+        self.committed_carryover = committed_carryover;
         self.committed_rates = committed_rates;
         self.inputs = inputs;
         self.monitors = monitors;
         self.near_singular = near_singular;
         self.path_progress = path_progress;
         self.progress = progress;
-        self.return_to_committed(was_current);
+        self.stay_at_committed(was_current);
     }
 
     /// Goes to the values that the host has set at the present time, and lets the path start there.

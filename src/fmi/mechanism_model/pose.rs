@@ -47,7 +47,7 @@ impl MechanismModel {
         log: &Logger,
     ) -> Result<(), Failure> {
         let start = self.time;
-        let was_current = self.at_committed && self.freshness != Freshness::Stale;
+        let was_current = self.note_committed();
         match self.follow_step(h) {
             Ok(progress) => {
                 self.reach_end(progress, start, h, end, log);
@@ -55,7 +55,7 @@ impl MechanismModel {
             }
             Err(blocked) => {
                 let message = self.describe_dead_point(&blocked, start, h);
-                self.return_to_committed(was_current);
+                self.stay_at_committed(was_current);
                 Err(Failure::Discarded(message))
             }
         }
@@ -64,8 +64,7 @@ impl MechanismModel {
     /// Follows the path of a step of size `h` from the committed pose.
     fn follow_step(&mut self, h: f64) -> Result<Progress, Blocked> {
         if !self.at_committed {
-            self.solver.restore(&self.committed);
-            self.at_committed = true;
+            self.return_to_committed();
         }
         self.set_path(self.time, h);
         self.solver.track(&self.path)
@@ -82,9 +81,19 @@ impl MechanismModel {
         self.complete_step(start, h, log);
     }
 
-    /// Restores the committed pose; its values are current if they were so before.
-    pub(super) fn return_to_committed(&mut self, was_current: bool) {
-        self.restore_committed();
+    /// Notes the solver's choices at the committed pose, to which a step may have to return. Returns
+    /// whether that pose belongs to the values set.
+    pub(super) fn note_committed(&mut self) -> bool {
+        if self.at_committed {
+            self.solver.carry_over(&mut self.committed_carryover);
+        }
+        self.at_committed && self.freshness != Freshness::Stale
+    }
+
+    /// Returns to the committed pose as [`note_committed`](Self::note_committed) found it.
+    pub(super) fn stay_at_committed(&mut self, was_current: bool) {
+        self.return_to_committed();
+        self.driver_rates.copy_from_slice(&self.committed_rates);
         self.set_freshness(if was_current {
             Freshness::Pose
         } else {
@@ -237,9 +246,25 @@ impl MechanismModel {
         self.set_freshness(Freshness::Pose);
     }
 
+    /// Puts the solver back to the committed pose, with the choices that it had there.
+    pub(super) fn return_to_committed(&mut self) {
+        let resumed = (self.solver).resume(&self.committed, &self.committed_carryover);
+        debug_assert!(resumed, "the choices are the solver's own");
+        self.at_committed = true;
+    }
+
+    /// Lets the solver leave the committed pose: notes its choices, and begins with them.
+    fn leave_committed(&mut self) {
+        if self.at_committed {
+            self.solver.carry_over(&mut self.committed_carryover);
+        }
+        self.return_to_committed();
+        self.at_committed = false;
+    }
+
     /// Restores the committed pose and its rates.
     pub(super) fn restore_committed(&mut self) {
-        self.solver.restore(&self.committed);
+        self.leave_committed();
         self.driver_rates.copy_from_slice(&self.committed_rates);
         self.at_committed = true;
     }
@@ -336,6 +361,8 @@ impl MechanismModel {
                 (*velocity, *acceleration) = (0.0, 0.0);
             }
         }
+        self.committed_carryover.clone_from(&self.file_carryover);
+        self.return_to_committed();
         self.at_committed = false;
         let start = self.solver.start(&self.start_pose, &self.path);
         match start.map_err(failed)? {
@@ -369,14 +396,13 @@ impl MechanismModel {
     ///
     /// [`Failure::Discarded`] if no continuous motion leads there.
     fn evaluate(&mut self) -> Result<(), Failure> {
-        self.solver.restore(&self.committed);
+        self.leave_committed();
         let (start, h) = match self.interface {
             Interface::ModelExchange => (self.committed.time, self.time - self.committed.time),
             Interface::CoSimulation => (self.time, 0.0),
         };
         self.set_path(start, h);
         let followed = self.solver.track(&self.path);
-        self.at_committed = false;
         self.set_driver_rates(start, h, 1.0);
         match followed {
             Ok(progress) => {

@@ -16,6 +16,7 @@ use crate::fmi::abi::arguments::{slice, text};
 use crate::fmi::abi::component::{
     CallError, Component, panic_message, silence_panics, with_instance,
 };
+use crate::fmi::abi::floating_point::StandardEnvironment;
 use crate::fmi::abi::intermediate::IntermediateUpdate;
 use crate::fmi::{Call, Category, CoSimulation, Instance, Interface, Sink, Status};
 
@@ -50,6 +51,7 @@ impl Arguments {
         agree: impl FnOnce(&mut Instance<Exported>) -> Result<(), CallError>,
     ) -> fmi3Instance {
         silence_panics();
+        let _environment = StandardEnvironment::set();
         let attempt = catch_unwind(AssertUnwindSafe(|| {
             // SAFETY: promised by the caller.
             let (name, token, resources) = unsafe {
