@@ -4,6 +4,7 @@
 
 mod arguments;
 mod driver;
+mod fmi3;
 mod fmu_state;
 mod instantiation;
 mod memory;

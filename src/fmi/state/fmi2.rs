@@ -1,6 +1,6 @@
 //! Calls of FMI 2.0 by state (3.2.3 and 4.2.4).
 
-use super::{Call, Interface, State, table};
+use super::{Allowed, Call, Interface, State, table};
 
 table! {
     SetDebugLogging = fmi2SetDebugLogging:

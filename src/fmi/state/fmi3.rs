@@ -3,7 +3,7 @@
 //! There are no structural parameters, so that configuration mode is never entered, and no
 //! scheduled execution.
 
-use super::{Call, Interface, State, table};
+use super::{Allowed, Call, Interface, State, table};
 
 table! {
     SetDebugLogging = fmi3SetDebugLogging:

@@ -389,7 +389,7 @@ pub(super) fn is_allowed(allowed: &Allowed, call: Call, state: State) -> bool {
 macro_rules! table {
     ($($call:ident = $name:ident: [$($me:ident)*] [$($cs:ident)*];)*) => {
         /// Sets of states by interface.
-        pub(super) static ALLOWED: [super::Allowed; 2] = {
+        pub(super) static ALLOWED: [Allowed; 2] = {
             let mut allowed = [[0; Call::ALL.len()]; 2];
             $(
                 allowed[Interface::ModelExchange as usize][Call::$call as usize] =
