@@ -56,8 +56,9 @@ fn compile_host(headers: &Path, source: &str, name: &str) {
     if compiler.is_like_gnu() || compiler.is_like_clang() {
         command.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic"]);
     }
-    command.arg("-pthread").arg("-I").arg(headers);
-    command.arg(HOST).arg("-o").arg(&host).args(["-ldl", "-lm"]);
+    command.arg("-pthread");
+    command.arg("-I").arg(headers).arg(source);
+    command.arg("-o").arg(&host).args(["-ldl", "-lm"]);
     match command.status() {
         Ok(status) if status.success() => {
             println!("cargo::rustc-env={name}={}", host.display());
