@@ -9,7 +9,7 @@ use crate::fmi::state::Phase;
 use crate::fmi::variable::{Variable, derivatives};
 use crate::kinematics::{ForceParts, ForceQuantity};
 
-/// Inputs, parameters and time.
+/// Inputs, parameters, time, and counts of the last step.
 const SETTINGS: Groups = 1;
 /// Residual and condition at the pose.
 const SOLVER: Groups = 1 << 1;
@@ -79,12 +79,16 @@ impl Signal {
     }
 }
 
-/// Returns the group of a quantity; 0 for a quantity that is no Real.
+/// Returns the group of a quantity; 0 for a choice among items.
 pub(super) fn group(quantity: Quantity) -> Groups {
     match quantity {
-        Quantity::Input(..) | Quantity::ForceInput(_) | Quantity::Parameter(_) | Quantity::Time => {
-            SETTINGS
-        }
+        Quantity::Input(..)
+        | Quantity::ForceInput(_)
+        | Quantity::Parameter(_)
+        | Quantity::Time
+        | Quantity::Iterations
+        | Quantity::Substeps
+        | Quantity::Proved => SETTINGS,
         Quantity::Force(force) if force.needs_efforts() => EFFORTS,
         Quantity::Force(force) if force.needs_reactions() => REACTIONS,
         Quantity::Force(_) => LOADS,
@@ -93,11 +97,7 @@ pub(super) fn group(quantity: Quantity) -> Groups {
         Quantity::Derived(..) => DERIVED << 1,
         Quantity::Output(signal, Order::Position) => signal.group(),
         Quantity::Output(signal, _) => signal.group() << 1,
-        Quantity::RateSource
-        | Quantity::Extrapolation
-        | Quantity::Iterations
-        | Quantity::Substeps
-        | Quantity::Proved => 0,
+        Quantity::RateSource | Quantity::Extrapolation => 0,
     }
 }
 
@@ -270,6 +270,9 @@ impl MechanismModel {
                 Quantity::Time => self.time,
                 Quantity::Residual => self.solver.residual(),
                 Quantity::Rcond => self.solver.rcond(),
+                Quantity::Iterations => f64::from(self.progress.iterations),
+                Quantity::Substeps => f64::from(self.progress.substeps),
+                Quantity::Proved => f64::from(u8::from(self.progress.checked == 0)),
                 _ => unreachable!("the list has no other quantities"),
             };
         }
