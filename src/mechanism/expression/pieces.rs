@@ -1,6 +1,6 @@
 //! Bounds of an expression over ranges in which pieces of it meet.
 //!
-//! Where `min`, `max`, `abs`, `mod` and the like switch from one piece to the next, each piece is
+//! Each piece between which `min`, `max`, `abs`, `mod` and the like switch is
 //! taken over the whole range in turn. The hull of all choices bounds value and derivatives on both
 //! sides of the switch; whether the pieces join smoothly is not examined here.
 
