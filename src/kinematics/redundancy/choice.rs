@@ -1,5 +1,6 @@
 //! The choice of the rows that are solved.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use super::closure::close_on_all;
@@ -79,10 +80,14 @@ pub(in crate::kinematics) fn redundancies(model: &Model) -> Vec<Redundancy> {
             _ => found.push((element, 1)),
         }
     }
+    let mut rows: BTreeMap<Element, usize> = BTreeMap::new();
+    for equation in equations {
+        *rows.entry(equation.element).or_default() += 1;
+    }
     let describe = |(element, redundant): (Element, usize)| Redundancy {
         element: element.describe(model.system.mechanism()),
         redundant,
-        equations: equations.iter().filter(|e| e.element == element).count(),
+        equations: rows[&element],
     };
     found.into_iter().map(describe).collect()
 }

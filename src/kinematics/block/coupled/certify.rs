@@ -83,13 +83,14 @@ impl CoupledBlock {
         };
         self.test.return_to_ends(state);
         self.clear_region(step);
-        let squared = |contraction: f64| (contraction / GOOD_CONTRACTION).powi(2);
+        // Chord and radii grow together: K grows rather with the square of the sub-step.
+        let step_ratio = |contraction: f64| contraction / GOOD_CONTRACTION;
         let contraction = match tried {
             Ok(contraction) => contraction,
             Err(None) => return Err(step.bounds.reject()),
             Err(Some(contraction)) => {
                 // Above one in any case.
-                let refused = step.bounds.require(squared(contraction).max(1.5));
+                let refused = step.bounds.require(step_ratio(contraction).max(1.5));
                 debug_assert!(refused.is_err());
                 return Err(Rejected);
             }
@@ -102,7 +103,7 @@ impl CoupledBlock {
                 self.make_box(state, step, contraction);
             }
         }
-        step.bounds.require(squared(contraction).min(1.0))
+        step.bounds.require(step_ratio(contraction).min(1.0))
     }
 
     /// Clears the region and the chord in the work space.
