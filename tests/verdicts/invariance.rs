@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use biela::kinematics::{Curve, Path, Solver};
-use biela::mechanism::{Expression, JointKind, Mechanism, Source};
+use biela::mechanism::{JointKind, Mechanism, Source};
 
-use crate::common::{assembled, stems};
+use crate::common::{assembled, moved, stems};
 
 /// A mechanism file as shipped.
 fn text(name: &str) -> String {
@@ -101,27 +101,6 @@ fn expect_alike(name: &str, here: &Run, there: &Run, places: impl Fn(&[f64]) -> 
             "{name}, step {step}: {a} and {b} sub-steps"
         );
     }
-}
-
-/// The mechanism with ground turned by `turn` and moved to `to`.
-fn moved(mechanism: &Mechanism, turn: f64, to: [f64; 2]) -> Arc<Mechanism> {
-    let mut moved = mechanism.clone();
-    let parameters = mechanism.default_parameters();
-    let value = |e: &Expression| e.evaluate(&|p| parameters[p.index()], 0.0_f64);
-    let place = |[x, y]: [f64; 2]| {
-        let (sin, cos) = turn.sin_cos();
-        [cos * x - sin * y + to[0], sin * x + cos * y + to[1]].map(Expression::constant)
-    };
-    for marker in moved.markers.iter_mut().filter(|m| m.body.is_none()) {
-        marker.position = place(marker.position.each_ref().map(value));
-        marker.angle = Expression::constant(value(&marker.angle) + turn);
-    }
-    for body in &mut moved.bodies {
-        let [x, y, phi] = body.estimate.each_ref().map(value);
-        let [x, y] = place([x, y]);
-        body.estimate = [x, y, Expression::constant(phi + turn)];
-    }
-    Arc::new(moved)
 }
 
 #[test]

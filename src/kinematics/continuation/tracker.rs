@@ -19,8 +19,8 @@ use crate::mechanism::{DriverId, Jet};
 
 /// Most sub-steps of a path: some thousand turns.
 const MOST_SUBSTEPS: u32 = 100_000;
-/// A path is given up after this many sub-steps if they lead through less than a tenth of the part
-/// that they would have to.
+/// A path is given up after this many sub-steps if they lead through less than half of the part that
+/// they would have to.
 const ENOUGH_TO_JUDGE: u32 = 2_000;
 /// A motion that stops while a driver still moves by more than this per sub-step \[m or rad\] asks
 /// for too long a path.
@@ -243,7 +243,7 @@ impl Run<'_> {
     fn is_too_long(&self) -> bool {
         let substeps = self.progress.substeps;
         let expected = f64::from(substeps) / f64::from(MOST_SUBSTEPS);
-        substeps >= MOST_SUBSTEPS || substeps >= ENOUGH_TO_JUDGE && self.s < 0.1 * expected
+        substeps >= MOST_SUBSTEPS || substeps >= ENOUGH_TO_JUDGE && self.s < 0.5 * expected
     }
 
     /// Takes one sub-step: predicts, corrects and certifies its end, then accepts it or tries a

@@ -175,7 +175,8 @@ fn above(piece: Jet3<Interval>, low: f64) -> Jet3<Interval> {
 /// Returns the two values of a step function that jumps once in the range: from one integer to the
 /// next, or from −1 to 1.
 fn steps(range: Interval) -> Option<[Jet3<Interval>; 2]> {
+    // Both ends are integers.
     let jump = range.high - range.low;
-    let once = jump == 1.0 || (range.low == -1.0 && range.high == 1.0);
+    let once = (0.5..1.5).contains(&jump) || range == Interval::new(-1.0, 1.0);
     once.then(|| [range.low, range.high].map(Jet3::constant))
 }
