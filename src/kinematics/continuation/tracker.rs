@@ -19,6 +19,9 @@ use crate::mechanism::{DriverId, Jet};
 
 /// Most sub-steps of a path: some thousand turns.
 const MOST_SUBSTEPS: u32 = 100_000;
+/// A path is given up after this many sub-steps if they lead through less than half of the part that
+/// they would have to.
+const ENOUGH_TO_JUDGE: u32 = 2_000;
 /// A motion that stops while a driver still moves by more than this per sub-step \[m or rad\] asks
 /// for too long a path.
 const LARGEST_LAST_MOVE: f64 = 1e-6;
@@ -221,7 +224,7 @@ impl Run<'_> {
             singular::leave_crossings(self.model, self.state, &self.drivers.here);
         }
         self.solve_tangent();
-        if self.progress.substeps >= MOST_SUBSTEPS {
+        if self.is_too_long() {
             return Err(Reason::TooLong);
         }
         let too_small = self.length < smallest;
@@ -234,6 +237,13 @@ impl Run<'_> {
         }
         self.is_last_attempt = too_small;
         Ok(())
+    }
+
+    /// Returns whether the path takes too many sub-steps, or is certain to.
+    fn is_too_long(&self) -> bool {
+        let substeps = self.progress.substeps;
+        let expected = f64::from(substeps) / f64::from(MOST_SUBSTEPS);
+        substeps >= MOST_SUBSTEPS || substeps >= ENOUGH_TO_JUDGE && self.s < 0.5 * expected
     }
 
     /// Takes one sub-step: predicts, corrects and certifies its end, then accepts it or tries a
