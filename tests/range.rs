@@ -1,5 +1,7 @@
 //! The range of motion of a driver.
 
+#![allow(clippy::float_cmp, reason = "bounds are reached to the last bit")]
+
 mod common;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
