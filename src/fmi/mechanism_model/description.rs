@@ -11,8 +11,8 @@ use crate::fmi::model_description::{
 };
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable};
-use crate::kinematics::{Dependencies, Structure, System};
-use crate::mechanism::{DriverId, Mechanism, Unit};
+use crate::kinematics::{Dependencies, ForceQuantity, Structure, System};
+use crate::mechanism::{DriverId, Load, Mechanism, Unit, Variable as Of};
 
 /// Capabilities of a [`MechanismModel`](super::MechanismModel).
 const CAPABILITIES: Capabilities = Capabilities {
@@ -42,8 +42,8 @@ pub fn describe<'a>(
         if variable.causality == Causality::Output {
             outputs.push(Unknown {
                 index,
-                dependencies: indices.outputs(&dependencies),
-                parameters: indices.parameters_of_output(&dependencies, order),
+                dependencies: indices.outputs(mechanism, variable.quantity, &dependencies),
+                parameters: indices.parameters_of_output(variable.quantity, &dependencies, order),
             });
         }
         initial_unknowns.push(Unknown {
@@ -129,8 +129,8 @@ impl MechanismModel {
         let indices = Indices::new(mechanism, &self.variables);
         let is_output = variable.causality == Causality::Output;
         let found = if is_output && !initializing {
-            let mut all = indices.outputs(&of_quantity);
-            all.extend(indices.parameters_of_output(&of_quantity, order));
+            let mut all = indices.outputs(mechanism, variable.quantity, &of_quantity);
+            all.extend(indices.parameters_of_output(variable.quantity, &of_quantity, order));
             all
         } else {
             indices.initial(mechanism, variable.quantity, &of_quantity, order)
@@ -148,6 +148,7 @@ impl MechanismModel {
 fn order_of_unknown(variable: &Variable<Quantity>) -> Option<Order> {
     match (variable.quantity, variable.causality) {
         (Quantity::Output(_, order), _) => Some(order),
+        (Quantity::Force(quantity), _) => Some(order_of(quantity)),
         (_, Causality::CalculatedParameter) => Some(Order::Position),
         _ => None,
     }
@@ -157,6 +158,8 @@ fn order_of_unknown(variable: &Variable<Quantity>) -> Option<Order> {
 struct Indices {
     /// First of the three inputs of each driver that is an input.
     inputs: Vec<Option<usize>>,
+    /// Each input of a force.
+    force_inputs: Vec<usize>,
     /// Each parameter.
     parameters: Vec<usize>,
     rate_source: Option<usize>,
@@ -168,6 +171,7 @@ impl Indices {
     fn new(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Self {
         let mut indices = Self {
             inputs: vec![None; mechanism.drivers.len()],
+            force_inputs: Vec::new(),
             parameters: vec![0; mechanism.parameters.len()],
             rate_source: None,
             extrapolation: None,
@@ -178,6 +182,7 @@ impl Indices {
                 Quantity::Input(driver, Order::Position) => {
                     indices.inputs[driver.index()] = Some(index);
                 }
+                Quantity::ForceInput(_) => indices.force_inputs.push(index),
                 Quantity::Parameter(parameter) => indices.parameters[parameter.index()] = index,
                 Quantity::RateSource => indices.rate_source = Some(index),
                 Quantity::Extrapolation => indices.extrapolation = Some(index),
@@ -190,13 +195,48 @@ impl Indices {
 
     /// Returns the inputs and the time that an output depends on, over all settings of `rates` and
     /// `extrapolation`: estimated rates depend on positions, extrapolated positions on rates.
-    fn outputs(&self, dependencies: &Dependencies) -> BTreeMap<usize, DependencyKind> {
-        self.drivers(dependencies, Order::Acceleration)
+    fn outputs(
+        &self,
+        mechanism: &Mechanism,
+        quantity: Quantity,
+        dependencies: &Dependencies,
+    ) -> BTreeMap<usize, DependencyKind> {
+        let mut indices = self.drivers(dependencies, Order::Acceleration);
+        self.add_forces(mechanism, quantity, &mut indices);
+        indices
+    }
+
+    /// Adds the inputs of forces, and the time if forces depend on it, for a force.
+    fn add_forces(
+        &self,
+        mechanism: &Mechanism,
+        quantity: Quantity,
+        indices: &mut BTreeMap<usize, DependencyKind>,
+    ) {
+        let Quantity::Force(quantity) = quantity else {
+            return;
+        };
+        let uses_time = |load: &Load| load.expressions().iter().any(|e| e.uses(Of::Time));
+        let depends_on_time = match quantity {
+            ForceQuantity::Applied(force, _) => uses_time(&mechanism.forces[force].load),
+            ForceQuantity::Inertia(_)
+            | ForceQuantity::KineticEnergy
+            | ForceQuantity::PotentialEnergy => false,
+            _ => {
+                let inputs = self.force_inputs.iter();
+                indices.extend(inputs.map(|&index| (index, DependencyKind::Dependent)));
+                mechanism.forces.iter().any(|force| uses_time(&force.load))
+            }
+        };
+        if depends_on_time {
+            indices.insert(self.time, DependencyKind::Dependent);
+        }
     }
 
     /// Returns the parameters that an output of this order depends on after initialization.
     fn parameters_of_output(
         &self,
+        quantity: Quantity,
         dependencies: &Dependencies,
         order: Order,
     ) -> BTreeMap<usize, DependencyKind> {
@@ -204,7 +244,7 @@ impl Indices {
         let mut add = |index: usize| {
             indices.insert(index, DependencyKind::Dependent);
         };
-        self.mechanism_parameters(dependencies, order, &mut add);
+        self.mechanism_parameters(quantity, dependencies, order, &mut add);
         let mut drivers = dependencies.drivers.iter();
         if drivers.any(|id| self.inputs[id.index()].is_some()) {
             [self.rate_source, self.extrapolation]
@@ -219,11 +259,13 @@ impl Indices {
     /// driver moves has rates of zero for any parameters.
     fn mechanism_parameters(
         &self,
+        quantity: Quantity,
         dependencies: &Dependencies,
         order: Order,
         add: &mut impl FnMut(usize),
     ) {
-        if order == Order::Position || !dependencies.drivers.is_empty() {
+        let is_force = matches!(quantity, Quantity::Force(_));
+        if order == Order::Position || is_force || !dependencies.drivers.is_empty() {
             for id in &dependencies.parameters {
                 add(self.parameters[id.index()]);
             }
@@ -257,6 +299,7 @@ impl Indices {
         order: Order,
     ) -> BTreeMap<usize, DependencyKind> {
         let mut indices = self.drivers(dependencies, order);
+        self.add_forces(mechanism, quantity, &mut indices);
         if let Some(driver) = driver_angle(mechanism, quantity)
             && let Some(index) = self.inputs[driver.index()]
         {
@@ -265,12 +308,26 @@ impl Indices {
         let mut add = |index: usize| {
             indices.insert(index, DependencyKind::Dependent);
         };
-        self.mechanism_parameters(dependencies, order, &mut add);
+        self.mechanism_parameters(quantity, dependencies, order, &mut add);
         let mut drivers = dependencies.drivers.iter();
         if order > Order::Position && drivers.any(|id| self.inputs[id.index()].is_some()) {
             self.rate_source.into_iter().for_each(add);
         }
         indices
+    }
+}
+
+/// Returns the highest order of the motion on which a force depends.
+fn order_of(quantity: ForceQuantity) -> Order {
+    match quantity {
+        ForceQuantity::Inertia(_) | ForceQuantity::PotentialEnergy => Order::Position,
+        ForceQuantity::Bias(_) | ForceQuantity::Applied(..) | ForceQuantity::KineticEnergy => {
+            Order::Velocity
+        }
+        ForceQuantity::Effort(_)
+        | ForceQuantity::Power(_)
+        | ForceQuantity::Reaction(..)
+        | ForceQuantity::Held(_) => Order::Acceleration,
     }
 }
 
