@@ -149,10 +149,11 @@ pub(super) unsafe fn with_instance(
     if component.disturbed.load(Ordering::Relaxed) {
         component.disturbed.store(false, Ordering::Relaxed);
         let _ = catch_unwind(AssertUnwindSafe(|| {
-            instance.report_disturbance(&format!(
-                "{call}: another call on this instance came meanwhile, from the logger or from \
-                 another thread, and was refused",
-            ));
+            instance.report_disturbance(
+                call,
+                "another call on this instance came meanwhile, from the logger or from another \
+                 thread, and was refused",
+            );
         }));
         // Lest a logger that always calls back be told of it for ever.
         component.disturbed.store(false, Ordering::Relaxed);

@@ -260,8 +260,9 @@ impl<M: Model> Instance<M> {
 
     /// Logs that a call was refused which cannot belong to the sequence of calls: from the logger,
     /// or from another thread.
-    pub fn report_disturbance(&self, message: &str) {
-        self.logger.write(Status::Error, Category::Error, message);
+    pub fn report_disturbance(&self, call: &str, message: &str) {
+        let message = format!("{call}: {message}");
+        self.logger.write(Status::Error, Category::Error, &message);
     }
 
     /// Logs that a call has failed; in FMI 3.0 an error ends the simulation.

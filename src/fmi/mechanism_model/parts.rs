@@ -6,6 +6,7 @@
 //! goes to them at that time, and the path starts anew.
 
 use super::MechanismModel;
+use super::force_input::ForceInput;
 use super::input::DriverInput;
 use super::monitor::Monitor;
 use crate::fmi::error::Failure;
@@ -33,6 +34,8 @@ struct Before {
     committed_carryover: Carryover,
     committed_rates: Vec<Jet>,
     inputs: Vec<DriverInput>,
+    force_inputs: Vec<ForceInput>,
+    lifted: Vec<bool>,
     monitors: Vec<Monitor>,
     was_current: bool,
     near_singular: bool,
@@ -50,6 +53,8 @@ impl MechanismModel {
             committed_carryover: self.committed_carryover.clone(),
             committed_rates: self.committed_rates.clone(),
             inputs: self.inputs.clone(),
+            force_inputs: self.force_inputs.clone(),
+            lifted: self.lifted.clone(),
             monitors: self.monitors.clone(),
             was_current,
             near_singular: self.near_singular,
@@ -133,6 +138,8 @@ impl MechanismModel {
             committed_carryover,
             committed_rates,
             inputs,
+            force_inputs,
+            lifted,
             monitors,
             was_current,
             near_singular,
@@ -144,6 +151,8 @@ impl MechanismModel {
         self.committed_carryover = committed_carryover;
         self.committed_rates = committed_rates;
         self.inputs = inputs;
+        self.force_inputs = force_inputs;
+        self.lifted = lifted;
         self.monitors = monitors;
         self.near_singular = near_singular;
         self.path_progress = path_progress;
@@ -180,6 +189,9 @@ impl MechanismModel {
             self.set_part_of_path(whole, (self.time - whole.start) / whole.duration, end);
         }
         let followed = self.follow(log);
+        if followed.is_ok() {
+            self.advance_forces(self.path.duration);
+        }
         // Also after a dead point, whose time may be earlier.
         let reached = if followed.is_ok() { time } else { self.time };
         let s = if to_end && followed.is_ok() {

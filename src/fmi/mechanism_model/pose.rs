@@ -306,7 +306,7 @@ impl MechanismModel {
     }
 
     /// Moves the inputs of forces on by a time `h`.
-    fn advance_forces(&mut self, h: f64) {
+    pub(super) fn advance_forces(&mut self, h: f64) {
         for input in &mut self.force_inputs {
             input.advance(h);
         }
