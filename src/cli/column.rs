@@ -3,6 +3,7 @@
 use super::error::Error;
 use super::motion::Motion;
 use crate::fmi::{Kind, Order, Quantity, Signal, variables};
+use crate::kinematics::ForceQuantity;
 use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
 
 /// One quantity of a run.
@@ -10,9 +11,27 @@ use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
 pub(super) struct Column {
     /// Name of the FMU's variable.
     pub(super) name: String,
-    pub(super) signal: Signal,
-    pub(super) order: Order,
+    pub(super) source: Source,
     pub(super) unit: Unit,
+}
+
+/// Meaning of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    /// A signal or a time derivative of it.
+    Signal(Signal, Order),
+    /// A force, an energy or an inertia.
+    Force(ForceQuantity),
+}
+
+impl Source {
+    /// Returns whether two columns belong to one signal.
+    pub(super) fn is_akin(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Signal(one, _), Self::Signal(other, _)) => one == other,
+            (one, other) => one == other,
+        }
+    }
 }
 
 impl Column {
@@ -24,22 +43,22 @@ impl Column {
                 let Kind::Real { unit, .. } = variable.kind else {
                     return None;
                 };
-                let (signal, order) = match variable.quantity {
+                let source = match variable.quantity {
                     // In a run an input follows a motion.
-                    Quantity::Input(driver, order) => (Signal::Motion(driver), order),
-                    Quantity::Output(signal, order) => (signal, order),
+                    Quantity::Input(driver, order) => Source::Signal(Signal::Motion(driver), order),
+                    Quantity::Output(signal, order) => Source::Signal(signal, order),
+                    Quantity::Force(force) => Source::Force(force),
                     _ => return None,
                 };
                 Some(Self {
                     name: variable.name,
-                    signal,
-                    order,
+                    source,
                     unit: unit.unwrap_or(Unit::ONE),
                 })
             })
             .collect();
-        columns.sort_by_key(|column| match column.signal {
-            Signal::Motion(driver) => driver.index(),
+        columns.sort_by_key(|column| match column.source {
+            Source::Signal(Signal::Motion(driver), _) => driver.index(),
             _ => usize::MAX,
         });
         columns
@@ -67,11 +86,14 @@ impl Column {
         Ok(columns.iter().filter(is_named).cloned().collect())
     }
 
-    /// Returns the columns that a plot shows by default: the drivers, and of measures, points of
-    /// interest and bodies the first kind that the mechanism has.
+    /// Returns the columns that a plot shows by default: the drivers with their efforts, and of
+    /// measures, points of interest and bodies the first kind that the mechanism has.
     pub(super) fn plotted(columns: &[Self]) -> Vec<Self> {
         let select = |is_wanted: fn(&Signal) -> bool| -> Vec<Self> {
-            let wanted = columns.iter().filter(|c| is_wanted(&c.signal));
+            let wanted = columns.iter().filter(|column| match &column.source {
+                Source::Signal(signal, _) => is_wanted(signal),
+                Source::Force(_) => false,
+            });
             wanted.cloned().collect()
         };
         let kinds: [fn(&Signal) -> bool; 3] = [
@@ -82,6 +104,8 @@ impl Column {
         let mut plotted = select(|signal| matches!(signal, Signal::Motion(_)));
         let further = kinds.into_iter().map(select).find(|kind| !kind.is_empty());
         plotted.extend(further.unwrap_or_default());
+        let is_effort = |c: &&Self| matches!(c.source, Source::Force(ForceQuantity::Effort(_)));
+        plotted.extend(columns.iter().filter(is_effort).cloned());
         plotted
     }
 
@@ -89,10 +113,15 @@ impl Column {
     /// of interest and measures.
     pub(super) fn told(columns: &[Self]) -> Vec<Self> {
         let columns = columns.iter().filter(|column| {
-            let of_body = matches!(column.signal, Signal::Body(..));
-            column.order == Order::Position && !of_body
+            matches!(column.source, Source::Signal(signal, Order::Position)
+                if !matches!(signal, Signal::Body(..)))
         });
         columns.cloned().collect()
+    }
+
+    /// Returns whether it shows a force.
+    pub(super) fn is_force(&self) -> bool {
+        matches!(self.source, Source::Force(_))
     }
 
     /// Returns the current value \[SI\].
@@ -103,7 +132,10 @@ impl Column {
             driver_rates,
             ..
         } = motion;
-        self.order.of(self.signal.jet(solver, rates, driver_rates))
+        match self.source {
+            Source::Signal(signal, order) => order.of(signal.jet(solver, rates, driver_rates)),
+            Source::Force(force) => motion.force(force),
+        }
     }
 }
 

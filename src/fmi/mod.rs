@@ -36,7 +36,7 @@ pub use instance::{FmuState, Instance, Reals};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
     MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal, TABLE_VERSION, describe,
-    guid, variables, write_fmu,
+    guid, indeterminate, variables, write_fmu,
 };
 pub use model::{Groups, Model};
 pub use model_description::{Capabilities, DependencyKind, Experiment, ModelDescription, Unknown};
