@@ -120,7 +120,7 @@ impl Expression {
                     stack[first] = pieces[usize::from(second)];
                     height = first + 1;
                 }
-                None => operation.apply(&mut stack, &mut height, parameter, variable),
+                None => operation.apply(&mut stack, &mut height, parameter, &|_| variable),
             }
         }
         Some(stack[0])
