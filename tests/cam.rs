@@ -141,6 +141,82 @@ fn a_round_cam_moves_nothing() {
     }
 }
 
+/// Contours of pieces that join smoothly: at the first three and the last the second derivative
+/// is continuous, at the fourth it jumps.
+const PIECES: [&str; 5] = [
+    "0.05 + 0.002*max(cos(theta), 0)^4",
+    "0.05 + 0.002*abs(sin(theta))^3",
+    "0.05 + 0.002*max(1 - ((theta - 3)/1.5)^2, 0)^3",
+    "0.05 + 0.002*max(0, sin(theta))^2",
+    "0.05 + 0.001*(mod(theta, pi)/pi*(1 - mod(theta, pi)/pi))^2",
+];
+
+/// A follower runs over the switches of such contours, in large steps and in small ones, both ways.
+/// On the knife edge, which is above the axle, stands R(90° − u).
+#[test]
+fn contours_of_smooth_pieces_are_run_over() {
+    for profile in PIECES {
+        for name in ["cam_knife", "cam_roller", "cam_flat"] {
+            for steps in [7, 20] {
+                let mut solver = with_profile(name, &format!("'{profile}'"));
+                let mechanism = solver.mechanism().clone();
+                let mut path = Path::new(&mechanism);
+                let start = solver.pose().drivers[0];
+                let home = solver.pose().clone();
+                for step in (1..=2 * steps).chain((0..2 * steps).rev()) {
+                    let angle = start + TAU * f64::from(step) / f64::from(steps);
+                    straight_to(&solver, &mut path, angle);
+                    let progress = solver.track(&path);
+                    let progress = progress.unwrap_or_else(|blocked| {
+                        panic!("{name}, {profile}, {step} of {steps}: {blocked:?}")
+                    });
+                    assert_eq!(progress.checked, 0, "{name}, {profile}, {step} of {steps}");
+                    assert!(progress.substeps < 100, "{name}, {profile}: {progress:?}");
+                    // Some hundred roundings of lengths and slopes.
+                    assert!(solver.residual() < 1e-13, "{name}, {profile}");
+                    if name == "cam_knife" {
+                        let theta = (TAU / 4.0 - angle).rem_euclid(TAU);
+                        let height = follower_height(&solver, &mechanism);
+                        let off = height - radius(profile, theta);
+                        assert!(off.abs() < 1e-14, "{profile} at {theta}: {off:e}");
+                    }
+                }
+                // Back where it began, to the rounding of angles of two turns.
+                for (here, home) in solver.pose().q.iter().zip(&home.q) {
+                    assert!((here - home).abs() < 1e-13, "{name}, {profile}");
+                }
+            }
+        }
+    }
+}
+
+/// The contours of [`PIECES`] in Rust.
+fn radius(profile: &str, theta: f64) -> f64 {
+    let index = PIECES.iter().position(|piece| *piece == profile);
+    0.05 + match index.expect("it is one of them") {
+        0 => 0.002 * theta.cos().max(0.0).powi(4),
+        1 => 0.002 * theta.sin().abs().powi(3),
+        2 => 0.002 * (1.0 - ((theta - 3.0) / 1.5).powi(2)).max(0.0).powi(3),
+        3 => 0.002 * theta.sin().max(0.0).powi(2),
+        _ => 0.001 * (theta.rem_euclid(PI) / PI * (1.0 - theta.rem_euclid(PI) / PI)).powi(2),
+    }
+}
+
+/// A slip in a unit, such as an angle of 1e9 rad, is given up after a number of sub-steps that takes
+/// less than a second.
+#[test]
+fn a_path_without_end_is_given_up_soon() {
+    let (mut solver, mut path) = assembled(&shipped("cam_knife"));
+    straight_to(&solver, &mut path, 1e9);
+    let blocked = solver.track(&path).expect_err("it is too long");
+    assert_eq!(blocked.reason, Reason::TooLong);
+    assert!(blocked.progress.substeps < 2_100, "{blocked:?}");
+    // A thousand turns are none.
+    let (mut solver, mut path) = assembled(&shipped("cam_knife"));
+    straight_to(&solver, &mut path, 1e3 * TAU);
+    solver.track(&path).expect("it turns on");
+}
+
 /// A shipped cam with another contour.
 fn with_profile(name: &str, profile: &str) -> Solver {
     assembled(&parse(&text_with_profile(name, profile))).0
@@ -150,7 +226,8 @@ fn text_with_profile(name: &str, profile: &str) -> String {
     let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).expect("shipped mechanisms can be read");
     let start = text.find("profile = ").expect("it has a profile");
-    let end = start + text[start..].find('\n').expect("it is a line");
+    let quoted = text[start..].match_indices('"').nth(1);
+    let end = start + quoted.expect("it is a text").0 + 1;
     text.replace(&text[start..end], &format!("profile = {profile}"))
 }
 

@@ -588,3 +588,47 @@ fn a_parameter_comes_back_from_a_dead_point() {
         assert!(off < SAME_POSE, "{name}: {off}");
     }
 }
+
+/// A platform of 1 mm on three legs takes as many sub-steps beside a pendulum of 1 m as alone.
+#[test]
+fn a_large_mechanism_beside_a_small_one_costs_it_no_sub_steps() {
+    let file = |pendulum: [&str; 3]| {
+        let [ground, body, rest] = pendulum;
+        parse(&format!(
+            "format = 1\nname = \"mixed\"\n[ground.markers]\nA0 = [-0.0008, -0.0005]\n\
+             A1 = [0.0009, -0.0004]\nA2 = [0.0001, 0.0009]\n{ground}\n\
+             [bodies.platform]\nmarkers = {{ B0 = [-0.0003, -0.0002], \
+             B1 = [0.00035, -0.00015], B2 = [0.00005, 0.0003] }}\n\
+             estimate = [0.00005, 0.0001, 0.2]\n{body}\n[drivers]\n\
+             u0 = {{ coordinate = \"distance\", markers = [\"ground.A0\", \"platform.B0\"], \
+             start = 0.0006880964176648267 }}\n\
+             u1 = {{ coordinate = \"distance\", markers = [\"ground.A1\", \"platform.B1\"], \
+             start = 0.0006373570317599123 }}\n\
+             u2 = {{ coordinate = \"distance\", markers = [\"ground.A2\", \"platform.B2\"], \
+             start = 0.0004997341725430079 }}\n{rest}\n"
+        ))
+    };
+    let pendulum = [
+        "Z = [0, 0]",
+        "[bodies.pendulum]\nmarkers = { O = [0, 0], T = [1, 0] }\n[joints]\n\
+         z = { type = \"revolute\", markers = [\"ground.Z\", \"pendulum.O\"] }",
+        "w = { coordinate = \"angle\", markers = [\"ground.Z\", \"pendulum.O\"], start = 0 }",
+    ];
+    let [alone, beside] = [["", "[joints]", ""], pendulum].map(|pendulum| {
+        let (mut solver, mut path) = assembled(&file(pendulum));
+        for (driver, curve) in path.curves.iter_mut().enumerate() {
+            let here = solver.pose().drivers[driver];
+            *curve = Curve::Input {
+                position: 1.01 * here,
+                velocity: 0.0,
+                acceleration: 0.0,
+                jump: -0.01 * here,
+            };
+        }
+        let progress = solver.track(&path).expect("the legs reach");
+        assert_eq!(progress.checked, 0);
+        progress.substeps
+    });
+    assert!(alone <= 10, "{alone}");
+    assert!(beside <= alone + 1, "{alone}, {beside} beside a pendulum");
+}

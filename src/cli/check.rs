@@ -107,17 +107,16 @@ impl Check {
 
 fn describe_equations(mechanism: &std::sync::Arc<Mechanism>) -> String {
     let system = crate::kinematics::System::new(std::sync::Arc::clone(mechanism));
-    let rows_of = |element: Element| {
-        let equations = system.equations().iter();
-        equations.filter(|e| e.element == element).count()
-    };
+    let mut joints = vec![0_usize; mechanism.joints.len()];
+    for equation in system.equations() {
+        if let Element::Joint(joint) = equation.element {
+            joints[joint] += 1;
+        }
+    }
     let mut out = String::new();
     let mut line = |label: &str, count: usize, names: Vec<String>| {
         let _ = writeln!(out, "  {label:<20}{count:>4}    {}", names.join(", "));
     };
-    let joints: Vec<usize> = (0..mechanism.joints.len())
-        .map(|joint| rows_of(Element::Joint(joint)))
-        .collect();
     let held = mechanism.constraints.len();
     let unknowns = system.unknowns();
     line(

@@ -106,10 +106,17 @@ pub(super) fn documents(
 /// an angle, or else of its first driver.
 pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Error> {
     let own = Arc::clone(solver.mechanism());
+    // A large mechanism is moved less, so that its page takes seconds.
+    let fewer = MOST_PLACED / own.bodies.len().max(1);
+    let settings = RangeSettings {
+        samples: RANGE.samples.min(10 * fewer as u32).max(RANGE.samples / 10),
+        turns: RANGE.turns.min(fewer as u32).max(1),
+        ..RANGE
+    };
     let ranges: Vec<Option<Range>> = (own.drivers.iter().enumerate())
         .map(|(index, driver)| {
             let is_input = driver.motion().is_none();
-            is_input.then(|| solver.range(DriverId(index), &RANGE))
+            is_input.then(|| solver.range(DriverId(index), &settings))
         })
         .collect();
     let home = solver.pose().clone();

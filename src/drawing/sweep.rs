@@ -8,6 +8,8 @@ use crate::mechanism::Motion;
 
 /// Poses along a whole motion: curves look smooth.
 const STEPS: usize = 240;
+/// Most bodies in all poses of a turn; a large mechanism has fewer poses.
+const MOST_PLACED: usize = 240_000;
 /// Most turns of the driver that are tried to bring the mechanism back; otherwise one is shown.
 const MOST_TURNS: usize = 8;
 /// Greatest distance from the start that counts as back, as a part of the longest way of a body,
@@ -36,32 +38,38 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
         .drivers
         .iter()
         .position(|driver| driver.coordinate.kind.is_angle());
+    let fewer = MOST_PLACED / mechanism.bodies.len().max(1);
+    let steps = fewer.clamp(STEPS / 10, STEPS);
+    let most_turns = (fewer / STEPS).clamp(1, MOST_TURNS);
     let mut poses = vec![home.q.clone()];
     if moves {
         let duration = (mechanism.simulation.stop - home.time).max(0.0);
-        path.duration = duration / STEPS as f64;
-        for _ in 0..STEPS {
+        path.duration = duration / steps as f64;
+        for _ in 0..steps {
             path.start = solver.pose().time;
             if !advance(solver, &path, &mut poses) {
                 break;
             }
         }
     } else if let Some(crank) = crank {
-        if turn(solver, &mut path, crank, TAU, &mut poses) {
-            for _ in 1..MOST_TURNS {
-                if is_back(&poses) || !turn(solver, &mut path, crank, TAU, &mut poses) {
+        let mut turn = |solver: &mut Solver, by: f64, poses: &mut Vec<Vec<f64>>| {
+            turn(solver, &mut path, crank, [by, steps as f64], poses)
+        };
+        if turn(solver, TAU, &mut poses) {
+            for _ in 1..most_turns {
+                if is_back(&poses) || !turn(solver, TAU, &mut poses) {
                     break;
                 }
             }
             if !is_back(&poses) {
-                poses.truncate(STEPS + 1);
+                poses.truncate(steps + 1);
             }
             solver.restore(&home);
             return poses;
         }
         solver.restore(&home);
         let mut back = Vec::new();
-        turn(solver, &mut path, crank, -TAU, &mut back);
+        turn(solver, -TAU, &mut back);
         back.reverse();
         back.append(&mut poses);
         poses = back;
@@ -90,16 +98,16 @@ fn is_back(poses: &[Vec<f64>]) -> bool {
     })
 }
 
-/// Turns a driver by an angle; false if the motion is blocked before.
+/// Turns a driver by an angle, in so many steps; false if the motion is blocked before.
 fn turn(
     solver: &mut Solver,
     path: &mut Path,
     driver: usize,
-    by: f64,
+    [by, steps]: [f64; 2],
     poses: &mut Vec<Vec<f64>>,
 ) -> bool {
-    let step = by / STEPS as f64;
-    (0..STEPS).all(|_| {
+    let step = by / steps;
+    (0..steps as usize).all(|_| {
         let value = solver.pose().drivers[driver];
         path.curves[driver] = Curve::Input {
             position: value + step,

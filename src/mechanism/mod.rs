@@ -47,7 +47,7 @@ pub(crate) use names::help;
 pub use names::is_identifier;
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::Parameter;
-pub use profile::{Profile, ProfileAlong, ProfileError, ProfileInForce};
+pub use profile::{Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce};
 pub use source::{Position, Source, Span};
 pub use spline::{Ends, Spline};
 #[cfg(feature = "cli")]

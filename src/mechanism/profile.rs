@@ -85,6 +85,28 @@ pub struct ProfileInForce {
     used: Vec<ParameterId>,
     /// Whether the parameters make a contour.
     valid: bool,
+    /// Continuity where pieces of the contour meet.
+    joint: Joint,
+}
+
+/// Continuity of a contour where pieces of it meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Joint {
+    /// Not examined, or the slope jumps.
+    Kink,
+    /// The slope is continuous, the second derivative jumps.
+    Slope,
+    /// The second derivative is continuous.
+    Curvature,
+}
+
+/// Bounds of a contour over a range of polar angles.
+#[derive(Clone, Copy, Debug)]
+pub struct ProfileBounds {
+    /// R and its first three derivatives; at single angles the third one may not exist.
+    pub radius: Jet3<Interval>,
+    /// Whether the second derivative may jump in the range.
+    pub jumps: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -125,6 +147,7 @@ impl ProfileInForce {
             parameters: vec![0.0; parameters],
             used: profile.parameters().collect(),
             valid: false,
+            joint: Joint::Kink,
         }
     }
 
@@ -157,6 +180,12 @@ impl ProfileInForce {
             spline.fit();
         }
         self.check()?;
+        self.joint = Joint::Kink;
+        if let Curve::Expression(expression) = &self.curve
+            && expression.has_pieces()
+        {
+            self.joint = self.examine_joints();
+        }
         self.valid = true;
         Ok(())
     }
@@ -199,34 +228,71 @@ impl ProfileInForce {
     ///
     /// The first corner.
     pub fn check_smoothness(&self) -> Result<(), ProfileError> {
-        let mut looks = MOST_LOOKS;
-        let sixteenth = TAU / 16.0;
-        for part in 0..16 {
-            let low = f64::from(part) * sixteenth;
-            self.find_corner(low, low + sixteenth, &mut looks)?;
-        }
-        Ok(())
+        self.visit_seams(|[low, high]| {
+            let (before, after) = (self.radius(low), self.radius(high));
+            let jump = CORNER_JUMP * before.value;
+            let smooth = (before.value - after.value).abs() <= jump
+                && (before.first() - after.first()).abs() <= jump;
+            if smooth {
+                Ok(())
+            } else {
+                let theta = low.midpoint(high);
+                Err(ProfileError::Corner { theta })
+            }
+        })
     }
 
-    fn find_corner(&self, low: f64, high: f64, looks: &mut u32) -> Result<(), ProfileError> {
-        let middle = low.midpoint(high);
-        if self.bounds(middle, 0.5 * (high - low)).is_some() {
-            return Ok(());
-        }
-        *looks = looks.saturating_sub(1);
-        if high - low > CORNER_WIDTH && *looks > 0 {
-            self.find_corner(low, middle, looks)?;
-            return self.find_corner(middle, high, looks);
-        }
-        let (before, after) = (self.radius(low), self.radius(high));
-        let jump = CORNER_JUMP * before.value;
-        let smooth = (before.value - after.value).abs() <= jump
-            && (before.first() - after.first()).abs() <= jump;
-        if smooth {
+    /// Returns the continuity where pieces meet: each derivative changes across a seam by no more
+    /// than the next one, on both sides, makes it.
+    fn examine_joints(&self) -> Joint {
+        let mut joint = Joint::Curvature;
+        let visited = self.visit_seams(|[low, high]| {
+            let width = high - low;
+            if width > CORNER_WIDTH {
+                return Err(());
+            }
+            let ends = [low, high].map(|theta| self.radius(theta));
+            let [before, after] = ends;
+            let continuous = |order: fn(&Jet3) -> f64, next: fn(&Jet3) -> f64| {
+                let change = (order(&before) - order(&after)).abs();
+                let slope = ends.iter().map(|end| next(end).abs()).sum::<f64>();
+                change <= 2.0 * width * slope + SEAM * before.value
+            };
+            let slope =
+                continuous(|r| r.value, |r| r.first()) && continuous(|r| r.first(), |r| r.second());
+            if !slope {
+                return Err(());
+            }
+            if !continuous(|r| r.second(), |r| r.third()) {
+                joint = Joint::Slope;
+            }
             Ok(())
-        } else {
-            Err(ProfileError::Corner { theta: middle })
+        });
+        visited.map_or(Joint::Kink, |()| joint)
+    }
+
+    /// Visits the narrow ranges in which the contour cannot be shown to be smooth.
+    fn visit_seams<E>(&self, mut visit: impl FnMut([f64; 2]) -> Result<(), E>) -> Result<(), E> {
+        let mut looks = MOST_LOOKS;
+        let sixteenth = TAU / 16.0;
+        // Ranges still to be divided, the last one first.
+        let mut open: Vec<[f64; 2]> = (0..16)
+            .rev()
+            .map(|part| [part, part + 1].map(|k| f64::from(k) * sixteenth))
+            .collect();
+        while let Some([low, high]) = open.pop() {
+            let middle = low.midpoint(high);
+            if self.smooth_bounds(middle, 0.5 * (high - low)).is_some() {
+                continue;
+            }
+            looks = looks.saturating_sub(1);
+            if high - low > CORNER_WIDTH && looks > 0 {
+                open.extend([[middle, high], [low, middle]]);
+            } else {
+                visit([low, high])?;
+            }
         }
+        Ok(())
     }
 
     /// Returns R and its first three derivatives at a polar angle, of any number of turns.
@@ -250,24 +316,33 @@ impl ProfileInForce {
     }
 
     /// Returns bounds of R and its first three derivatives for polar angles up to `reach` from
-    /// `theta`; `None` if the contour is not smooth there. Allocates nothing.
+    /// `theta`; `None` if the slope may jump there, or the radius. Allocates nothing.
     #[must_use]
-    pub fn bounds(&self, theta: f64, reach: f64) -> Option<Jet3<Interval>> {
+    pub fn bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
+        if let Some(radius) = self.smooth_bounds(theta, reach) {
+            let jumps = false;
+            return Some(ProfileBounds { radius, jumps });
+        }
+        let Curve::Expression(expression) = &self.curve else {
+            return None;
+        };
+        if self.joint == Joint::Kink {
+            return None;
+        }
+        let enclose =
+            |range: Interval| expression.enclose_pieces(&|p| self.parameters[p.index()], range);
+        Some(ProfileBounds {
+            radius: over_turn(theta, reach, enclose)?,
+            jumps: self.joint == Joint::Slope,
+        })
+    }
+
+    /// Returns bounds where the contour is three times differentiable in the whole range.
+    fn smooth_bounds(&self, theta: f64, reach: f64) -> Option<Jet3<Interval>> {
         match &self.curve {
-            Curve::Expression(expression) => {
-                let enclose = |low: f64, high: f64| {
-                    expression.enclose(&|p| self.parameters[p.index()], Interval::new(low, high))
-                };
-                if 2.0 * reach >= TAU {
-                    return enclose(0.0, TAU);
-                }
-                let low = (theta - reach).rem_euclid(TAU);
-                let high = low + 2.0 * reach;
-                if high <= TAU {
-                    return enclose(low, high);
-                }
-                Some(enclose(low, TAU)?.hull(enclose(0.0, high - TAU)?))
-            }
+            Curve::Expression(expression) => over_turn(theta, reach, |range| {
+                expression.enclose(&|p| self.parameters[p.index()], range)
+            }),
             Curve::Spline { spline, .. } => Some(spline_bounds(spline, theta, reach)),
         }
     }
@@ -287,6 +362,24 @@ impl ProfileInForce {
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
             .map_or(0.0, |(theta, _)| theta)
     }
+}
+
+/// Returns bounds for polar angles up to `reach` from `theta` by those of ranges within one turn.
+fn over_turn(
+    theta: f64,
+    reach: f64,
+    enclose: impl Fn(Interval) -> Option<Jet3<Interval>>,
+) -> Option<Jet3<Interval>> {
+    if 2.0 * reach >= TAU {
+        return enclose(Interval::new(0.0, TAU));
+    }
+    let low = (theta - reach).rem_euclid(TAU);
+    let high = low + 2.0 * reach;
+    if high <= TAU {
+        return enclose(Interval::new(low, high));
+    }
+    let [before, after] = [Interval::new(low, TAU), Interval::new(0.0, high - TAU)];
+    Some(enclose(before)?.hull(enclose(after)?))
 }
 
 /// Profile whose parameters change along a direction.
@@ -440,7 +533,7 @@ mod tests {
             let points: Vec<_> =
                 radii.iter().enumerate().map(|(k, r)| (0.7 + step * k as f64, *r)).collect();
             let profile = table(&points).expect("it makes a contour");
-            let bounds = profile.bounds(theta, reach).expect("a spline is smooth");
+            let bounds = profile.bounds(theta, reach).expect("a spline is smooth").radius;
             for part in parts {
                 let values = profile.radius(theta + part * reach);
                 let pairs = [

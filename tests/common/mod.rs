@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Sink, Status};
 use biela::kinematics::{Curve, Path, Rates, Solver};
-use biela::mechanism::{Jet, Mechanism, Source, Variable};
+use biela::mechanism::{Expression, Jet, Mechanism, Source, Variable};
 
 pub(crate) type Instance = biela::fmi::Instance<MechanismModel>;
 pub(crate) type FmuState = biela::fmi::FmuState<MechanismState>;
@@ -263,4 +263,25 @@ impl Errors {
     pub(crate) fn relative(&self) -> [f64; 3] {
         [0, 1, 2].map(|order| self.error[order] / self.magnitude[order])
     }
+}
+
+/// The mechanism with ground turned by `turn` and moved to `to`.
+pub(crate) fn moved(mechanism: &Mechanism, turn: f64, to: [f64; 2]) -> Arc<Mechanism> {
+    let mut moved = mechanism.clone();
+    let parameters = mechanism.default_parameters();
+    let value = |e: &Expression| e.evaluate(&|p| parameters[p.index()], 0.0_f64);
+    let place = |[x, y]: [f64; 2]| {
+        let (sin, cos) = turn.sin_cos();
+        [cos * x - sin * y + to[0], sin * x + cos * y + to[1]].map(Expression::constant)
+    };
+    for marker in moved.markers.iter_mut().filter(|m| m.body.is_none()) {
+        marker.position = place(marker.position.each_ref().map(value));
+        marker.angle = Expression::constant(value(&marker.angle) + turn);
+    }
+    for body in &mut moved.bodies {
+        let [x, y, phi] = body.estimate.each_ref().map(value);
+        let [x, y] = place([x, y]);
+        body.estimate = [x, y, Expression::constant(phi + turn)];
+    }
+    Arc::new(moved)
 }

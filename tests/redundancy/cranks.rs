@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use biela::kinematics::{End, RangeSettings, SingularKind};
 use biela::mechanism::DriverId;
 
-use crate::common::{assembled, parse, straight_to};
+use crate::common::{assembled, moved, parse, straight_to};
 use crate::mechanisms::{angle_driver, body, double, file, joint, parallelogram};
 
 /// Cranks that all turn alike, their pins not in one line: regular at every angle, the flat ones
@@ -63,25 +63,35 @@ fn cranks_in_line_cross_their_change_points() {
         &[[0.8, 0.0]],
         &[[0.1, 0.0], [0.3, 0.0]],
     ] {
-        let mechanism = parse(&parallelogram(more, 60.0, true));
-        let turning = mechanism.bodies.iter().enumerate();
-        let turning: Vec<_> = turning
-            .filter(|(_, body)| body.name != "coupler")
-            .map(|(place, _)| 3 * place + 2)
-            .collect();
-        for steps in [7, 30] {
-            let (mut solver, mut path) = assembled(&mechanism);
-            for step in 1..=2 * steps {
-                let angle = TAU / 6.0 + TAU * f64::from(step) / f64::from(steps);
-                straight_to(&solver, &mut path, angle);
-                solver
-                    .track(&path)
-                    .unwrap_or_else(|blocked| panic!("{more:?}, {step} of {steps}: {blocked:?}"));
-                for &phi in &turning {
-                    // As what is interpolated next to a change point.
-                    let off = solver.pose().q[phi] - angle;
-                    assert!(off.abs() < 1e-9, "{more:?}, {step} of {steps}: {off:e}");
-                }
+        for tilt in [0.0, 0.3, 1.1, -2.0] {
+            cross_change_points(more, tilt);
+        }
+    }
+}
+
+/// Turns cranks in line, on ground that is tilted, through their change points.
+fn cross_change_points(more: &[[f64; 2]], tilt: f64) {
+    let mechanism = moved(&parse(&parallelogram(more, 60.0, true)), tilt, [0.0; 2]);
+    let turning = mechanism.bodies.iter().enumerate();
+    let turning: Vec<_> = turning
+        .filter(|(_, body)| body.name != "coupler")
+        .map(|(place, _)| 3 * place + 2)
+        .collect();
+    for steps in [7, 30] {
+        let (mut solver, mut path) = assembled(&mechanism);
+        for step in 1..=2 * steps {
+            let angle = TAU / 6.0 + TAU * f64::from(step) / f64::from(steps);
+            straight_to(&solver, &mut path, angle);
+            solver.track(&path).unwrap_or_else(|blocked| {
+                panic!("{more:?} at {tilt}, {step} of {steps}: {blocked:?}")
+            });
+            for &phi in &turning {
+                // As what is interpolated next to a change point.
+                let off = solver.pose().q[phi] - tilt - angle;
+                assert!(
+                    off.abs() < 1e-9,
+                    "{more:?} at {tilt}, {step} of {steps}: {off:e}"
+                );
             }
         }
     }

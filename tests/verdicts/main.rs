@@ -8,6 +8,7 @@ mod common;
 mod cams;
 mod closing;
 mod impossible;
+mod invariance;
 mod mechanisms;
 mod refused;
 mod singular;

@@ -298,7 +298,8 @@ fn ranges_below_zero(
         .collect();
     while let Some([from, to]) = open.pop() {
         let middle = from.midpoint(to);
-        let sign = profile.bounds(middle, 0.5 * (to - from)).map(&function);
+        let bounds = profile.bounds(middle, 0.5 * (to - from));
+        let sign = bounds.map(|bounds| function(bounds.radius));
         match sign {
             Some(sign) if sign.low > 0.0 => {}
             Some(sign) if sign.high < 0.0 => match ranges.last_mut() {

@@ -24,7 +24,7 @@ use crate::kinematics::configuration::Configuration;
 use crate::kinematics::linear::{Condition, Factors, Lu, nan_or_larger};
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::kinematics::system::{System, Targets};
-use crate::mechanism::Jet;
+use crate::mechanism::{Jet, MarkerId};
 
 pub(super) use equations::column_owners;
 
@@ -41,6 +41,11 @@ pub(in crate::kinematics) struct CoupledBlock {
     test: Box<ContractionTest>,
     certified_box: CertifiedBox,
     segment: CheckedSegment,
+    /// The markers of its bodies.
+    markers: Vec<MarkerId>,
+    /// Largest distance of these from the origins of the bodies, as a part of the mechanism's size:
+    /// an angle moves points by as much.
+    length: f64,
 }
 
 impl CoupledBlock {
@@ -55,6 +60,13 @@ impl CoupledBlock {
         let test = Box::new(ContractionTest::new(system, &order, &lu, owners, index));
         let EliminationOrder { rows, columns, .. } = order;
         let order = rows.len();
+        let bodies = &system.mechanism().bodies;
+        let mut own: Vec<_> = columns
+            .iter()
+            .filter_map(|column| bodies.get(column / 3))
+            .collect();
+        own.dedup_by_key(|body| &body.name);
+        let markers = own.iter().flat_map(|body| &body.markers).copied().collect();
         Self {
             equations: BlockEquations::new(index, rows, columns, Arc::clone(owners)),
             jacobian: Jacobian::new(lu),
@@ -65,6 +77,8 @@ impl CoupledBlock {
             certified_box: CertifiedBox::new(order + test.known.len()),
             segment: CheckedSegment::new(order, test.known.len()),
             test,
+            markers,
+            length: 1.0,
         }
     }
 
@@ -126,8 +140,15 @@ impl SolveBlock for CoupledBlock {
         &self.equations.columns
     }
 
-    fn set_parameters(&mut self, _at: &Configuration, _targets: &Targets, _pivots: &mut Pivots) {
+    fn set_parameters(&mut self, at: &Configuration, _targets: &Targets, _pivots: &mut Pivots) {
         self.forget_proofs();
+        let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());
+        let longest = arms.fold(0.0, f64::max);
+        self.length = if longest > 0.0 {
+            (longest / at.size()).min(1.0)
+        } else {
+            1.0
+        };
     }
 
     fn step(

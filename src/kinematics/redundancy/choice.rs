@@ -1,5 +1,6 @@
 //! The choice of the rows that are solved.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use super::closure::close_on_all;
@@ -29,6 +30,9 @@ const LESS_FIT: f64 = 0.1;
 const FITTER: f64 = 0.1;
 /// Rows are changed for others if this much more is left of the weakest one.
 const WORTH: f64 = 4.0;
+/// Next to a change point the rows of the first pose are used if their weakest one is no smaller
+/// part of that of the best choice: there all choices lose rank alike.
+const COMPARABLE: f64 = 0.05;
 
 /// A joint or constraint with equations that follow from the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -79,10 +83,14 @@ pub(in crate::kinematics) fn redundancies(model: &Model) -> Vec<Redundancy> {
             _ => found.push((element, 1)),
         }
     }
+    let mut rows: BTreeMap<Element, usize> = BTreeMap::new();
+    for equation in equations {
+        *rows.entry(equation.element).or_default() += 1;
+    }
     let describe = |(element, redundant): (Element, usize)| Redundancy {
         element: element.describe(model.system.mechanism()),
         redundant,
-        equations: equations.iter().filter(|e| e.element == element).count(),
+        equations: rows[&element],
     };
     found.into_iter().map(describe).collect()
 }
@@ -239,6 +247,16 @@ fn fitter_rows(model: &Model, state: &State) -> Option<Choice> {
         return None;
     }
     let choice = choose_here(model, state, FITTER);
+    if choice.weakest < FIT {
+        let first = &model.redundant.first;
+        if weakest_without(model, state, first) > COMPARABLE * choice.weakest {
+            // A change point is crossed on the rows of the first pose.
+            return (now != first).then(|| Choice {
+                set_aside: first.clone(),
+                ..choice
+            });
+        }
+    }
     if choice.set_aside.len() != now.len() || choice.set_aside == *now {
         return None;
     }

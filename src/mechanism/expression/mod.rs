@@ -11,6 +11,7 @@ mod display;
 mod error;
 mod function;
 mod parse;
+mod pieces;
 mod polar;
 mod token;
 
@@ -186,6 +187,20 @@ impl Expression {
     ) -> Option<Jet3<Interval>> {
         let parameter = |id| Jet3::constant(parameter(id));
         number::enclose(|variable| self.evaluate(&parameter, variable), variable)
+    }
+
+    /// Whether it is made of pieces: it has a kink or a jump where it switches from one to the
+    /// next, unless they join smoothly.
+    #[must_use]
+    pub fn has_pieces(&self) -> bool {
+        use Operation::{Binary as Two, Unary as One};
+        self.program.iter().any(|operation| {
+            matches!(
+                operation,
+                One(Unary::Abs | Unary::Sign | Unary::Floor | Unary::Ceil)
+                    | Two(Binary::Mod | Binary::Min | Binary::Max)
+            )
+        })
     }
 
     /// Returns the parameters that it uses, ascending, each once.

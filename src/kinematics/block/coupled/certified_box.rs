@@ -29,7 +29,7 @@ const WORTH_A_BOX: f64 = 0.05;
 const GOOD_CONTRACTION: f64 = 0.25;
 /// Largest h of a box.
 const LARGEST_CONTRACTION: f64 = 0.4;
-/// Largest width, in radians and characteristic lengths.
+/// Largest width, in radians and lengths of the block.
 const LARGEST_WIDTH: f64 = 0.2;
 /// Ratio of the least width to the largest.
 const LEAST_PART: f64 = 0.25;
@@ -135,7 +135,7 @@ impl CoupledBlock {
             .chain(&self.test.known)
             .map(|&column| {
                 let moved = (state.at.coordinate(column) - step.from[column]).abs();
-                moved / state.system.column_scale(column, size)
+                moved / state.system.column_scale(column, self.length * size)
             })
             .fold(0.0, f64::max);
         // Also a block at rest gets a box.
@@ -167,11 +167,12 @@ impl CoupledBlock {
         largest: f64,
         width: f64,
     ) -> bool {
-        let area = &mut self.certified_box;
         let bounds = &mut *step.bounds;
         let size = state.at.size();
-        let scale = |column: usize| state.system.column_scale(column, size);
         let all = || self.equations.columns.iter().chain(&self.test.known);
+        let length = self.length * size;
+        let scale = |column: usize| state.system.column_scale(column, length);
+        let area = &mut self.certified_box;
         for (k, &column) in all().enumerate() {
             let end = state.at.coordinate(column);
             let moved = (end - step.from[column]).abs() / scale(column);

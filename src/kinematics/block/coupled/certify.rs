@@ -83,13 +83,14 @@ impl CoupledBlock {
         };
         self.test.return_to_ends(state);
         self.clear_region(step);
-        let squared = |contraction: f64| (contraction / GOOD_CONTRACTION).powi(2);
+        // Chord and radii grow together: K grows rather with the square of the sub-step.
+        let step_ratio = |contraction: f64| contraction / GOOD_CONTRACTION;
         let contraction = match tried {
             Ok(contraction) => contraction,
             Err(None) => return Err(step.bounds.reject()),
             Err(Some(contraction)) => {
                 // Above one in any case.
-                let refused = step.bounds.require(squared(contraction).max(1.5));
+                let refused = step.bounds.require(step_ratio(contraction).max(1.5));
                 debug_assert!(refused.is_err());
                 return Err(Rejected);
             }
@@ -102,7 +103,7 @@ impl CoupledBlock {
                 self.make_box(state, step, contraction);
             }
         }
-        step.bounds.require(squared(contraction).min(1.0))
+        step.bounds.require(step_ratio(contraction).min(1.0))
     }
 
     /// Clears the region and the chord in the work space.
@@ -114,21 +115,22 @@ impl CoupledBlock {
     }
 
     /// Writes the chord and the radii of known unknowns, and goes to the middle. Returns the first
-    /// trial radius, scaled.
+    /// trial radius, in radians and lengths of the block.
     pub(super) fn lay_chord(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) -> f64 {
         let size = state.at.size();
+        let own = |column: usize| state.system.column_scale(column, self.length * size);
         let (mut largest, mut uncertain) = (0.0_f64, 0.0_f64);
         let known = self.test.known.iter().zip(&mut self.test.known_radii);
         for (&column, radius) in known {
-            let scale = state.system.column_scale(column, size);
-            *radius = step.deviation(column) / scale;
-            uncertain = uncertain.max(*radius);
+            let deviation = step.deviation(column);
+            *radius = deviation / state.system.column_scale(column, size);
+            uncertain = uncertain.max(deviation / own(column));
         }
         for &column in self.equations.columns.iter().chain(&self.test.known) {
             let end = state.at.coordinate(column);
             let chord = end - step.from[column];
             step.bounds.chord[column] = chord;
-            largest = largest.max(chord.abs() / state.system.column_scale(column, size));
+            largest = largest.max(chord.abs() / own(column));
         }
         self.move_to_chord(state, step, 0.5);
         FIRST_RADIUS * largest + 2.0 * uncertain + f64::EPSILON
@@ -154,7 +156,11 @@ impl CoupledBlock {
         step: &mut Step<'_>,
     ) -> Result<f64, Option<f64>> {
         let first = self.lay_chord(state, step);
-        self.test.radii.fill(first);
+        let columns = self.equations.columns.iter();
+        for (radius, &column) in self.test.radii.iter_mut().zip(columns) {
+            // The scale of an unknown in the block as a part of that in the mechanism.
+            *radius = first * state.system.column_scale(column, self.length);
+        }
         self.factorise_middle(state).map_err(|Rejected| None)?;
         let mut last = None;
         for _ in 0..MOST_TRIES {

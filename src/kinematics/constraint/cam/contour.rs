@@ -10,7 +10,9 @@ use crate::kinematics::configuration::{
 use crate::kinematics::variation::{
     VariedConfiguration, VariedMarker, VariedVector, quarter_turn, rotate,
 };
-use crate::mechanism::{MarkerId, Mechanism, Number, ProfileInForce};
+use crate::mechanism::{
+    Interval, Jet3, MarkerId, Mechanism, Number, ProfileBounds, ProfileInForce,
+};
 
 /// A cam's contour with a contact on it.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +51,8 @@ pub(super) struct ContourBounds {
     pub(super) arm: f64,
     /// Bound of the turn of the tangent \[rad\].
     pub(super) tangent: f64,
+    /// Bound of the jumps in the first derivative of the tangent's direction.
+    pub(super) turn_jump: f64,
 }
 
 /// The motion of the contact for given rates and q̈ = 0.
@@ -127,11 +131,12 @@ impl Contour {
     pub(super) fn bounds(&self, at: &Configuration, region: &Region<'_>) -> Option<ContourBounds> {
         let theta = at.joint_unknown(self.contact);
         let slide = region.radii[self.column(at)];
-        let radius = at.profile(self.profile).bounds(theta, slide)?;
+        let ProfileBounds { radius, jumps } = at.profile(self.profile).bounds(theta, slide)?;
         let lowest = radius.value.low;
         if lowest <= 0.0 {
             return None;
         }
+        let turn_jump = if jumps { turn_change(radius) } else { 0.0 };
         let (r1, r2, r3) = (
             radius.first().magnitude(),
             radius.second().magnitude(),
@@ -153,6 +158,7 @@ impl Contour {
             slide,
             arm: radius * region.sway(cam) + v * slide,
             tangent: region.turn(cam) + turn * slide,
+            turn_jump,
         })
     }
 
@@ -168,6 +174,15 @@ impl Contour {
         incidence.direction(mechanism, self.cam);
         incidence.joint_unknown(mechanism, self.contact);
     }
+}
+
+/// Returns the width of the range of the first derivative of the tangent's direction,
+/// (R² + 2R′² − R R″)/(R² + R′²).
+fn turn_change(radius: Jet3<Interval>) -> f64 {
+    let (r, r1, r2) = (radius.value, radius.first(), radius.second());
+    let (r_square, r1_square) = (r.square(), r1.square());
+    let turn = (r_square + r1_square * 2.0 - r * r2) / (r_square + r1_square);
+    turn.high - turn.low
 }
 
 impl Shape {

@@ -95,11 +95,14 @@ impl Constraint for FlatContact {
         row.add_direction(cam, cosine);
         row.add_direction(follower, cosine);
         let column = self.contour.column(at);
-        let turn = contact.turn[0].abs() * cosine + bounds.turn[1] * bounds.slide;
+        let turn =
+            contact.turn[0].abs() * cosine + bounds.turn[1] * bounds.slide + bounds.turn_jump;
         row.add_joint_unknown(column, turn);
         let [_, _, rate, bend] = bounds.motion(angular_velocity(cam, v), v[column]);
         let rate = rate + angular_velocity(follower, v).abs();
-        Some(bend + rate * rate)
+        // A jump of the slope bends a chord as much as twice its size in second derivatives.
+        let jump = 2.0 * bounds.turn_jump * v[column].abs();
+        Some(bend + rate * rate + jump)
     }
 
     fn has_contour(&self) -> bool {

@@ -130,7 +130,7 @@ impl Constraint for KnifeEdge {
         let least = polar.distance - reach;
         let swung = (reach / polar.distance).asin();
         let off = swung + region.turn(cam);
-        let radius = at.profile(self.profile).bounds(polar.angle, off)?;
+        let radius = at.profile(self.profile).bounds(polar.angle, off)?.radius;
         let (r1, r2) = (radius.first().magnitude(), radius.second().magnitude());
 
         let steepness = polar.steepness().abs();

@@ -154,7 +154,7 @@ impl Constraint for Roller {
         row.add_direction(cam, e_change + arm_change);
         let furthest = e.norm() + moved;
         let along = bounds.speed[1] * bounds.slide
-            + bounds.turn[1] * bounds.slide * furthest
+            + (bounds.turn[1] * bounds.slide + bounds.turn_jump) * furthest
             + contact.turn[0].abs() * e_change;
         row.add_joint_unknown(self.contour.column(at), along);
 
@@ -163,7 +163,9 @@ impl Constraint for Roller {
             bounds.motion(omega, v[self.contour.column(at)]);
         let speed = speed_bound(cam, follower, v) + arm_speed;
         let bend = centripetal_bound(cam, follower, v) + arm_bend;
-        Some(bend + 2.0 * turn * speed + (turn_rate + turn * turn) * furthest)
+        // A jump of the slope bends a chord as much as twice its size in second derivatives.
+        let jump = 2.0 * bounds.turn_jump * v[self.contour.column(at)].abs();
+        Some(bend + 2.0 * turn * speed + (turn_rate + turn * turn + jump) * furthest)
     }
 
     fn has_contour(&self) -> bool {

@@ -1,0 +1,179 @@
+//! Transformations of a mechanism that change nothing: moved, turned, with an unrelated mechanism
+//! beside it.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use biela::kinematics::{Curve, Path, Solver};
+use biela::mechanism::{JointKind, Mechanism, Source};
+
+use crate::common::{assembled, moved, stems};
+
+/// A mechanism file as shipped.
+fn text(name: &str) -> String {
+    let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).expect("shipped mechanisms can be read")
+}
+
+/// A run of the first driver that is an input: over a turn, or over a tenth of its value.
+struct Run {
+    /// The pose after each step that succeeded.
+    poses: Vec<Vec<f64>>,
+    /// The driver's value at the end.
+    reached: f64,
+    substeps: Vec<u32>,
+}
+
+/// Number of steps of a run.
+const STEPS: usize = 24;
+
+fn run(mechanism: &Arc<Mechanism>) -> Option<Run> {
+    let input = |driver: &biela::mechanism::Driver| driver.motion().is_none();
+    let driver = mechanism.drivers.iter().position(input)?;
+    let (mut solver, mut path) = assembled(mechanism);
+    let start = solver.pose().drivers[driver];
+    let way = if mechanism.drivers[driver].coordinate.kind.is_angle() {
+        TAU
+    } else {
+        0.1 * start
+    };
+    let mut run = Run {
+        poses: vec![solver.pose().q.clone()],
+        reached: start,
+        substeps: Vec::new(),
+    };
+    for step in 1..=STEPS {
+        let to = start + way * step as f64 / STEPS as f64;
+        hold(&solver, &mut path);
+        path.curves[driver] = Curve::Input {
+            position: to,
+            velocity: 0.0,
+            acceleration: 0.0,
+            jump: solver.pose().drivers[driver] - to,
+        };
+        let tracked = solver.track(&path);
+        run.reached = solver.pose().drivers[driver];
+        match tracked {
+            Ok(progress) => run.substeps.push(progress.substeps),
+            Err(_) => break,
+        }
+        run.poses.push(solver.pose().q.clone());
+    }
+    Some(run)
+}
+
+/// Lets all drivers stay where they are.
+fn hold(solver: &Solver, path: &mut Path) {
+    path.start = solver.pose().time;
+    path.from.clone_from(&solver.pose().parameters);
+    path.to.clone_from(&solver.pose().parameters);
+    for (curve, value) in path.curves.iter_mut().zip(&solver.pose().drivers) {
+        if let Curve::Input { .. } = curve {
+            *curve = Curve::Input {
+                position: *value,
+                velocity: 0.0,
+                acceleration: 0.0,
+                jump: 0.0,
+            };
+        }
+    }
+}
+
+/// Expects the same verdict, the same branch and the same effort: as many steps, poses that
+/// `places` makes of the others, and sub-steps within a factor of two.
+fn expect_alike(name: &str, here: &Run, there: &Run, places: impl Fn(&[f64]) -> Vec<f64>) {
+    assert_eq!(here.poses.len(), there.poses.len(), "{name}");
+    // Dead points are located to the square root of the rounding of what is near them.
+    assert!((here.reached - there.reached).abs() < 1e-6, "{name}");
+    for (step, (q, other)) in here.poses.iter().zip(&there.poses).enumerate() {
+        for (k, (expected, found)) in places(q).iter().zip(other).enumerate() {
+            // Next to change points outputs are interpolated, to 1e-9.
+            assert!(
+                (expected - found).abs() < 1e-8,
+                "{name}, step {step}, unknown {k}: {expected} {found}"
+            );
+        }
+    }
+    for (step, (a, b)) in here.substeps.iter().zip(&there.substeps).enumerate() {
+        let [fewer, more] = [a.min(b), a.max(b)];
+        assert!(
+            *more <= 2 * fewer + 1,
+            "{name}, step {step}: {a} and {b} sub-steps"
+        );
+    }
+}
+
+#[test]
+fn a_moved_and_turned_mechanism_moves_alike() {
+    for name in stems("mechanisms", "toml") {
+        let mechanism = crate::common::shipped(&name);
+        // Wheels on ground count their angles from ground itself, which cannot be turned.
+        let on_ground = |joint: &biela::mechanism::Joint| {
+            matches!(
+                joint.kind,
+                JointKind::Gear { carrier: None, .. } | JointKind::Belt { carrier: None, .. }
+            )
+        };
+        if mechanism.joints.iter().any(on_ground) {
+            continue;
+        }
+        let Some(here) = run(&mechanism) else {
+            continue;
+        };
+        let bodies = 3 * mechanism.bodies.len();
+        for (turn, to) in [(0.3, [0.0, 0.0]), (2.0, [0.7, -1.1])] {
+            let there = run(&moved(&mechanism, turn, to)).expect("it has the same drivers");
+            let (sin, cos) = f64::sin_cos(turn);
+            expect_alike(&name, &here, &there, |q| {
+                let mut q = q.to_vec();
+                for body in q[..bodies].chunks_exact_mut(3) {
+                    let (x, y) = (body[0], body[1]);
+                    body[0] = cos * x - sin * y + to[0];
+                    body[1] = sin * x + cos * y + to[1];
+                    body[2] += turn;
+                }
+                q
+            });
+        }
+    }
+}
+
+#[test]
+fn an_unrelated_mechanism_beside_it_changes_nothing() {
+    for name in stems("mechanisms", "toml") {
+        let mechanism = crate::common::shipped(&name);
+        // Files of tables are found beside the mechanism file only.
+        if !mechanism.table_files.is_empty() {
+            continue;
+        }
+        let Some(here) = run(&mechanism) else {
+            continue;
+        };
+        // Declared last, so that the unknowns before keep their places.
+        let beside = text(&name).replacen(
+            "[ground.markers]",
+            "[ground.markers]\nunrelated = [0.1, 0.2]",
+            1,
+        ) + "\n[bodies.unrelated_arm]\nmarkers = { O = [0, 0], P = [0.1, 0] }\n\
+            [joints.unrelated_pin]\ntype = \"revolute\"\n\
+            markers = [\"ground.unrelated\", \"unrelated_arm.O\"]\n\
+            [drivers.unrelated_turn]\ncoordinate = \"angle\"\n\
+            markers = [\"ground.unrelated\", \"unrelated_arm.O\"]\nstart = 0.5\n";
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/mechanisms");
+        let source = Source::new(format!("{folder}/{name}.toml"), beside);
+        let Ok((beside, _)) = Mechanism::parse(&source) else {
+            panic!("{name} with an unrelated arm");
+        };
+        let there = run(&Arc::new(beside)).expect("it has the same drivers");
+        let bodies = 3 * mechanism.bodies.len();
+        let without = |run: Run| Run {
+            poses: run
+                .poses
+                .iter()
+                .map(|q| [&q[..bodies], &q[bodies + 3..]].concat())
+                .collect(),
+            ..run
+        };
+        expect_alike(&name, &here, &without(there), <[f64]>::to_vec);
+    }
+}
