@@ -46,7 +46,7 @@ macro_rules! template {
 }
 
 /// The mechanisms that come with biela.
-static TEMPLATES: [Template; 36] = [
+static TEMPLATES: [Template; 39] = [
     template!("andrews"),
     template!("cam_flat"),
     template!("cam_flat_arm"),
@@ -58,11 +58,13 @@ static TEMPLATES: [Template; 36] = [
     template!("double_rocker"),
     template!("drag_link"),
     template!("elliptic_trammel"),
+    template!("engine"),
     template!("excavator_arm"),
     template!("five_bar_robot"),
     template!("four_bar"),
     template!("geared_five_bar"),
     template!("hart_inversor"),
+    template!("hatch"),
     template!("jansen_leg"),
     template!("pantograph"),
     template!("parallelogram"),
@@ -81,6 +83,7 @@ static TEMPLATES: [Template; 36] = [
     template!("tlv_crank"),
     template!("toggle_press"),
     template!("v_twin"),
+    template!("valve_train"),
     template!("watt_six_bar"),
     template!("whitworth"),
 ];

@@ -56,6 +56,16 @@ def test_dask_sweep(example, tmp_path):
     assert (tmp_path / "dask_sweep.png").stat().st_size > 10_000
 
 
+def test_dc_motor(example, tmp_path):
+    printed = example("dc_motor.py")
+    difference = float(re.search(r"by hand: (\S+)", printed)[1])
+    # Rounding of 500 Runge-Kutta steps of a stable motion.
+    assert difference < 1e-12
+    low, high = map(float, re.search(r"between ([\d.]+) and ([\d.]+) rad/s", printed).groups())
+    assert 0 < low < high
+    assert (tmp_path / "dc_motor.png").stat().st_size > 10_000
+
+
 def test_requirements_are_those_of_the_lock():
     """The pins in examples/requirements.txt are versions that the tests run with."""
     lock = (ROOT / "tests" / "fmpy" / "requirements.txt").read_text(encoding="utf-8")

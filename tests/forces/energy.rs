@@ -51,7 +51,9 @@ fn power_becomes_energy() {
                     let [value, rate] = coordinate_of(&solver, &rates, coordinate);
                     let spring = law.as_ref().and_then(|law| law.spring.as_ref());
                     let elastic = spring.map_or(0.0, |spring| {
-                        let [stiffness, extension] = spring.evaluate(&|_| 0.0, value);
+                        let parameters = &solver.pose().parameters;
+                        let [stiffness, extension] =
+                            spring.evaluate(&|p| parameters[p.index()], value);
                         stiffness * extension
                     });
                     (size[0] + elastic) * rate

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::*;
-use crate::mechanism::{CoordinateKind, Driver, MarkerId, Mechanism};
+use crate::mechanism::{Coordinate, CoordinateKind, Driver, Force, Load, MarkerId, Mechanism};
 
 /// Returns the symbols of a mechanism at the pose q, for a motion through this pose.
 pub(in crate::drawing) fn compose(
@@ -31,6 +31,9 @@ pub(in crate::drawing) fn compose(
     }
     for driver in &mechanism.drivers {
         composer.driver(driver);
+    }
+    for force in &mechanism.forces {
+        composer.force(force);
     }
     for body in 0..mechanism.bodies.len() {
         link::compose(&mut composer, BodyId(body));
@@ -106,20 +109,45 @@ impl Composer<'_> {
 
     fn driver(&mut self, driver: &Driver) {
         let coordinate = &driver.coordinate;
-        let [from, to, axes] =
-            [coordinate.from, coordinate.to, coordinate.axes].map(|marker| self.anchor(marker));
+        let [from, to] = [coordinate.from, coordinate.to].map(|marker| self.anchor(marker));
         let name = driver.name.clone();
-        let axis = match coordinate.kind {
-            CoordinateKind::Angle => return angle_driver::compose(self, name, from, to),
-            CoordinateKind::X => Some(axes),
-            CoordinateKind::Y => Some(axes.turned_to(axes.angle + FRAC_PI_2)),
-            CoordinateKind::Distance => None,
-        };
+        if coordinate.kind.is_angle() {
+            return angle_driver::compose(self, name, from, to);
+        }
+        let axis = self.axis(coordinate);
         let guided = self.mechanism.joints.iter().any(|joint| {
             let pair = (joint.from, joint.to);
             pair == (coordinate.from, coordinate.to) || pair == (coordinate.to, coordinate.from)
         });
         length_driver::compose(self, name, [from, to], axis, guided);
+    }
+
+    /// Returns the axis along which a length is measured, `None` for a distance.
+    fn axis(&self, coordinate: &Coordinate) -> Option<Anchor> {
+        let axes = self.anchor(coordinate.axes);
+        match coordinate.kind {
+            CoordinateKind::X => Some(axes),
+            CoordinateKind::Y => Some(axes.turned_to(axes.angle + FRAC_PI_2)),
+            CoordinateKind::Angle | CoordinateKind::Distance => None,
+        }
+    }
+
+    /// Composes a force along a length; torques, loads and forces at markers have no
+    /// symbol.
+    fn force(&mut self, force: &Force) {
+        if let Load::Coordinate { coordinate, law } = &force.load
+            && !coordinate.kind.is_angle()
+        {
+            let ends = [coordinate.from, coordinate.to].map(|marker| self.anchor(marker));
+            let axis = self.axis(coordinate);
+            let law = law.as_ref();
+            let is_elastic = law.is_some_and(|law| law.spring.is_some());
+            let is_damped = law.is_some_and(|law| law.damping.is_some());
+            // A plain line shows an actuator or a gas spring, which pushes along itself.
+            if is_elastic || is_damped || axis.is_none() {
+                spring::compose(self, ends, axis, [is_elastic, is_damped]);
+            }
+        }
     }
 
     /// Returns the poses of the motion and the present one.

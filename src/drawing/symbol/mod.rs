@@ -134,6 +134,7 @@ symbols! { composer, ends:
     face: Face;
     angle_driver: AngleDriver;
     length_driver: LengthDriver;
+    spring: Spring;
     point: InterestPoint;
     trace: Trace;
 }

@@ -19,8 +19,7 @@ use crate::mechanism::{DriverId, Jet};
 
 /// Most sub-steps of a path: some thousand turns.
 const MOST_SUBSTEPS: u32 = 100_000;
-/// A path is given up after this many sub-steps if they lead through less than half of the part that
-/// they would have to.
+/// A path is given up if, at the pace of so many sub-steps, twice the most would be needed ahead.
 const ENOUGH_TO_JUDGE: u32 = 2_000;
 /// A motion that stops while a driver still moves by more than this per sub-step \[m or rad\] asks
 /// for too long a path.
@@ -91,6 +90,7 @@ impl PathTracker {
             limit: None,
             opened: None,
             is_last_attempt: false,
+            judged: (0, 0.0),
             progress: Progress::default(),
         };
         match run.run() {
@@ -122,6 +122,8 @@ struct Run<'a> {
     opened: Option<(f64, OpenJoint)>,
     /// Whether the last sub-step had the smallest length.
     is_last_attempt: bool,
+    /// The number of sub-steps at which their pace was judged last, and the place on the path.
+    judged: (u32, f64),
     progress: Progress,
 }
 
@@ -239,11 +241,16 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Returns whether the path takes too many sub-steps, or is certain to.
-    fn is_too_long(&self) -> bool {
+    /// Returns whether the path takes too many sub-steps, or would at the pace of the last ones.
+    fn is_too_long(&mut self) -> bool {
         let substeps = self.progress.substeps;
-        let expected = f64::from(substeps) / f64::from(MOST_SUBSTEPS);
-        substeps >= MOST_SUBSTEPS || substeps >= ENOUGH_TO_JUDGE && self.s < 0.5 * expected
+        let (judged, from) = self.judged;
+        if substeps - judged < ENOUGH_TO_JUDGE {
+            return false;
+        }
+        self.judged = (substeps, self.s);
+        let pace = (self.s - from) / f64::from(substeps - judged);
+        substeps >= MOST_SUBSTEPS || pace * f64::from(2 * MOST_SUBSTEPS) < 1.0 - self.s
     }
 
     /// Takes one sub-step: predicts, corrects and certifies its end, then accepts it or tries a

@@ -115,6 +115,7 @@ impl Forces {
             .filter(|force| force.load.is_input());
         let inputs = inputs.map(|force| force.load.variables().len()).sum();
         let (unknowns, drivers) = (system.unknowns(), mechanism.drivers.len());
+        let rows = ReactionRows::new(system);
         Self {
             parameters: Vec::with_capacity(mechanism.parameters.len()),
             has_parameters: false,
@@ -125,8 +126,8 @@ impl Forces {
             inputs,
             factors: JacobianFactors::new(system, &model.structure),
             set_aside: model.redundant.now.clone(),
-            rows: ReactionRows::new(system),
-            contacts: Contact::all(system),
+            contacts: Contact::all(&mechanism, &rows),
+            rows,
             self_stresses: SelfStresses::default(),
             results: Results {
                 drivers: vec![DriverForces::default(); drivers],

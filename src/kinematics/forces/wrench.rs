@@ -4,7 +4,7 @@ use crate::kinematics::block::JacobianFactors;
 use crate::kinematics::configuration::{Configuration, perp};
 use crate::kinematics::element::Element;
 use crate::kinematics::system::System;
-use crate::mechanism::{BodyId, CamFollower, DriverId, Joint, JointKind, Mechanism, Number};
+use crate::mechanism::{BodyId, CamFollower, Joint, JointKind, Mechanism, Number};
 
 /// Components of a reaction that a joint can exert.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,18 +122,19 @@ pub(super) struct ReactionRows {
 impl ReactionRows {
     pub(super) fn new(system: &System) -> Self {
         let mechanism = system.mechanism();
-        let only = |element| system.rows_of(&[element])[0];
-        Self {
-            joints: (0..mechanism.joints.len())
-                .map(|joint| system.rows_of(&[Element::Joint(joint)]))
-                .collect(),
-            constraints: (0..mechanism.constraints.len())
-                .map(|held| only(Element::Constraint(held)))
-                .collect(),
-            drivers: (0..mechanism.drivers.len())
-                .map(|driver| only(Element::Driver(DriverId(driver))))
-                .collect(),
+        let mut rows = Self {
+            joints: vec![Vec::new(); mechanism.joints.len()],
+            constraints: vec![0; mechanism.constraints.len()],
+            drivers: vec![0; mechanism.drivers.len()],
+        };
+        for (row, equation) in system.equations().iter().enumerate() {
+            match equation.element {
+                Element::Joint(joint) => rows.joints[joint].push(row),
+                Element::Constraint(held) => rows.constraints[held] = row,
+                Element::Driver(driver) => rows.drivers[driver.index()] = row,
+            }
         }
+        rows
     }
 
     /// Returns the number of reactions that [`report`](Self::report) writes.
@@ -204,8 +205,8 @@ pub(super) struct Contact {
 
 impl Contact {
     /// Returns the contacts of a mechanism.
-    pub(super) fn all(system: &System) -> Vec<Self> {
-        let joints = system.mechanism().joints.iter().enumerate();
+    pub(super) fn all(mechanism: &Mechanism, rows: &ReactionRows) -> Vec<Self> {
+        let joints = mechanism.joints.iter().enumerate();
         let contact = |(joint, Joint { kind, .. }): (usize, &Joint)| {
             // The order of the rows is that of `system::joint`.
             let place = match kind {
@@ -216,7 +217,7 @@ impl Contact {
                 JointKind::Cam { .. } | JointKind::Rolling { .. } => 1,
                 _ => return None,
             };
-            let row = *system.rows_of(&[Element::Joint(joint)]).get(place)?;
+            let row = *rows.joints[joint].get(place)?;
             Some(Self {
                 joint,
                 row,
