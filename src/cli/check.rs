@@ -1,6 +1,6 @@
 //! `biela check`
 
-mod json;
+pub(super) mod json;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

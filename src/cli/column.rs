@@ -1,50 +1,12 @@
-//! The quantities of a run, as columns of its results.
+//! Choices among the columns of a run.
 
 use super::error::Error;
 use super::motion::Motion;
-use crate::fmi::{Kind, Order, Quantity, Signal, variables};
-use crate::mechanism::{BodyId, MarkerId, Mechanism, Unit, help};
-
-/// One quantity of a run.
-#[derive(Clone, Debug)]
-pub(super) struct Column {
-    /// Name of the FMU's variable.
-    pub(super) name: String,
-    pub(super) signal: Signal,
-    pub(super) order: Order,
-    pub(super) unit: Unit,
-}
+pub(super) use crate::fmi::Column;
+use crate::fmi::Signal;
+use crate::mechanism::{BodyId, MarkerId, Mechanism, help};
 
 impl Column {
-    /// Returns value, velocity and acceleration of every driver, then all outputs of the FMU.
-    pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
-        let variables = variables(mechanism).into_iter();
-        let mut columns: Vec<Self> = variables
-            .filter_map(|variable| {
-                let Kind::Real { unit, .. } = variable.kind else {
-                    return None;
-                };
-                let (signal, order) = match variable.quantity {
-                    // In a run an input follows a motion.
-                    Quantity::Input(driver, order) => (Signal::Motion(driver), order),
-                    Quantity::Output(signal, order) => (signal, order),
-                    _ => return None,
-                };
-                Some(Self {
-                    name: variable.name,
-                    signal,
-                    order,
-                    unit: unit.unwrap_or(Unit::ONE),
-                })
-            })
-            .collect();
-        columns.sort_by_key(|column| match column.signal {
-            Signal::Motion(driver) => driver.index(),
-            _ => usize::MAX,
-        });
-        columns
-    }
-
     /// Returns the columns of these names: of a variable, or of a body, marker, driver or measure
     /// with all its variables.
     pub(super) fn named(
@@ -88,22 +50,13 @@ impl Column {
     /// Returns the columns that a film tells in numbers by default: positions of drivers, points
     /// of interest and measures.
     pub(super) fn told(columns: &[Self]) -> Vec<Self> {
-        let columns = columns.iter().filter(|column| {
-            let of_body = matches!(column.signal, Signal::Body(..));
-            column.order == Order::Position && !of_body
-        });
-        columns.cloned().collect()
+        let told = columns.iter().filter(|column| column.is_told());
+        told.cloned().collect()
     }
 
     /// Returns the current value \[SI\].
     pub(super) fn read(&self, motion: &Motion) -> f64 {
-        let Motion {
-            solver,
-            rates,
-            driver_rates,
-            ..
-        } = motion;
-        self.order.of(self.signal.jet(solver, rates, driver_rates))
+        self.value(&motion.solver, &motion.rates, &motion.driver_rates)
     }
 }
 

@@ -14,7 +14,7 @@ use super::message::tell;
 use super::output::write;
 use super::runtime;
 use super::stdout::is_stdout;
-use crate::fmi::{Platform, describe, write_fmu};
+use crate::fmi::{Platform, RuntimeLibrary, describe, write_fmu};
 use crate::kinematics::Solver;
 
 /// Export a mechanism as an FMI 2.0 FMU, for co-simulation and for model exchange.
@@ -78,18 +78,7 @@ impl Export {
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
-        let documents = documentation::documents(&input, &solver)?;
-        let mut archive = Cursor::new(Vec::new());
-        write_fmu(
-            &mut archive,
-            &input.source,
-            mechanism,
-            solver.structure(),
-            &libraries,
-            &documents,
-            generated.as_deref(),
-        )?;
-        write(&path, archive.get_ref())?;
+        write(&path, &pack(&input, &solver, &libraries)?)?;
         let platforms: Vec<_> = libraries.iter().map(|l| l.platform.name).collect();
         let name = if is_stdout(&path) {
             "stdout".into()
@@ -101,8 +90,28 @@ impl Export {
     }
 }
 
+/// Returns the FMU of a mechanism, which `solver` has assembled.
+pub(super) fn pack(
+    input: &Input,
+    solver: &Solver,
+    libraries: &[RuntimeLibrary],
+) -> Result<Vec<u8>, Error> {
+    let documents = documentation::documents(input, solver)?;
+    let mut archive = Cursor::new(Vec::new());
+    write_fmu(
+        &mut archive,
+        &input.source,
+        &input.mechanism,
+        solver.structure(),
+        libraries,
+        &documents,
+        generation_time()?.as_deref(),
+    )?;
+    Ok(archive.into_inner())
+}
+
 /// Reads the name of a platform.
-fn platform(name: &str) -> Result<Platform, String> {
+pub(super) fn platform(name: &str) -> Result<Platform, String> {
     Platform::named(name).ok_or_else(|| {
         let names = Platform::ALL.map(|platform| platform.name);
         format!("expected one of {}", names.join(", "))

@@ -35,8 +35,8 @@ pub use error::{Error, Failure, StateError};
 pub use instance::{FmuState, Instance};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
-    MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal, TABLE_VERSION, describe,
-    guid, variables, write_fmu,
+    Column, MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal, TABLE_VERSION,
+    describe, guid, variables, write_fmu,
 };
 pub use model::{Groups, Model};
 pub use model_description::{Capabilities, DependencyKind, Experiment, ModelDescription, Unknown};

@@ -80,7 +80,8 @@ impl MechanismModel {
 
 impl Signal {
     /// Returns the changes of value, velocity and acceleration.
-    fn change(self, sensitivity: &Sensitivity<'_>) -> Jet {
+    #[must_use]
+    pub fn change(self, sensitivity: &Sensitivity<'_>) -> Jet {
         match self {
             Self::Body(body, component) => sensitivity.coordinate(3 * body.index() + component),
             Self::Marker(marker, component) => sensitivity.marker(marker)[component],
