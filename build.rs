@@ -48,7 +48,7 @@ fn compile_host(headers: &Path) {
         command.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic"]);
     }
     command.arg("-pthread").arg("-I").arg(headers);
-    command.arg(HOST).arg("-o").arg(&host).arg("-ldl");
+    command.arg(HOST).arg("-o").arg(&host).args(["-ldl", "-lm"]);
     match command.status() {
         Ok(status) if status.success() => {
             println!("cargo::rustc-cfg=c_host");

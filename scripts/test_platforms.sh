@@ -7,10 +7,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/cross.sh
 . scripts/cross.sh
 
-if has apt-get && [ "$(id -u)" = 0 ]; then
-    apt_install wine wine64 qemu-user-static gcc-mingw-w64-x86-64-win32 gcc-aarch64-linux-gnu \
-        libc6-dev-arm64-cross llvm-14
-fi
 # The C library of an older system, to load the libraries with. Packages of Debian 11 come from
 # where those of this Debian do.
 old_library() { # FOLDER
@@ -30,6 +26,8 @@ old_library() { # FOLDER
 }
 
 if has apt-get && [ "$(id -u)" = 0 ]; then
+    apt_install wine wine64 qemu-user-static gcc-mingw-w64-x86-64-win32 gcc-aarch64-linux-gnu \
+        libc6-dev-arm64-cross llvm-14
     old_library "$PWD/target/platforms/debian-11"
 fi
 for tool in wine qemu-aarch64-static x86_64-w64-mingw32-gcc aarch64-linux-gnu-gcc; do

@@ -11,6 +11,7 @@
  *
  *     Lives        COUNT GUID URI
  *     Run          "at once" or "in turn" STEPS OUTPUT
+ *     Modes        GUID URI N VALUE_REFERENCES
  *
  * and so on, as `requests` has them; `in-thread` before the function makes the call from another
  * thread. FMU states have slots of their own, which are numbered alike; bytes are hexadecimal. The answer is one line for each message that the logger got meanwhile and a last one:
@@ -26,6 +27,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include <dlfcn.h>
+#include <fenv.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -661,6 +663,62 @@ static void run_all(void)
         for (int step = 0; step < runners[k].steps; step++) put_real(runners[k].values[step]);
 }
 
+/* Takes an instance through its life in each rounding mode; gives the number of values that are
+ * other bits than in the first mode, to nearest, and of calls that left another mode behind. */
+static void modes(void)
+{
+    static const int modes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+    static fmi2Real times[MOST_STEPS], inputs[MOST_STEPS];
+    static fmi2Real values[MOST_STEPS][LONGEST_LIST], first[MOST_STEPS][LONGEST_LIST];
+    fmi2ValueReference outputs[LONGEST_LIST];
+    const fmi2ValueReference input = 0;
+    char *guid = unescape(field()), *uri = unescape(field());
+    size_t n = size(field());
+    value_references(outputs);
+    fmi2CallbackFunctions callbacks = {.allocateMemory = calloc, .freeMemory = free};
+    int differences = 0, lost = 0, worst = fmi2OK;
+    /* The host's own numbers are made to nearest. */
+    for (int k = 0; k < MOST_STEPS; k++) {
+        times[k] = 0.1 * k;
+        inputs[k] = 0.35 + 0.01 * times[k];
+    }
+#define CALL(call)                                                                                 \
+    do {                                                                                           \
+        int status = (int)(call);                                                                  \
+        worst = status > worst ? status : worst;                                                   \
+        lost += fegetround() != modes[mode];                                                       \
+    } while (0)
+    for (size_t mode = 0; mode < COUNT(modes); mode++) {
+        if (fesetround(modes[mode])) fail("cannot set the rounding mode", "Modes");
+        fmi2Component c =
+            fmu.Instantiate("mode", fmi2CoSimulation, guid, uri, &callbacks, fmi2False, fmi2False);
+        lost += fegetround() != modes[mode];
+        if (!c) {
+            worst = fmi2Error;
+            continue;
+        }
+        CALL(fmu.SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0));
+        CALL(fmu.EnterInitializationMode(c));
+        CALL(fmu.ExitInitializationMode(c));
+        for (int k = 0; k < MOST_STEPS; k++) {
+            CALL(fmu.SetReal(c, &input, 1, &inputs[k]));
+            CALL(fmu.DoStep(c, times[k], times[1], fmi2True));
+            CALL(fmu.GetReal(c, outputs, n, values[k]));
+            if (mode == 0)
+                memcpy(first[k], values[k], n * sizeof *values[k]);
+            else
+                for (size_t j = 0; j < n; j++)
+                    differences += memcmp(&first[k][j], &values[k][j], sizeof(fmi2Real)) != 0;
+        }
+        fmu.FreeInstance(c);
+    }
+#undef CALL
+    fesetround(FE_TONEAREST);
+    answer((fmi2Status)worst);
+    put_integer(differences);
+    put_integer(lost);
+}
+
 /* ---- the loop ---- */
 
 static const struct request {
@@ -685,6 +743,7 @@ static const struct request {
     {"SetRealInputDerivatives", set_real_input_derivatives},
     {"Lives", lives},
     {"Run", run_all},
+    {"Modes", modes},
     {"GetFMUstate", call_GetFMUstate},
     {"SetFMUstate", set_fmu_state},
     {"FreeFMUstate", call_FreeFMUstate},

@@ -32,7 +32,7 @@ mod variable;
 
 pub use codec::{Codec, Unreadable};
 pub use error::{Error, Failure, StateError};
-pub use instance::{FmuState, Instance};
+pub use instance::{FmuState, Instance, Reals};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
     Column, MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal, TABLE_VERSION,

@@ -26,14 +26,16 @@ pub enum Error {
     /// Constraints that cannot be satisfied together, whatever the mechanism's pose.
     #[error(
         "{} contradict each other: all others closed, {open}; remove one of them, or make them \
-         agree",
-        .elements.join(", ")
+         agree{}",
+        .elements.join(", "), .fit.as_ref().map(|fit| format!(": {fit}")).unwrap_or_default()
     )]
     Contradiction {
         /// The smallest set: kind and name of each.
         elements: Vec<String>,
         /// The gap in the one declared last when the others are closed.
         open: OpenJoint,
+        /// The length that would close it, if a length alone decides.
+        fit: Option<Box<Fit>>,
     },
     /// An expression has no finite value for the parameter values in force.
     #[error("{what} has no finite value with these parameter values")]
@@ -179,6 +181,46 @@ impl fmt::Display for OpenJoint {
             (true, true) => write!(f, "{} and {}", millimetres(self.gap), degrees(self.angle)),
             (false, true) => f.write_str(&degrees(self.angle)),
             _ => f.write_str(&millimetres(self.gap)),
+        }
+    }
+}
+
+/// A length that would let a mechanism close.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The link or the body that has the length: kind and name.
+    pub element: String,
+    /// The markers of the body between which it is measured; `None` for a link.
+    pub between: Option<[String; 2]>,
+    /// The length that closes \[m\].
+    pub length: f64,
+    /// The present length \[m\].
+    pub present: f64,
+}
+
+impl fmt::Display for Fit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            element,
+            between,
+            length,
+            present,
+        } = self;
+        // As many digits as tell the two apart; rounding decides about none.
+        let apart = (1e3 * (length - present)).abs().log10() + 1e-3;
+        let apart = apart.floor();
+        let decimals = (1.0 - apart).clamp(1.0, 12.0) as usize;
+        let show = |value: f64| format!("{:.decimals$} mm", 1e3 * value);
+        let (length, present) = (show(*length), show(*present));
+        match between {
+            Some([from, to]) => write!(
+                f,
+                "{element} would fit with {length} from `{from}` to `{to}`, which is {present} now"
+            ),
+            None => write!(
+                f,
+                "{element} would fit with a length of {length}, which is {present} now"
+            ),
         }
     }
 }

@@ -74,7 +74,7 @@ pub use analysis::{
     RangeSettings, Sample, Sensitivity,
 };
 pub use assembly::estimate::Move;
-pub use block::Crossing;
+pub use block::{BlockCarryover, CheckedSegment, Crossing};
 pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };
@@ -82,12 +82,13 @@ pub use continuation::{Blocked, Progress, Reason};
 pub use element::Element;
 #[cfg(feature = "cli")]
 pub(crate) use error::in_line;
-pub use error::{Error, OpenJoint, Proof, Verdict};
+pub use error::{Error, Fit, OpenJoint, Proof, Verdict};
 pub use initial_pose::{Assembly, Start};
+pub use linear::PivotOrder;
 pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
 pub use solver::Solver;
-pub use state::Pose;
+pub use state::{Carryover, Pose};
 pub use structure::{Dependencies, Structure};
 pub use system::{Equation, System, Target, Targets};

@@ -86,6 +86,19 @@ impl Model {
         self.plan.set_parameters(&self.system, at, targets);
     }
 
+    /// Sets other rows aside, as many. Returns false, and changes nothing, if the rest cannot be
+    /// paired with unknowns. The plan has to be compiled then.
+    pub(super) fn set_aside(&mut self, rows: &[usize]) -> bool {
+        let now = &mut self.redundant.now;
+        let fits = rows.len() == now.len()
+            && rows.is_sorted_by(|a, b| a < b)
+            && Structure::new(&self.system, rows).is_some();
+        if fits {
+            now.copy_from_slice(rows);
+        }
+        fits
+    }
+
     /// Returns the rows set aside that depend on the contour of a cam.
     fn contour_rows(&self) -> Vec<ContourRow> {
         let equations = self.system.equations();

@@ -12,7 +12,7 @@ use super::model::Model;
 use super::path::{Path, Rates};
 use super::redundancy::{self, Redundancy};
 use super::singular::{self, Approach};
-use super::state::{Pose, State};
+use super::state::{Carryover, Pose, State};
 use super::structure::Structure;
 use super::system::System;
 use crate::mechanism::{DriverId, Jet, MarkerId, Mechanism};
@@ -151,15 +151,25 @@ impl Solver {
         self.state.restore(&mut self.model, pose);
     }
 
-    /// Forgets all traces of the motion to the present pose: pivots of sparse matrices, proofs that
-    /// hold for several steps, the choice among redundant rows. All further results depend on the
-    /// pose alone, to the last bit.
-    pub fn forget_way(&mut self) {
-        self.model.plan.forget_pivots();
-        self.model.plan.forget_proofs();
-        self.state.move_to_pose(&self.model.system);
-        // If no choice of rows is regular, the next step says so.
-        let _ = redundancy::return_to_fit_rows(&mut self.model, &mut self.state);
+    /// Copies the effects of earlier motion besides the pose into `carryover`. Allocates the first
+    /// time and when choices have changed.
+    pub fn carry_over(&self, carryover: &mut Carryover) {
+        let Model {
+            redundant, plan, ..
+        } = &self.model;
+        carryover.set_aside.clone_from(&redundant.now);
+        plan.carry_over(&mut carryover.blocks);
+    }
+
+    /// Puts the mechanism back to a pose with the choices that were in use there: all further
+    /// results have the same bits. Returns false if these choices are of another mechanism.
+    /// Allocates nothing, unless the choices have changed.
+    ///
+    /// # Panics
+    ///
+    /// If the pose belongs to another mechanism.
+    pub fn resume(&mut self, pose: &Pose, carryover: &Carryover) -> bool {
+        self.state.resume(&mut self.model, pose, carryover)
     }
 
     /// Copies the present pose into `pose`, which belongs to the same mechanism. Allocates

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::block::{BlockState, Crossing};
+use super::block::{BlockCarryover, BlockState, Crossing};
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity};
 use super::error::Error;
@@ -43,6 +43,31 @@ impl Pose {
         self.drivers.copy_from_slice(&other.drivers);
         self.q.copy_from_slice(&other.q);
         self.turns.copy_from_slice(&other.turns);
+    }
+}
+
+/// The effects of earlier motion on further results, apart from the pose: choices that hold until
+/// they are no longer fit. They decide about the last bits only.
+#[derive(Debug, Default, PartialEq)]
+pub struct Carryover {
+    /// The rows set aside as redundant, ascending.
+    pub set_aside: Vec<usize>,
+    /// One entry per block with a sparse matrix, in the order of solution.
+    pub blocks: Vec<BlockCarryover>,
+}
+
+impl Clone for Carryover {
+    fn clone(&self) -> Self {
+        Self {
+            set_aside: self.set_aside.clone(),
+            blocks: self.blocks.clone(),
+        }
+    }
+
+    /// Copies without allocation where the sizes agree.
+    fn clone_from(&mut self, source: &Self) {
+        self.set_aside.clone_from(&source.set_aside);
+        self.blocks.clone_from(&source.blocks);
     }
 }
 
@@ -243,6 +268,21 @@ impl State {
             self.add_crossing(model, crossing);
         }
         model.plan.forget_proofs();
+    }
+
+    /// Goes to a pose with the choices that were in use there. Returns false if these are of
+    /// another mechanism; the choices in use are then any.
+    pub(super) fn resume(&mut self, model: &mut Model, pose: &Pose, carryover: &Carryover) -> bool {
+        let same_rows = model.redundant.now == carryover.set_aside;
+        if !same_rows {
+            self.release_crossings(model);
+            if !model.set_aside(&carryover.set_aside) {
+                return false;
+            }
+            self.compile(model);
+        }
+        self.restore(model, pose);
+        model.plan.take_over(&carryover.blocks)
     }
 
     /// Lets the unknowns of a block come from a crossing, which becomes one of the pose.

@@ -149,3 +149,16 @@ fn several_threads_may_use_an_instance_each() {
     assert_ne!(in_turn[99], in_turn[399]);
     assert_eq!(run("at once"), in_turn, "to the last bit");
 }
+
+#[test]
+fn the_host_may_leave_any_rounding_mode_set() {
+    let mut host = Host::start();
+    for name in ["four_bar", "tlv", "cam_roller", "platform_3rpr"] {
+        let fmu = Fmu::of(name);
+        let reals = fmu.reals();
+        let list: Vec<_> = reals.iter().map(u32::to_string).collect();
+        let count = reals.len().to_string();
+        let found = host.ok(&["Modes", &fmu.guid, &fmu.uri(), &count, &list.join(",")]);
+        assert_eq!(found, ["0", "0"], "{name}: values and modes that differ");
+    }
+}

@@ -149,9 +149,19 @@ def file_uri(path, root="/"):
     return f"file://{root}" + urllib.parse.quote(str(path).lstrip("/"))
 
 
+def in_host(fmus, command, library, root="/"):
+    """Returns the answers of a C host to all FMUs by name; `library` is PLATFORM.EXTENSION."""
+    platform, extension = library.split(".")
+    results = {}
+    for f in fmus:
+        path = f"{root.strip('/')}{f.folder}/binaries/{platform}/{f.name}.{extension}"
+        results[f.name] = answers(f, command, path, file_uri(f.folder / "resources", root))
+    return results
+
+
 def linux(fmus):
     host = compile_host("cc", "host-linux", "-ldl")
-    return {f.name: answers(f, [host], f.folder / f"binaries/linux64/{f.name}.so", file_uri(f.folder / "resources")) for f in fmus}
+    return in_host(fmus, [host], "linux64.so")
 
 
 def old_linux(fmus):
@@ -162,7 +172,7 @@ def old_linux(fmus):
     flags = ["-target", "x86_64-linux-gnu.2.17", "-std=c11", "-O2", "-pthread", f"-I{headers()}", "-ldl"]
     run(zig, "cc", *flags, ROOT / "tests/host.c", "-o", WORK / "host-old")
     host = [loader, "--library-path", libraries, WORK / "host-old"]
-    results = {f.name: answers(f, host, f.folder / f"binaries/linux64/{f.name}.so", file_uri(f.folder / "resources")) for f in fmus}
+    results = in_host(fmus, host, "linux64.so")
     return results, loader.stem.removeprefix("ld-")
 
 
@@ -173,16 +183,13 @@ def windows(fmus):
         "-D__USE_MINGW_ANSI_STDIO=1",
     )  # fmt: skip
     wine_prefix()
-    return {
-        f.name: answers(f, ["wine", host], f"Z:{f.folder}/binaries/win64/{f.name}.dll", file_uri(f.folder / "resources", "/Z:/"))
-        for f in fmus
-    }
+    return in_host(fmus, ["wine", host], "win64.dll", "/Z:/")
 
 
 def arm(fmus):
     host = compile_host("aarch64-linux-gnu-gcc", "host-aarch64", "-ldl")
     qemu = ["qemu-aarch64-static", "-L", "/usr/aarch64-linux-gnu", host]
-    return {f.name: answers(f, qemu, f.folder / f"binaries/aarch64-linux/{f.name}.so", file_uri(f.folder / "resources")) for f in fmus}
+    return in_host(fmus, qemu, "aarch64-linux.so")
 
 
 def fmpy(fmus, command, root=""):

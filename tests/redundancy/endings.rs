@@ -39,7 +39,7 @@ fn a_parameter_that_ends_a_redundancy_is_refused() {
     let reached = solver.pose().parameters[0] - 0.4;
     assert!((0.0..1e-9).contains(&reached), "{reached:e}");
     let error = solver.assemble(&path).expect_err("nor can it be assembled");
-    let Error::Contradiction { elements, open } = &error else {
+    let Error::Contradiction { elements, open, .. } = &error else {
         panic!("{error}");
     };
     assert_eq!(elements[..], ["joint `A`", "joint `B`", "joint `rod`"]);

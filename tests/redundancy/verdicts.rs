@@ -208,7 +208,8 @@ fn each_mechanism_has_its_verdict() {
             ),
             Says(
                 "joint `A`, joint `B`, joint `rod` contradict each other: all others closed, joint \
-                 `rod` stays open by 10.00 mm; remove one of them, or make them agree",
+                 `rod` stays open by 10.00 mm; remove one of them, or make them agree: joint `rod` \
+                 would fit with a length of 400.0 mm, which is 410.0 mm now",
             ),
         ),
         (
@@ -292,4 +293,84 @@ fn each_mechanism_has_its_verdict() {
             (Err(error), _) => panic!("{name}: {error}"),
         }
     }
+}
+
+/// Half of the last of the digits that messages show.
+const FOUR_DIGITS: f64 = 5e-5;
+/// Rounding of lengths below half a metre, in the few that make a gap \[m\].
+const ROUNDING: f64 = 1e-15;
+
+/// Expects the contradiction of these elements, open by so much in the last one, and returns the
+/// length that would close it, with the present one.
+#[track_caller]
+fn expect_slip(name: &str, text: &str, expected: &[&str], gap: f64) -> Option<[f64; 2]> {
+    let error = solve(text).map(|_| ()).expect_err(name);
+    let Error::Contradiction {
+        elements,
+        open,
+        fit,
+    } = &error
+    else {
+        panic!("{name}: {error}");
+    };
+    assert_eq!(elements, expected, "{name}");
+    assert_eq!(Some(&open.element), elements.last(), "{name}");
+    let off = (open.gap - gap).abs();
+    assert!(off <= FOUR_DIGITS * gap + ROUNDING, "{name}: {error}");
+    fit.as_ref().map(|fit| [fit.length, fit.present])
+}
+
+/// A third crank that is too long or too short by whatever length is told in the same words: the
+/// joints that contradict each other, the gap, and the length that would fit.
+#[test]
+fn a_slip_of_any_size_has_one_verdict() {
+    for slip in [1e-10_f64, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3] {
+        for (place, start) in [([0.2, 0.1], 60.0), ([0.2, 0.0], 60.0), ([0.3, -0.2], 200.0)] {
+            for slip in [slip, -slip] {
+                let name = format!("a crank at {place:?} longer by {slip:e}");
+                let text = parallelogram(&[place], start, true);
+                let text = text.replace("C = [0.1, 0]", &format!("C = [{}, 0]", 0.1 + slip));
+                let joints = ["O2", "A", "B", "O4", "C5", "O5"];
+                let joints = joints.map(|joint| format!("joint `{joint}`"));
+                let joints = joints.each_ref().map(String::as_str);
+                let fit = expect_slip(&name, &text, &joints, slip.abs());
+                let [length, present] = fit.expect("a crank has one length");
+                assert!(
+                    (length - 0.1).abs() <= FOUR_DIGITS * slip.abs() + ROUNDING,
+                    "{name}"
+                );
+                assert!((present - 0.1 - slip).abs() < ROUNDING, "{name}");
+            }
+        }
+        let name = format!("a rod longer by {slip:e}");
+        let rod = format!(
+            "rod = {{ type = \"link\", markers = [\"crank.A\", \"rocker.B\"], length = {} }}",
+            0.4 + slip
+        );
+        let text = with_joints(&parallelogram(&[], 60.0, true), &rod);
+        let joints = ["joint `A`", "joint `B`", "joint `rod`"];
+        let [length, _] = expect_slip(&name, &text, &joints, slip).expect("a rod has a length");
+        assert!(
+            (length - 0.4).abs() <= FOUR_DIGITS * slip + ROUNDING,
+            "{name}"
+        );
+        let name = format!("two guides apart by {slip:e}");
+        let text = slider_crank(
+            "",
+            &joint("again", "translational", "ground.guide_2", "slider.front"),
+            &crank_angle(),
+        );
+        let text = text.replace("front = [0.05, 0]", &format!("front = [0.05, {slip}]"));
+        expect_slip(&name, &text, &["joint `guide`", "joint `again`"], slip);
+    }
+    let text =
+        parallelogram(&[[0.2, 0.1]], 60.0, true).replace("C = [0.1, 0]", "C = [0.100001, 0]");
+    let error = solve(&text).map(|_| ()).expect_err("it is too long");
+    assert_eq!(
+        error.to_string(),
+        "joint `O2`, joint `A`, joint `B`, joint `O4`, joint `C5`, joint `O5` contradict each \
+         other: all others closed, joint `O5` stays open by 1.000e-3 mm; remove one of them, or \
+         make them agree: body `crank_5` would fit with 100.0000 mm from `C` to `O`, which is \
+         100.0010 mm now"
+    );
 }

@@ -1,6 +1,8 @@
 //! Arrays and strings of the host.
 
 use std::ffi::{CStr, c_char};
+use std::mem::MaybeUninit;
+use std::slice;
 
 use super::component::CallError;
 
@@ -20,44 +22,47 @@ pub(super) unsafe fn slice<'a, T>(
         return Ok(&[]);
     }
     // SAFETY: checked above as far as possible, promised by the caller beyond.
-    Ok(unsafe { std::slice::from_raw_parts(pointer, length) })
+    Ok(unsafe { slice::from_raw_parts(pointer, length) })
 }
 
-/// Memory of the host to be written. It may hold nothing yet, so that it is never read and no
-/// reference to it is made.
-pub(super) struct Room<T> {
-    pointer: *mut T,
-    length: usize,
-}
+/// Memory of the host to be written. It may hold nothing yet, so that it is never read.
+pub(super) struct Room<'a, T>(&'a mut [MaybeUninit<T>]);
 
-impl<T: Copy> Room<T> {
+impl<'a, T: Copy> Room<'a, T> {
     /// Room for `length` items at `pointer`.
     ///
     /// # Safety
     ///
     /// A pointer that is not null points to room for `length` items that nobody else touches
-    /// until [`fill`](Self::fill) has returned.
+    /// while the room is used.
     pub(super) unsafe fn new(
         name: &str,
         pointer: *mut T,
         length: usize,
     ) -> Result<Self, CallError> {
         check_array(name, pointer, length)?;
-        Ok(Self { pointer, length })
+        if length == 0 {
+            return Ok(Self(&mut []));
+        }
+        // SAFETY: checked above as far as possible, promised by the caller beyond; items that
+        // may hold nothing have the layout of items.
+        Ok(Self(unsafe {
+            slice::from_raw_parts_mut(pointer.cast(), length)
+        }))
+    }
+
+    /// Returns the items to be written.
+    #[inline]
+    pub(super) fn items(self) -> &'a mut [MaybeUninit<T>] {
+        self.0
     }
 
     /// Writes values from the first item on, as many as there are and have room.
     #[inline]
     pub(super) fn fill(self, values: impl IntoIterator<Item = T>) {
-        let mut filled = 0;
-        // Not `for`: iterators that know of several ways choose theirs once, not at each value.
-        values.into_iter().for_each(|value| {
-            if filled < self.length {
-                // SAFETY: below the length of which `new` was told.
-                unsafe { self.pointer.add(filled).write(value) };
-                filled += 1;
-            }
-        });
+        for (item, value) in self.0.iter_mut().zip(values) {
+            item.write(value);
+        }
     }
 }
 

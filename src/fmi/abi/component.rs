@@ -8,6 +8,7 @@ use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Exported;
+use super::floating_point::StandardEnvironment;
 use crate::fmi::{Error, Status};
 
 /// An instance as the host sees it: an `fmi2Component`.
@@ -102,6 +103,7 @@ pub(super) unsafe fn with_instance(
         // The instance's logger cannot be reached now; who is being served will tell of it.
         return status_code(Status::Error);
     }
+    let _environment = StandardEnvironment::set();
     // SAFETY: seized, and calls come from one thread at a time, so that this is the only reference
     // to the instance until `busy` is false again.
     let instance = unsafe { &mut *component.instance.get() };

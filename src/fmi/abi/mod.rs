@@ -30,6 +30,7 @@
 
 mod arguments;
 mod component;
+mod floating_point;
 mod fmi2;
 mod message;
 

@@ -12,6 +12,7 @@ mod values;
 use std::sync::Arc;
 
 pub use fmu_state::FmuState;
+pub use values::Reals;
 pub(super) use values::check_value;
 
 use super::error::{Error, Failure, check_finite};

@@ -1,5 +1,6 @@
 //! Setting and getting variables and their derivatives.
 
+use std::mem::MaybeUninit;
 use std::ops::Range;
 use std::slice::Iter;
 
@@ -146,10 +147,7 @@ impl<M: Model> Instance<M> {
     /// # Errors
     ///
     /// A variable is unknown or no Real; or it has no value for the values set.
-    pub fn reals<'a>(
-        &'a mut self,
-        value_references: &'a [u32],
-    ) -> Result<impl Iterator<Item = f64> + 'a, Error> {
+    pub fn reals<'a>(&'a mut self, value_references: &'a [u32]) -> Result<Reals<'a>, Error> {
         self.allow(Call::GetReal)?;
         let run = consecutive(value_references);
         let groups = match run.clone().and_then(|run| self.groups.get(run)) {
@@ -164,10 +162,10 @@ impl<M: Model> Instance<M> {
         }
         self.refresh(Call::GetReal, groups)?;
         let values = self.model.reals();
-        Ok(match run {
-            Some(run) => Reals::Consecutive(values[run].iter()),
-            None => Reals::Scattered(value_references.iter(), values),
-        })
+        Ok(Reals(match run {
+            Some(run) => Places::Consecutive(values[run].iter()),
+            None => Places::Scattered(value_references.iter(), values),
+        }))
     }
 
     /// Returns the error for the first reference that is no Real.
@@ -381,37 +379,52 @@ fn consecutive(value_references: &[u32]) -> Option<Range<usize>> {
     let first = *value_references.first()?;
     let last = first.checked_add(u32::try_from(value_references.len()).ok()? - 1)?;
     // No branch per reference: compilers use vector instructions.
-    let differences = (first..=last).zip(value_references);
-    let differ = differences.fold(0, |differ, (expected, given)| differ | (expected ^ given));
+    let references = value_references.iter().enumerate();
+    let differ = references.fold(0, |differ, (index, given)| {
+        differ | (first.wrapping_add(index as u32) ^ given)
+    });
     (differ == 0).then_some(first as usize..last as usize + 1)
 }
 
 /// Values of Real variables in the order of their references.
-enum Reals<'a> {
+#[derive(Debug)]
+pub struct Reals<'a>(Places<'a>);
+
+#[derive(Debug)]
+enum Places<'a> {
     Consecutive(Iter<'a, f64>),
     /// References and the values of all variables.
     Scattered(Iter<'a, u32>, &'a [f64]),
 }
 
+impl Reals<'_> {
+    /// Writes the values from the first item on, as many as have room.
+    #[inline]
+    pub fn write_to(self, items: &mut [MaybeUninit<f64>]) {
+        // A loop for each variant, rather than a choice for each value.
+        match self.0 {
+            Places::Consecutive(values) => write_to(items, values.copied()),
+            Places::Scattered(references, values) => {
+                write_to(items, references.map(|&vr| values[vr as usize]));
+            }
+        }
+    }
+}
+
+#[inline]
+fn write_to(items: &mut [MaybeUninit<f64>], values: impl Iterator<Item = f64>) {
+    for (item, value) in items.iter_mut().zip(values) {
+        item.write(value);
+    }
+}
+
 impl Iterator for Reals<'_> {
     type Item = f64;
 
-    #[inline]
     fn next(&mut self) -> Option<f64> {
-        match self {
-            Self::Consecutive(values) => values.next().copied(),
-            Self::Scattered(references, values) => Some(values[*references.next()? as usize]),
-        }
-    }
-
-    /// Chooses the variant once, not per value.
-    #[inline]
-    fn fold<B, F: FnMut(B, f64) -> B>(self, start: B, f: F) -> B {
-        match self {
-            Self::Consecutive(values) => values.copied().fold(start, f),
-            Self::Scattered(references, values) => {
-                references.map(|&vr| values[vr as usize]).fold(start, f)
-            }
+        match &mut self.0 {
+            Places::Consecutive(values) => values.next().copied(),
+            Places::Scattered(references, values) => Some(values[*references.next()? as usize]),
         }
     }
 }

@@ -29,8 +29,8 @@ impl History {
     }
 
     /// Returns the newest sample.
-    pub(super) fn newest(&self) -> Option<Sample> {
-        self.0[0]
+    pub(super) fn newest(&self) -> Option<&Sample> {
+        self.0[0].as_ref()
     }
 
     /// Returns the change of the position between the last two samples.

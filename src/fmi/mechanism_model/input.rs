@@ -188,7 +188,7 @@ impl DriverInput {
     }
 
     /// Returns the inputs at a communication point.
-    fn sample(&self, rates: RateSource, time: f64) -> Sample {
+    pub(super) fn sample(&self, rates: RateSource, time: f64) -> Sample {
         let value = |(value, _): (f64, Source)| value;
         Sample {
             time,
@@ -232,7 +232,7 @@ impl DriverInput {
     }
 
     /// Returns the last recorded sample before `time`.
-    pub(super) fn last_sample(&self, time: f64) -> Option<Sample> {
+    pub(super) fn last_sample(&self, time: f64) -> Option<&Sample> {
         self.history.newest().filter(|last| last.time < time)
     }
 
@@ -241,14 +241,11 @@ impl DriverInput {
         self.history.last_change()
     }
 
-    /// Ends a step of size `h` from `time`: records and returns the inputs, and clears the
-    /// derivatives.
-    pub(super) fn record(&mut self, rule: Rule, time: f64, h: f64) -> Sample {
-        let sample = self.sample(rule.rates, time);
+    /// Ends a step of size `h`: records the inputs at its start, and clears the derivatives.
+    pub(super) fn record(&mut self, sample: Sample, rule: Rule, h: f64) {
         self.extrapolated_over = if self.is_extrapolated(rule) { h } else { 0.0 };
         self.history.push(sample, 0.0);
         self.derivatives = [[None; 2]; 3];
-        sample
     }
 
     /// Visits all fields.
@@ -311,7 +308,11 @@ mod tests {
         let mut input = DriverInput::new(0.0);
         for (step, &time) in times.iter().enumerate() {
             if step > 0 {
-                input.record(AUTO, times[step - 1], time - times[step - 1]);
+                input.record(
+                    input.sample(AUTO.rates, times[step - 1]),
+                    AUTO,
+                    time - times[step - 1],
+                );
             }
             input.set(Order::Position, position(time));
         }
@@ -345,9 +346,9 @@ mod tests {
     #[test]
     fn a_communication_point_is_one_sample_with_any_number_of_values() {
         let mut input = in_steps(&[0.0, 1.0], |t| t);
-        input.record(AUTO, 1.0, 1.0);
+        input.record(input.sample(AUTO.rates, 1.0), AUTO, 1.0);
         input.set(Order::Position, 7.0);
-        input.record(AUTO, 1.0, 1.0);
+        input.record(input.sample(AUTO.rates, 1.0), AUTO, 1.0);
         assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(7.0, 0.0));
     }
 
@@ -418,7 +419,7 @@ mod tests {
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.0), rates(3.0, 0.0));
         assert_eq!(rates_after(&input, AUTO, 0.0, 1.0), rates(0.0, 0.0));
         assert_eq!(rates_after(&input, INPUTS, 0.0, 1.0), rates(3.0, 0.0));
-        input.record(AUTO, 0.0, 1.0);
+        input.record(input.sample(AUTO.rates, 0.0), AUTO, 1.0);
         input.set(Order::Position, 7.0);
         assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(7.0, 0.0));
         input.set(Order::Velocity, 3.0);
@@ -430,7 +431,7 @@ mod tests {
         let mut input = DriverInput::new(0.0);
         input.set(Order::Velocity, 3.0);
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(3.0, 0.0));
-        input.record(AUTO, 0.0, 1.0);
+        input.record(input.sample(AUTO.rates, 0.0), AUTO, 1.0);
         input.set(Order::Velocity, 4.0);
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(4.0, 2.0));
         assert_eq!(rates_after(&input, INPUTS, 0.5, 0.5), rates(4.0, 0.0));
@@ -442,7 +443,7 @@ mod tests {
         let mut input = in_steps(&[0.0, 1.0, 2.0, 3.0], |t| t * t);
         input.set(Order::Velocity, 100.0);
         assert_eq!(rates_after(&input, AUTO, 3.0, 1.0), rates(100.0, 2.0));
-        input.record(AUTO, 3.0, 1.0);
+        input.record(input.sample(AUTO.rates, 3.0), AUTO, 1.0);
         input.set(Order::Velocity, 101.0);
         assert_eq!(rates_after(&input, AUTO, 4.0, 1.0), rates(101.0, 1.0));
     }
@@ -472,7 +473,7 @@ mod tests {
     fn input_derivatives_last_one_step() {
         let mut input = DriverInput::new(1.0);
         input.set_derivative(Order::Position, 1, 2.0);
-        input.record(AUTO, 0.0, 1.0);
+        input.record(input.sample(AUTO.rates, 0.0), AUTO, 1.0);
         assert_eq!(input.path(AUTO, 0.5, 0.5), rates(0.0, 0.0));
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(0.0, 0.0));
     }
@@ -493,7 +494,7 @@ mod tests {
         let mut input = DriverInput::new(1.0);
         input.set_derivative(Order::Position, 1, 2.0);
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(2.0, 0.0));
-        input.record(AUTO, 0.0, 1.0);
+        input.record(input.sample(AUTO.rates, 0.0), AUTO, 1.0);
         input.set_derivative(Order::Position, 1, 3.0);
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(3.0, 2.0));
     }

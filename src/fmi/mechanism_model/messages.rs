@@ -1,5 +1,7 @@
 //! Messages about poses and steps.
 
+use std::f64::consts::PI;
+
 use super::MechanismModel;
 use super::monitor::Contradiction;
 use super::rule::{Extrapolation, RateSource, Rule, Source};
@@ -93,6 +95,7 @@ impl MechanismModel {
         let observed = self.inputs.iter().zip(&mut self.monitors);
         for ((driver, curve), (input, monitor)) in drivers.zip(observed) {
             if let Curve::Input { jump, .. } = *curve
+                && jump.abs() > PI
                 && is_angle(&driver.coordinate)
                 && monitor.falls(-jump, input.last_change())
             {
@@ -142,11 +145,12 @@ impl MechanismModel {
                     log.write(Status::Ok, Category::Events, &message);
                 }
             }
+            let now = input.sample(rule.rates, start);
             let last = input.last_sample(start);
-            let now = input.record(rule, start, h);
-            if let Some(contradiction) = last.and_then(|last| monitor.compare(&last, &now)) {
+            if let Some(contradiction) = last.and_then(|last| monitor.compare(last, &now)) {
                 log.advise(|| describe_contradiction(driver, contradiction, start, advice));
             }
+            input.record(now, rule, h);
         }
         self.log_crossings(log);
         self.log_effort(log);

@@ -45,7 +45,7 @@ use super::log::Logger;
 use super::model::{Groups, Model};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
-use crate::kinematics::{self, Path, Pose, Progress, Rates, Solver};
+use crate::kinematics::{self, Carryover, Path, Pose, Progress, Rates, Solver};
 use crate::mechanism::{DriverSource, Jet, Mechanism};
 use input::DriverInput;
 use monitor::Monitor;
@@ -75,6 +75,10 @@ pub struct MechanismModel {
     /// Pose from which the mechanism goes on; in co-simulation that of the last communication
     /// point.
     committed: Pose,
+    /// The solver's choices at the committed pose, while it is at another one.
+    committed_carryover: Carryover,
+    /// The solver's choices after it was made.
+    file_carryover: Carryover,
     /// Whether the solver is at the committed pose.
     at_committed: bool,
     /// Rates of all drivers at the solver's pose; `value` has no meaning.
@@ -124,6 +128,8 @@ impl MechanismModel {
         let mut solver = Solver::new(Arc::clone(&mechanism))?;
         solver.assemble(&path)?;
         let file_pose = Arc::new(solver.pose().clone());
+        let mut file_carryover = Carryover::default();
+        solver.carry_over(&mut file_carryover);
         let variables = variables(&mechanism);
         Ok(Self {
             guid: guid(&mechanism),
@@ -135,6 +141,8 @@ impl MechanismModel {
             monitors: vec![Monitor::default(); mechanism.drivers.len()],
             sources: vec![[Source::default(); 2]; mechanism.drivers.len()],
             committed: Pose::clone(&file_pose),
+            committed_carryover: file_carryover.clone(),
+            file_carryover,
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
@@ -205,8 +213,8 @@ impl Model for MechanismModel {
         self.inputs = start_inputs(&self.mechanism);
         self.monitors.fill(Monitor::default());
         self.committed.clone_from(&self.start_pose);
-        self.solver.restore(&self.start_pose);
-        self.at_committed = true;
+        self.committed_carryover.clone_from(&self.file_carryover);
+        self.return_to_committed();
         self.driver_rates.fill(Jet::constant(0.0));
         self.committed_rates.fill(Jet::constant(0.0));
         self.set_freshness(Freshness::Stale);
@@ -217,10 +225,11 @@ impl Model for MechanismModel {
     }
 
     fn set_reals(&mut self, values: impl Iterator<Item = (Quantity, f64)>) {
-        let mut parameters_changed = false;
+        let (mut inputs_changed, mut parameters_changed) = (false, false);
         for (quantity, value) in values {
             match quantity {
                 Quantity::Input(driver, order) => {
+                    inputs_changed = true;
                     let index = driver.index();
                     let input = &mut self.inputs[index];
                     if order == Order::Position && self.mechanism.drivers[index].wrapped {
@@ -235,11 +244,13 @@ impl Model for MechanismModel {
                 }
                 _ => unreachable!("only inputs and parameters are settable"),
             }
-            self.set_freshness(Freshness::Stale);
         }
         if parameters_changed {
             self.mechanism
                 .derive_parameters(&mut self.settings.parameters);
+        }
+        if inputs_changed || parameters_changed {
+            self.set_freshness(Freshness::Stale);
         }
     }
 

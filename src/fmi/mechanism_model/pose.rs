@@ -23,8 +23,7 @@ impl MechanismModel {
     pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
         let start = self.time;
         if !self.at_committed {
-            self.solver.restore(&self.committed);
-            self.at_committed = true;
+            self.return_to_committed();
         }
         self.set_path(start, h);
         self.report_falls(log);
@@ -151,9 +150,25 @@ impl MechanismModel {
         self.set_freshness(Freshness::Pose);
     }
 
+    /// Puts the solver back to the committed pose, with the choices that it had there.
+    pub(super) fn return_to_committed(&mut self) {
+        let resumed = (self.solver).resume(&self.committed, &self.committed_carryover);
+        debug_assert!(resumed, "the choices are the solver's own");
+        self.at_committed = true;
+    }
+
+    /// Lets the solver leave the committed pose: notes its choices, and begins with them.
+    fn leave_committed(&mut self) {
+        if self.at_committed {
+            self.solver.carry_over(&mut self.committed_carryover);
+        }
+        self.return_to_committed();
+        self.at_committed = false;
+    }
+
     /// Restores the committed pose and its rates.
     fn restore_committed(&mut self) {
-        self.solver.restore(&self.committed);
+        self.leave_committed();
         self.driver_rates.copy_from_slice(&self.committed_rates);
         self.at_committed = true;
     }
@@ -240,6 +255,8 @@ impl MechanismModel {
                 (*velocity, *acceleration) = (0.0, 0.0);
             }
         }
+        self.committed_carryover.clone_from(&self.file_carryover);
+        self.return_to_committed();
         self.at_committed = false;
         let start = self.solver.start(&self.start_pose, &self.path);
         match start.map_err(failed)? {
@@ -273,14 +290,13 @@ impl MechanismModel {
     ///
     /// [`Failure::Discarded`] if no continuous motion leads there.
     fn evaluate(&mut self) -> Result<(), Failure> {
-        self.solver.restore(&self.committed);
+        self.leave_committed();
         let (start, h) = match self.interface {
             Interface::ModelExchange => (self.committed.time, self.time - self.committed.time),
             Interface::CoSimulation => (self.time, 0.0),
         };
         self.set_path(start, h);
         let followed = self.solver.track(&self.path);
-        self.at_committed = false;
         self.set_driver_rates(start, h, 1.0);
         match followed {
             Ok(progress) => {

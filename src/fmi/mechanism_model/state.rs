@@ -9,7 +9,9 @@ use super::{Freshness, MechanismModel, Quantity, Settings};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
-use crate::kinematics::{Crossing, Pose, Progress};
+use crate::kinematics::{
+    BlockCarryover, Carryover, CheckedSegment, Crossing, PivotOrder, Pose, Progress,
+};
 use crate::mechanism::{DriverId, Jet};
 
 /// Largest residual of a pose that is read, relative to its largest coordinate in characteristic
@@ -26,6 +28,9 @@ pub struct MechanismState {
     committed: Pose,
     /// The solver's pose: the committed one, or that of values set since.
     present: Pose,
+    /// The solver's choices at both.
+    committed_carryover: Carryover,
+    present_carryover: Carryover,
     at_committed: bool,
     driver_rates: Vec<Jet>,
     committed_rates: Vec<Jet>,
@@ -40,11 +45,9 @@ pub struct MechanismState {
 impl MechanismModel {
     pub(super) fn save_state(&mut self) -> MechanismState {
         // The next evaluation starts from the committed pose anyway.
-        if self.freshness == Freshness::Stale {
-            self.solver.restore(&self.committed);
-            self.at_committed = true;
+        if self.freshness == Freshness::Stale && !self.at_committed {
+            self.return_to_committed();
         }
-        self.solver.forget_way();
         self.set_freshness(self.freshness.min(Freshness::Pose));
         // Destructured, so that the compiler reports a new field.
         let Self {
@@ -54,6 +57,7 @@ impl MechanismModel {
             variables: _,
             // Equal in all instances of a mechanism, up to rounding.
             file_pose: _,
+            file_carryover: _,
             // Set for each step.
             path: _,
             // Computed with the rates of the drivers.
@@ -67,6 +71,7 @@ impl MechanismModel {
             monitors,
             solver,
             committed,
+            committed_carryover,
             at_committed,
             driver_rates,
             committed_rates,
@@ -76,12 +81,20 @@ impl MechanismModel {
             time,
             near_singular,
         } = self;
+        let mut present_carryover = Carryover::default();
+        solver.carry_over(&mut present_carryover);
         MechanismState {
             start_pose: Arc::clone(start_pose),
             settings: settings.clone(),
             inputs: inputs.clone(),
             monitors: monitors.clone(),
             committed: committed.clone(),
+            committed_carryover: if *at_committed {
+                present_carryover.clone()
+            } else {
+                committed_carryover.clone()
+            },
+            present_carryover,
             present: if *at_committed {
                 committed.clone()
             } else {
@@ -104,8 +117,10 @@ impl MechanismModel {
         self.inputs.clone_from(&state.inputs);
         self.monitors.clone_from(&state.monitors);
         self.committed.clone_from(&state.committed);
-        self.solver.restore(&state.present);
-        self.solver.forget_way();
+        self.committed_carryover
+            .clone_from(&state.committed_carryover);
+        let resumed = (self.solver).resume(&state.present, &state.present_carryover);
+        debug_assert!(resumed, "the choices were checked when the state was read");
         self.at_committed = state.at_committed;
         self.driver_rates.clone_from(&state.driver_rates);
         self.committed_rates.clone_from(&state.committed_rates);
@@ -133,8 +148,15 @@ impl MechanismModel {
                 check_value(variable, value).map_err(|error| error.to_string())?;
             }
         }
-        for pose in [&state.start_pose, &state.committed, &state.present] {
+        self.check_pose(&state.start_pose)?;
+        for (pose, carryover) in [
+            (&state.committed, &state.committed_carryover),
+            (&state.present, &state.present_carryover),
+        ] {
             self.check_pose(pose)?;
+            if !self.solver.resume(pose, carryover) {
+                return Err("its choice of equations is none of this mechanism".to_owned());
+            }
         }
         // The usual case, in which instances share one copy.
         if state.start_pose == self.file_pose {
@@ -177,6 +199,8 @@ impl MechanismState {
             monitors,
             committed,
             present,
+            committed_carryover,
+            present_carryover,
             at_committed,
             driver_rates,
             committed_rates,
@@ -218,11 +242,62 @@ impl MechanismState {
                 codec.real(rate)?;
             }
         }
+        let (rows, unknowns) = (committed.turns.len(), committed.q.len());
+        for carryover in [committed_carryover, present_carryover] {
+            visit_carryover(carryover, rows, unknowns, codec)?;
+        }
         for pose in [Arc::make_mut(start_pose), committed, present] {
             visit_pose(pose, codec)?;
         }
         Ok(())
     }
+}
+
+fn visit_carryover(
+    carryover: &mut Carryover,
+    rows: usize,
+    unknowns: usize,
+    codec: &mut impl Codec,
+) -> Result<(), Unreadable> {
+    let Carryover { set_aside, blocks } = carryover;
+    visit_indices(set_aside, rows, codec)?;
+    codec.resize(blocks, unknowns, BlockCarryover::default)?;
+    for BlockCarryover { pivots, segment } in blocks {
+        for PivotOrder { rows, columns } in pivots {
+            visit_indices(rows, unknowns, codec)?;
+            visit_indices(columns, unknowns, codec)?;
+        }
+        let CheckedSegment {
+            holds,
+            start,
+            way,
+            leading,
+            radius,
+            off,
+            off_single,
+            driver_deviation,
+        } = segment;
+        codec.flag(holds)?;
+        codec.index(leading)?;
+        for list in [&mut *start, &mut *way] {
+            codec.resize(list, unknowns, || 0.0)?;
+        }
+        let numbers = [radius, off, off_single, driver_deviation];
+        for number in start.iter_mut().chain(way).chain(numbers) {
+            codec.real(number)?;
+        }
+    }
+    Ok(())
+}
+
+/// Visits a list of up to `most` indices.
+fn visit_indices(
+    list: &mut Vec<usize>,
+    most: usize,
+    codec: &mut impl Codec,
+) -> Result<(), Unreadable> {
+    codec.resize(list, most, || 0)?;
+    list.iter_mut().try_for_each(|index| codec.index(index))
 }
 
 fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> {

@@ -18,10 +18,31 @@ pub(in crate::kinematics) fn close_on(
     rows: &[usize],
     estimate: &[f64],
 ) -> Option<f64> {
+    let starts = if is_small(system) { STARTS } else { 1 };
+    close_from(system, state, rows, estimate, starts)
+}
+
+/// Closes the mechanism on these rows from the estimates alone.
+pub(in crate::kinematics) fn close_near(
+    system: &System,
+    state: &mut State,
+    rows: &[usize],
+    estimate: &[f64],
+) -> Option<f64> {
+    close_from(system, state, rows, estimate, 1)
+}
+
+fn close_from(
+    system: &System,
+    state: &mut State,
+    rows: &[usize],
+    estimate: &[f64],
+    starts: usize,
+) -> Option<f64> {
     let mut part = Part::of_all(system, rows);
     let small = is_small(system);
     let mut nearest: Option<(f64, Vec<f64>)> = None;
-    for attempt in 0..if small { STARTS } else { 1 } {
+    for attempt in 0..starts {
         let mut block_state = state.block_state(system);
         part.start(&mut block_state, estimate, attempt);
         if small {

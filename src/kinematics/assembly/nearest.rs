@@ -19,7 +19,7 @@ use crate::kinematics::state::State;
 /// and in a singular position, where Newton–Raphson fails, a minimisation comes no nearer.
 const CLOSED: f64 = 1e-7;
 /// The quantity without a value where squares of lengths overflow.
-const AN_EQUATION: &str = "an equation of the mechanism";
+pub(in crate::kinematics) const AN_EQUATION: &str = "an equation of the mechanism";
 
 /// Assembles a mechanism as a whole, after the search over its blocks failed. Returns the most
 /// corrections of a block.

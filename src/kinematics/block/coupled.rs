@@ -12,10 +12,10 @@ mod tests;
 use std::sync::Arc;
 
 use certified_box::CertifiedBox;
-use checked_segment::CheckedSegment;
 use contraction::ContractionTest;
 use equations::{BlockEquations, ColumnOwner, Jacobian};
 
+use super::carryover::{BlockCarryover, CheckedSegment};
 use super::elimination::EliminationOrder;
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
@@ -249,6 +249,24 @@ impl SolveBlock for CoupledBlock {
         if self.factorise(state).is_ok() {
             self.test.choose_pivots(&self.jacobian.lu);
         }
+    }
+
+    fn carry_over(&self, to: &mut BlockCarryover) {
+        self.jacobian.lu.copy_pivots(&mut to.pivots[0]);
+        self.test.middle.lu.copy_pivots(&mut to.pivots[1]);
+        to.segment.clone_from(&self.segment);
+    }
+
+    fn take_over(&mut self, from: &BlockCarryover) -> bool {
+        let BlockCarryover { pivots, segment } = from;
+        let fits = segment.start.len() == self.segment.start.len()
+            && segment.way.len() == self.segment.way.len()
+            && segment.leading < segment.way.len();
+        if fits {
+            self.segment.clone_from(segment);
+        }
+        let [own, middle] = pivots;
+        fits && self.jacobian.lu.use_pivots(own) && self.test.middle.lu.use_pivots(middle)
     }
 
     fn forget_pivots(&mut self) {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::BlockSolver;
+use super::carryover::BlockCarryover;
 use super::crossing::{Crossing, SEAM};
 use super::solve::SolveBlock;
 use super::step::{BlockState, Step};
@@ -169,6 +170,18 @@ impl SolveBlock for InterpolatedBlock {
 
     fn transmission(&self) -> Option<f64> {
         self.block.transmission()
+    }
+
+    fn keeps_pivots(&self) -> bool {
+        self.block.keeps_pivots()
+    }
+
+    fn carry_over(&self, to: &mut BlockCarryover) {
+        self.block.carry_over(to);
+    }
+
+    fn take_over(&mut self, from: &BlockCarryover) -> bool {
+        self.block.take_over(from)
     }
 
     fn forget_pivots(&mut self) {

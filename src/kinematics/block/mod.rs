@@ -16,6 +16,7 @@
 //! recognition in [`compile`].
 
 mod anchor;
+mod carryover;
 mod compile;
 mod coupled;
 mod crossing;
@@ -40,6 +41,7 @@ use super::path::Rates;
 use super::system::{System, Targets};
 use crate::mechanism::Jet;
 
+pub use carryover::{BlockCarryover, CheckedSegment};
 pub(super) use coupled::CoupledBlock;
 pub use crossing::Crossing;
 pub(super) use crossing::SEAM;
@@ -180,8 +182,29 @@ impl BlockPlan {
         }
     }
 
+    /// Copies what blocks take over from earlier steps. Allocates the first time and when pivots
+    /// were chosen.
+    pub(super) fn carry_over(&self, to: &mut Vec<BlockCarryover>) {
+        let blocks = || self.blocks.iter().filter(|block| block.keeps_pivots());
+        to.resize_with(blocks().count(), BlockCarryover::default);
+        for (block, to) in blocks().zip(to) {
+            block.carry_over(to);
+        }
+    }
+
+    /// Lets blocks take over what those of another plan for the same rows have copied. Returns
+    /// false if it is of another plan.
+    pub(super) fn take_over(&mut self, from: &[BlockCarryover]) -> bool {
+        let blocks = self.blocks.iter_mut();
+        let mut blocks = blocks.filter(|block| block.keeps_pivots());
+        let fits = from
+            .iter()
+            .all(|from| blocks.next().is_some_and(|block| block.take_over(from)));
+        fits && blocks.next().is_none()
+    }
+
     /// Lets sparse matrices choose their pivots again at the next factorisation.
-    pub(super) fn forget_pivots(&mut self) {
+    fn forget_pivots(&mut self) {
         for block in &mut self.blocks {
             block.forget_pivots();
         }

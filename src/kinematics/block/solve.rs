@@ -1,5 +1,6 @@
 //! The interface of block solvers.
 
+use super::carryover::BlockCarryover;
 use super::reach::ClosureGap;
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
@@ -140,6 +141,18 @@ pub(in crate::kinematics) trait SolveBlock:
     /// factorisation chooses them.
     fn choose_pivots(&mut self, state: &mut BlockState<'_>) {
         let _ = state;
+    }
+
+    /// Copies what it takes over from earlier steps, if it [keeps pivots](Self::keeps_pivots).
+    fn carry_over(&self, to: &mut BlockCarryover) {
+        let _ = to;
+    }
+
+    /// Takes over what another solver of this block has copied. Returns false if it is of another
+    /// block.
+    fn take_over(&mut self, from: &BlockCarryover) -> bool {
+        let _ = from;
+        false
     }
 
     /// Forgets the pivots that it keeps.

@@ -2,7 +2,7 @@
 
 use super::dense::DenseLu;
 use super::factors::{Factors, Singular};
-use super::sparse::SparseLu;
+use super::sparse::{PivotOrder, SparseLu};
 
 /// The matrix of a block, dense or sparse.
 #[derive(Clone, Debug)]
@@ -62,6 +62,22 @@ impl Lu {
     pub fn forget_pivots(&mut self) {
         if let Self::Sparse(lu) = self {
             lu.forget_pivots();
+        }
+    }
+
+    /// Copies the pivots that the matrix keeps to `order`; none are kept by a dense matrix.
+    pub fn copy_pivots(&self, order: &mut PivotOrder) {
+        match self {
+            Self::Dense(_) => order.clone_from(&PivotOrder::default()),
+            Self::Sparse(lu) => lu.copy_pivots(order),
+        }
+    }
+
+    /// Uses these pivots from the next factorisation on. Returns false if they do not fit.
+    pub fn use_pivots(&mut self, order: &PivotOrder) -> bool {
+        match self {
+            Self::Dense(_) => *order == PivotOrder::default(),
+            Self::Sparse(lu) => lu.use_pivots(order),
         }
     }
 

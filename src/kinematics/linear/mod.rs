@@ -18,4 +18,5 @@ pub(super) use echelon::{Echelon, ReducedRow, Row};
 pub(super) use factors::Factors;
 pub(super) use lu::Lu;
 pub(super) use norm::nan_or_larger;
+pub use sparse::PivotOrder;
 pub(super) use sparse::SparseLu;

@@ -37,24 +37,87 @@ struct Rows {
     values: Vec<f64>,
 }
 
+/// The order of pivots: the row and the column of each.
+#[derive(Debug, Default, PartialEq)]
+pub struct PivotOrder {
+    /// Row of each pivot.
+    pub rows: Vec<usize>,
+    /// Column of each pivot.
+    pub columns: Vec<usize>,
+}
+
 /// An order of pivots, and the factors in it.
 #[derive(Clone, Debug)]
 struct Triangles {
-    order: Order,
+    order: PivotOrder,
+    /// The pivot of each column.
+    place: Vec<usize>,
     /// L without its unit diagonal and U without its diagonal, by rows in the order of pivots;
     /// columns are numbered likewise.
     lower: Rows,
     upper: Rows,
 }
 
-/// The order of pivots.
-#[derive(Clone, Debug)]
-struct Order {
-    /// The row and the column of each pivot.
-    rows: Vec<usize>,
-    columns: Vec<usize>,
-    /// The pivot of each column.
-    place: Vec<usize>,
+impl Clone for PivotOrder {
+    fn clone(&self) -> Self {
+        Self {
+            rows: self.rows.clone(),
+            columns: self.columns.clone(),
+        }
+    }
+
+    /// Copies without allocation where the lengths agree.
+    fn clone_from(&mut self, source: &Self) {
+        self.rows.clone_from(&source.rows);
+        self.columns.clone_from(&source.columns);
+    }
+}
+
+impl PivotOrder {
+    /// Returns whether it has each of the first `order` rows and columns once.
+    fn is_complete(&self, order: usize) -> bool {
+        let is_permutation = |list: &[usize]| {
+            let mut seen = vec![false; order];
+            let mut fresh = list.iter().map(|&k| {
+                let seen = seen.get_mut(k);
+                seen.is_some_and(|seen| !std::mem::replace(seen, true))
+            });
+            list.len() == order && fresh.all(|fresh| fresh)
+        };
+        is_permutation(&self.rows) && is_permutation(&self.columns)
+    }
+}
+
+impl Triangles {
+    /// Finds the pattern of the factors of a matrix in this order of pivots.
+    fn new(matrix: &Rows, order: PivotOrder) -> Self {
+        let mut place = vec![0; order.columns.len()];
+        for (k, &column) in order.columns.iter().enumerate() {
+            place[column] = k;
+        }
+        let mut lower: Vec<Vec<usize>> = Vec::with_capacity(place.len());
+        let mut upper: Vec<Vec<usize>> = Vec::with_capacity(place.len());
+        for (k, &row) in order.rows.iter().enumerate() {
+            let (columns, _) = matrix.row(row);
+            let mut entries: BTreeSet<_> = columns.iter().map(|&column| place[column]).collect();
+            let mut before = Vec::new();
+            // Each row that is subtracted adds its entries, all behind its own pivot.
+            while let Some(first) = entries.first().copied().filter(|&first| first < k) {
+                entries.remove(&first);
+                before.push(first);
+                entries.extend(&upper[first]);
+            }
+            entries.remove(&k);
+            lower.push(before);
+            upper.push(entries.into_iter().collect());
+        }
+        Self {
+            order,
+            place,
+            lower: Rows::new(lower.into_iter()),
+            upper: Rows::new(upper.into_iter()),
+        }
+    }
 }
 
 impl Rows {
@@ -149,7 +212,7 @@ impl SparseLu {
         if self.factors.is_some() && self.eliminate(KEEP) {
             return Ok(());
         }
-        self.factors = Some(self.choose()?);
+        self.factors = Some(Triangles::new(&self.matrix, self.choose()?));
         if self.eliminate(0.0) {
             Ok(())
         } else {
@@ -163,11 +226,41 @@ impl SparseLu {
         self.factors = None;
     }
 
+    /// Copies the pivots in use to `order`, which is empty if there are none.
+    pub fn copy_pivots(&self, order: &mut PivotOrder) {
+        match &self.factors {
+            Some(factors) => order.clone_from(&factors.order),
+            None => {
+                order.rows.clear();
+                order.columns.clear();
+            }
+        }
+    }
+
+    /// Uses these pivots from the next factorisation on; an empty order lets it choose them.
+    /// Returns false if they do not fit the matrix.
+    pub fn use_pivots(&mut self, order: &PivotOrder) -> bool {
+        if *order == PivotOrder::default() {
+            self.factors = None;
+            return true;
+        }
+        let is_used = |factors: &Triangles| factors.order == *order;
+        if self.factors.as_ref().is_some_and(is_used) {
+            return true;
+        }
+        let fits = order.is_complete(self.diagonal.len());
+        if fits {
+            self.factors = Some(Triangles::new(&self.matrix, order.clone()));
+        }
+        fits
+    }
+
     /// Runs the elimination in the chosen order. Returns false if a pivot is not above `keep` times
     /// the largest entry of its row.
     fn eliminate(&mut self, keep: f64) -> bool {
         let Some(Triangles {
             order,
+            place,
             lower,
             upper,
         }) = &mut self.factors
@@ -179,7 +272,7 @@ impl SparseLu {
             let work = &mut self.work;
             let (columns, values) = self.matrix.row(row);
             for (&column, &value) in columns.iter().zip(values) {
-                work[order.place[column]] = value;
+                work[place[column]] = value;
             }
             for entry in lower.start[k]..lower.start[k + 1] {
                 let before = lower.columns[entry];
@@ -207,7 +300,7 @@ impl SparseLu {
 
     /// Chooses the pivots for the present values: the entry with the fewest others in its row
     /// and column (Markowitz) among those that are large enough.
-    fn choose(&self) -> Result<Triangles, Singular> {
+    fn choose(&self) -> Result<PivotOrder, Singular> {
         let order = self.diagonal.len();
         let mut rows: Vec<Vec<(usize, f64)>> = (0..order)
             .map(|k| {
@@ -226,10 +319,8 @@ impl SparseLu {
             }
         }
         let mut by_length: BTreeSet<_> = (0..order).map(|row| (rows[row].len(), row)).collect();
-        let mut lower: Vec<Vec<usize>> = vec![Vec::new(); order];
-        let mut upper: Vec<Vec<usize>> = Vec::with_capacity(order);
         let mut pivots: Vec<(usize, usize)> = Vec::with_capacity(order);
-        for k in 0..order {
+        for _ in 0..order {
             let (row, column) = pick(&rows, &rows_with, &by_length).ok_or(Singular)?;
             let pivot_row = std::mem::take(&mut rows[row]);
             by_length.remove(&(pivot_row.len(), row));
@@ -238,7 +329,6 @@ impl SparseLu {
             }
             let pivot = value_at(&pivot_row, column);
             for below in std::mem::take(&mut rows_with[column]) {
-                lower[below].push(k);
                 let target = &mut rows[below];
                 by_length.remove(&(target.len(), below));
                 let factor = value_at(target, column) / pivot;
@@ -254,28 +344,10 @@ impl SparseLu {
                 }
                 by_length.insert((target.len(), below));
             }
-            let others = pivot_row.iter().map(|(other, _)| *other);
-            upper.push(others.filter(|other| *other != column).collect());
             pivots.push((row, column));
         }
-        let (rows, columns): (Vec<_>, Vec<_>) = pivots.into_iter().unzip();
-        let mut place = vec![0; order];
-        for (k, &column) in columns.iter().enumerate() {
-            place[column] = k;
-        }
-        Ok(Triangles {
-            lower: Rows::new(rows.iter().map(|&row| std::mem::take(&mut lower[row]))),
-            upper: Rows::new(
-                upper
-                    .into_iter()
-                    .map(|row| row.into_iter().map(|column| place[column]).collect()),
-            ),
-            order: Order {
-                rows,
-                columns,
-                place,
-            },
-        })
+        let (rows, columns) = pivots.into_iter().unzip();
+        Ok(PivotOrder { rows, columns })
     }
 
     /// Returns the magnitudes of the smallest and the largest pivot.
@@ -335,6 +407,7 @@ impl Factors for SparseLu {
             order,
             lower,
             upper,
+            ..
         }) = &self.factors
         else {
             return;
@@ -360,6 +433,7 @@ impl Factors for SparseLu {
             order,
             lower,
             upper,
+            ..
         }) = &self.factors
         else {
             return;

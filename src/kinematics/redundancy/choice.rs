@@ -7,6 +7,7 @@ use super::contradiction::explain_open;
 use super::rank::{
     DEPENDENT, drivers_first, find_freedom, jacobian_rows, singular_position, weakest,
 };
+use super::slip::explain_misfit;
 use crate::kinematics::Element;
 use crate::kinematics::assembly::estimate::go_to_estimate;
 use crate::kinematics::assembly::gaps::open_joints;
@@ -118,7 +119,10 @@ fn choose_rows_near(model: &mut Model, state: &mut State, estimate: &[f64]) -> R
     if let Some(gap) = close_on_all(model, state, estimate) {
         return Err(explain_open(model, state, gap, estimate));
     }
-    let all = find_freedom(model, state)?;
+    let all = find_freedom(model, state).map_err(|error| {
+        // Far from where the rows hold together no rank means anything.
+        explain_misfit(model, state).unwrap_or(error)
+    })?;
     let choice = choose_here(model, state, FIT);
     let solved = model.system.equations().len() - choice.set_aside.len();
     if solved < model.system.unknowns() {
@@ -164,6 +168,9 @@ pub(in crate::kinematics) fn assemble_on_all(
     let Ok(iterations) = closed else {
         return Err(singular_position(model, state));
     };
+    if let Some(error) = explain_misfit(model, state) {
+        return Err(error);
+    }
     state.accept_bodies();
     state.move_to_pose(&model.system);
     Ok(iterations)
@@ -175,10 +182,7 @@ pub(in crate::kinematics) fn assemble_on_all(
 /// # Errors
 ///
 /// [`Error::Singular`] if the rows all together lose rank here.
-pub(in crate::kinematics) fn return_to_fit_rows(
-    model: &mut Model,
-    state: &mut State,
-) -> Result<(), Error> {
+fn return_to_fit_rows(model: &mut Model, state: &mut State) -> Result<(), Error> {
     if model.redundant.is_empty() || !state.pose.crossings.is_empty() {
         return Ok(());
     }

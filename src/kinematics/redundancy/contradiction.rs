@@ -2,11 +2,12 @@
 
 use super::closure::find_start;
 use super::rank::{DEPENDENT, constraint_rows, find_freedom, jacobian_rows};
+use super::slip::{AGREES, contradiction, explain_slip};
 use crate::kinematics::Element;
-use crate::kinematics::assembly::closure::{close_on, is_small};
+use crate::kinematics::assembly::closure::{close_near, close_on, is_small};
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
-use crate::kinematics::assembly::nearest::search_at_once;
+use crate::kinematics::assembly::nearest::{AN_EQUATION, search_at_once};
 use crate::kinematics::assembly::part::STARTS;
 use crate::kinematics::error::{Error, OpenJoint, Verdict};
 use crate::kinematics::linear::Echelon;
@@ -29,10 +30,22 @@ pub(super) fn explain_open(
 ) -> Error {
     if !gap.is_finite() {
         return Error::NotFinite {
-            what: "an equation of the mechanism".to_owned(),
+            what: AN_EQUATION.to_owned(),
         };
     }
     let all: Vec<_> = (0..model.system.equations().len()).collect();
+    let slip = explain_slip(model, state, gap).or_else(|| {
+        // The nearest pose of all may be on another branch than the estimates.
+        let mut nearest = vec![0.0; model.system.unknowns()];
+        state.at.copy_pose(&mut nearest);
+        let gap = close_near(&model.system, state, &all, estimate)?;
+        let slip = explain_slip(model, state, gap);
+        state.at.set_pose(model.system.mechanism(), &nearest);
+        slip
+    });
+    if let Some(error) = slip {
+        return error;
+    }
     let mut open = elements_open(model, state, &all, gap);
     // Excess drivers ask for a motion that the constraints, closed by themselves, do not give.
     let constraints = constraint_rows(&model.system);
@@ -59,9 +72,7 @@ pub(super) fn explain_open(
         }
     }
     let rows = system.rows_of(&open);
-    let names = open.iter();
-    let elements = names.map(|element| element.describe(system.mechanism()));
-    let elements: Vec<_> = elements.collect();
+    let elements = open.clone();
     // People look for one joint that does not meet: the one declared last.
     let is_driver = |element: &Element| matches!(element, Element::Driver(_));
     let last = open.iter().rfind(|element| !is_driver(element));
@@ -79,7 +90,9 @@ pub(super) fn explain_open(
     let gathered = open_joints(model, state, &rows_of_last, gap);
     let gathered = gathered.into_iter().next().map(|(_, joint)| joint);
     match gathered {
-        Some(open) if contradict => Error::Contradiction { elements, open },
+        Some(open) if contradict && gap > AGREES => {
+            contradiction(model, state, &elements, last, open)
+        }
         gathered => match find_start(model, state, estimate) {
             // A mechanism impossible with fewer rows is impossible with all.
             Some(failure) if failure.proved => {

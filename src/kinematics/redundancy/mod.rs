@@ -16,6 +16,7 @@
 //! |---|---|
 //! | [`closure`] | closes a mechanism on all its rows |
 //! | [`rank`] | finds degrees of freedom and redundant rows |
+//! | [`slip`] | explains redundant rows that are open by little |
 //! | [`contradiction`] | explains rows that cannot be satisfied together |
 //! | [`choice`] | chooses the rows that are solved |
 //! | [`watch`] | bounds rows set aside between the ends of a sub-step |
@@ -24,11 +25,11 @@ mod choice;
 mod closure;
 mod contradiction;
 mod rank;
+mod slip;
 mod watch;
 
 pub use choice::Redundancy;
 pub(super) use choice::{
     assemble_on_all, change_rows, choose_rows, is_nearly_singular, may_cross, opened, redundancies,
-    return_to_fit_rows,
 };
 pub(super) use watch::watch_between;

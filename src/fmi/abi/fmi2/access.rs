@@ -8,12 +8,13 @@ use crate::fmi::Call;
 use crate::fmi::abi::arguments::{Room, slice};
 use crate::fmi::abi::component::with_instance;
 
-/// The access functions of types that variables have: those that get, with the method that
-/// computes, and those that set.
+/// The access functions of types that variables have: those that get, with what writes the
+/// values, and those that set.
 macro_rules! with_variables {
     ($(
         $(#[$doc:meta])*
-        $get:ident($values:ident), $set:ident($take:ident): $type:ty;
+        $get:ident(|$instance:ident, $vr:ident, $room:ident| $write:expr),
+        $set:ident($take:ident): $type:ty;
     )*) => {
         $(
             $(#[$doc])*
@@ -30,10 +31,10 @@ macro_rules! with_variables {
             ) -> fmi2Status {
                 // SAFETY: the host's promise.
                 unsafe {
-                    with_instance(c, stringify!($get), |instance| {
-                        let vr = slice("vr", vr, nvr)?;
-                        let room = Room::new("value", value, nvr)?;
-                        room.fill(instance.$values(vr)?);
+                    with_instance(c, stringify!($get), |$instance| {
+                        let $vr = slice("vr", vr, nvr)?;
+                        let $room = Room::new("value", value, nvr)?;
+                        $write;
                         Ok(())
                     })
                 }
@@ -65,9 +66,11 @@ macro_rules! with_variables {
 
 with_variables! {
     /// `fmi2GetReal`.
-    fmi2GetReal(reals), fmi2SetReal(set_real): fmi2Real;
+    fmi2GetReal(|instance, vr, room| instance.reals(vr)?.write_to(room.items())),
+    fmi2SetReal(set_real): fmi2Real;
     /// `fmi2GetInteger`: counts of the solver, and the choices.
-    fmi2GetInteger(integers), fmi2SetInteger(set_integer): fmi2Integer;
+    fmi2GetInteger(|instance, vr, room| room.fill(instance.integers(vr)?)),
+    fmi2SetInteger(set_integer): fmi2Integer;
 }
 
 /// The access functions of types that no variable has: right for an empty list only.

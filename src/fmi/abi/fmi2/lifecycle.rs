@@ -14,6 +14,7 @@ use crate::fmi::abi::arguments::{slice, text};
 use crate::fmi::abi::component::{
     CallError, Component, panic_message, silence_panics, with_instance,
 };
+use crate::fmi::abi::floating_point::StandardEnvironment;
 use crate::fmi::{Call, Category, Instance, Interface, Sink, Status};
 
 /// `fmi2GetTypesPlatform`: always `"default"`.
@@ -46,6 +47,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     logging_on: fmi2Boolean,
 ) -> fmi2Component {
     silence_panics();
+    let _environment = StandardEnvironment::set();
     if functions.is_null() || !functions.is_aligned() {
         return std::ptr::null_mut();
     }

@@ -11,6 +11,7 @@
 
 use super::CoupledBlock;
 use super::estimate::Passed;
+use crate::kinematics::block::carryover::CheckedSegment;
 use crate::kinematics::block::step::{BlockState, Extrapolation, Step};
 use crate::kinematics::linear::nan_or_larger;
 
@@ -33,26 +34,6 @@ const WITHIN: f64 = 0.5;
 /// Upstream unknowns that move by less than this, in radians and characteristic lengths, count as
 /// stationary: some rounding.
 const AT_REST: f64 = 1e-13;
-
-/// A line along which a block was tested to be regular.
-#[derive(Debug, Default)]
-pub(super) struct CheckedSegment {
-    holds: bool,
-    /// The block's own unknowns at its beginning, then the upstream ones.
-    start: Vec<f64>,
-    /// The moves of the own unknowns from its beginning to its end.
-    way: Vec<f64>,
-    /// Index of the own unknown that moves most.
-    leading: usize,
-    /// Scaled radius within which there is one root.
-    radius: f64,
-    /// Scaled bound of the distance of the root from the line.
-    off: f64,
-    /// Scaled bound of the distance of the root from the chord of the first step.
-    off_single: f64,
-    /// Largest deviation of the driver from the chord of a step.
-    driver_deviation: f64,
-}
 
 impl CheckedSegment {
     /// Makes the storage for this number of own and upstream unknowns.
