@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         StoppedError,
         UsageError,
     )
+    from .synthesis import Fit, Target, fit, points
     from .mechanism import Driver, Mechanism, Parameter, check, load, loads
     from .results import (
         ChangePoint,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
         Result,
         Sweep,
     )
+    from .tolerances import Tolerances, tolerance
 
 __all__ = [
     "AssemblyError",
@@ -50,6 +52,7 @@ __all__ = [
     "End",
     "Error",
     "FileError",
+    "Fit",
     "Gradient",
     "Mechanism",
     "MechanismError",
@@ -62,11 +65,16 @@ __all__ = [
     "Result",
     "StoppedError",
     "Sweep",
+    "Target",
+    "Tolerances",
     "UsageError",
     "__version__",
     "check",
+    "fit",
     "load",
     "loads",
+    "points",
+    "tolerance",
 ]
 
 _HOMES = {
@@ -80,6 +88,7 @@ _HOMES = {
         "StoppedError",
         "UsageError",
     ],
+    "synthesis": ["Fit", "Target", "fit", "points"],
     "mechanism": ["Driver", "Mechanism", "Parameter", "check", "load", "loads"],
     "results": [
         "ChangePoint",
@@ -93,6 +102,7 @@ _HOMES = {
         "Result",
         "Sweep",
     ],
+    "tolerances": ["Tolerances", "tolerance"],
 }
 """Modules by what they define. They are imported when they are needed: the program needs none of
 them, and no NumPy."""

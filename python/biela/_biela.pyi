@@ -41,7 +41,9 @@ class Mechanism:
     @property
     def parameters(
         self,
-    ) -> list[tuple[str, str, float, str, float | None, float | None, bool]]: ...
+    ) -> list[
+        tuple[str, str, float, str, float | None, float | None, float | None, bool]
+    ]: ...
     @property
     def drivers(
         self,
@@ -88,6 +90,9 @@ class Mechanism:
         traces: bool,
         width: int | None,
         transparent: bool,
+    ) -> str: ...
+    def edited(
+        self, motions: _Motions, parameters: _Values, estimates: Sequence[float] | None
     ) -> str: ...
     def fmu(self, runtime: str | os.PathLike[str] | None, platforms: Sequence[str]) -> bytes: ...
 

@@ -45,6 +45,8 @@ class Parameter:
     unit: str
     min: float | None
     max: float | None
+    tolerance: float | None
+    """Largest deviation of the real value."""
     derived: bool
     """Whether the value follows from other parameters and cannot be set."""
 
@@ -149,8 +151,7 @@ class Mechanism:
         return str(self.draw())
 
     def __reduce__(self):
-        # Tables are beside the file; without any, the text is all.
-        return _restored, (self.text, self.name, self._path if self._inner.has_tables else None)
+        return _reread, (self.text, self._path, self._inner.has_tables)
 
     def check(self, modes: bool = False) -> Report:
         """Assembles the mechanism at its start values and reports the pose.
@@ -326,6 +327,38 @@ class Mechanism:
         start = self._start(drive)
         return Drawing(self._inner.draw(start, parameters, traces, width, transparent))
 
+    def changed(self, parameters: Parameters | None = None, drive: Drive | None = None) -> Mechanism:
+        """Returns the mechanism with other parameters and start values of drivers.
+
+        Its file differs in these values and in the estimates, which are those of the pose there;
+        comments stay.
+
+        >>> longer = four_bar.changed({"base": 0.42}, drive={"crank_angle": 1.0})
+        >>> print(longer.check().poses["rocker"].round(4))
+        [0.42   0.     2.1897]
+        """
+        given = list((parameters or {}).items())
+        text = self._inner.edited(self._start(drive), given, None)
+        return _reread(text, self._path, self._inner.has_tables)
+
+    def posed(self, mode: Mode) -> Mechanism:
+        """Returns the mechanism in another of its assembly modes: the file with other estimates.
+
+        >>> (other,) = four_bar.modes().others
+        >>> mirrored = four_bar.posed(other)
+        >>> bool(np.allclose(mirrored.check().poses["rocker"], other.poses["rocker"]))
+        True
+        """
+        estimates = np.concatenate([mode.poses[body] for body in self.bodies])
+        text = self._inner.edited(self._start(None), [], estimates.tolist())
+        return _reread(text, self._path, self._inner.has_tables)
+
+    def write(self, path: str | os.PathLike) -> Path:
+        """Writes the mechanism file and returns its path."""
+        path = Path(path)
+        path.write_text(self.text, encoding="utf-8")
+        return path
+
     def export(
         self,
         path: str | os.PathLike | None = None,
@@ -444,8 +477,10 @@ def _progress_bar(count: int):
     return tqdm(total=count, unit="variant")
 
 
-def _restored(text: str, name: str, path: str | None) -> Mechanism:
-    """Returns a mechanism from another process; its warnings were shown there."""
+def _reread(text: str, path: str | None, has_tables: bool) -> Mechanism:
+    """Returns the mechanism of another text of its file, or in another process; tables are beside
+    the file. Warnings were shown when the file was read."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MechanismWarning)
-        return load(path) if path else loads(text, f"{name}.toml")
+        inner = _biela.Mechanism(path or "mechanism.toml", text, path if has_tables else None)
+        return Mechanism(inner, path)

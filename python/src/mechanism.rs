@@ -1,22 +1,23 @@
 //! The class `Mechanism`: a mechanism file, and what can be asked of it.
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use biela::cli;
 use biela::drawing::{Scene, Sheet, svg};
 use biela::fmi::Column;
-use biela::kinematics::{End, Mode, Path, Pose, RangeSettings, Solver};
+use biela::kinematics::{Carryover, End, Mode, Path, RangeSettings, Solver};
 use biela::mechanism::{
     Diagnostic, DriverId, DriverSource, Mechanism as Model, ParameterId, Source, Unit,
 };
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
+use crate::edit::edit;
 use crate::error::{Failure, exception};
 use crate::run::{Run, run};
 use crate::runner::Runner;
-use crate::scenario::{Drive, Scenario, Value, parameter};
+use crate::scenario::{Drive, Home, Scenario, Value, parameter};
 use crate::sweep::{Sweep, sweep};
 
 /// A diagnostic: severity, code, message, help, line and column of the primary place, both from 1.
@@ -28,12 +29,14 @@ type Problem = (
     Option<(usize, usize)>,
 );
 
-/// A parameter: name, description, value, unit, smallest and largest value, whether it is derived.
+/// A parameter: name, description, value, unit, smallest and largest value, tolerance, whether it is
+/// derived.
 type ParameterRow = (
     String,
     String,
     f64,
     &'static str,
+    Option<f64>,
     Option<f64>,
     Option<f64>,
     bool,
@@ -65,6 +68,10 @@ type RangeRow<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
+/// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
+/// these are all.
+type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
+
 /// Times, and motions of drivers.
 type Motions = (Vec<f64>, Vec<(String, Drive)>);
 
@@ -74,6 +81,8 @@ pub(crate) struct Mechanism {
     source: Source,
     model: Arc<Model>,
     warnings: Vec<Diagnostic>,
+    /// The pose of the file's own values, once it was asked for.
+    home: OnceLock<Arc<Home>>,
 }
 
 #[pymethods]
@@ -93,6 +102,7 @@ impl Mechanism {
                 source,
                 model: Arc::new(model),
                 warnings,
+                home: OnceLock::new(),
             }),
             Err(errors) => {
                 let text = cli::render::render(&source, &errors, false);
@@ -164,7 +174,17 @@ impl Mechanism {
             .map(|p| {
                 let (name, description) = (p.name.clone(), p.description.clone());
                 let unit = unit(p.unit);
-                (name, description, p.default, unit, p.min, p.max, p.derived)
+                let (limits, tolerance) = ((p.min, p.max), p.tolerance);
+                (
+                    name,
+                    description,
+                    p.default,
+                    unit,
+                    limits.0,
+                    limits.1,
+                    tolerance,
+                    p.derived,
+                )
             })
             .collect()
     }
@@ -291,14 +311,13 @@ impl Mechanism {
         ))
     }
 
-    /// Finds the other assembly modes at the start of a motion: the coordinates of the bodies and
-    /// the reciprocal condition of each, and whether these are all.
+    /// Finds the other assembly modes at the start of a motion.
     fn modes(
         &self,
         py: Python<'_>,
         motions: Motions,
         parameters: Vec<(String, Value)>,
-    ) -> PyResult<(Vec<(Vec<f64>, f64)>, bool)> {
+    ) -> PyResult<ModesRow> {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
             let mut runner = Runner::new(&scenario)?;
@@ -334,6 +353,33 @@ impl Mechanism {
         .map_err(|failure: Failure| failure.raise(py))
     }
 
+    /// Returns the text of the file with these parameters, the start values of a motion, and its
+    /// pose there as estimates; with `estimates`, which are by body, the text with those alone.
+    fn edited(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        estimates: Option<Vec<f64>>,
+    ) -> PyResult<String> {
+        py.detach(|| {
+            let names: Vec<String> = parameters.iter().map(|(name, _)| name.clone()).collect();
+            let scenario = self.scenario(motions)?;
+            let mut pose = scenario.home.0.clone();
+            match estimates {
+                Some(q) => pose.q[..q.len()].copy_from_slice(&q),
+                None => {
+                    let mut runner = Runner::new(&scenario)?;
+                    let values = scenario.parameters(parameters)?;
+                    runner.start(&values)?;
+                    pose = runner.solver.pose().clone();
+                }
+            }
+            edit(self.source.text(), &self.model, &names, &pose)
+        })
+        .map_err(|failure: Failure| failure.raise(py))
+    }
+
     /// Returns the bytes of the FMU.
     fn fmu(
         &self,
@@ -353,10 +399,16 @@ impl Mechanism {
     }
 
     /// Returns the pose of the file's own values.
-    fn home(&self) -> Result<Arc<Pose>, Failure> {
+    fn home(&self) -> Result<Arc<Home>, Failure> {
+        if let Some(home) = self.home.get() {
+            return Ok(Arc::clone(home));
+        }
         let mut solver = Solver::new(self.model.clone())?;
         solver.assemble(&Path::new(&self.model))?;
-        Ok(Arc::new(solver.pose().clone()))
+        let mut carryover = Carryover::default();
+        solver.carry_over(&mut carryover);
+        let home = Arc::new((solver.pose().clone(), carryover));
+        Ok(Arc::clone(self.home.get_or_init(|| home)))
     }
 
     /// Returns a parameter that does not follow from others.
@@ -390,7 +442,12 @@ impl Mechanism {
 
 fn source(name: &str, text: Option<String>, path: Option<PathBuf>) -> Result<Source, Failure> {
     match (text, path) {
-        (Some(text), _) => Ok(Source::new(name, text)),
+        (Some(text), None) => Ok(Source::new(name, text)),
+        // The tables that the text names are beside the file.
+        (Some(text), Some(path)) => {
+            let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+            Ok(Source::new(name, text).in_folder(folder))
+        }
         (None, Some(path)) => Source::open(name, &path)
             .map_err(|error| Failure::File(format!("cannot read `{name}`: {error}"))),
         (None, None) => Err(Failure::Usage("expected a text or a path".to_owned())),

@@ -1,6 +1,6 @@
 //! A mechanism that moves along the samples and motions of its drivers.
 
-use biela::kinematics::{Curve, Path, Rates, Solver, Start};
+use biela::kinematics::{Carryover, Curve, Path, Rates, Solver, Start};
 use biela::mechanism::{DriverId, Jet, Motion, ParameterId};
 
 use crate::error::Failure;
@@ -16,6 +16,7 @@ pub(crate) struct Runner<'a> {
     /// Value, velocity and acceleration of each driver.
     pub(crate) driver_rates: Vec<Jet>,
     path: Path,
+    carryover: Carryover,
     near_singular: bool,
 }
 
@@ -35,9 +36,10 @@ impl<'a> Runner<'a> {
         Ok(Self {
             scenario,
             home,
-            rates: Rates::new(scenario.home.q.len()),
+            rates: Rates::new(scenario.home.0.q.len()),
             driver_rates: vec![Jet::constant(0.0); scenario.own.drivers.len()],
             path: Path::new(solver.mechanism()),
+            carryover: Carryover::default(),
             solver,
             near_singular: false,
         })
@@ -53,8 +55,8 @@ impl<'a> Runner<'a> {
         let Scenario {
             own, driven, home, ..
         } = self.scenario;
-        self.home.restore(home);
-        self.home.forget_way();
+        self.home.resume(&home.0, &home.1);
+        let home = &home.0;
         let start = self.scenario.times[0];
         let mut path = Path::new(own);
         path.duration = start - home.time;
@@ -75,8 +77,8 @@ impl<'a> Runner<'a> {
             }
         }
         let began = self.home.start(home, &path)?;
-        self.solver.restore(self.home.pose());
-        self.solver.forget_way();
+        self.home.carry_over(&mut self.carryover);
+        self.solver.resume(self.home.pose(), &self.carryover);
         self.path.from.copy_from_slice(parameters);
         self.path.to.copy_from_slice(parameters);
         self.near_singular = false;

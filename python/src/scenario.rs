@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use biela::cli::{check_parameter, parameter_value, unknown_name};
-use biela::kinematics::Pose;
+use biela::kinematics::{Carryover, Pose};
 use biela::mechanism::{DriverId, DriverSource, Jet, Mechanism, Motion, ParameterId, Variable};
 use pyo3::prelude::*;
 
@@ -38,6 +38,9 @@ impl Samples {
     }
 }
 
+/// The pose of the file's own values, with the solver's choices there.
+pub(crate) type Home = (Pose, Carryover);
+
 /// A mechanism with the motions of its drivers.
 #[derive(Debug)]
 pub(crate) struct Scenario {
@@ -45,8 +48,7 @@ pub(crate) struct Scenario {
     pub(crate) own: Arc<Mechanism>,
     /// The mechanism with the motions of the call; drivers that follow samples are inputs.
     pub(crate) driven: Arc<Mechanism>,
-    /// The pose of the file's own values.
-    pub(crate) home: Arc<Pose>,
+    pub(crate) home: Arc<Home>,
     /// Times of the rows \[s\], ascending; at least one.
     pub(crate) times: Vec<f64>,
     pub(crate) samples: Vec<Samples>,
@@ -60,7 +62,7 @@ impl Scenario {
     /// A driver or an expression is unknown, or an array does not fit the times.
     pub(crate) fn new(
         own: &Arc<Mechanism>,
-        home: &Arc<Pose>,
+        home: &Arc<Home>,
         times: Vec<f64>,
         drives: Vec<(String, Drive)>,
     ) -> Result<Self, Failure> {

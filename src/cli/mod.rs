@@ -34,6 +34,8 @@ mod schema;
 mod signals;
 mod stdout;
 mod suggested_estimates;
+mod times;
+mod tolerance;
 mod watch;
 
 use std::ffi::OsString;
@@ -62,6 +64,7 @@ enum Command {
     Check(check::Check),
     Run(run::Run),
     Range(range::Range),
+    Tolerance(tolerance::Tolerance),
     Draw(draw::Draw),
     Watch(watch::Watch),
     Export(export::Export),
@@ -90,6 +93,7 @@ pub fn status(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Check(command) => command.run(),
         Command::Run(command) => command.run(),
         Command::Range(command) => command.run(),
+        Command::Tolerance(command) => command.run(),
         Command::Draw(command) => command.run(),
         Command::Watch(command) => command.run(),
         Command::Export(command) => command.run(),

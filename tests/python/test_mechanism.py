@@ -17,6 +17,8 @@ import pytest
 from shipped import ROOT
 from numpy.testing import assert_allclose
 
+MODULES = ["biela", *(f"biela.{path.stem}" for path in (ROOT / "python/biela").glob("[!_]*.py"))]
+
 
 def test_errors_of_a_file_are_diagnostics(tmp_path):
     file = tmp_path / "wrong.toml"
@@ -143,12 +145,12 @@ def test_the_program_is_the_module():
     assert run("check", "none.toml").returncode == 2
 
 
-@pytest.mark.parametrize("name", ["biela", "biela.errors", "biela.mechanism", "biela.rates", "biela.results"])
+@pytest.mark.parametrize("name", MODULES)
 def test_examples_of_docstrings_run(name, four_bar):
     module = importlib.import_module(name)
     names = {"np": np, "biela": biela, "four_bar": four_bar, "text": four_bar.text}
     tests = doctest.DocTestFinder().find(module, extraglobs=names)
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
     for test in tests:
-        runner.run(test)
+        runner.run(test, clear_globs=False)
     assert runner.failures == 0
