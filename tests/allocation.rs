@@ -87,6 +87,8 @@ fn a_cycle_of_set_step_and_get_allocates_nothing() {
         "cam_points",
         "cam_roller_arm",
         "cam_flat",
+        // With forces.
+        "andrews",
     ] {
         let mut instance = silent(name);
         let outputs: Vec<u32> = (0..instance.variables().len() as u32)

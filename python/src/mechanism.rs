@@ -214,7 +214,7 @@ impl Mechanism {
     /// Returns the names and units of the columns of a run.
     #[getter]
     fn columns(&self) -> Vec<(String, &'static str)> {
-        let columns = Column::all(&self.model).into_iter();
+        let columns = columns(&self.model).into_iter();
         columns
             .map(|column| (column.name, column.unit.name))
             .collect()
@@ -421,7 +421,7 @@ impl Mechanism {
     }
 
     fn chosen(&self, indices: &[usize]) -> Vec<Column> {
-        let columns = Column::all(&self.model);
+        let columns = columns(&self.model);
         indices
             .iter()
             .map(|index| columns[*index].clone())
@@ -438,6 +438,13 @@ impl Mechanism {
             End::NotFound { value } => ("not found", Some(*value), text, None),
         }
     }
+}
+
+/// Returns the columns of the motion. Forces are left out.
+fn columns(model: &Model) -> Vec<Column> {
+    let mut columns = Column::all(model);
+    columns.retain(|column| !column.is_force());
+    columns
 }
 
 fn source(name: &str, text: Option<String>, path: Option<PathBuf>) -> Result<Source, Failure> {

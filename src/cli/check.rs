@@ -1,11 +1,13 @@
 //! `biela check`
 
+mod forces;
 pub(super) mod json;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use forces::Forces;
 
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
@@ -18,7 +20,8 @@ use crate::mechanism::{CoordinateKind, DriverSource, Mechanism};
 ///
 /// Prints the bodies, joints and drivers with their equations, the degrees of freedom, the
 /// assembled pose at the drivers' start values, how far each body is from its estimate, and the
-/// reciprocal condition of the pose (1 is best, 0 a singular position). If the mechanism does not
+/// reciprocal condition of the pose (1 is best, 0 a singular position). With masses or forces it
+/// prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. If the mechanism does not
 /// close, it says whether that is proved, which joints stay open and by how much, and prints the
 /// nearest pose.
 #[derive(Args, Debug)]
@@ -83,6 +86,14 @@ impl Check {
         }
         warn_of_misfits(&solver);
         print(&describe_pose(&mut solver))?;
+        if mechanism.has_dynamics() {
+            let forces = Forces::at_rest(&mut solver);
+            print(
+                &forces
+                    .map_err(|error| input.error(error))?
+                    .describe(mechanism),
+            )?;
+        }
         if self.estimates {
             print(&estimates(&solver))?;
         }

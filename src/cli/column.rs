@@ -2,8 +2,9 @@
 
 use super::error::Error;
 use super::motion::Motion;
-pub(super) use crate::fmi::Column;
 use crate::fmi::Signal;
+pub(super) use crate::fmi::{Column, ColumnSource as Source};
+use crate::kinematics::ForceQuantity;
 use crate::mechanism::{BodyId, MarkerId, Mechanism, help};
 
 impl Column {
@@ -29,11 +30,14 @@ impl Column {
         Ok(columns.iter().filter(is_named).cloned().collect())
     }
 
-    /// Returns the columns that a plot shows by default: the drivers, and of measures, points of
-    /// interest and bodies the first kind that the mechanism has.
+    /// Returns the columns that a plot shows by default: the drivers with their efforts, and of
+    /// measures, points of interest and bodies the first kind that the mechanism has.
     pub(super) fn plotted(columns: &[Self]) -> Vec<Self> {
         let select = |is_wanted: fn(&Signal) -> bool| -> Vec<Self> {
-            let wanted = columns.iter().filter(|c| is_wanted(&c.signal));
+            let wanted = columns.iter().filter(|column| match &column.source {
+                Source::Signal(signal, _) => is_wanted(signal),
+                Source::Force(_) => false,
+            });
             wanted.cloned().collect()
         };
         let kinds: [fn(&Signal) -> bool; 3] = [
@@ -44,6 +48,8 @@ impl Column {
         let mut plotted = select(|signal| matches!(signal, Signal::Motion(_)));
         let further = kinds.into_iter().map(select).find(|kind| !kind.is_empty());
         plotted.extend(further.unwrap_or_default());
+        let is_effort = |c: &&Self| matches!(c.source, Source::Force(ForceQuantity::Effort(_)));
+        plotted.extend(columns.iter().filter(is_effort).cloned());
         plotted
     }
 
@@ -56,7 +62,10 @@ impl Column {
 
     /// Returns the current value \[SI\].
     pub(super) fn read(&self, motion: &Motion) -> f64 {
-        self.value(&motion.solver, &motion.rates, &motion.driver_rates)
+        match self.source {
+            Source::Force(force) => motion.force(force),
+            Source::Signal(..) => self.value(&motion.solver, &motion.rates, &motion.driver_rates),
+        }
     }
 }
 

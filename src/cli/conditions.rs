@@ -12,15 +12,16 @@ use super::signals::Signals;
 use crate::fmi;
 use crate::kinematics::{self, Curve, Solver, Start};
 use crate::mechanism::{
-    DriverId, DriverSource, ExpressionError, Jet, Mechanism, Motion, Parameter, ParameterId, Unit,
-    Variable, help, not_finite, quoted, shown,
+    DriverId, DriverSource, Expression, ExpressionError, ForceLaw, Jet, Load, Mechanism, Motion,
+    Parameter, ParameterId, Unit, Variable, help, not_finite, quoted, shown,
 };
 
 /// Options of all commands that move a mechanism away from its file's values.
 #[derive(Args, Debug)]
 pub(super) struct Conditions {
     /// Move a driver by an expression in t and the parameters, such as
-    /// 'crank_angle=60*deg + 10*t'; may be given for several drivers.
+    /// 'crank_angle=60*deg + 10*t', or set the input of a force, such as 'cylinder.effort=500*t';
+    /// may be given several times.
     #[arg(short, long, value_name = "DRIVER=MOTION")]
     drive: Vec<String>,
     /// Change a parameter for this run, such as 'crank_length=120*mm'; may be given for several.
@@ -51,8 +52,19 @@ impl Conditions {
         let parameters = self.parameters(mechanism)?;
         let mut driven = mechanism.clone();
         let mut driven_by_option = Vec::new();
+        let drivers = mechanism.drivers.len();
+        let force_inputs = force_inputs(mechanism);
         let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
+        let names = names.chain(force_inputs.iter().map(|(name, ..)| name.as_str()));
         for (index, text) in DRIVE.assignments(&self.drive, &names.collect::<Vec<_>>())? {
+            if let Some((_, force, component)) =
+                index.checked_sub(drivers).map(|k| &force_inputs[k])
+            {
+                let size = mechanism.parse_expression(text, Some(Variable::Time));
+                let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
+                set_force(&mut driven.forces[*force].load, *component, size);
+                continue;
+            }
             let motion = motion(mechanism, text, &parameters, start)?;
             driven.drivers[index].source = DriverSource::Motion(motion);
             driven_by_option.push(DriverId(index));
@@ -101,6 +113,37 @@ impl Conditions {
         }
         mechanism.derive_parameters(&mut values);
         Ok(values)
+    }
+}
+
+/// Returns the inputs of forces: name of the variable, index of the force, component.
+fn force_inputs(mechanism: &Mechanism) -> Vec<(String, usize, usize)> {
+    let forces = mechanism.forces.iter().enumerate();
+    let inputs = forces.filter(|(_, force)| force.load.is_input());
+    let variables = inputs.flat_map(|(index, force)| {
+        let suffixes = force.load.variables().into_iter().enumerate();
+        suffixes.map(move |(component, (suffix, _))| {
+            (format!("{}.{suffix}", force.name), index, component)
+        })
+    });
+    variables.collect()
+}
+
+/// Gives a component of a force a size; those without one are zero.
+fn set_force(load: &mut Load, component: usize, size: Expression) {
+    match load {
+        Load::Coordinate { law, .. } => {
+            *law = Some(ForceLaw {
+                value: Some(size),
+                spring: None,
+                damping: None,
+            });
+        }
+        Load::Marker { law, .. } => {
+            let zero = || Expression::constant(0.0);
+            let law = law.get_or_insert_with(|| [zero(), zero(), zero()]);
+            law[component] = size;
+        }
     }
 }
 

@@ -3,8 +3,10 @@
 use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
-use crate::kinematics::{Blocked, Curve, Error, Path, Rates, Solver};
-use crate::mechanism::{DriverId, Jet};
+use crate::kinematics::{
+    Blocked, Curve, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Path, Rates, Solver,
+};
+use crate::mechanism::{DriverId, Jet, shown};
 
 /// A mechanism that moves from one time to the next.
 pub(super) struct Motion {
@@ -12,6 +14,7 @@ pub(super) struct Motion {
     pub(super) rates: Rates,
     /// Value, velocity and acceleration of each driver.
     pub(super) driver_rates: Vec<Jet>,
+    forces: Option<ActingForces>,
     /// Singular positions that are near or were passed, not told yet.
     pub(super) notices: Vec<Message>,
     path: Path,
@@ -19,6 +22,17 @@ pub(super) struct Motion {
     /// Whether a notice told of the singular position that is near.
     near_singular: bool,
 }
+
+/// Forces of a run; inputs of forces that no option moves are zero.
+struct ActingForces {
+    forces: Forces,
+    inputs: Vec<f64>,
+    /// Whether each contact pulls.
+    lifted: Vec<bool>,
+}
+
+/// A part of the largest reaction below which a pulling force is rounding.
+const PULLS: f64 = 1e-9;
 
 impl Motion {
     /// Moves from the file's pose, which `home_solver` has, to the scenario's start.
@@ -44,12 +58,31 @@ impl Motion {
             driver_rates: start.drivers.iter().map(|u| Jet::constant(*u)).collect(),
             solver,
             notices: Vec::new(),
+            forces: None,
             path,
             signals,
             near_singular: false,
         };
         motion.solve_rates()?;
         Ok(motion)
+    }
+
+    /// Solves forces too, from now on.
+    pub(super) fn with_forces(mut self) -> Result<Self, Error> {
+        let forces = self.solver.forces();
+        self.forces = Some(ActingForces {
+            inputs: vec![0.0; forces.inputs()],
+            lifted: vec![false; forces.contacts()],
+            forces,
+        });
+        self.solve_forces()?;
+        Ok(self)
+    }
+
+    /// Returns a force at the present time, not a number without [forces](Self::with_forces).
+    pub(super) fn force(&self, quantity: ForceQuantity) -> f64 {
+        let acting = self.forces.as_ref();
+        acting.map_or(f64::NAN, |acting| acting.forces.value(quantity))
     }
 
     /// Moves on to `time`, from one point of the signals to the next.
@@ -66,8 +99,40 @@ impl Motion {
                 self.follow(self.solver.pose().time)?;
             }
         }
-        self.solve_rates()
-            .map_err(|error| format!("at t = {time} s: {error}"))
+        let solved = self.solve_rates().and_then(|()| self.solve_forces());
+        solved.map_err(|error| format!("at t = {time} s: {error}"))
+    }
+
+    fn solve_forces(&mut self) -> Result<(), Error> {
+        let Some(acting) = &mut self.forces else {
+            return Ok(());
+        };
+        let motion = KnownMotion {
+            rates: &self.rates,
+            driver_rates: &self.driver_rates,
+            inputs: &acting.inputs,
+        };
+        let forces = &mut acting.forces;
+        self.solver.solve_forces(motion, ForceParts::ALL, forces)?;
+        let least = PULLS * forces.largest_reaction();
+        let contacts = self.solver.contact_forces(forces);
+        for ((joint, force), lifted) in contacts.zip(&mut acting.lifted) {
+            let pulls = force < -least;
+            if pulls && !*lifted {
+                let (time, joint) = (
+                    self.solver.pose().time,
+                    &self.solver.mechanism().joints[joint].name,
+                );
+                let notice = format!(
+                    "t = {time} s: joint `{joint}` would lift off: its parts would have to pull \
+                     each other with {} N; the mechanism keeps them together",
+                    shown(-force)
+                );
+                self.notices.push(Message::Warning(notice));
+            }
+            *lifted = pulls;
+        }
+        Ok(())
     }
 
     /// Sets the curves of the drivers that follow signals, from the current time on. Returns

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::column::Column;
+use super::column::{Column, Source};
 use super::error::Error;
 use super::message::Message;
 use super::motion::Motion;
@@ -49,37 +49,39 @@ impl Plot {
         let mut moving: Vec<Signal> = Vec::new();
         let mut bodies: Vec<BodyId> = Vec::new();
         for (column, values) in self.columns.iter().zip(&self.values) {
-            if let (Signal::Body(body, _), Order::Position) = (column.signal, column.order)
+            if let Source::Signal(signal @ Signal::Body(body, _), Order::Position) = column.source
                 && varies(values)
             {
-                moving.push(column.signal);
+                moving.push(signal);
                 if !bodies.contains(&body) {
                     bodies.push(body);
                 }
             }
         }
         let shown = &bodies[..bodies.len().min(MOST_BODIES)];
-        let is_kept = |signal: &Signal| match signal {
-            Signal::Body(body, _) if !bodies.is_empty() => {
-                shown.contains(body) && moving.contains(signal)
+        let is_kept = |source: Source| match source {
+            Source::Signal(signal @ Signal::Body(body, _), _) if !bodies.is_empty() => {
+                shown.contains(&body) && moving.contains(&signal)
             }
             _ => true,
         };
         let columns = std::mem::take(&mut self.columns).into_iter();
         let all = columns.zip(std::mem::take(&mut self.values));
-        let kept = all.filter(|(column, _)| is_kept(&column.signal));
+        let kept = all.filter(|(column, _)| is_kept(column.source));
         (self.columns, self.values) = kept.unzip();
         (shown.len() < bodies.len()).then_some([shown.len(), bodies.len()])
     }
 
-    /// Returns the chart: one panel per unit, positions first; angles in degrees.
+    /// Returns the chart: one panel per unit, positions first and forces last; angles in degrees.
     fn chart(self, mechanism: &Mechanism) -> Chart {
-        let mut sources: Vec<Signal> = Vec::new();
+        let mut sources: Vec<Source> = Vec::new();
         let mut panels: Vec<(Unit, Panel)> = Vec::new();
         for (column, mut values) in self.columns.into_iter().zip(self.values) {
-            let look = sources.iter().position(|known| *known == column.signal);
+            let look = sources
+                .iter()
+                .position(|known| known.is_akin(column.source));
             let look = look.unwrap_or_else(|| {
-                sources.push(column.signal);
+                sources.push(column.source);
                 sources.len() - 1
             });
             if let Some(display) = column.unit.display {
@@ -97,7 +99,10 @@ impl Plot {
                 values,
             });
         }
-        panels.sort_by_key(|(unit, _)| (-unit.dimension.s, unit.dimension.rad));
+        panels.sort_by_key(|(unit, _)| {
+            let dimension = unit.dimension;
+            (dimension.kg, -dimension.s, dimension.rad)
+        });
         Chart {
             title: mechanism.name.clone(),
             description: mechanism.description.clone(),
@@ -145,6 +150,11 @@ pub(super) fn varies(values: &[f64]) -> bool {
 /// Returns the axis for quantities of a unit, with its display unit.
 pub(super) fn axis(unit: Unit) -> Axis {
     let label = match (unit.dimension.rad, unit.dimension.s) {
+        _ if unit == Unit::NEWTON => "force",
+        _ if unit == Unit::NEWTON_METRE => "torque",
+        _ if unit == Unit::WATT => "power",
+        _ if unit == Unit::JOULE => "energy",
+        _ if unit.dimension.kg > 0 => "inertia",
         (0, 0) => "position",
         (0, -1) => "velocity",
         (0, _) => "acceleration",

@@ -1,10 +1,13 @@
 //! `biela range`
 
+mod forces;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
+use forces::describe_largest;
 
 use super::check::scientific;
 
@@ -16,6 +19,7 @@ use super::message::Message;
 use super::output::{print, tell_written, write};
 use super::picture::Format;
 use super::plot::{MOST_BODIES, axis, varies};
+
 use super::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
 use crate::kinematics::{End, Range as Motion, RangeSettings, Reason, Sample, in_line};
@@ -37,6 +41,10 @@ pub(super) struct Range {
     driver: Option<String>,
     #[command(flatten)]
     conditions: Conditions,
+    /// Speed of the driver in m/s or rad/s, for the largest effort and reaction of a mechanism with
+    /// masses or forces [default: at rest].
+    #[arg(long, value_name = "SPEED", allow_negative_numbers = true)]
+    speed: Option<f64>,
     /// Write the poses of the motion: the driver's value, transmission angle, reciprocal condition,
     /// and the position of every body, in SI units; `-` for stdout.
     #[arg(long, value_name = "CSV")]
@@ -54,6 +62,7 @@ impl Range {
         InputFiles::new(&self.file, &input.mechanism)
             .refuse_as_outputs(&[self.csv.as_deref(), self.plot.as_deref()])?;
         let drivers = self.drivers(&input.mechanism)?;
+        self.check_speed(&input.mechanism)?;
         let mut solver = self.conditions.solver_at_start(&input)?;
         let driven = Arc::clone(solver.mechanism());
         let mut text = String::new();
@@ -61,6 +70,10 @@ impl Range {
             let start = solver.pose().drivers[driver.index()];
             let range = solver.range(driver, &RangeSettings::default());
             describe(&mut text, &driven, driver, start, &range);
+            if driven.has_dynamics() {
+                let speed = self.speed.unwrap_or(0.0);
+                describe_largest(&mut text, &mut solver, driver, &range, speed);
+            }
             if let Some(path) = &self.csv {
                 write(path, table(&driven, driver, &range).as_bytes())?;
                 tell_written(path);
@@ -86,6 +99,20 @@ impl Range {
             print(&text)?;
         }
         Ok(())
+    }
+
+    /// Refuses a speed that is not finite, or that has no effect.
+    fn check_speed(&self, mechanism: &Mechanism) -> Result<(), Error> {
+        match self.speed {
+            Some(speed) if !speed.is_finite() => Err(Error::Usage(format!(
+                "--speed is {speed}; expected a finite number"
+            ))),
+            Some(_) if !mechanism.has_dynamics() => Err(Error::Usage(
+                "--speed is of forces, but the mechanism has neither `mass` nor `[forces]`"
+                    .to_owned(),
+            )),
+            _ => Ok(()),
+        }
     }
 
     fn drivers(&self, mechanism: &Mechanism) -> Result<Vec<DriverId>, Error> {

@@ -52,8 +52,8 @@ pub(super) struct Run {
     #[command(flatten)]
     span: Span,
     /// Variables to write and plot, separated by commas: one such as crank.phi, or all variables
-    /// of a body, marker, driver or measure by its name [default: in the CSV all; in plots drivers
-    /// and measures, or points of interest, or bodies].
+    /// of a body, marker, driver, measure, joint or force by its name [default: in the CSV all; in
+    /// plots drivers with their efforts and measures, or points of interest, or bodies].
     #[arg(short, long, value_name = "NAMES", value_delimiter = ',')]
     variables: Vec<String>,
     /// The CSV file to write, `-` for stdout [default: stdout, if there is neither --plot nor
@@ -104,6 +104,14 @@ impl Run {
             let [plotted, told] = [Column::plotted(&all), Column::told(&all)];
             [all, plotted, told]
         };
+        let asks_forces = [&written, &plotted, &told]
+            .into_iter()
+            .zip([
+                self.output.is_some(),
+                self.plot.is_some(),
+                self.animate.is_some(),
+            ])
+            .any(|(columns, asked)| asked && columns.iter().any(Column::is_force));
         let home_solver = input.assemble()?;
         let notes = [
             note_of_rest(&input.mechanism, &scenario),
@@ -121,7 +129,10 @@ impl Run {
             let film = Film::new(told, times.steps, [times.start, times.step]);
             recorders.push(Box::new(Page { film, path }));
         }
-        let motion = Motion::start(home_solver, scenario);
+        let mut motion = Motion::start(home_solver, scenario);
+        if asks_forces {
+            motion = motion.and_then(Motion::with_forces);
+        }
         let mut motion = motion.map_err(|error| input.error(error))?;
         let outcome = self.play(&mut motion, input.source.name(), &times, &mut recorders);
         // Also after a dead point: the results up to there are written.

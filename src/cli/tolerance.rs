@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::check::scientific;
-use super::column::Column;
+use super::column::{Column, Source};
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
@@ -81,13 +81,16 @@ impl Tolerance {
     /// Returns the columns of the table; drivers are given and do not deviate.
     fn columns(&self, mechanism: &Mechanism) -> Result<Vec<Column>, Error> {
         let mut columns = Column::all(mechanism);
-        columns.retain(|column| !matches!(column.signal, Signal::Motion(_)));
+        columns.retain(|column| match column.source {
+            Source::Signal(signal, _) => !matches!(signal, Signal::Motion(_)),
+            Source::Force(_) => false,
+        });
         if !self.variables.is_empty() {
             return Column::named(&columns, &self.variables, mechanism);
         }
         let told = Column::told(&columns);
         if told.is_empty() {
-            columns.retain(|column| column.order == Order::Position);
+            columns.retain(|column| matches!(column.source, Source::Signal(_, Order::Position)));
             return Ok(columns);
         }
         Ok(told)

@@ -35,8 +35,8 @@ pub use error::{Error, Failure, StateError};
 pub use instance::{FmuState, Instance, Reals};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
-    Column, MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal, TABLE_VERSION,
-    describe, guid, variables, write_fmu,
+    Column, ColumnSource, MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal,
+    TABLE_VERSION, describe, guid, indeterminate, variables, write_fmu,
 };
 pub use model::{Groups, Model};
 pub use model_description::{Capabilities, DependencyKind, Experiment, ModelDescription, Unknown};

@@ -65,6 +65,24 @@ pub enum Error {
         /// The value \[m\].
         value: f64,
     },
+    /// A mass or a moment of inertia has a value that it cannot have.
+    #[error("{what} is {value}; it must {demand}")]
+    Mass {
+        /// The quantity and its body.
+        what: String,
+        /// The value \[SI\].
+        value: f64,
+        /// The values that it can have.
+        demand: &'static str,
+    },
+    /// A force has no direction or no finite size.
+    #[error("force `{force}` {reason}")]
+    NoForce {
+        /// Name of the force.
+        force: String,
+        /// The reason, as the end of a sentence.
+        reason: &'static str,
+    },
     /// The profile of a cam has no valid contour for the parameter values in force.
     #[error("{what}: {error}")]
     Profile {

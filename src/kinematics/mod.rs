@@ -43,6 +43,7 @@
 //! | `continuation` | sub-steps along a path |
 //! | `initial_pose` | the first pose |
 //! | `analysis` | sensitivity, range, modes, checks of the geometry |
+//! | `forces` | efforts of drivers, reactions of joints, energies |
 //! | `solver` | the facade |
 
 mod analysis;
@@ -54,6 +55,7 @@ pub mod constraint;
 mod continuation;
 mod element;
 mod error;
+mod forces;
 mod initial_pose;
 mod linear;
 mod model;
@@ -83,6 +85,7 @@ pub use element::Element;
 #[cfg(feature = "cli")]
 pub(crate) use error::in_line;
 pub use error::{Error, Fit, OpenJoint, Proof, Verdict};
+pub use forces::{ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, Reported};
 pub use initial_pose::{Assembly, Start};
 pub use linear::PivotOrder;
 pub use path::{Curve, Path, Rates};

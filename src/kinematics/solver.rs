@@ -6,7 +6,9 @@ use super::analysis::{self, Direction, GeometryWarning, Modes, Range, RangeSetti
 use super::assembly::estimate::{Move, estimate, moves};
 use super::block::Crossing;
 use super::continuation::{Blocked, PathTracker, Progress};
+use super::element::Element;
 use super::error::Error;
+use super::forces::{self, Along, ForceParts, ForceSensitivity, Forces, KnownMotion};
 use super::initial_pose::{self, Assembly, Start};
 use super::model::Model;
 use super::path::{Path, Rates};
@@ -289,6 +291,73 @@ impl Solver {
     ) -> Result<Sensitivity<'_>, Error> {
         self.state
             .sensitivity(&self.model, rates, driver_rates, direction)
+    }
+
+    /// Makes the storage for forces of this mechanism.
+    #[must_use]
+    pub fn forces(&self) -> Forces {
+        Forces::new(&self.model)
+    }
+
+    /// Solves the forces at the present pose for a motion that [`solve_rates`](Self::solve_rates)
+    /// gave. Allocates nothing, unless other rows have become redundant.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] and [`Error::Mass`] for masses without a meaning, [`Error::NoForce`] for
+    /// a force without direction or size, [`Error::Singular`] where the pose is singular.
+    pub fn solve_forces(
+        &mut self,
+        motion: KnownMotion<'_>,
+        parts: ForceParts,
+        forces: &mut Forces,
+    ) -> Result<(), Error> {
+        forces.solve(&mut self.model, &mut self.state, motion, parts)
+    }
+
+    /// Returns each joint that can only push, by its index, with the force between its two parts
+    /// at the present pose \[N\]: negative where it would have to pull. The reactions in `forces`
+    /// must be up to date.
+    pub fn contact_forces<'a>(
+        &'a self,
+        forces: &'a Forces,
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        forces.contact_forces(&self.state)
+    }
+
+    /// Returns the derivatives of motion and forces at the present pose along a direction, along
+    /// which the sizes of forces that are inputs change by `inputs`. Exact to rounding.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`sensitivity`](Self::sensitivity) and [`solve_forces`](Self::solve_forces).
+    pub fn force_sensitivity(
+        &mut self,
+        motion: KnownMotion<'_>,
+        direction: &Direction,
+        inputs: &[f64],
+        forces: &mut Forces,
+    ) -> Result<ForceSensitivity, Error> {
+        let Self { model, state, .. } = self;
+        forces.solve(model, state, motion, ForceParts::ALL)?;
+        let along = state.sensitivity(model, motion.rates, motion.driver_rates, direction)?;
+        let along = Along {
+            motion: &along,
+            time: direction.time,
+            inputs,
+        };
+        forces.sensitivity(model, state, motion, &along)
+    }
+
+    /// Returns the joints and constraints whose reactions redundant constraints leave
+    /// indeterminate, known once the solver is [assembled](Self::assemble). The pose is unchanged.
+    pub fn indeterminate(&mut self) -> Vec<Element> {
+        let Self {
+            model,
+            state,
+            tracker,
+        } = self;
+        forces::indeterminate(model, state, tracker)
     }
 
     /// Finds the range of one driver up and down from the present pose, with the other drivers,

@@ -93,6 +93,20 @@ impl VariedConfiguration {
         }
     }
 
+    /// Returns the mechanism at rest, with the same changes of q and of the parameters.
+    pub(super) fn at_rest(&self) -> Self {
+        let mut still = self.clone();
+        for q in &mut still.q {
+            *q = Varied::fixed(q.value);
+        }
+        still
+    }
+
+    /// Sets the rate of q\[column\], which does not change along the direction.
+    pub(super) fn set_velocity(&mut self, column: usize, velocity: f64) {
+        self.q[column].derivatives[0] = Dual::constant(velocity);
+    }
+
     /// Returns a marker.
     #[must_use]
     pub fn marker(&self, marker: MarkerId) -> VariedMarker {

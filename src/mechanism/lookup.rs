@@ -40,7 +40,7 @@ impl Mechanism {
         let parameters: NameTable<'_, ParameterId> = names.zip((0..).map(ParameterId)).collect();
         let scope = Scope {
             parameters: &parameters,
-            variable,
+            variables: variable.as_slice(),
         };
         Expression::parse(text, scope)
     }

@@ -8,6 +8,7 @@
 //! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
+//! | `force` | [`Force`]: springs, dampers, actuators, loads |
 //! | `names`, `reserved`, `lookup`, `id` | names, and what they stand for |
 //! | `wording` | names and numbers in messages |
 //!
@@ -16,6 +17,7 @@
 mod diagnostic;
 mod encoding;
 mod expression;
+mod force;
 mod id;
 mod lookup;
 mod motion;
@@ -35,6 +37,7 @@ mod wording;
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use expression::{Expression, ExpressionError, Variable};
+pub use force::{Force, ForceLaw, Load, Spring};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;
@@ -89,6 +92,8 @@ pub struct Mechanism {
     pub drivers: Vec<Driver>,
     /// Coordinates that are outputs.
     pub measures: Vec<Measure>,
+    /// Forces.
+    pub forces: Vec<Force>,
     /// Outputs of the FMU besides measures and solver quantities.
     pub outputs: Outputs,
     /// Default experiment.
@@ -186,6 +191,26 @@ impl CoordinateKind {
             Unit::RADIAN
         } else {
             Unit::METRE
+        }
+    }
+
+    /// Returns the unit of a generalized force conjugate to it.
+    #[must_use]
+    pub fn effort_unit(self) -> Unit {
+        if self.is_angle() {
+            Unit::NEWTON_METRE
+        } else {
+            Unit::NEWTON
+        }
+    }
+
+    /// Returns the unit of the inertia that a driver feels.
+    #[must_use]
+    pub fn inertia_unit(self) -> Unit {
+        if self.is_angle() {
+            Unit::KILOGRAM_METRE_SQUARED
+        } else {
+            Unit::KILOGRAM
         }
     }
 
@@ -396,6 +421,23 @@ pub struct Outputs {
     pub bodies: Vec<BodyId>,
     /// Points of interest, in the order of the file's list.
     pub markers: Vec<MarkerId>,
+    /// Joints whose reactions are outputs if the mechanism has dynamics, by their indices in
+    /// [`Mechanism::joints`], ascending; all unless the file narrows them.
+    pub joints: Vec<usize>,
+    /// Constraints whose efforts are outputs, likewise.
+    pub constraints: Vec<usize>,
+    /// Treatment of reactions that redundant constraints leave indeterminate.
+    pub indeterminate: Indeterminate,
+}
+
+/// Treatment of reactions that redundant constraints leave indeterminate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Indeterminate {
+    /// They are no outputs.
+    #[default]
+    Omit,
+    /// Outputs are the ones with the least sum of squares, in SI units.
+    MinimumNorm,
 }
 
 /// FMI default experiment, and the default settings of a run.
@@ -409,8 +451,8 @@ pub struct Simulation {
     pub step: f64,
     /// Relative tolerance for the host; the solver itself works to rounding.
     pub tolerance: f64,
-    /// Gravity \[m/s²\]; read and checked, without effect on the kinematics.
-    pub gravity: [f64; 2],
+    /// Acceleration of gravity \[m/s²\], without effect on the motion.
+    pub gravity: [Expression; 2],
 }
 
 impl Mechanism {

@@ -22,6 +22,8 @@ FILES_WITHOUT_MESSAGES = {
     "fmi/mechanism_model/variables.rs": "descriptions in the FMU",
     "fmi/model_description/fmi2.rs": "the FMU's XML",
     "fmi/model_description/xml.rs": "likewise",
+    "cli/check/forces.rs": "the report of `check`",
+    "cli/range/forces.rs": "the report of `range`",
     "fmi/log.rs": "descriptions of the log categories",
     "kinematics/reference.rs": "the oracle of the tests",
 }
@@ -60,6 +62,9 @@ PARTS = {
     "an equation of the mechanism": "… has no finite value",
     "the radius of joint `…`": "… has no finite value",
     "a wheel's size in joint `…`": "… has no finite value",
+    "the mass, inertia or center of body `…`": "… has no finite value",
+    "the … of body `…`": "the … of body `…` is …; it must …",
+    "… is …; it must …": "the … of body `…` is …; it must …",
     "`…` and `…` are … apart, `…` and `…` together span … to …": "cannot close: …; …",
     "whatever the angle of `…`": "cannot close: …; …",
     "bounds exclude all angles of …": "cannot close: …; …",

@@ -44,6 +44,10 @@ def expected_variables(file):
     for name, table in inputs.items():
         for suffix, unit in coordinate_units(table).items():
             yield f"{name}.{suffix}", "Real", "input", "continuous", unit
+    for name, table in file.get("forces", {}).items():
+        if not force_has_size(table):
+            for suffix, unit in force_units(table).items():
+                yield f"{name}.{suffix}", "Real", "input", "continuous", unit
 
     for name, table in parameters.items():
         table = table if isinstance(table, dict) else {"value": table}
@@ -66,12 +70,68 @@ def expected_variables(file):
         for suffix, unit in coordinate_units(table).items():
             yield f"{name}.{suffix}", "Real", "output", "continuous", unit
 
+    for name, unit in expected_forces(file):
+        yield name, "Real", "output", "continuous", unit
+
     yield "solver.residual", "Real", "local", "continuous", None
     yield "solver.rcond", "Real", "local", "continuous", None
     yield "solver.iterations", "Integer", "local", "discrete", None
     yield "solver.substeps", "Integer", "local", "discrete", None
     yield "solver.proved", "Integer", "local", "discrete", None
     yield "time", "Real", "independent", "continuous", "s"
+
+
+def expected_forces(file):
+    """Names and units of the outputs of a mechanism with masses or forces whose reactions are
+    all determinate."""
+    forces = file.get("forces", {})
+    if not forces and not any("mass" in body for body in file["bodies"].values()):
+        return
+    for name, table in file.get("drivers", {}).items():
+        (effort,) = force_units(table).values()
+        yield f"{name}.effort", effort
+        yield f"{name}.power", "W"
+        if "motion" not in table:
+            yield f"{name}.inertia", "kg.m2" if table["coordinate"] == "angle" else "kg"
+            yield f"{name}.bias", effort
+    reactions = file.get("outputs", {}).get("reactions")
+    for name, table in file.get("joints", {}).items():
+        if reactions is None or name in reactions:
+            for suffix in REACTIONS[table.get("follower", table["type"])].split():
+                yield f"{name}.{suffix}", "N.m" if suffix == "torque" else "N"
+    for name, table in file.get("constraints", {}).items():
+        if reactions is None or name in reactions:
+            (effort,) = force_units(table).values()
+            yield f"{name}.effort", effort
+    for name, table in forces.items():
+        if force_has_size(table):
+            for suffix, unit in force_units(table).items():
+                yield f"{name}.{suffix}", unit
+    yield "energy.kinetic", "J"
+    yield "energy.potential", "J"
+
+
+REACTIONS = {
+    **dict.fromkeys(
+        ["revolute", "slot", "link", "revolute_translational", "knife", "roller"], "fx fy"
+    ),
+    **dict.fromkeys(
+        ["translational", "weld", "flat", "rack_and_pinion", "rolling"], "fx fy torque"
+    ),
+    "gear": "torque",
+    "belt": "torque",
+}
+"""Components of the reaction of each type of joint, of a cam of each follower."""
+
+
+def force_has_size(table):
+    return not {"value", "torque", "stiffness", "damping"}.isdisjoint(table)
+
+
+def force_units(table):
+    if "marker" in table:
+        return {"fx": "N", "fy": "N", "torque": "N.m"}
+    return {"effort": "N.m" if table["coordinate"] == "angle" else "N"}
 
 
 def uses(value, names):

@@ -16,6 +16,7 @@ WRONG = {
     "bad-table",
     "driver-source",
     "duplicate-output",
+    "force-shape",
     "illegal-name",
     "illegal-name_device",
     "illegal-name_keyword",

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::NEARLY_SINGULAR;
+use super::forces::Forces;
 use crate::cli::error::Error;
 use crate::kinematics::{self, Element, Path, Rates, Solver, System};
 use crate::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
@@ -157,6 +158,14 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
         "redundancies": texts(&mut solver.redundancies().iter().map(ToString::to_string)),
         "misfits": texts(&mut solver.geometry_warnings().iter().map(ToString::to_string)),
     });
+    if mechanism.has_dynamics() {
+        let forces = Forces::at_rest(&mut solver)?;
+        let values = forces.values.iter();
+        let values =
+            values.map(|(name, value, unit)| json!({ "name": name, "value": value, "unit": unit }));
+        found["forces"] = values.collect();
+        found["indeterminate"] = json!(forces.indeterminate);
+    }
     if modes {
         let modes = solver.modes()?;
         let others = modes.others.iter().map(|mode| {

@@ -2,7 +2,7 @@
 
 use super::variables::{Order, Quantity, Signal, variables};
 use crate::fmi::variable::Kind;
-use crate::kinematics::{Rates, Sensitivity, Solver};
+use crate::kinematics::{ForceQuantity, Rates, Sensitivity, Solver};
 use crate::mechanism::{Jet, Mechanism, Unit};
 
 /// One quantity of a run.
@@ -10,12 +10,30 @@ use crate::mechanism::{Jet, Mechanism, Unit};
 pub struct Column {
     /// Name of the FMU's variable.
     pub name: String,
-    /// Signal of the mechanism.
-    pub signal: Signal,
-    /// Order of its time derivative.
-    pub order: Order,
-    /// Unit of its values.
+    /// Meaning of the values.
+    pub source: ColumnSource,
+    /// Unit of the values.
     pub unit: Unit,
+}
+
+/// Meaning of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColumnSource {
+    /// A signal or a time derivative of it.
+    Signal(Signal, Order),
+    /// A force, an energy or an inertia.
+    Force(ForceQuantity),
+}
+
+impl ColumnSource {
+    /// Returns whether two columns belong to one signal.
+    #[must_use]
+    pub fn is_akin(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Signal(one, _), Self::Signal(other, _)) => one == other,
+            (one, other) => one == other,
+        }
+    }
 }
 
 impl Column {
@@ -28,44 +46,63 @@ impl Column {
                 let Kind::Real { unit, .. } = variable.kind else {
                     return None;
                 };
-                let (signal, order) = match variable.quantity {
+                let source = match variable.quantity {
                     // In a run an input follows a motion.
-                    Quantity::Input(driver, order) => (Signal::Motion(driver), order),
-                    Quantity::Output(signal, order) => (signal, order),
+                    Quantity::Input(driver, order) => {
+                        ColumnSource::Signal(Signal::Motion(driver), order)
+                    }
+                    Quantity::Output(signal, order) => ColumnSource::Signal(signal, order),
+                    Quantity::Force(force) => ColumnSource::Force(force),
                     _ => return None,
                 };
                 Some(Self {
                     name: variable.name,
-                    signal,
-                    order,
+                    source,
                     unit: unit.unwrap_or(Unit::ONE),
                 })
             })
             .collect();
-        columns.sort_by_key(|column| match column.signal {
-            Signal::Motion(driver) => driver.index(),
+        columns.sort_by_key(|column| match column.source {
+            ColumnSource::Signal(Signal::Motion(driver), _) => driver.index(),
             _ => usize::MAX,
         });
         columns
     }
 
-    /// Returns the value at the solver's pose \[SI\]. See [`Signal::jet`].
+    /// Returns the value at the solver's pose \[SI\], not a number for a force. See
+    /// [`Signal::jet`].
     #[inline]
     #[must_use]
     pub fn value(&self, solver: &Solver, rates: &Rates, driver_rates: &[Jet]) -> f64 {
-        self.order.of(self.signal.jet(solver, rates, driver_rates))
+        match self.source {
+            ColumnSource::Signal(signal, order) => {
+                order.of(signal.jet(solver, rates, driver_rates))
+            }
+            ColumnSource::Force(_) => f64::NAN,
+        }
     }
 
-    /// Returns the change of the value along the direction of a sensitivity \[SI\].
+    /// Returns the change of the value along the direction of a sensitivity \[SI\], not a number
+    /// for a force.
     #[must_use]
     pub fn change(&self, sensitivity: &Sensitivity<'_>) -> f64 {
-        self.order.of(self.signal.change(sensitivity))
+        match self.source {
+            ColumnSource::Signal(signal, order) => order.of(signal.change(sensitivity)),
+            ColumnSource::Force(_) => f64::NAN,
+        }
     }
 
     /// Returns whether a film tells the column in numbers by default: positions of drivers, points
     /// of interest and measures.
     #[must_use]
     pub fn is_told(&self) -> bool {
-        self.order == Order::Position && !matches!(self.signal, Signal::Body(..))
+        matches!(self.source, ColumnSource::Signal(signal, Order::Position)
+            if !matches!(signal, Signal::Body(..)))
+    }
+
+    /// Returns whether it shows a force.
+    #[must_use]
+    pub fn is_force(&self) -> bool {
+        matches!(self.source, ColumnSource::Force(_))
     }
 }

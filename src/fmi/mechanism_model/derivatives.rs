@@ -34,6 +34,7 @@ impl MechanismModel {
             parameters: vec![0.0; self.settings.parameters.len()],
             time: 0.0,
         };
+        let mut forces = vec![0.0; self.force_inputs.len()];
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
@@ -43,6 +44,7 @@ impl MechanismModel {
                     driver.derivatives[0] += velocity * change;
                     driver.derivatives[1] += acceleration * change;
                 }
+                Quantity::ForceInput(place) => forces[place] += change,
                 Quantity::Parameter(parameter) => {
                     direction.parameters[parameter.index()] += change;
                 }
@@ -50,6 +52,13 @@ impl MechanismModel {
                 _ => unreachable!("knowns are inputs, parameters and time"),
             }
         }
+        let asks_forces = unknowns.iter().any(|u| matches!(u, Quantity::Force(_)));
+        let of_forces = if asks_forces {
+            let along = self.force_derivatives(&direction, &forces);
+            along.map_err(failed)?
+        } else {
+            None
+        };
         let sensitivity = self
             .solver
             .sensitivity(&self.rates, &self.driver_rates, &direction)
@@ -57,6 +66,7 @@ impl MechanismModel {
         let change = |&unknown: &Quantity| match unknown {
             Quantity::Output(signal, order) => order.of(signal.change(&sensitivity)),
             Quantity::Parameter(parameter) => sensitivity.parameter(parameter),
+            Quantity::Force(force) => of_forces.as_ref().map_or(0.0, |f| f.change(force)),
             _ => unreachable!("unknowns are outputs and parameters"),
         };
         Ok(unknowns.iter().map(change).collect())

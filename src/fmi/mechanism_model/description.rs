@@ -10,8 +10,8 @@ use crate::fmi::model_description::{
     Capabilities, DependencyKind, Experiment, ModelDescription, Unknown,
 };
 use crate::fmi::variable::{Causality, Kind, Variable};
-use crate::kinematics::{Dependencies, Structure, System};
-use crate::mechanism::{DriverId, Mechanism, Unit};
+use crate::kinematics::{Dependencies, ForceQuantity, Structure, System};
+use crate::mechanism::{DriverId, Load, Mechanism, Unit, Variable as Of};
 
 /// Capabilities of a [`MechanismModel`](super::MechanismModel).
 const CAPABILITIES: Capabilities = Capabilities {
@@ -34,6 +34,7 @@ pub fn describe<'a>(
     for (index, variable) in (1..).zip(&variables) {
         let order = match (variable.quantity, variable.causality) {
             (Quantity::Output(_, order), _) => order,
+            (Quantity::Force(quantity), _) => order_of(quantity),
             (_, Causality::CalculatedParameter) => Order::Position,
             _ => continue,
         };
@@ -41,7 +42,7 @@ pub fn describe<'a>(
         if variable.causality == Causality::Output {
             outputs.push(Unknown {
                 index,
-                dependencies: indices.outputs(&dependencies),
+                dependencies: indices.outputs(mechanism, variable.quantity, &dependencies),
             });
         }
         initial_unknowns.push(Unknown {
@@ -75,6 +76,8 @@ pub fn describe<'a>(
 struct Indices {
     /// First of the three inputs of each driver that is an input.
     inputs: Vec<Option<usize>>,
+    /// Each input of a force.
+    force_inputs: Vec<usize>,
     /// Each parameter.
     parameters: Vec<usize>,
     rate_source: Option<usize>,
@@ -85,6 +88,7 @@ impl Indices {
     fn new(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Self {
         let mut indices = Self {
             inputs: vec![None; mechanism.drivers.len()],
+            force_inputs: Vec::new(),
             parameters: vec![0; mechanism.parameters.len()],
             rate_source: None,
             time: 0,
@@ -94,6 +98,7 @@ impl Indices {
                 Quantity::Input(driver, Order::Position) => {
                     indices.inputs[driver.index()] = Some(index);
                 }
+                Quantity::ForceInput(_) => indices.force_inputs.push(index),
                 Quantity::Parameter(parameter) => indices.parameters[parameter.index()] = index,
                 Quantity::RateSource => indices.rate_source = Some(index),
                 Quantity::Time => indices.time = index,
@@ -105,8 +110,42 @@ impl Indices {
 
     /// Returns the inputs and the time that an output depends on, over all settings of `rates` and
     /// `extrapolation`: estimated rates depend on positions, extrapolated positions on rates.
-    fn outputs(&self, dependencies: &Dependencies) -> BTreeMap<usize, DependencyKind> {
-        self.drivers(dependencies, Order::Acceleration)
+    fn outputs(
+        &self,
+        mechanism: &Mechanism,
+        quantity: Quantity,
+        dependencies: &Dependencies,
+    ) -> BTreeMap<usize, DependencyKind> {
+        let mut indices = self.drivers(dependencies, Order::Acceleration);
+        self.add_forces(mechanism, quantity, &mut indices);
+        indices
+    }
+
+    /// Adds the inputs of forces, and the time if forces depend on it, for a force.
+    fn add_forces(
+        &self,
+        mechanism: &Mechanism,
+        quantity: Quantity,
+        indices: &mut BTreeMap<usize, DependencyKind>,
+    ) {
+        let Quantity::Force(quantity) = quantity else {
+            return;
+        };
+        let uses_time = |load: &Load| load.expressions().iter().any(|e| e.uses(Of::Time));
+        let depends_on_time = match quantity {
+            ForceQuantity::Applied(force, _) => uses_time(&mechanism.forces[force].load),
+            ForceQuantity::Inertia(_)
+            | ForceQuantity::KineticEnergy
+            | ForceQuantity::PotentialEnergy => false,
+            _ => {
+                let inputs = self.force_inputs.iter();
+                indices.extend(inputs.map(|&index| (index, DependencyKind::Dependent)));
+                mechanism.forces.iter().any(|force| uses_time(&force.load))
+            }
+        };
+        if depends_on_time {
+            indices.insert(self.time, DependencyKind::Dependent);
+        }
     }
 
     /// Returns the inputs up to an order, and the time.
@@ -136,6 +175,7 @@ impl Indices {
         order: Order,
     ) -> BTreeMap<usize, DependencyKind> {
         let mut indices = self.drivers(dependencies, order);
+        self.add_forces(mechanism, quantity, &mut indices);
         if let Some(driver) = driver_angle(mechanism, quantity)
             && let Some(index) = self.inputs[driver.index()]
         {
@@ -143,7 +183,8 @@ impl Indices {
         }
         let mut add = |index| indices.insert(index, DependencyKind::Dependent);
         // A quantity that no driver moves has rates of zero for any parameters.
-        if order == Order::Position || !dependencies.drivers.is_empty() {
+        let is_force = matches!(quantity, Quantity::Force(_));
+        if order == Order::Position || is_force || !dependencies.drivers.is_empty() {
             for id in &dependencies.parameters {
                 add(self.parameters[id.index()]);
             }
@@ -153,6 +194,20 @@ impl Indices {
             self.rate_source.map(add);
         }
         indices
+    }
+}
+
+/// Returns the highest order of the motion on which a force depends.
+fn order_of(quantity: ForceQuantity) -> Order {
+    match quantity {
+        ForceQuantity::Inertia(_) | ForceQuantity::PotentialEnergy => Order::Position,
+        ForceQuantity::Bias(_) | ForceQuantity::Applied(..) | ForceQuantity::KineticEnergy => {
+            Order::Velocity
+        }
+        ForceQuantity::Effort(_)
+        | ForceQuantity::Power(_)
+        | ForceQuantity::Reaction(..)
+        | ForceQuantity::Held(_) => Order::Acceleration,
     }
 }
 

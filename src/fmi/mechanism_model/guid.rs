@@ -2,7 +2,7 @@
 
 use uuid::Uuid;
 
-use super::variables::TABLE_VERSION;
+use super::variables::{FORCE_TABLE_VERSION, TABLE_VERSION};
 use crate::mechanism::Mechanism;
 
 /// Name space of biela's GUIDs, an arbitrary constant.
@@ -12,7 +12,10 @@ const NAMESPACE: Uuid = Uuid::from_u128(0x8d0c_61f7_2f0e_4b36_9a53_b1e1_a0f0_0d1
 /// the table of variables. Comments and layout of the file have no effect.
 #[must_use]
 pub fn guid(mechanism: &Mechanism) -> String {
-    let content = format!("biela {TABLE_VERSION}\n{}", mechanism.canonical);
+    let mut content = format!("biela {TABLE_VERSION}\n{}", mechanism.canonical);
+    if mechanism.has_dynamics() {
+        content += &format!("\nforces {FORCE_TABLE_VERSION}");
+    }
     format!("{{{}}}", Uuid::new_v5(&NAMESPACE, content.as_bytes()))
 }
 

@@ -152,6 +152,7 @@ impl MechanismModel {
             }
             input.record(now, rule, h);
         }
+        self.report_contacts(log);
         self.log_crossings(log);
         self.log_effort(log);
     }

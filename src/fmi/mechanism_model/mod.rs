@@ -7,6 +7,8 @@
 //! | `rule` | the parameters `rates` and `extrapolation`, and the sources of rates |
 //! | `history` | the last samples of one driver, and the rates estimated from them |
 //! | `input` | one driver's inputs: their path during a step and their rates |
+//! | `force_input` | one input of a force |
+//! | `forces` | forces at the pose, and contacts that lift off |
 //! | `monitor` | one driver's observations: contradictions, falls, limits |
 //! | `pose` | initialization, steps, and the pose and rates of the values set |
 //! | `messages` | messages about poses and steps |
@@ -17,6 +19,8 @@
 mod column;
 mod derivatives;
 mod description;
+mod force_input;
+mod forces;
 mod guid;
 mod history;
 mod input;
@@ -32,12 +36,12 @@ mod variables;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
-pub use column::Column;
+pub use column::{Column, ColumnSource};
 pub use description::describe;
 pub use guid::guid;
 pub use resource::{RESOURCE, write_fmu};
 pub use state::MechanismState;
-pub use variables::{Order, Quantity, Signal, TABLE_VERSION, variables};
+pub use variables::{Order, Quantity, Signal, TABLE_VERSION, indeterminate, variables};
 
 use super::codec::{Codec, Unreadable};
 use super::error::Failure;
@@ -47,6 +51,8 @@ use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Carryover, Path, Pose, Progress, Rates, Solver};
 use crate::mechanism::{DriverSource, Jet, Mechanism};
+use force_input::ForceInput;
+use forces::ModelForces;
 use input::DriverInput;
 use monitor::Monitor;
 use outputs::Reals;
@@ -68,6 +74,12 @@ pub struct MechanismModel {
     settings: Settings,
     /// Inputs per driver; those of prescribed motions have no meaning.
     inputs: Vec<DriverInput>,
+    /// Inputs of forces, in the order of their variables.
+    force_inputs: Vec<ForceInput>,
+    /// Forces at the solver's pose, if the mechanism has dynamics.
+    forces: Option<Box<ModelForces>>,
+    /// Whether each contact pulled at the last communication point.
+    lifted: Vec<bool>,
     /// Observations per driver.
     monitors: Vec<Monitor>,
     /// Sources of the rates per driver at the solver's pose.
@@ -131,6 +143,7 @@ impl MechanismModel {
         let mut file_carryover = Carryover::default();
         solver.carry_over(&mut file_carryover);
         let variables = variables(&mechanism);
+        let forces = (mechanism.has_dynamics()).then(|| Box::new(ModelForces::new(&solver)));
         Ok(Self {
             guid: guid(&mechanism),
             interface,
@@ -138,6 +151,9 @@ impl MechanismModel {
             variables,
             settings: Settings::new(&mechanism),
             inputs: start_inputs(&mechanism),
+            force_inputs: force_inputs(forces.as_deref()),
+            lifted: vec![false; forces.as_deref().map_or(0, ModelForces::contacts)],
+            forces,
             monitors: vec![Monitor::default(); mechanism.drivers.len()],
             sources: vec![[Source::default(); 2]; mechanism.drivers.len()],
             committed: Pose::clone(&file_pose),
@@ -211,6 +227,8 @@ impl Model for MechanismModel {
         self.start_pose = Arc::clone(&self.file_pose);
         self.settings = Settings::new(&self.mechanism);
         self.inputs = start_inputs(&self.mechanism);
+        self.force_inputs.fill(ForceInput::default());
+        self.lifted.fill(false);
         self.monitors.fill(Monitor::default());
         self.committed.clone_from(&self.start_pose);
         self.committed_carryover.clone_from(&self.file_carryover);
@@ -237,6 +255,12 @@ impl Model for MechanismModel {
                     } else {
                         input.set(order, value);
                     }
+                }
+                Quantity::ForceInput(place) => {
+                    self.force_inputs[place].set(value);
+                    // The pose does not depend on it.
+                    self.reals.invalidate();
+                    continue;
                 }
                 Quantity::Parameter(parameter) => {
                     self.settings.parameters[parameter.index()] = value;
@@ -270,8 +294,15 @@ impl Model for MechanismModel {
 
     fn set_input_derivatives(&mut self, derivatives: impl Iterator<Item = (Quantity, usize, f64)>) {
         for (quantity, order, value) in derivatives {
-            if let Quantity::Input(driver, input) = quantity {
-                self.inputs[driver.index()].set_derivative(input, order, value);
+            match quantity {
+                Quantity::Input(driver, input) => {
+                    self.inputs[driver.index()].set_derivative(input, order, value);
+                }
+                Quantity::ForceInput(place) => {
+                    self.force_inputs[place].set_derivative(order, value);
+                    continue;
+                }
+                _ => {}
             }
             self.set_freshness(Freshness::Stale);
         }
@@ -363,6 +394,10 @@ fn start_inputs(mechanism: &Mechanism) -> Vec<DriverInput> {
     drivers
         .map(|driver| DriverInput::new(start(&driver.source)))
         .collect()
+}
+
+fn force_inputs(forces: Option<&ModelForces>) -> Vec<ForceInput> {
+    vec![ForceInput::default(); forces.map_or(0, ModelForces::inputs)]
 }
 
 /// Converts an error of the kinematics.

@@ -7,6 +7,7 @@ use crate::fmi::log::Logger;
 use crate::fmi::model::Groups;
 use crate::fmi::state::Phase;
 use crate::fmi::variable::{Variable, derivatives};
+use crate::kinematics::{ForceParts, ForceQuantity};
 
 /// Inputs, parameters and time.
 const SETTINGS: Groups = 1;
@@ -19,6 +20,14 @@ const MARKERS: Groups = 1 << 4;
 /// Measures and prescribed motions.
 const COORDINATES: Groups = 1 << 6;
 
+/// Sizes of forces, and energies.
+const LOADS: Groups = 1 << 8;
+/// Efforts, powers and inertias of drivers.
+const EFFORTS: Groups = 1 << 9;
+/// Reactions of joints and efforts of constraints.
+const REACTIONS: Groups = 1 << 10;
+
+const FORCES: Groups = LOADS | EFFORTS | REACTIONS;
 const POSES: Groups = BODIES | MARKERS | COORDINATES;
 const RATES: Groups = POSES << 1;
 
@@ -33,6 +42,8 @@ pub(super) struct Reals {
     signals: Box<[SignalPlace]>,
     /// Value references of all other Reals.
     others: Box<[(u32, Quantity)]>,
+    /// Value references of forces.
+    forces: Box<[(u32, ForceQuantity)]>,
 }
 
 /// A body among the outputs. Its nine values have consecutive references: x, y, phi, then their
@@ -66,7 +77,12 @@ impl Signal {
 /// Returns the group of a quantity; 0 for a quantity that is no Real.
 pub(super) fn group(quantity: Quantity) -> Groups {
     match quantity {
-        Quantity::Input(..) | Quantity::Parameter(_) | Quantity::Time => SETTINGS,
+        Quantity::Input(..) | Quantity::ForceInput(_) | Quantity::Parameter(_) | Quantity::Time => {
+            SETTINGS
+        }
+        Quantity::Force(force) if force.needs_efforts() => EFFORTS,
+        Quantity::Force(force) if force.needs_reactions() => REACTIONS,
+        Quantity::Force(_) => LOADS,
         Quantity::Residual | Quantity::Rcond => SOLVER,
         Quantity::Output(signal, Order::Position) => signal.group(),
         Quantity::Output(signal, _) => signal.group() << 1,
@@ -84,6 +100,7 @@ impl Reals {
         let mut bodies = Vec::new();
         let mut signals = Vec::new();
         let mut others = Vec::new();
+        let mut forces = Vec::new();
         for (vr, variable) in (0_u32..).zip(variables) {
             match variable.quantity {
                 Quantity::Output(Signal::Body(body, 0), Order::Position) => {
@@ -98,6 +115,7 @@ impl Reals {
                     let references = [vr, derivative(vr), derivative(derivative(vr))];
                     signals.push(SignalPlace { signal, references });
                 }
+                Quantity::Force(force) => forces.push((vr, force)),
                 quantity if group(quantity) & (SETTINGS | SOLVER) != 0 => {
                     others.push((vr, quantity));
                 }
@@ -110,6 +128,7 @@ impl Reals {
             bodies: bodies.into(),
             signals: signals.into(),
             others: others.into(),
+            forces: forces.into(),
         }
     }
 
@@ -143,6 +162,9 @@ impl MechanismModel {
         if missing == 0 {
             return Ok(());
         }
+        if missing & FORCES != 0 {
+            self.fill_forces(missing, phase, log)?;
+        }
         if missing & RATES != 0 {
             self.refresh_rates(phase, log)?;
         } else if missing & (POSES | SOLVER) != 0 {
@@ -151,10 +173,28 @@ impl MechanismModel {
         if missing & (BODIES | BODIES << 1) != 0 {
             self.fill_bodies(missing);
         }
-        if missing & !(BODIES | BODIES << 1) != 0 {
+        if missing & !(BODIES | BODIES << 1 | FORCES) != 0 {
             self.fill_others(missing);
         }
         self.reals.current |= missing;
+        Ok(())
+    }
+
+    /// Fills in the values of forces.
+    #[inline(never)]
+    fn fill_forces(&mut self, groups: Groups, phase: Phase, log: &Logger) -> Result<(), Failure> {
+        let parts = ForceParts {
+            efforts: groups & EFFORTS != 0,
+            reactions: groups & REACTIONS != 0,
+        };
+        self.refresh_forces(parts, phase, log)?;
+        let Reals { values, forces, .. } = &mut self.reals;
+        if let Some(solved) = self.forces.as_deref() {
+            let is_asked = |force: ForceQuantity| groups & group(Quantity::Force(force)) != 0;
+            for &(vr, force) in forces.iter().filter(|(_, force)| is_asked(*force)) {
+                values[vr as usize] = solved.value(force);
+            }
+        }
         Ok(())
     }
 
@@ -203,6 +243,7 @@ impl MechanismModel {
         for &(vr, quantity) in others.iter().filter(|(_, q)| groups & group(*q) != 0) {
             values[vr as usize] = match quantity {
                 Quantity::Input(driver, order) => self.inputs[driver.index()].get(order),
+                Quantity::ForceInput(place) => self.force_inputs[place].get(),
                 Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
                 Quantity::Time => self.time,
                 Quantity::Residual => self.solver.residual(),

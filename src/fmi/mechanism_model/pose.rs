@@ -32,6 +32,7 @@ impl MechanismModel {
                 self.path_progress = progress;
                 self.progress = progress;
                 self.set_driver_rates(start, h, 1.0);
+                self.advance_forces(h);
                 self.time = end;
                 self.commit_pose();
                 self.complete_step(start, h, log);
@@ -191,6 +192,7 @@ impl MechanismModel {
                 } => jump.abs() > SEAM * (h * (velocity + 0.5 * h * acceleration)).abs(),
                 Curve::Motion => false,
             });
+        self.advance_forces(if jumped { 0.0 } else { blocked.s * h });
         if jumped {
             self.restore_committed();
         } else {
@@ -199,6 +201,13 @@ impl MechanismModel {
         }
         self.commit_pose();
         Failure::Discarded(message)
+    }
+
+    /// Moves the inputs of forces on by a time `h`.
+    fn advance_forces(&mut self, h: f64) {
+        for input in &mut self.force_inputs {
+            input.advance(h);
+        }
     }
 
     /// Brings the solver to the pose of the values set.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::force_input::ForceInput;
 use super::input::DriverInput;
 use super::monitor::Monitor;
 use super::rule::{Extrapolation, RateSource};
@@ -24,6 +25,8 @@ pub struct MechanismState {
     start_pose: Arc<Pose>,
     settings: Settings,
     inputs: Vec<DriverInput>,
+    force_inputs: Vec<ForceInput>,
+    lifted: Vec<bool>,
     monitors: Vec<Monitor>,
     committed: Pose,
     /// The solver's pose: the committed one, or that of values set since.
@@ -65,9 +68,12 @@ impl MechanismModel {
             // Computed from the pose.
             rates: _,
             reals: _,
+            forces: _,
             start_pose,
             settings,
             inputs,
+            force_inputs,
+            lifted,
             monitors,
             solver,
             committed,
@@ -87,6 +93,8 @@ impl MechanismModel {
             start_pose: Arc::clone(start_pose),
             settings: settings.clone(),
             inputs: inputs.clone(),
+            force_inputs: force_inputs.clone(),
+            lifted: lifted.clone(),
             monitors: monitors.clone(),
             committed: committed.clone(),
             committed_carryover: if *at_committed {
@@ -115,6 +123,8 @@ impl MechanismModel {
         self.start_pose = Arc::clone(&state.start_pose);
         self.settings.clone_from(&state.settings);
         self.inputs.clone_from(&state.inputs);
+        self.force_inputs.clone_from(&state.force_inputs);
+        self.lifted.clone_from(&state.lifted);
         self.monitors.clone_from(&state.monitors);
         self.committed.clone_from(&state.committed);
         self.committed_carryover
@@ -196,6 +206,8 @@ impl MechanismState {
             start_pose,
             settings,
             inputs,
+            force_inputs,
+            lifted,
             monitors,
             committed,
             present,
@@ -234,6 +246,12 @@ impl MechanismState {
         for (input, monitor) in inputs.iter_mut().zip(monitors) {
             input.visit(codec)?;
             monitor.visit(codec)?;
+        }
+        for input in force_inputs {
+            input.visit(codec)?;
+        }
+        for lifted in lifted {
+            codec.flag(lifted)?;
         }
         // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {

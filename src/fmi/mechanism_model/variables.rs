@@ -1,21 +1,29 @@
 //! The table of variables of a mechanism's FMU. Getters, setters and `modelDescription.xml` read
 //! it.
 
+use std::sync::Arc;
+
 use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
-use crate::kinematics::{Dependencies, Rates, Solver, Structure};
+use crate::kinematics::{
+    Dependencies, Element, ForceQuantity, Path, Rates, Reported, Solver, Structure, System,
+};
 use crate::mechanism::{
-    BodyId, Coordinate, CoordinateKind, DriverId, DriverSource, Jet, MarkerId, Mechanism,
-    ParameterId, Unit,
+    BodyId, Coordinate, CoordinateKind, DriverId, DriverSource, Indeterminate, Jet, Load, MarkerId,
+    Mechanism, ParameterId, Unit,
 };
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
 pub const TABLE_VERSION: u32 = 2;
+/// Version of the variables of forces, part of the GUID of mechanisms with dynamics.
+pub(super) const FORCE_TABLE_VERSION: u32 = 1;
 
 /// A variable's meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Value, velocity or acceleration of a driver that is an input.
     Input(DriverId, Order),
+    /// Size of a force that is an input, by its place among all such inputs.
+    ForceInput(usize),
     /// A parameter of the mechanism.
     Parameter(ParameterId),
     /// The source of the drivers' rates.
@@ -24,6 +32,8 @@ pub enum Quantity {
     Extrapolation,
     /// A signal of the mechanism, or a time derivative of it.
     Output(Signal, Order),
+    /// A force, an energy or an inertia.
+    Force(ForceQuantity),
     /// Largest scaled residual of the constraint equations.
     Residual,
     /// Scaled reciprocal condition of the Jacobian.
@@ -149,17 +159,21 @@ pub static EXTRAPOLATIONS: Enumeration = Enumeration {
 };
 
 /// Returns the variables of a mechanism's FMU in the order of their value references: inputs,
-/// parameters, settings, bodies, markers, measures, motions, solver, time; in the file's order
-/// within each group.
+/// inputs of forces, parameters, settings, bodies, markers, measures, motions, forces, solver,
+/// time; in the file's order within each group.
 #[must_use]
 pub fn variables(mechanism: &Mechanism) -> Vec<Variable<Quantity>> {
     let mut table = Table::default();
     table.add_inputs(mechanism);
+    table.add_force_inputs(mechanism);
     table.add_parameters(mechanism);
     if has_inputs(mechanism) {
         table.add_settings();
     }
     table.add_outputs(mechanism);
+    if mechanism.has_dynamics() {
+        table.add_forces(mechanism);
+    }
     table.add_solver();
     table.add(
         "time",
@@ -371,6 +385,132 @@ impl Table {
         }
     }
 
+    fn add_force_inputs(&mut self, mechanism: &Mechanism) {
+        let mut place = 0;
+        for force in mechanism
+            .forces
+            .iter()
+            .filter(|force| force.load.is_input())
+        {
+            let description = describe_load(mechanism, &force.description, &force.load);
+            for (suffix, unit) in force.load.variables() {
+                self.add(
+                    format!("{}.{suffix}", force.name),
+                    of_component(suffix, &description),
+                    Quantity::ForceInput(place),
+                    (Causality::Input, Variability::Continuous),
+                    Kind::real(Some(unit), Some(0.0)),
+                );
+                place += 1;
+            }
+        }
+    }
+
+    /// Adds the outputs of a mechanism with dynamics.
+    fn add_forces(&mut self, mechanism: &Mechanism) {
+        let mut add = |owner: &str, suffix: &str, description: String, quantity, unit| {
+            self.add(
+                format!("{owner}.{suffix}"),
+                description,
+                Quantity::Force(quantity),
+                (Causality::Output, Variability::Continuous),
+                Kind::real(Some(unit), None),
+            );
+        };
+        for (index, driver) in mechanism.drivers.iter().enumerate() {
+            let (id, kind) = (DriverId(index), driver.coordinate.kind);
+            let (name, effort, inertia) = (&driver.name, kind.effort_unit(), kind.inertia_unit());
+            let word = if kind.is_angle() { "torque" } else { "force" };
+            let exerted = format!("{word} that driver `{name}` exerts");
+            add(
+                name,
+                "effort",
+                exerted.clone(),
+                ForceQuantity::Effort(id),
+                effort,
+            );
+            let power = format!("power of driver `{name}`");
+            add(name, "power", power, ForceQuantity::Power(id), Unit::WATT);
+            if driver.motion().is_none() {
+                let felt = format!("inertia that driver `{name}` feels");
+                add(name, "inertia", felt, ForceQuantity::Inertia(id), inertia);
+                let bias = format!("{exerted} if no input accelerates");
+                add(name, "bias", bias, ForceQuantity::Bias(id), effort);
+            }
+        }
+        let omitted = match mechanism.outputs.indeterminate {
+            Indeterminate::Omit => indeterminate(mechanism),
+            Indeterminate::MinimumNorm => Vec::new(),
+        };
+        for &index in &mechanism.outputs.joints {
+            let joint = &mechanism.joints[index];
+            if omitted.contains(&Element::Joint(index)) {
+                continue;
+            }
+            let reported = Reported::of(&joint.kind);
+            let body = mechanism.markers[joint.to.index()].body;
+            let body = body.map_or("ground", |body| &mechanism.bodies[body.index()].name);
+            for (component, suffix) in Load::COMPONENTS.into_iter().enumerate() {
+                if reported.has(component) {
+                    let (word, unit) = match component {
+                        0 => ("force along x", Unit::NEWTON),
+                        1 => ("force along y", Unit::NEWTON),
+                        _ => ("torque", Unit::NEWTON_METRE),
+                    };
+                    let description = format!("{word} of joint `{}` on `{body}`", joint.name);
+                    let quantity = ForceQuantity::Reaction(index, component);
+                    add(&joint.name, suffix, description, quantity, unit);
+                }
+            }
+        }
+        for &index in &mechanism.outputs.constraints {
+            let held = &mechanism.constraints[index];
+            if !omitted.contains(&Element::Constraint(index)) {
+                let kind = held.coordinate.kind;
+                let word = if kind.is_angle() { "torque" } else { "force" };
+                let description = format!("{word} that constraint `{}` exerts", held.name);
+                let quantity = ForceQuantity::Held(index);
+                add(
+                    &held.name,
+                    "effort",
+                    description,
+                    quantity,
+                    kind.effort_unit(),
+                );
+            }
+        }
+        for (index, force) in mechanism.forces.iter().enumerate() {
+            if !force.load.is_input() {
+                let description = describe_load(mechanism, &force.description, &force.load);
+                for (component, (suffix, unit)) in force.load.variables().into_iter().enumerate() {
+                    let description = of_component(suffix, &description);
+                    let quantity = ForceQuantity::Applied(index, component);
+                    add(&force.name, suffix, description, quantity, unit);
+                }
+            }
+        }
+        for (suffix, description, quantity) in [
+            (
+                "kinetic",
+                "kinetic energy of all bodies",
+                ForceQuantity::KineticEnergy,
+            ),
+            (
+                "potential",
+                "potential energy of gravity, zero at ground's origin, and of springs",
+                ForceQuantity::PotentialEnergy,
+            ),
+        ] {
+            add(
+                "energy",
+                suffix,
+                description.to_owned(),
+                quantity,
+                Unit::JOULE,
+            );
+        }
+    }
+
     fn add_solver(&mut self) {
         let mut add = |name, description, quantity, variability, kind| {
             let traits = (Causality::Local, variability);
@@ -447,7 +587,11 @@ impl Quantity {
                 }
             }
             Self::Parameter(parameter) => dependencies.add_parameter(mechanism, parameter),
+            Self::Force(quantity) => {
+                add_force_dependencies(mechanism, structure, quantity, &mut dependencies)
+            }
             Self::Input(..)
+            | Self::ForceInput(_)
             | Self::RateSource
             | Self::Extrapolation
             | Self::Residual
@@ -458,6 +602,65 @@ impl Quantity {
             | Self::Time => {}
         }
         dependencies
+    }
+}
+
+/// Returns the joints and constraints whose reactions redundant constraints leave indeterminate,
+/// at the file's own values; none if the mechanism does not assemble there.
+#[must_use]
+pub fn indeterminate(mechanism: &Mechanism) -> Vec<Element> {
+    let system = System::new(Arc::new(mechanism.clone()));
+    if system.equations().len() <= system.unknowns() {
+        return Vec::new();
+    }
+    let Ok(mut solver) = Solver::new(Arc::clone(system.mechanism())) else {
+        return Vec::new();
+    };
+    match solver.assemble(&Path::new(mechanism)) {
+        Ok(_) => solver.indeterminate(),
+        Err(_) => Vec::new(),
+    }
+}
+
+/// Adds the drivers and parameters that a force depends on: a force along a coordinate on that, all
+/// others on the whole mechanism.
+fn add_force_dependencies(
+    mechanism: &Mechanism,
+    structure: &Structure,
+    quantity: ForceQuantity,
+    dependencies: &mut Dependencies,
+) {
+    if let ForceQuantity::Applied(force, _) = quantity {
+        let load = &mechanism.forces[force].load;
+        if let Load::Coordinate { coordinate, .. } = load {
+            dependencies.extend(&structure.coordinate_dependencies(mechanism, coordinate));
+        }
+        for expression in load.expressions() {
+            dependencies.add_expression(mechanism, expression);
+        }
+        return;
+    }
+    for body in 0..3 * mechanism.bodies.len() {
+        dependencies.extend(structure.dependencies(body));
+    }
+    for body in &mechanism.bodies {
+        let center = body.center.iter().flatten();
+        for expression in body.mass.iter().chain(&body.inertia).chain(center) {
+            dependencies.add_expression(mechanism, expression);
+        }
+        // Points of forces and reactions.
+        for marker in &body.markers {
+            let marker = &mechanism.markers[marker.index()];
+            for expression in marker.position.iter().chain([&marker.angle]) {
+                dependencies.add_expression(mechanism, expression);
+            }
+        }
+    }
+    for expression in &mechanism.simulation.gravity {
+        dependencies.add_expression(mechanism, expression);
+    }
+    for expression in mechanism.forces.iter().flat_map(|f| f.load.expressions()) {
+        dependencies.add_expression(mechanism, expression);
     }
 }
 
@@ -498,6 +701,32 @@ fn describe(mechanism: &Mechanism, own: &str, coordinate: &Coordinate) -> String
         CoordinateKind::X => format!("x from `{from}` to `{to}`{on_axes}"),
         CoordinateKind::Y => format!("y from `{from}` to `{to}`{on_axes}"),
         CoordinateKind::Distance => format!("the distance from `{from}` to `{to}`"),
+    }
+}
+
+/// Returns the file's own description of a force, or else the place where it acts.
+fn describe_load(mechanism: &Mechanism, own: &str, load: &Load) -> String {
+    match load {
+        _ if !own.is_empty() => own.to_owned(),
+        Load::Coordinate { coordinate, .. } => {
+            let word = if coordinate.kind.is_angle() {
+                "torque"
+            } else {
+                "force"
+            };
+            format!("{word} along {}", describe(mechanism, "", coordinate))
+        }
+        Load::Marker { marker, .. } => {
+            format!("force and torque at `{}`", mechanism.marker_path(*marker))
+        }
+    }
+}
+
+/// Returns the description of a component of a force.
+fn of_component(suffix: &str, description: &str) -> String {
+    match suffix {
+        "effort" => description.to_owned(),
+        component => format!("{component}: {description}"),
     }
 }
 

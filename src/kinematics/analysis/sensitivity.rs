@@ -69,6 +69,21 @@ impl Sensitivity<'_> {
         along(self.drivers[driver.index()])
     }
 
+    /// Returns the mechanism along the direction.
+    pub(in crate::kinematics) fn configuration(&self) -> &VariedConfiguration {
+        &self.at
+    }
+
+    /// Returns a driver along the direction.
+    pub(in crate::kinematics) fn driver_value(&self, driver: DriverId) -> Varied {
+        self.drivers[driver.index()]
+    }
+
+    /// Returns a parameter with its change.
+    pub(in crate::kinematics) fn parameter_value(&self, parameter: ParameterId) -> Dual {
+        self.parameters[parameter.index()].value
+    }
+
     /// Returns the change of a parameter; the change of a derived one follows from the others.
     #[must_use]
     pub fn parameter(&self, parameter: ParameterId) -> f64 {

@@ -21,6 +21,7 @@ mod compile;
 mod coupled;
 mod crossing;
 mod elimination;
+mod factors;
 mod interpolated;
 mod jacobian;
 mod pinned;
@@ -45,6 +46,7 @@ pub use carryover::{BlockCarryover, CheckedSegment};
 pub(super) use coupled::CoupledBlock;
 pub use crossing::Crossing;
 pub(super) use crossing::SEAM;
+pub(super) use factors::JacobianFactors;
 pub(super) use interpolated::InterpolatedBlock;
 pub(super) use jacobian::BlockJacobian;
 use pinned::PinnedBody;
@@ -150,13 +152,7 @@ impl BlockPlan {
         let Some(first) = sparse.next() else {
             return;
         };
-        // Spread evenly by the golden ratio: nothing is in line or at right angles there.
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let q: Vec<_> = (1..=system.unknowns())
-            .map(|k| at.size() * (GOLDEN * k as f64).fract() + (k % 3) as f64)
-            .collect();
-        let mut anywhere = at.clone();
-        anywhere.set_pose(system.mechanism(), &q);
+        let mut anywhere = system.anywhere(at);
         let mut state = BlockState {
             system,
             targets,

@@ -74,6 +74,14 @@ impl Gradient {
             .chain(self.joint_unknown)
     }
 
+    /// Returns the entries at x, y and phi of a body.
+    #[must_use]
+    pub fn of_body(&self, body: BodyId) -> [f64; 3] {
+        let mut parts = self.parts[..self.len].iter();
+        let part = parts.find(|(index, _)| *index == body.index());
+        part.map_or([0.0; 3], |(_, part)| *part)
+    }
+
     /// Returns the product of the row and a vector as long as q.
     #[must_use]
     pub fn dot(&self, vector: &[f64]) -> f64 {

@@ -32,4 +32,5 @@ pub use choice::Redundancy;
 pub(super) use choice::{
     assemble_on_all, change_rows, choose_rows, is_nearly_singular, may_cross, opened, redundancies,
 };
+pub(super) use rank::{DEPENDENT, drivers_first, jacobian_rows};
 pub(super) use watch::watch_between;

@@ -13,7 +13,7 @@ use crate::kinematics::system::{System, Target};
 /// A row of which no more than this is left, scaled, depends on the others. A singular position
 /// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] from it leaves some
 /// 1e-2.
-pub(super) const DEPENDENT: f64 = 1e-6;
+pub(in crate::kinematics) const DEPENDENT: f64 = 1e-6;
 /// Distance to the place that tells redundancy from a singular position, in radians and
 /// characteristic lengths: enough for rank to show, not so far that it is another mechanism.
 const AWAY: f64 = 0.03;
@@ -207,7 +207,7 @@ pub(super) fn constraint_rows(system: &System) -> Vec<usize> {
 }
 
 /// Returns all rows, the drivers' first.
-pub(super) fn drivers_first(system: &System) -> Vec<usize> {
+pub(in crate::kinematics) fn drivers_first(system: &System) -> Vec<usize> {
     let equations = system.equations();
     let mut rows: Vec<_> = (0..equations.len()).collect();
     rows.sort_by_key(|&row| matches!(equations[row].target, Target::Constant(_)));
@@ -215,7 +215,7 @@ pub(super) fn drivers_first(system: &System) -> Vec<usize> {
 }
 
 /// Returns the Jacobian by rows at the present places of the bodies, scaled.
-pub(super) fn jacobian_rows(model: &Model, state: &State) -> Vec<Row> {
+pub(in crate::kinematics) fn jacobian_rows(model: &Model, state: &State) -> Vec<Row> {
     let rows = 0..model.system.equations().len();
     let gradient = |row| {
         let mut entries = Row::new();

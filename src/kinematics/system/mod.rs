@@ -189,6 +189,18 @@ impl System {
         )
     }
 
+    /// Returns a configuration that belongs to no motion, at which nothing is in line or at right
+    /// angles: its unknowns are spread evenly by the golden ratio.
+    pub(in crate::kinematics) fn anywhere(&self, at: &Configuration) -> Configuration {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let q: Vec<_> = (1..=self.unknowns())
+            .map(|k| at.size() * (GOLDEN * k as f64).fract() + (k % 3) as f64)
+            .collect();
+        let mut anywhere = at.clone();
+        anywhere.set_pose(&self.mechanism, &q);
+        anywhere
+    }
+
     /// Makes the mechanism in motion, for [`Sensitivity`](super::Sensitivity).
     pub(in crate::kinematics) fn varied(
         &self,

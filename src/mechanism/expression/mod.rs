@@ -2,8 +2,9 @@
 //!
 //! The language is small: numbers (`1`, `.5`, `2.`, `1e-3`), `+ - * / ^` and parentheses, the
 //! constants `pi deg rpm mm cm inch`, parameters, the functions `sin cos tan asin acos atan atan2
-//! sinh cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and one variable: time
-//! `t` in a motion, the polar angle `theta` in a cam's profile. Powers bind tighter than a sign and
+//! sinh cosh tanh sqrt hypot exp ln log10 abs sign floor ceil mod min max`, and variables: time `t`
+//! in a motion, the polar angle `theta` in a cam's profile, `t`, `position` and `velocity` in a
+//! force. Powers bind tighter than a sign and
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod display;
@@ -27,10 +28,14 @@ use super::number::{self, Interval, Jet3, Number, Unary};
 /// Variable of an expression, besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variable {
-    /// Time \[s\], `t` in a motion.
+    /// Time \[s\], `t` in a motion or a force.
     Time,
     /// Polar angle \[rad\], `theta` in a cam's profile.
     PolarAngle,
+    /// Coordinate along which a force acts \[m or rad\], `position` there.
+    Position,
+    /// Its rate \[m/s or rad/s\], `velocity` there.
+    Velocity,
 }
 
 impl Variable {
@@ -40,6 +45,8 @@ impl Variable {
         match self {
             Self::Time => "t",
             Self::PolarAngle => "theta",
+            Self::Position => "position",
+            Self::Velocity => "velocity",
         }
     }
 }
@@ -48,7 +55,7 @@ impl Variable {
 /// hand.
 const MAX_STACK: usize = 32;
 
-/// A number as a function of the parameters, and in a motion or a profile of one [`Variable`].
+/// A number as a function of the parameters, and where its place has them of [`Variable`]s.
 ///
 /// A flat postfix program whose constant parts are computed, so that evaluation neither allocates
 /// nor recurs.
@@ -97,13 +104,13 @@ impl Operation {
         stack: &mut [N; MAX_STACK],
         height: &mut usize,
         parameter: &impl Fn(ParameterId) -> N,
-        variable: N,
+        variable: &impl Fn(Variable) -> N,
     ) {
         let first = *height - self.arity();
         let result = match self {
             Self::Number(value) => N::constant(value),
             Self::Parameter(id) => parameter(id),
-            Self::Variable(_) => variable,
+            Self::Variable(which) => variable(which),
             Self::Negate => -stack[first],
             Self::Add => stack[first] + stack[first + 1],
             Self::Subtract => stack[first] - stack[first + 1],
@@ -141,10 +148,21 @@ impl Expression {
         }
     }
 
-    /// Evaluates the expression for the given parameters and variable.
+    /// Evaluates the expression for the given parameters and the value of its only variable.
     ///
     /// Outside the domain of a function the result is not finite. Allocates nothing.
     pub fn evaluate<N: Number>(&self, parameter: &impl Fn(ParameterId) -> N, variable: N) -> N {
+        self.evaluate_at(parameter, &|_| variable)
+    }
+
+    /// Evaluates the expression for the given parameters and variables.
+    ///
+    /// Outside the domain of a function the result is not finite. Allocates nothing.
+    pub fn evaluate_at<N: Number>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        variable: &impl Fn(Variable) -> N,
+    ) -> N {
         match *self.program {
             // Most numbers of a mechanism are one of these two.
             [Operation::Number(value)] => N::constant(value),
@@ -175,13 +193,10 @@ impl Expression {
         self.parameters.iter().copied()
     }
 
-    /// Returns the variable that it uses, if any.
+    /// Returns whether it uses a variable.
     #[must_use]
-    pub fn variable(&self) -> Option<Variable> {
-        self.program.iter().find_map(|operation| match operation {
-            Operation::Variable(variable) => Some(*variable),
-            _ => None,
-        })
+    pub fn uses(&self, variable: Variable) -> bool {
+        self.program.contains(&Operation::Variable(variable))
     }
 
     /// Returns the value if it uses neither parameters nor a variable.
@@ -195,7 +210,11 @@ impl Expression {
 }
 
 /// Runs a program that leaves one operand and never has more than [`MAX_STACK`] waiting.
-fn run<N: Number>(program: &[Operation], parameter: &impl Fn(ParameterId) -> N, variable: N) -> N {
+fn run<N: Number>(
+    program: &[Operation],
+    parameter: &impl Fn(ParameterId) -> N,
+    variable: &impl Fn(Variable) -> N,
+) -> N {
     let mut stack = [N::constant(0.0); MAX_STACK];
     let mut height = 0;
     for operation in program {

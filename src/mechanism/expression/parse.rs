@@ -16,8 +16,8 @@ const MAX_DEPTH: usize = 128;
 pub(in crate::mechanism) struct Scope<'a> {
     /// Parameters.
     pub(in crate::mechanism) parameters: &'a NameTable<'a, ParameterId>,
-    /// Variable, if the expression may use one.
-    pub(in crate::mechanism) variable: Option<Variable>,
+    /// Variables that the expression may use.
+    pub(in crate::mechanism) variables: &'a [Variable],
 }
 
 impl Expression {
@@ -169,7 +169,7 @@ impl<'a> Parser<'a> {
             );
         } else if let Some((_, value)) = constant {
             Operation::Number(*value)
-        } else if let Some(variable) = self.scope.variable.filter(|v| v.name() == name) {
+        } else if let Some(variable) = self.variable(name) {
             if self.scope.parameters.get(name).is_some() {
                 let message = format!("`{name}` is both a parameter and the variable here");
                 return Err(ExpressionError::new(span, message).help("rename the parameter"));
@@ -188,6 +188,11 @@ impl<'a> Parser<'a> {
         }
         self.emit(operation, &span)?;
         Ok(span)
+    }
+
+    fn variable(&self, name: &str) -> Option<Variable> {
+        let mut variables = self.scope.variables.iter().copied();
+        variables.find(|variable| variable.name() == name)
     }
 
     fn parse_call(&mut self, function: Function, name: Span) -> Result<Span, ExpressionError> {
@@ -242,7 +247,7 @@ impl<'a> Parser<'a> {
             return Err(self.nested_too_deeply());
         }
         if arity > 0 && constant {
-            let value: f64 = run(&self.program[operands..], &|_| f64::NAN, f64::NAN);
+            let value: f64 = run(&self.program[operands..], &|_| f64::NAN, &|_| f64::NAN);
             if !value.is_finite() {
                 let text = quoted(&self.text[span.clone()]);
                 return Err(ExpressionError::new(
@@ -338,16 +343,26 @@ impl<'a> Parser<'a> {
             };
         }
         if name == Variable::Time.name() {
-            let error =
-                ExpressionError::new(span, "only the expression of a `motion` may use time `t`");
-            return match self.scope.variable {
-                Some(own) => error.help(format!("here the variable is `{}`", own.name())),
-                None => error,
+            let error = ExpressionError::new(
+                span,
+                "only a `motion` or the `value` of a force may use time `t`",
+            );
+            return match self.scope.variables {
+                [own, ..] => error.help(format!("here the variable is `{}`", own.name())),
+                [] => error,
             };
         }
         let error = ExpressionError::new(span, format!("no parameter {}", quoted(name)));
         if name == Variable::PolarAngle.name() {
             return error.help("only a cam's `profile` may use `theta`, its polar angle");
+        }
+        if [Variable::Position, Variable::Velocity]
+            .map(Variable::name)
+            .contains(&name)
+        {
+            return error.help(format!(
+                "only the `value` of a force along a coordinate may use the coordinate's `{name}`"
+            ));
         }
         let constants = CONSTANTS.map(|(constant, _)| constant);
         let help = self

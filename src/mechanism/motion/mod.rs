@@ -4,7 +4,7 @@ mod law;
 
 pub use law::Law;
 
-use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, Table};
+use super::{Ends, Expression, Interval, Jet, Jet3, Number, ParameterId, Spline, Table, Variable};
 
 /// A prescribed motion u(t, parameters) \[m or rad\].
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ impl Motion {
     #[must_use]
     pub fn uses_time(&self) -> bool {
         match self {
-            Self::Expression(expression) => expression.variable().is_some(),
+            Self::Expression(expression) => expression.uses(Variable::Time),
             Self::Table(_) => true,
         }
     }

@@ -33,6 +33,10 @@ pub(super) struct Context<'a> {
     /// Moving bodies.
     pub(super) bodies: NameTable<'a, BodyId>,
     pub(super) body_names: Vec<&'a str>,
+    /// Joints, then constraints, by their places among these.
+    pub(super) holders: NameTable<'a, usize>,
+    /// Numbers of joints and of constraints.
+    pub(super) holder_counts: [usize; 2],
     /// Markers of ground, then of each body.
     pub(super) markers: Vec<NameTable<'a, MarkerId>>,
     /// Body of each marker, `None` for ground.
@@ -57,6 +61,8 @@ impl<'a> Context<'a> {
             parameters_used: Vec::new(),
             bodies: NameTable::new(),
             body_names: Vec::new(),
+            holders: NameTable::new(),
+            holder_counts: [0; 2],
             markers: Vec::new(),
             carriers: Vec::new(),
             owners: HashMap::new(),

@@ -18,6 +18,7 @@ mod body;
 mod context;
 mod coordinate;
 mod driver;
+mod force;
 mod joint;
 mod kind;
 mod limits;
@@ -113,6 +114,7 @@ impl<'a> Context<'a> {
         let simulation = self.simulation(root.simulation.value.as_ref());
         let (bodies, markers) = self.bodies(root.ground.value.as_ref(), &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
+        let force = |context: &mut Self, entry| context.force(entry, simulation.start);
         let mechanism = Mechanism {
             name: root.name.value.unwrap_or_default(),
             description: root.description.value.unwrap_or_default(),
@@ -128,6 +130,7 @@ impl<'a> Context<'a> {
             constraints: self.each(&root.constraints, Self::constraint),
             drivers: self.each(&root.drivers, driver),
             measures: self.each(&root.measures, Self::measure),
+            forces: self.each(&root.forces, force),
             outputs: self.outputs(root.outputs.value.as_ref()),
             simulation,
             canonical: syntax::canonical(document) + &self.file_tables,

@@ -92,7 +92,7 @@ impl<'a> Kind<'a> for PrescribedMotion {
             let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
             context.motion_table(keys)?
         } else {
-            Course::Expression(context.expression(item.value, Some(Variable::Time))?)
+            Course::Expression(context.expression(item.value, &[Variable::Time])?)
         };
         Some(ReadMotion {
             course,

@@ -23,6 +23,10 @@ impl<'a> Context<'a> {
         self.body_names = root.bodies.items().iter().map(Entry::name).collect();
         let bodies = self.body_names.iter().copied();
         self.bodies = bodies.zip((0..).map(BodyId)).collect();
+        let joints = root.joints.items().iter().map(Entry::name);
+        let constraints = root.constraints.items().iter().map(Entry::name);
+        self.holder_counts = [joints.len(), constraints.len()];
+        self.holders = joints.chain(constraints).zip(0..).collect();
     }
 
     /// Checks the names that become FMI variables or their prefixes.
@@ -34,6 +38,7 @@ impl<'a> Context<'a> {
             ("constraint", &root.constraints),
             ("driver", &root.drivers),
             ("measure", &root.measures),
+            ("force", &root.forces),
         ];
         let entries = sections
             .iter()

@@ -116,7 +116,7 @@ impl<'a> Context<'a> {
     /// Reads a number or an expression over the parameters.
     pub(super) fn formula(&mut self, value: &'a Value<'a>) -> Option<Quantity> {
         Some(Quantity {
-            expression: self.expression(value, None)?,
+            expression: self.expression(value, &[])?,
             value: None,
             span: value.span(),
         })
@@ -148,11 +148,11 @@ impl<'a> Context<'a> {
         self.error(code::NOT_FINITE, span, message);
     }
 
-    /// Reads a number or an expression over the parameters and a `variable`.
+    /// Reads a number or an expression over the parameters and `variables`.
     pub(super) fn expression(
         &mut self,
         value: &'a Value<'a>,
-        variable: Option<Variable>,
+        variables: &[Variable],
     ) -> Option<Expression> {
         if let Some(number) = syntax::number(value.get_ref()) {
             if number.is_finite() {
@@ -167,7 +167,7 @@ impl<'a> Context<'a> {
         };
         let scope = Scope {
             parameters: &self.parameters,
-            variable,
+            variables,
         };
         match Expression::parse(text, scope) {
             Ok(expression) => {

@@ -117,6 +117,28 @@ impl<'a> Kind<'a> for CarrierName {
     schema! { BodyName.schema() }
 }
 
+/// Joint or constraint, by its place among the joints and then the constraints.
+pub(super) struct HolderName;
+
+impl<'a> Kind<'a> for HolderName {
+    type Value = usize;
+
+    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<usize> {
+        let name = context.text(item.value)?;
+        let place = context.holders.get(name);
+        if place.is_none() {
+            let message = format!("no joint or constraint {}", quoted(name));
+            let help = context.holders.help(name, &[]);
+            context
+                .error(code::UNKNOWN_REACTION, item.span(), message)
+                .help = help;
+        }
+        place
+    }
+
+    schema! {{ "type": "string", "pattern": NAME }}
+}
+
 impl Context<'_> {
     /// Returns the moving body called `name`; the names `further` would be right too.
     fn body_at(&mut self, name: &str, span: Span, further: &[&str]) -> Option<BodyId> {

@@ -13,6 +13,7 @@ use super::body::{BodyKeys, GroundKeys};
 use super::context::Context;
 use super::coordinate::{ConstraintKeys, CoordinateKeys, MeasureKeys};
 use super::driver::DriverKeys;
+use super::force::AnyForce;
 use super::joint::AnyJoint;
 #[cfg(feature = "cli")]
 use super::kind::Described;
@@ -54,6 +55,8 @@ table! {
         drivers: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, DriverKeys<'static>)>),
         /// Coordinates that are outputs.
         measures: Vec<Entry<'a>> = Named(PhantomData::<(CoordinateKeys<'static>, MeasureKeys<'static>)>),
+        /// Forces on the bodies, besides gravity.
+        forces: Vec<Entry<'a>> = Named(PhantomData::<AnyForce>),
         /// Outputs of the FMU.
         outputs: Fields<'a> = Section(PhantomData::<OutputKeys<'static>>),
         /// Default experiment.

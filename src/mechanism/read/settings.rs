@@ -2,12 +2,12 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::wording::shown_apart;
-use crate::mechanism::{BodyId, MarkerId, Outputs, Simulation, Unit};
+use crate::mechanism::{BodyId, Expression, Indeterminate, MarkerId, Outputs, Simulation, Unit};
 
 use super::context::Context;
-use super::kind::{Array, Fields, List};
+use super::kind::{Array, Fields, List, Word};
 use super::number::{NUMBER, Quantity, RATIO, TIME};
-use super::reference::{BodyName, MarkerName};
+use super::reference::{BodyName, HolderName, MarkerName};
 use super::table::{Field, table};
 
 table! {
@@ -17,6 +17,10 @@ table! {
         bodies: Vec<BodyId> = List { plural: "bodies", item: BodyName },
         /// Points of interest that are outputs.
         markers: Vec<MarkerId> = List { plural: "markers", item: MarkerName },
+        /// Joints and constraints whose reactions are outputs; all if left out.
+        reactions: Vec<usize> = List { plural: "joints and constraints", item: HolderName },
+        /// Treatment of reactions that redundant constraints leave indeterminate.
+        indeterminate: Indeterminate = INDETERMINATE,
     }
 
     /// The default experiment.
@@ -29,10 +33,20 @@ table! {
         step: Quantity = TIME.positive(),
         /// Tolerance for hosts; biela solves to rounding.
         tolerance: Quantity = RATIO.positive(),
-        /// Acceleration of gravity.
+        /// Acceleration of gravity; [0, -9.81] if left out.
         gravity: [Quantity; 2] = Array::new("[x, y]", [NUMBER.in_unit(Unit::METRE_PER_SECOND_SQUARED); 2]),
     }
 }
+
+const INDETERMINATE: Word<Indeterminate> = Word::new("treatment", code::ILLEGAL_VALUE, || {
+    vec![
+        ("omit", Indeterminate::Omit),
+        ("minimum_norm", Indeterminate::MinimumNorm),
+    ]
+});
+
+/// Acceleration of gravity that a file does not give \[m/s²\].
+const GRAVITY: [f64; 2] = [0.0, -9.81];
 
 /// Communication steps of a default experiment that does not give its step.
 const DEFAULT_STEPS: f64 = 500.0;
@@ -40,15 +54,30 @@ const DEFAULT_STEPS: f64 = 500.0;
 impl<'a> Context<'a> {
     pub(super) fn outputs(&mut self, fields: Option<&Fields<'a>>) -> Outputs {
         let keys = fields.map(|fields| self.table::<OutputKeys<'a>>(fields));
-        let (bodies, markers) = keys
-            .map(|keys| (keys.bodies.value, keys.markers.value))
+        let (bodies, markers, reactions, indeterminate) = keys
+            .map(|keys| {
+                let markers = keys.markers.value;
+                let (reactions, indeterminate) = (keys.reactions.value, keys.indeterminate.value);
+                (keys.bodies.value, markers, reactions, indeterminate)
+            })
             .unwrap_or_default();
         let all = || (0..self.body_names.len()).map(BodyId).collect();
         let mut bodies: Vec<BodyId> = bodies.unwrap_or_else(all);
         bodies.sort_unstable();
+        let mut reactions =
+            reactions.unwrap_or_else(|| (0..self.holder_counts.iter().sum()).collect());
+        reactions.sort_unstable();
+        let [joint_count, _] = self.holder_counts;
+        let (joints, constraints): (Vec<_>, Vec<_>) = reactions
+            .into_iter()
+            .partition(|&place| place < joint_count);
+        let constraints = constraints.into_iter();
         Outputs {
             bodies,
             markers: markers.unwrap_or_default(),
+            constraints: constraints.map(|place| place - joint_count).collect(),
+            joints,
+            indeterminate: indeterminate.unwrap_or_default(),
         }
     }
 
@@ -58,7 +87,7 @@ impl<'a> Context<'a> {
             stop: 1.0,
             step: 1.0 / DEFAULT_STEPS,
             tolerance: 1e-6,
-            gravity: [0.0, 0.0],
+            gravity: GRAVITY.map(Expression::constant),
         };
         let Some(fields) = fields else {
             return simulation;
@@ -85,8 +114,8 @@ impl<'a> Context<'a> {
             self.error(code::ILLEGAL_VALUE, fields.place.clone(), message);
         }
         simulation.tolerance = keys.tolerance.number().unwrap_or(simulation.tolerance);
-        if let Some(gravity) = keys.gravity.value {
-            simulation.gravity = gravity.map(|component| component.value.unwrap_or(0.0));
+        if let Some(gravity) = keys.gravity.expressions() {
+            simulation.gravity = gravity;
         }
         simulation
     }

@@ -70,7 +70,7 @@ fn parse(text: &str) -> Result<Expression, ExpressionError> {
         text,
         Scope {
             parameters: &parameters,
-            variable: Some(Variable::Time),
+            variables: &[Variable::Time],
         },
     )
 }

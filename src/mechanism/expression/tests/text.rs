@@ -7,8 +7,8 @@ fn the_parameters_used_are_each_listed_once() {
     let expression = parse("length*a + a*t^2").expect("legal");
     let used: Vec<ParameterId> = expression.parameters().collect();
     assert_eq!(used, [ParameterId(0), ParameterId(2)]);
-    assert_eq!(expression.variable(), Some(Variable::Time));
-    assert_eq!(parse("a").expect("legal").variable(), None);
+    assert!(expression.uses(Variable::Time));
+    assert!(!parse("a").expect("legal").uses(Variable::Time));
     assert_eq!(expression.literal(), None);
     assert_eq!(parse("2*3 - 1").expect("legal").literal(), Some(5.0));
     assert_eq!(parse("0*a").expect("legal").literal(), None);
@@ -82,37 +82,37 @@ fn time_is_refused_where_it_has_no_place() {
     let parameters = NameTable::new();
     let scope = Scope {
         parameters: &parameters,
-        variable: None,
+        variables: &[],
     };
     let error = Expression::parse("2*t", scope).expect_err("no time here");
     assert_eq!(error.span, 2..3);
     assert_eq!(
         error.message,
-        "only the expression of a `motion` may use time `t`"
+        "only a `motion` or the `value` of a force may use time `t`"
     );
     assert_eq!(error.help, None);
 }
 
 #[test]
 fn the_polar_angle_has_its_place_in_a_profile() {
-    let parse = |text, names: &[&'static str], variable| {
+    let parse = |text, names: &[&'static str], variables: &[Variable]| {
         let ids = (0..).map(ParameterId);
         let parameters: NameTable<'_, ParameterId> = names.iter().copied().zip(ids).collect();
         let scope = Scope {
             parameters: &parameters,
-            variable,
+            variables,
         };
         Expression::parse(text, scope)
     };
-    let profile = Some(Variable::PolarAngle);
+    let profile = &[Variable::PolarAngle][..];
     let cam = parse("2 + cos(theta)", &[], profile).expect("legal");
-    assert_eq!(cam.variable(), profile);
+    assert!(cam.uses(Variable::PolarAngle));
     assert_eq!(cam.display(|_| "").to_string(), "2.0 + cos(theta)");
     assert_near(cam.evaluate(&|_| 0.0, PI), 1.0, 0.0, "a cam");
 
     // Elsewhere a parameter may bear the name.
-    let tilted = parse("2*theta", &["theta"], Some(Variable::Time)).expect("legal");
-    assert_eq!(tilted.variable(), None);
+    let tilted = parse("2*theta", &["theta"], &[Variable::Time]).expect("legal");
+    assert!(!tilted.uses(Variable::PolarAngle));
     assert!(parse("1", &["theta"], profile).is_ok());
 
     let failing: [(&str, &[&str], _, &str, &str); 4] = [
@@ -126,14 +126,14 @@ fn the_polar_angle_has_its_place_in_a_profile() {
         (
             "2*theta",
             &[],
-            None,
+            &[],
             "no parameter `theta`",
             "only a cam's `profile` may use `theta`, its polar angle",
         ),
         (
             "2*theta",
             &["thet"],
-            Some(Variable::Time),
+            &[Variable::Time],
             "no parameter `theta`",
             "only a cam's `profile` may use `theta`, its polar angle",
         ),
@@ -141,7 +141,7 @@ fn the_polar_angle_has_its_place_in_a_profile() {
             "2*t",
             &[],
             profile,
-            "only the expression of a `motion` may use time `t`",
+            "only a `motion` or the `value` of a force may use time `t`",
             "here the variable is `theta`",
         ),
     ];

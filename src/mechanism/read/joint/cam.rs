@@ -58,7 +58,7 @@ impl<'a> Kind<'a> for Contour {
             let keys = context.table::<PointKeys<'a>>(&fields);
             context.contour_table(keys)?
         } else {
-            Profile::Expression(context.expression(item.value, Some(Variable::PolarAngle))?)
+            Profile::Expression(context.expression(item.value, &[Variable::PolarAngle])?)
         };
         context.check_contour(&profile, item.span())?;
         Some(profile)

@@ -1,0 +1,74 @@
+//! One input of a force.
+
+use crate::fmi::codec::{Codec, Unreadable};
+
+/// Value of an input, and its path during the next step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct ForceInput {
+    /// Value as set by the host.
+    value: f64,
+    /// First and second derivative for the next step.
+    derivatives: [f64; 2],
+    /// Value at the present point: `value`, or the end of its path in the last step.
+    present: f64,
+}
+
+impl ForceInput {
+    /// Returns the value as set by the host.
+    pub(super) fn get(&self) -> f64 {
+        self.value
+    }
+
+    /// Returns the value at the present point.
+    pub(super) fn present(&self) -> f64 {
+        self.present
+    }
+
+    pub(super) fn set(&mut self, value: f64) {
+        self.value = value;
+        self.present = value;
+    }
+
+    /// Sets the derivative of order 1 or 2 for the next step.
+    pub(super) fn set_derivative(&mut self, order: usize, value: f64) {
+        self.derivatives[order - 1] = value;
+    }
+
+    /// Goes on for a time `h` on the path, whose derivatives are then used up.
+    pub(super) fn advance(&mut self, h: f64) {
+        let [first, second] = std::mem::take(&mut self.derivatives);
+        self.present = self.value + h * (first + 0.5 * h * second);
+    }
+
+    /// Visits all fields.
+    pub(super) fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
+        let Self {
+            value,
+            derivatives,
+            present,
+        } = self;
+        for value in derivatives.iter_mut().chain([value, present]) {
+            codec.finite(value)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ForceInput;
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "numbers exact in binary")]
+    fn derivatives_shape_one_step() {
+        let mut input = ForceInput::default();
+        input.set(3.0);
+        input.set_derivative(1, 2.0);
+        input.set_derivative(2, 4.0);
+        assert_eq!((input.get(), input.present()), (3.0, 3.0));
+        input.advance(0.5);
+        assert_eq!((input.get(), input.present()), (3.0, 4.5));
+        input.advance(0.5);
+        assert_eq!(input.present(), 3.0);
+    }
+}

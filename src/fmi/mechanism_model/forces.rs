@@ -1,0 +1,155 @@
+//! Forces at the pose, and contacts that lift off.
+
+use super::{MechanismModel, failed};
+use crate::fmi::error::Failure;
+use crate::fmi::log::{Category, Logger};
+use crate::fmi::state::Phase;
+use crate::kinematics::{Direction, Error};
+use crate::kinematics::{ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, Solver};
+use crate::mechanism::shown;
+
+/// A part of the largest reaction below which a pulling force is rounding.
+const PULLS: f64 = 1e-9;
+
+/// Forces with the inputs on which they depend.
+#[derive(Debug)]
+pub(super) struct ModelForces {
+    forces: Forces,
+    inputs: Vec<f64>,
+}
+
+impl ModelForces {
+    /// Makes the storage.
+    pub(super) fn new(solver: &Solver) -> Self {
+        let forces = solver.forces();
+        Self {
+            inputs: vec![0.0; forces.inputs()],
+            forces,
+        }
+    }
+
+    /// Returns the number of inputs.
+    pub(super) fn inputs(&self) -> usize {
+        self.inputs.len()
+    }
+
+    /// Returns the number of contacts.
+    pub(super) fn contacts(&self) -> usize {
+        self.forces.contacts()
+    }
+
+    pub(super) fn value(&self, quantity: ForceQuantity) -> f64 {
+        self.forces.value(quantity)
+    }
+}
+
+impl MechanismModel {
+    /// Solves forces for the values set. Allocates nothing, unless other rows have become redundant.
+    ///
+    /// # Errors
+    ///
+    /// The pose, its rates or its forces do not exist.
+    pub(super) fn refresh_forces(
+        &mut self,
+        parts: ForceParts,
+        phase: Phase,
+        log: &Logger,
+    ) -> Result<(), Failure> {
+        self.refresh_rates(phase, log)?;
+        let Self {
+            forces,
+            force_inputs,
+            solver,
+            rates,
+            driver_rates,
+            ..
+        } = self;
+        let Some(ModelForces { forces, inputs }) = forces.as_deref_mut() else {
+            return Ok(());
+        };
+        for (now, input) in inputs.iter_mut().zip(force_inputs) {
+            *now = input.present();
+        }
+        let motion = KnownMotion {
+            rates,
+            driver_rates,
+            inputs,
+        };
+        solver.solve_forces(motion, parts, forces).map_err(failed)
+    }
+
+    /// Returns the derivatives of forces along a direction, along which the inputs of forces change
+    /// by `changes`; the rates are up to date.
+    ///
+    /// # Errors
+    ///
+    /// The forces do not exist.
+    pub(super) fn force_derivatives(
+        &mut self,
+        direction: &Direction,
+        changes: &[f64],
+    ) -> Result<Option<ForceSensitivity>, Error> {
+        let Self {
+            forces,
+            force_inputs,
+            solver,
+            rates,
+            driver_rates,
+            ..
+        } = self;
+        let Some(ModelForces { forces, inputs }) = forces.as_deref_mut() else {
+            return Ok(None);
+        };
+        for (now, input) in inputs.iter_mut().zip(force_inputs) {
+            *now = input.present();
+        }
+        let motion = KnownMotion {
+            rates,
+            driver_rates,
+            inputs,
+        };
+        let along = solver.force_sensitivity(motion, direction, changes, forces);
+        along.map(Some)
+    }
+
+    /// Reports each contact that begins to pull, as it would lift off.
+    pub(super) fn report_contacts(&mut self, log: &Logger) {
+        if self.lifted.is_empty() || !log.wants(Category::Warning) {
+            return;
+        }
+        let parts = ForceParts {
+            efforts: false,
+            reactions: true,
+        };
+        // Forces that do not exist are told to a host that reads them.
+        if self.refresh_forces(parts, Phase::Running, log).is_err() {
+            return;
+        }
+        let Self {
+            forces,
+            solver,
+            lifted,
+            mechanism,
+            ..
+        } = self;
+        let Some(ModelForces { forces, .. }) = forces.as_deref() else {
+            return;
+        };
+        let least = PULLS * forces.largest_reaction();
+        for ((joint, force), lifted) in solver.contact_forces(forces).zip(lifted) {
+            let pulls = force < -least;
+            if pulls && !std::mem::replace(lifted, pulls) {
+                log.advise(|| {
+                    format!(
+                        "t = {} s: joint `{}` would lift off: its parts would have to pull each \
+                         other with {} N; the mechanism keeps them together",
+                        solver.pose().time,
+                        mechanism.joints[joint].name,
+                        shown(-force)
+                    )
+                });
+            }
+            *lifted = pulls;
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Springs, dampers, actuators and loads.
+
+use crate::kinematics::configuration::Configuration;
+use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate};
+use crate::kinematics::error::Error;
+use crate::mechanism::{CoordinateKind, ForceLaw, Load, MarkerId, Mechanism, Number, ParameterId};
+
+/// The forces of a mechanism, ready to be evaluated.
+#[derive(Debug)]
+pub(super) struct AppliedForces {
+    pub(super) list: Vec<AppliedForce>,
+    /// Work space.
+    gradient: Gradient,
+}
+
+/// One force.
+#[derive(Debug)]
+pub(super) struct AppliedForce {
+    pub(super) place: Place,
+    /// Index of its first input among all inputs of forces, if it has inputs.
+    pub(super) input: Option<usize>,
+}
+
+/// Place of a force.
+#[derive(Debug)]
+pub(super) enum Place {
+    /// Along a coordinate.
+    Coordinate(Box<dyn Constraint>),
+    /// At a marker, along the axes of another one or of ground.
+    Marker(MarkerId, Option<MarkerId>),
+}
+
+/// The numbers on which the sizes of forces depend, apart from the coordinates.
+pub(super) struct Circumstances<'a, N, P> {
+    pub(super) parameter: &'a P,
+    pub(super) time: N,
+    /// All inputs of forces.
+    pub(super) inputs: &'a [N],
+}
+
+impl AppliedForce {
+    /// Returns the size of a force along a coordinate with this value and rate, and the potential
+    /// energy of its spring.
+    pub(super) fn along<N: Number, P: Fn(ParameterId) -> N>(
+        &self,
+        law: Option<&ForceLaw>,
+        coordinate: [N; 2],
+        around: &Circumstances<'_, N, P>,
+    ) -> [N; 2] {
+        let zero = N::constant(0.0);
+        let Some(law) = law else {
+            return [self.input.map_or(zero, |first| around.inputs[first]), zero];
+        };
+        let size = law.evaluate(around.parameter, around.time, coordinate);
+        let energy = law.spring.as_ref().map_or(zero, |spring| {
+            let [stiffness, extension] = spring.evaluate(around.parameter, coordinate[0]);
+            stiffness * extension.square() * 0.5
+        });
+        [size, energy]
+    }
+
+    /// Returns the components of a force at a marker and its torque.
+    pub(super) fn at_marker<N: Number, P: Fn(ParameterId) -> N>(
+        &self,
+        law: Option<&[crate::mechanism::Expression; 3]>,
+        around: &Circumstances<'_, N, P>,
+    ) -> [N; 3] {
+        match (law, self.input) {
+            (Some(law), _) => law
+                .each_ref()
+                .map(|component| component.evaluate(around.parameter, around.time)),
+            (None, Some(first)) => [0, 1, 2].map(|k| around.inputs[first + k]),
+            (None, None) => [N::constant(0.0); 3],
+        }
+    }
+}
+
+/// Returns the force and the torque about the body's origin of a force at the end of an `arm`, with
+/// components along the x-axis `axis`.
+pub(super) fn about_origin<N: Number>(
+    [fx, fy, torque]: [N; 3],
+    [ux, uy]: [N; 2],
+    arm: [N; 2],
+) -> [N; 3] {
+    let (x, y) = (ux * fx - uy * fy, uy * fx + ux * fy);
+    [x, y, torque + arm[0] * y - arm[1] * x]
+}
+
+impl AppliedForces {
+    pub(super) fn new(mechanism: &Mechanism, inputs: &[Option<usize>]) -> Self {
+        let forces = mechanism.forces.iter().zip(inputs);
+        let list = forces.map(|(force, &input)| AppliedForce {
+            place: match &force.load {
+                Load::Coordinate { coordinate, .. } => Place::Coordinate(of_coordinate(coordinate)),
+                Load::Marker { marker, axes, .. } => Place::Marker(*marker, *axes),
+            },
+            input,
+        });
+        Self {
+            list: list.collect(),
+            gradient: Gradient::new(),
+        }
+    }
+
+    /// Subtracts all forces from what bodies demand, one entry per unknown, and writes their sizes.
+    /// Returns the potential energy of all springs. Allocates nothing unless it fails.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoForce`] for a force without direction or finite size.
+    pub(super) fn apply<P: Fn(ParameterId) -> f64>(
+        &mut self,
+        mechanism: &Mechanism,
+        at: &Configuration,
+        q_dot: &[f64],
+        around: &Circumstances<'_, f64, P>,
+        sizes: &mut [[f64; 3]],
+        demand: &mut [f64],
+    ) -> Result<f64, Error> {
+        let mut energy = 0.0;
+        for ((applied, definition), size) in self.list.iter().zip(&mechanism.forces).zip(sizes) {
+            let fault = |reason| {
+                Err(Error::NoForce {
+                    force: definition.name.clone(),
+                    reason,
+                })
+            };
+            match (&applied.place, &definition.load) {
+                (Place::Coordinate(relation), Load::Coordinate { coordinate, law }) => {
+                    let value = relation.value(at);
+                    if coordinate.kind == CoordinateKind::Distance && value <= 0.0 {
+                        return fault("has no direction: the distance of its markers is zero");
+                    }
+                    self.gradient.clear();
+                    relation.gradient(at, &mut self.gradient);
+                    let coordinate = [value, self.gradient.dot(q_dot)];
+                    let [force, stored] = applied.along(law.as_ref(), coordinate, around);
+                    if !(force + stored).is_finite() {
+                        return fault("has no finite value here");
+                    }
+                    *size = [force, 0.0, 0.0];
+                    energy += stored;
+                    for (column, partial) in self.gradient.entries() {
+                        demand[column] -= force * partial;
+                    }
+                }
+                (Place::Marker(marker, axes), Load::Marker { law, .. }) => {
+                    *size = applied.at_marker(law.as_ref(), around);
+                    if !size.iter().sum::<f64>().is_finite() {
+                        return fault("has no finite value here");
+                    }
+                    let marker = at.marker(*marker);
+                    let axis = axes.map_or([1.0, 0.0], |axes| at.marker(axes).axis.into());
+                    if let Some(body) = marker.body {
+                        let force = about_origin(*size, axis, marker.arm.into());
+                        let k = 3 * body.index();
+                        for (demand, force) in demand[k..k + 3].iter_mut().zip(force) {
+                            *demand -= force;
+                        }
+                    }
+                }
+                _ => unreachable!("places are made of these definitions"),
+            }
+        }
+        Ok(energy)
+    }
+}

@@ -1,0 +1,85 @@
+//! Reactions that redundant constraints leave indeterminate.
+//!
+//! A self-stress is a set of λ that exerts nothing: Phi_qᵀ λ = 0. It has no part in the rows of
+//! drivers, because they are independent of the constraints. A reaction is indeterminate if it
+//! changes with a self-stress.
+
+use std::collections::BTreeSet;
+
+use crate::kinematics::continuation::PathTracker;
+use crate::kinematics::element::Element;
+use crate::kinematics::linear::Echelon;
+use crate::kinematics::model::Model;
+use crate::kinematics::path::{Curve, Path};
+use crate::kinematics::redundancy::{DEPENDENT, drivers_first, jacobian_rows};
+use crate::kinematics::state::State;
+
+/// Distances of the other poses \[rad, characteristic lengths\] at which self-stresses are sought:
+/// a reaction may have no part in one at a single pose.
+const AWAY: [f64; 4] = [0.03, -0.03, 0.11, -0.11];
+/// A part of the largest λ of a self-stress that is not rounding.
+const TAKES_PART: f64 = 1e-6;
+
+/// Returns the joints and constraints whose reactions are indeterminate, at poses near the present
+/// one, which is restored.
+pub(in crate::kinematics) fn indeterminate(
+    model: &mut Model,
+    state: &mut State,
+    tracker: &mut PathTracker,
+) -> Vec<Element> {
+    if model.redundant.is_empty() {
+        return Vec::new();
+    }
+    let home = state.pose.clone();
+    let mut stressed = vec![self_stressed(model, state)];
+    for away in AWAY {
+        let mechanism = model.system.mechanism();
+        let mut path = Path::new(mechanism);
+        path.start = home.time;
+        path.from.clone_from(&home.parameters);
+        path.to.clone_from(&home.parameters);
+        let drivers = mechanism.drivers.iter().zip(&home.drivers);
+        for (curve, (driver, &now)) in path.curves.iter_mut().zip(drivers) {
+            let scale = if driver.coordinate.kind.is_angle() {
+                1.0
+            } else {
+                state.at.size()
+            };
+            *curve = Curve::held(now + away * scale, now);
+        }
+        if tracker.track(model, state, &path).is_ok() {
+            stressed.push(self_stressed(model, state));
+        }
+        state.restore(model, &home);
+    }
+    // At a singular position there are more self-stresses than elsewhere.
+    let fewest = stressed.iter().map(|(count, _)| *count).min();
+    let generic = stressed
+        .into_iter()
+        .filter(|(count, _)| Some(*count) == fewest);
+    let elements: BTreeSet<Element> = generic.flat_map(|(_, elements)| elements).collect();
+    elements.into_iter().collect()
+}
+
+/// Returns the number of self-stresses at the present places of the bodies, and the elements with
+/// a part in one.
+fn self_stressed(model: &Model, state: &State) -> (usize, BTreeSet<Element>) {
+    let rows = jacobian_rows(model, state);
+    let mut echelon = Echelon::new(model.system.unknowns(), &rows);
+    let mut count = 0;
+    let mut elements = BTreeSet::new();
+    let equations = model.system.equations();
+    for row in drivers_first(&model.system) {
+        let Some(dependent) = echelon.offer(row, &rows[row], DEPENDENT) else {
+            continue;
+        };
+        count += 1;
+        // The row itself has the part one.
+        let combination = echelon.combination(&dependent, TAKES_PART);
+        let others = combination.iter().map(|(row, _)| *row);
+        let is_held = |element: &Element| !matches!(element, Element::Driver(_));
+        let stressed = others.chain([row]).map(|row| equations[row].element);
+        elements.extend(stressed.filter(is_held));
+    }
+    (count, elements)
+}

@@ -1,0 +1,60 @@
+//! The results by name.
+
+use crate::mechanism::{DriverId, Load, Mechanism};
+
+/// A force, an energy or an inertia of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForceQuantity {
+    /// Generalized force that a driver exerts, conjugate to its coordinate \[N or N m\].
+    Effort(DriverId),
+    /// Power of a driver \[W\].
+    Power(DriverId),
+    /// Inertia that a driver feels: the change of its effort per acceleration \[kg or kg m²\].
+    Inertia(DriverId),
+    /// Effort of a driver if the accelerations of all drivers that are inputs were zero.
+    Bias(DriverId),
+    /// Component of the reaction of a joint, by its index: fx (component 0), fy (1) or torque (2),
+    /// exerted on the second marker's body at that marker's point, in ground axes \[N, N, N m\].
+    Reaction(usize, usize),
+    /// Generalized force that a constraint, by its index, exerts along its coordinate.
+    Held(usize),
+    /// Size of a force, by its index: the effort along its coordinate, or a component at its marker.
+    Applied(usize, usize),
+    /// Kinetic energy of all bodies \[J\].
+    KineticEnergy,
+    /// Potential energy of gravity and springs \[J\].
+    PotentialEnergy,
+}
+
+impl ForceQuantity {
+    /// Returns whether the quantity is known without the reactions of joints.
+    #[must_use]
+    pub fn needs_reactions(self) -> bool {
+        matches!(self, Self::Reaction(..) | Self::Held(_))
+    }
+
+    /// Returns whether the quantity concerns a driver.
+    #[must_use]
+    pub fn needs_efforts(self) -> bool {
+        matches!(
+            self,
+            Self::Effort(_) | Self::Power(_) | Self::Inertia(_) | Self::Bias(_)
+        )
+    }
+}
+
+/// Returns the indices, in a list of all inputs of forces, of those of each force.
+pub(super) fn input_places(mechanism: &Mechanism) -> Vec<Option<usize>> {
+    let mut next = 0;
+    let places = mechanism.forces.iter().map(|force| {
+        let first = next;
+        if force.load.is_input() {
+            next += match force.load {
+                Load::Coordinate { .. } => 1,
+                Load::Marker { .. } => 3,
+            };
+        }
+        force.load.is_input().then_some(first)
+    });
+    places.collect()
+}

@@ -1,0 +1,406 @@
+//! Derivatives of forces along a direction, by dual numbers and the factors at hand.
+//!
+//! Along a direction Phi_qᵀ δλ = δw − (δPhi_qᵀ) λ and, for the inertias, Phi_q δ(∂q/∂u) =
+//! −(δPhi_q) ∂q/∂u. The entry of a row at q_k is the rate ċ for q̇ = e_k, so that the change of the
+//! relation's rate is the change of its gradient.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::applied::{Circumstances, Place, about_origin};
+use super::inertial::{BodyMotion, Masses};
+use super::quantity::ForceQuantity;
+use super::solve::{Forces, KnownMotion};
+use super::wrench::{Reported, Wrench};
+use crate::kinematics::analysis::Sensitivity;
+use crate::kinematics::constraint::{Constraint, Gradient};
+use crate::kinematics::error::Error;
+use crate::kinematics::model::Model;
+use crate::kinematics::state::{SINGULAR_HERE, State};
+use crate::kinematics::system::System;
+use crate::kinematics::variation::{Varied, VariedConfiguration};
+use crate::mechanism::{DriverId, Dual, Load, Number, ParameterId};
+
+/// The derivatives of all forces along a direction.
+#[derive(Debug)]
+pub struct ForceSensitivity {
+    /// Effort, power, inertia and bias of each driver.
+    drivers: Vec<[f64; 4]>,
+    reactions: Vec<[f64; 3]>,
+    held: Vec<f64>,
+    sizes: Vec<[f64; 3]>,
+    energies: [f64; 2],
+}
+
+/// Entries of a row of the Jacobian.
+type Entries = Vec<(usize, Dual)>;
+
+impl ForceSensitivity {
+    /// Returns the derivative of a quantity.
+    #[must_use]
+    pub fn change(&self, quantity: ForceQuantity) -> f64 {
+        match quantity {
+            ForceQuantity::Effort(driver) => self.drivers[driver.index()][0],
+            ForceQuantity::Power(driver) => self.drivers[driver.index()][1],
+            ForceQuantity::Inertia(driver) => self.drivers[driver.index()][2],
+            ForceQuantity::Bias(driver) => self.drivers[driver.index()][3],
+            ForceQuantity::Reaction(joint, component) => self.reactions[joint][component],
+            ForceQuantity::Held(constraint) => self.held[constraint],
+            ForceQuantity::Applied(force, component) => self.sizes[force][component],
+            ForceQuantity::KineticEnergy => self.energies[0],
+            ForceQuantity::PotentialEnergy => self.energies[1],
+        }
+    }
+}
+
+/// The mechanism at rest along the direction, in which one coordinate moves at unit rate.
+struct Probe {
+    at: VariedConfiguration,
+    gradient: Gradient,
+}
+
+impl Probe {
+    /// Returns the gradient of a relation with its change.
+    fn entries(&mut self, relation: &dyn Constraint, state: &State) -> Entries {
+        self.gradient.clear();
+        relation.gradient(&state.at, &mut self.gradient);
+        let columns: Vec<usize> = self.gradient.entries().map(|(column, _)| column).collect();
+        let entry = |column| {
+            self.at.set_velocity(column, 1.0);
+            let rate = relation.along(&self.at).first();
+            self.at.set_velocity(column, 0.0);
+            (column, rate)
+        };
+        columns.into_iter().map(entry).collect()
+    }
+}
+
+impl Forces {
+    /// Returns the derivatives of all forces along a direction; all are up to date.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where reactions of least norm do not exist.
+    pub(in crate::kinematics) fn sensitivity(
+        &mut self,
+        model: &Model,
+        state: &State,
+        motion: KnownMotion<'_>,
+        sensitivity: &Along<'_>,
+    ) -> Result<ForceSensitivity, Error> {
+        let system = &model.system;
+        let mechanism = std::sync::Arc::clone(&self.mechanism);
+        let at = sensitivity.motion.configuration();
+        let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
+        let masses = Masses::<Dual>::new(&mechanism, &parameter);
+        let mut probe = Probe {
+            at: at.at_rest(),
+            gradient: Gradient::new(),
+        };
+        let (mut demand, sizes, mut potential) =
+            self.varied_loads(state, motion, sensitivity, &mut probe);
+        let mut kinetic = Dual::constant(0.0);
+        for of_body in &masses.bodies {
+            let moving = BodyInMotion::of(at, of_body.body);
+            let own = of_body.demand(
+                moving.motion.direction,
+                moving.motion.velocity[2],
+                moving.acceleration,
+                masses.gravity,
+            );
+            for (k, own) in own.into_iter().enumerate() {
+                demand[3 * of_body.body + k] += own;
+            }
+            let [own_kinetic, own_potential] = of_body.energies(moving.motion, masses.gravity);
+            kinetic += own_kinetic;
+            potential += own_potential;
+        }
+
+        let equations = system.equations().iter();
+        let rows: Vec<Entries> = equations
+            .map(|equation| probe.entries(&*equation.constraint, state))
+            .collect();
+        let multipliers = self.varied_multipliers(system, state, at, &rows, &demand)?;
+        let drivers = self.varied_drivers(system, state, sensitivity, &masses, &rows, &multipliers);
+        let joints = 0..mechanism.joints.len();
+        let reactions = joints.map(|joint| {
+            let own = self.rows.joints[joint].iter();
+            let own = own.map(|&row| (&*rows[row], multipliers[row]));
+            self.varied_reaction(at, joint, own)
+                .map(|value| value.first())
+        });
+        let held = self.rows.constraints.iter();
+        let change = |values: [Dual; 3]| values.map(|value| value.first());
+        Ok(ForceSensitivity {
+            drivers,
+            reactions: reactions.collect(),
+            held: held.map(|&row| multipliers[row].first()).collect(),
+            sizes: sizes.into_iter().map(change).collect(),
+            energies: [kinetic.first(), potential.first()],
+        })
+    }
+
+    /// Returns −Q of the forces, their sizes and the potential energy of springs.
+    fn varied_loads(
+        &self,
+        state: &State,
+        motion: KnownMotion<'_>,
+        sensitivity: &Along<'_>,
+        probe: &mut Probe,
+    ) -> (Vec<Dual>, Vec<[Dual; 3]>, Dual) {
+        let zero = Dual::constant(0.0);
+        let at = sensitivity.motion.configuration();
+        let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
+        let inputs = motion.inputs.iter().zip(sensitivity.inputs);
+        let inputs: Vec<_> = inputs.map(|(&is, &by)| Dual::new(is, [by])).collect();
+        let around = Circumstances {
+            parameter: &parameter,
+            time: Dual::new(state.pose.time, [sensitivity.time]),
+            inputs: &inputs,
+        };
+        let mut demand = vec![zero; state.pose.q.len()];
+        let mut sizes = Vec::new();
+        let mut energy = zero;
+        for (applied, definition) in self.applied.list.iter().zip(&self.mechanism.forces) {
+            match (&applied.place, &definition.load) {
+                (Place::Coordinate(relation), Load::Coordinate { law, .. }) => {
+                    let value = relation.along(at);
+                    let coordinate = [value.value, value.first()];
+                    let [force, stored] = applied.along(law.as_ref(), coordinate, &around);
+                    energy += stored;
+                    for (column, partial) in probe.entries(&**relation, state) {
+                        demand[column] -= force * partial;
+                    }
+                    sizes.push([force, zero, zero]);
+                }
+                (Place::Marker(marker, axes), Load::Marker { law, .. }) => {
+                    let size = applied.at_marker(law.as_ref(), &around);
+                    let axis = axes.map_or([Dual::constant(1.0), zero], |axes| {
+                        at.marker(axes).axis.map(|component| component.value)
+                    });
+                    if let Some(body) = self.mechanism.markers[marker.index()].body {
+                        let k = 3 * body.index();
+                        let point = at.marker(*marker).point.map(|component| component.value);
+                        let arm = [0, 1].map(|c| point[c] - at.coordinate(k + c).value);
+                        let force = about_origin(size, axis, arm);
+                        for (component, force) in force.into_iter().enumerate() {
+                            demand[k + component] -= force;
+                        }
+                    }
+                    sizes.push(size);
+                }
+                _ => unreachable!("places are made of these definitions"),
+            }
+        }
+        (demand, sizes, energy)
+    }
+
+    /// Returns λ with its change.
+    fn varied_multipliers(
+        &mut self,
+        system: &System,
+        state: &State,
+        at: &VariedConfiguration,
+        rows: &[Entries],
+        demand: &[Dual],
+    ) -> Result<Vec<Dual>, Error> {
+        let values = &self.results.multipliers;
+        let mut side: Vec<f64> = demand.iter().map(Dual::first).collect();
+        for (entries, value) in rows.iter().zip(values) {
+            for (column, partial) in entries {
+                side[*column] -= partial.first() * value;
+            }
+        }
+        let changes = if self.is_of_least_norm() {
+            self.least_norm_changes(at, rows, demand, &side)?
+        } else {
+            let mut changes = vec![0.0; values.len()];
+            self.factors
+                .solve_transposed(system, &state.at, &mut side, &mut changes);
+            changes
+        };
+        let values = self.results.multipliers.iter().zip(changes);
+        Ok(values.map(|(&is, by)| Dual::new(is, [by])).collect())
+    }
+
+    /// Returns the changes of λ of least norm. With the reactions V λ, λ and further multipliers ν
+    /// solve VᵀV λ + Phi_q ν = 0 and Phi_qᵀ λ = w; `side` is δw − (δPhi_qᵀ) λ.
+    fn least_norm_changes(
+        &self,
+        at: &VariedConfiguration,
+        rows: &[Entries],
+        demand: &[Dual],
+        side: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        let (count, unknowns) = (rows.len(), demand.len());
+        let mut matrix = DMatrix::zeros(count + unknowns, count + unknowns);
+        let mut change = matrix.clone();
+        for (row, entries) in rows.iter().enumerate() {
+            for &(column, partial) in entries {
+                for (i, j) in [(row, count + column), (count + column, row)] {
+                    matrix[(i, j)] += partial.value;
+                    change[(i, j)] += partial.first();
+                }
+            }
+        }
+        let mut add = |i: usize, j: usize, product: Dual| {
+            matrix[(i, j)] += product.value;
+            change[(i, j)] += product.first();
+        };
+        for (joint, own) in self.rows.joints.iter().enumerate() {
+            let reported = Reported::of(&self.mechanism.joints[joint].kind);
+            let one = Dual::constant(1.0);
+            let made = own
+                .iter()
+                .map(|&row| self.varied_reaction(at, joint, [(&*rows[row], one)].into_iter()));
+            let made: Vec<_> = made.collect();
+            for (&i, of_i) in own.iter().zip(&made) {
+                for (&j, of_j) in own.iter().zip(&made) {
+                    for component in (0..3).filter(|&component| reported.has(component)) {
+                        add(i, j, of_i[component] * of_j[component]);
+                    }
+                }
+            }
+        }
+        for &row in &self.rows.constraints {
+            add(row, row, Dual::constant(1.0));
+        }
+        let lu = matrix.lu();
+        let values = demand.iter().map(|w| w.value);
+        let is = DVector::from_iterator(
+            count + unknowns,
+            std::iter::repeat_n(0.0, count).chain(values),
+        );
+        let is = lu.solve(&is).ok_or(SINGULAR_HERE)?;
+        let mut right = -(&change * &is);
+        // The exact λ are at hand.
+        right.rows_mut(count, unknowns).copy_from_slice(side);
+        let by = lu.solve(&right).ok_or(SINGULAR_HERE)?;
+        Ok(by.iter().copied().take(count).collect())
+    }
+
+    /// Returns the reaction of a joint for rows with these λ.
+    fn varied_reaction<'a>(
+        &self,
+        at: &VariedConfiguration,
+        joint: usize,
+        rows: impl Iterator<Item = (&'a [(usize, Dual)], Dual)>,
+    ) -> [Dual; 3] {
+        let zero = Dual::constant(0.0);
+        let joint = &self.mechanism.joints[joint];
+        if Reported::of(&joint.kind) == Reported::Torque {
+            let sum = rows.fold(zero, |sum, (_, multiplier)| sum + multiplier);
+            return [zero, zero, sum];
+        }
+        let body = self.mechanism.markers[joint.to.index()].body;
+        let origin = |body: usize| [0, 1].map(|c| at.coordinate(3 * body + c).value);
+        let mut wrench = Wrench::new(body);
+        for (entries, multiplier) in rows {
+            for &(column, partial) in entries {
+                let force = multiplier * partial;
+                wrench.add(column, force, self.mechanism.bodies.len(), origin);
+            }
+        }
+        let point = at.marker(joint.to).point.map(|component| component.value);
+        let origin = body.map_or([zero; 2], |body| origin(body.index()));
+        wrench.about([point[0] - origin[0], point[1] - origin[1]])
+    }
+
+    /// Returns the changes of effort, power, inertia and bias of each driver.
+    fn varied_drivers(
+        &mut self,
+        system: &System,
+        state: &State,
+        sensitivity: &Along<'_>,
+        masses: &Masses<Dual>,
+        rows: &[Entries],
+        multipliers: &[Dual],
+    ) -> Vec<[f64; 4]> {
+        let mechanism = std::sync::Arc::clone(&self.mechanism);
+        let at = sensitivity.motion.configuration();
+        let drivers = (0..mechanism.drivers.len()).map(DriverId);
+        let units: Vec<Vec<Dual>> = drivers
+            .clone()
+            .map(|driver| self.varied_unit(system, state, driver, rows))
+            .collect();
+        let momenta = units.iter().map(|unit| {
+            let mut momentum = vec![Dual::constant(0.0); unit.len()];
+            for of_body in &masses.bodies {
+                let k = 3 * of_body.body;
+                let direction = BodyInMotion::of(at, of_body.body).motion.direction;
+                let own = of_body.momentum(direction, [unit[k], unit[k + 1], unit[k + 2]]);
+                momentum[k..k + 3].copy_from_slice(&own);
+            }
+            momentum
+        });
+        let momenta: Vec<Vec<Dual>> = momenta.collect();
+        let inertia = |i: usize, j: usize| {
+            let products = units[i].iter().zip(&momenta[j]);
+            products.fold(Dual::constant(0.0), |sum, (&a, &b)| sum + a * b)
+        };
+        let of_driver = |driver: DriverId| {
+            let index = driver.index();
+            let effort = multipliers[self.rows.drivers[index]];
+            let own: Varied = sensitivity.motion.driver_value(driver);
+            let mut bias = effort;
+            for (input, definition) in mechanism.drivers.iter().enumerate() {
+                if definition.motion().is_none() {
+                    let acceleration = sensitivity.motion.driver_value(DriverId(input)).second();
+                    bias -= inertia(index, input) * acceleration;
+                }
+            }
+            let results = [effort, effort * own.first(), inertia(index, index), bias];
+            results.map(|result| result.first())
+        };
+        drivers.map(of_driver).collect()
+    }
+
+    /// Returns ∂q/∂u of a driver with its change.
+    fn varied_unit(
+        &mut self,
+        system: &System,
+        state: &State,
+        driver: DriverId,
+        rows: &[Entries],
+    ) -> Vec<Dual> {
+        let unit = self.unit(driver).to_vec();
+        let side = rows.iter().map(|entries| {
+            let changes = entries.iter();
+            -changes.fold(0.0, |sum, (column, partial)| {
+                sum + partial.first() * unit[*column]
+            })
+        });
+        let side: Vec<f64> = side.collect();
+        let mut change = vec![0.0; unit.len()];
+        self.factors.solve(system, &state.at, &side, &mut change);
+        let unit = unit.into_iter().zip(change);
+        unit.map(|(is, by)| Dual::new(is, [by])).collect()
+    }
+}
+
+/// A direction: the motion along it, and the changes of the time and of the inputs of forces.
+pub(in crate::kinematics) struct Along<'a> {
+    pub(in crate::kinematics) motion: &'a Sensitivity<'a>,
+    pub(in crate::kinematics) time: f64,
+    pub(in crate::kinematics) inputs: &'a [f64],
+}
+
+/// A body along the direction.
+struct BodyInMotion {
+    motion: BodyMotion<Dual>,
+    acceleration: [Dual; 3],
+}
+
+impl BodyInMotion {
+    fn of(at: &VariedConfiguration, body: usize) -> Self {
+        let q = [0, 1, 2].map(|component| at.coordinate(3 * body + component));
+        let phi = q[2].value;
+        Self {
+            motion: BodyMotion {
+                position: q.map(|q| q.value),
+                direction: [phi.cos(), phi.sin()],
+                velocity: q.map(|q| q.first()),
+            },
+            acceleration: q.map(|q| q.second()),
+        }
+    }
+}

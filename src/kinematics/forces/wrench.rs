@@ -1,0 +1,254 @@
+//! Force and torque that a joint exerts on the body of its second marker.
+
+use crate::kinematics::block::JacobianFactors;
+use crate::kinematics::configuration::{Configuration, perp};
+use crate::kinematics::element::Element;
+use crate::kinematics::system::System;
+use crate::mechanism::{BodyId, CamFollower, DriverId, Joint, JointKind, Mechanism, Number};
+
+/// Components of a reaction that a joint can exert.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reported {
+    /// A force at the second marker's point.
+    Force,
+    /// A force at the second marker's point and a torque.
+    ForceAndTorque,
+    /// A couple.
+    Torque,
+}
+
+impl Reported {
+    /// Returns the components of a type of joint.
+    #[must_use]
+    pub fn of(kind: &JointKind) -> Self {
+        match kind {
+            JointKind::Revolute
+            | JointKind::Slot
+            | JointKind::Link { .. }
+            | JointKind::RevoluteTranslational { .. }
+            | JointKind::Cam {
+                follower: CamFollower::Knife | CamFollower::Roller { .. },
+                ..
+            } => Self::Force,
+            JointKind::Translational
+            | JointKind::Weld
+            | JointKind::RackAndPinion { .. }
+            | JointKind::Rolling { .. }
+            | JointKind::Cam {
+                follower: CamFollower::Flat,
+                ..
+            } => Self::ForceAndTorque,
+            JointKind::Gear { .. } | JointKind::Belt { .. } => Self::Torque,
+        }
+    }
+
+    /// Returns whether fx (component 0), fy (1) or torque (2) is among them.
+    #[must_use]
+    pub fn has(self, component: usize) -> bool {
+        match self {
+            Self::Force => component < 2,
+            Self::ForceAndTorque => true,
+            Self::Torque => component == 2,
+        }
+    }
+}
+
+/// The sum of the generalized forces that rows exert on a joint's second body, or on ground.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wrench<N> {
+    /// The second marker's body.
+    body: Option<BodyId>,
+    /// Force, and torque about the body's origin or ground's.
+    sum: [N; 3],
+}
+
+impl<N: Number> Wrench<N> {
+    pub(super) fn new(body: Option<BodyId>) -> Self {
+        Self {
+            body,
+            sum: [N::constant(0.0); 3],
+        }
+    }
+
+    /// Adds the force at an unknown, λ times an entry of a row; `origin` returns x and y of a body.
+    ///
+    /// Rows that bodies and ground move together leave unchanged exert nothing on all of them
+    /// together: ground bears the opposite of all others.
+    pub(super) fn add(
+        &mut self,
+        column: usize,
+        force: N,
+        bodies: usize,
+        origin: impl Fn(usize) -> [N; 2],
+    ) {
+        let (body, component) = (column / 3, column % 3);
+        if body >= bodies {
+            return;
+        }
+        match self.body {
+            Some(own) if own.index() == body => self.sum[component] += force,
+            Some(_) => {}
+            None => {
+                self.sum[component] -= force;
+                let [x, y] = origin(body);
+                match component {
+                    0 => self.sum[2] += y * force,
+                    1 => self.sum[2] -= x * force,
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// Returns the force and the torque about the second marker's point; `arm` leads there from the
+    /// body's origin, or ground's.
+    pub(super) fn about(self, arm: [N; 2]) -> [N; 3] {
+        let [fx, fy, torque] = self.sum;
+        [fx, fy, torque - (arm[0] * fy - arm[1] * fx)]
+    }
+}
+
+/// The rows of joints and constraints, and the reactions that λ makes.
+#[derive(Debug)]
+pub(super) struct ReactionRows {
+    /// Rows of each joint.
+    pub(super) joints: Vec<Vec<usize>>,
+    /// Row of each constraint.
+    pub(super) constraints: Vec<usize>,
+    /// Row of each driver.
+    pub(super) drivers: Vec<usize>,
+}
+
+impl ReactionRows {
+    pub(super) fn new(system: &System) -> Self {
+        let mechanism = system.mechanism();
+        let only = |element| system.rows_of(&[element])[0];
+        Self {
+            joints: (0..mechanism.joints.len())
+                .map(|joint| system.rows_of(&[Element::Joint(joint)]))
+                .collect(),
+            constraints: (0..mechanism.constraints.len())
+                .map(|held| only(Element::Constraint(held)))
+                .collect(),
+            drivers: (0..mechanism.drivers.len())
+                .map(|driver| only(Element::Driver(DriverId(driver))))
+                .collect(),
+        }
+    }
+
+    /// Returns the number of reactions that [`report`](Self::report) writes.
+    pub(super) fn reported_len(&self) -> usize {
+        3 * self.joints.len() + self.constraints.len()
+    }
+
+    /// Returns the force and the torque that a joint exerts on its second body for these λ.
+    pub(super) fn reaction(
+        &self,
+        mechanism: &Mechanism,
+        factors: &JacobianFactors,
+        at: &Configuration,
+        joint: usize,
+        multipliers: &[f64],
+    ) -> [f64; 3] {
+        let Joint { kind, to, .. } = &mechanism.joints[joint];
+        let rows = &self.joints[joint];
+        if Reported::of(kind) == Reported::Torque {
+            // The row has the entry one at the second wheel.
+            return [0.0, 0.0, multipliers[rows[0]]];
+        }
+        let to = at.marker(*to);
+        let mut wrench = Wrench::new(to.body);
+        let origin = |body: usize| at.frames()[body].origin.into();
+        for &row in rows {
+            for (column, partial) in factors.gradient(row).entries() {
+                let force = multipliers[row] * partial;
+                wrench.add(column, force, mechanism.bodies.len(), origin);
+            }
+        }
+        wrench.about(to.arm.into())
+    }
+
+    /// Writes the reactions that λ makes, three per joint and one per constraint; components that a
+    /// joint does not exert are zero.
+    pub(super) fn report(
+        &self,
+        mechanism: &Mechanism,
+        factors: &JacobianFactors,
+        at: &Configuration,
+        multipliers: &[f64],
+        to: &mut [f64],
+    ) {
+        let (of_joints, of_constraints) = to.split_at_mut(3 * self.joints.len());
+        for (joint, to) in of_joints.chunks_exact_mut(3).enumerate() {
+            let reported = Reported::of(&mechanism.joints[joint].kind);
+            let reaction = self.reaction(mechanism, factors, at, joint, multipliers);
+            for (component, value) in reaction.into_iter().enumerate() {
+                to[component] = if reported.has(component) { value } else { 0.0 };
+            }
+        }
+        for (to, row) in of_constraints.iter_mut().zip(&self.constraints) {
+            *to = multipliers[*row];
+        }
+    }
+}
+
+/// A contact that can only push.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact {
+    /// Index of the joint.
+    pub(super) joint: usize,
+    /// Row of the force between the two parts.
+    row: usize,
+    is_flat: bool,
+}
+
+impl Contact {
+    /// Returns the contacts of a mechanism.
+    pub(super) fn all(system: &System) -> Vec<Self> {
+        let joints = system.mechanism().joints.iter().enumerate();
+        let contact = |(joint, Joint { kind, .. }): (usize, &Joint)| {
+            // The order of the rows is that of `system::joint`.
+            let place = match kind {
+                JointKind::Cam {
+                    follower: CamFollower::Knife,
+                    ..
+                } => 0,
+                JointKind::Cam { .. } | JointKind::Rolling { .. } => 1,
+                _ => return None,
+            };
+            let row = *system.rows_of(&[Element::Joint(joint)]).get(place)?;
+            Some(Self {
+                joint,
+                row,
+                is_flat: matches!(
+                    kind,
+                    JointKind::Cam {
+                        follower: CamFollower::Flat,
+                        ..
+                    }
+                ),
+            })
+        };
+        joints.filter_map(contact).collect()
+    }
+
+    /// Returns the force between the two parts \[N\], positive if they push each other.
+    pub(super) fn force(
+        &self,
+        mechanism: &Mechanism,
+        at: &Configuration,
+        multipliers: &[f64],
+    ) -> f64 {
+        let force = multipliers[self.row];
+        if !self.is_flat {
+            // The distance of the two parts is held: a force that lengthens it pushes.
+            return force;
+        }
+        // The row moves the face against its normal. The cam's pole is on the inner side of each
+        // tangent of its contour.
+        let joint = &mechanism.joints[self.joint];
+        let (cam, face) = (at.marker(joint.from), at.marker(joint.to));
+        let side = perp(face.axis).dot(&(face.point - cam.point));
+        -force * side.signum()
+    }
+}

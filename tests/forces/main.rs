@@ -1,0 +1,13 @@
+//! Forces of mechanisms whose motion is known, against laws of mechanics that the solver does not
+//! use, closed forms and published figures.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod balance;
+mod cases;
+mod energy;
+mod fmu;
+mod loaded;
+mod published;
+mod redundant;
