@@ -142,6 +142,10 @@ refresh: setup build ## regenerate modelDescription/*.xml and the gallery from m
 	    echo "modelDescription/$$name.xml"; \
 	    target/release/biela export "$$file" --model-description "modelDescription/$$name.xml"; \
 	done
+	@set -e; for file in modelDescription/fmi3/*.xml; do \
+	    echo "$$file"; \
+	    target/release/biela export "mechanisms/$$(basename "$$file" .xml).toml" --fmi 3 --model-description "$$file"; \
+	done
 	cd tests/fmpy && ../../$(PYTHON) -m gallery --page
 
 lock: setup ## renew tests/fmpy/requirements.txt from requirements.in

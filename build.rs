@@ -1,11 +1,15 @@
-//! Compiles the C host of the tests, and lists the runtime libraries that the program carries.
+//! Compiles the C hosts of the tests, and lists the runtime libraries that the program carries.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, process};
 
-const HOST: &str = "tests/host.c";
+/// C hosts, each with the variable that names the program: of FMI 2.0 and of FMI 3.0.
+const HOSTS: [(&str, &str); 2] = [
+    ("tests/host.c", "BIELA_C_HOST"),
+    ("tests/host3.c", "BIELA_C_HOST3"),
+];
 
 /// Platforms with the extension of their libraries, as `Platform::ALL` has them.
 const PLATFORMS: [(&str, &str); 5] = [
@@ -17,7 +21,9 @@ const PLATFORMS: [(&str, &str); 5] = [
 ];
 
 fn main() {
-    println!("cargo::rerun-if-changed={HOST}");
+    for (source, _) in HOSTS {
+        println!("cargo::rerun-if-changed={source}");
+    }
     println!("cargo::rerun-if-env-changed=BIELA_FMI_HEADERS");
     println!("cargo::rustc-check-cfg=cfg(c_host)");
     let headers = env::var_os("BIELA_FMI_HEADERS").map(PathBuf::from);
@@ -28,7 +34,10 @@ fn main() {
         && !cross
         && let Some(headers) = headers.filter(|headers| headers.is_dir())
     {
-        compile_host(&headers);
+        for (source, variable) in HOSTS {
+            compile_host(&headers, source, variable);
+        }
+        println!("cargo::rustc-cfg=c_host");
     }
     if env::var_os("CARGO_FEATURE_CLI").is_some() {
         embed_libraries();
@@ -39,20 +48,20 @@ fn variable(name: &str) -> String {
     env::var(name).unwrap_or_else(|_| panic!("cargo sets {name}"))
 }
 
-/// Compiles the C host against the standard's own headers: a call that does not fit them fails.
-fn compile_host(headers: &Path) {
-    let host = Path::new(&variable("OUT_DIR")).join("host");
+/// Compiles a C host against the standard's own headers: a call that does not fit them fails.
+fn compile_host(headers: &Path, source: &str, name: &str) {
+    let host = Path::new(&variable("OUT_DIR")).join(name.to_lowercase());
     let compiler = cc::Build::new().get_compiler();
     let mut command = compiler.to_command();
     if compiler.is_like_gnu() || compiler.is_like_clang() {
         command.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic"]);
     }
-    command.arg("-pthread").arg("-I").arg(headers);
-    command.arg(HOST).arg("-o").arg(&host).args(["-ldl", "-lm"]);
+    command.arg("-pthread");
+    command.arg("-I").arg(headers).arg(source);
+    command.arg("-o").arg(&host).args(["-ldl", "-lm"]);
     match command.status() {
         Ok(status) if status.success() => {
-            println!("cargo::rustc-cfg=c_host");
-            println!("cargo::rustc-env=BIELA_C_HOST={}", host.display());
+            println!("cargo::rustc-env={name}={}", host.display());
         }
         Ok(_) => process::exit(1),
         Err(error) => println!("cargo::error=cannot run the C compiler: {error}"),

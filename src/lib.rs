@@ -1,4 +1,4 @@
-//! Planar mechanisms as text files, solved exactly and exported as FMI 2.0 FMUs.
+//! Planar mechanisms as text files, solved exactly and exported as FMUs (FMI 2.0 and 3.0).
 //!
 //! The library reads a mechanism, a set of rigid bodies with joints and drivers, from a TOML file;
 //! assembles it; moves it along its drivers with position, velocity and acceleration exact to
@@ -27,7 +27,7 @@
 //! | [`mechanism`] | the file: bodies, markers, joints, drivers, expressions, and their diagnostics |
 //! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
 //! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
-//! | [`fmi`] | FMI 2.0 for any model, and for mechanisms: instance, C interface, model description, archive |
+//! | [`fmi`] | FMI 2.0 and 3.0 for any model, and for mechanisms: instance, C interface, model description, archive |
 //! | `cli` | the commands of the program `biela` |
 //!
 //! Each layer uses only layers above it in this table. `drawing` and `cli` are features of these

@@ -480,8 +480,8 @@ fn what_is_wrong_with_bytes_is_told() {
         matches!(
             version,
             StateError::Version {
-                given: 20,
-                expected: 4
+                given: 21,
+                expected: 5
             }
         ),
         "{version}"

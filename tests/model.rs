@@ -5,7 +5,7 @@ use std::io::Cursor;
 use biela::fmi::{
     Capabilities, Category, Causality, Codec, DependencyKind, Error, Experiment, Failure, Groups,
     Instance, Interface, Kind, Logger, Model, ModelDescription, Phase, Sink, State, StateError,
-    Status, Unknown, Unreadable, Variability, Variable, write_archive,
+    Status, Unknown, Unreadable, Variability, Variable, Version, write_archive,
 };
 
 /// y′ = gain · u, with u held; y may not leave its range.
@@ -354,8 +354,10 @@ fn it_is_described_and_packed() {
     let unknown = Unknown {
         index: 3,
         dependencies: [(1, DependencyKind::Dependent)].into(),
+        parameters: [].into(),
     };
     let description = ModelDescription {
+        standard: Version::Fmi2,
         name: "integrator",
         description: "y' = gain u",
         author: None,
@@ -373,10 +375,12 @@ fn it_is_described_and_packed() {
             interpolates_inputs: false,
             output_derivatives: 1,
             directional_derivatives: false,
+            intermediate_update: false,
         },
         variables: model.variables().to_vec(),
         outputs: vec![unknown.clone()],
         initial_unknowns: vec![unknown],
+        terminals: Vec::new(),
     };
     let mut archive = Cursor::new(Vec::new());
     let resources = [("numbers.txt", &b"1 2 3"[..])];

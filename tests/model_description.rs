@@ -2,7 +2,7 @@
 
 mod common;
 
-use biela::fmi::describe;
+use biela::fmi::{Version, describe};
 use common::{assembled, folder, shipped, stems};
 
 /// The generation tool's version changes with every release and is no part of the contract.
@@ -39,6 +39,27 @@ fn interfaces_do_not_drift() {
             masked(&xml) == unversioned(&contract),
             "the interface of {name} has changed: if that is meant, run `make refresh` and review \
              modelDescription/{name}.xml"
+        );
+    }
+}
+
+/// FMI 3.0: mechanisms with inputs, prescribed motions, markers, measures and tables.
+const OF_FMI_3: [&str; 4] = ["cam_points", "four_bar", "parallelogram", "slider_crank"];
+
+#[test]
+fn interfaces_of_fmi_3_do_not_drift() {
+    assert_eq!(stems("modelDescription/fmi3", "xml"), OF_FMI_3);
+    for name in OF_FMI_3 {
+        let (solver, _) = assembled(&shipped(name));
+        let mut description = describe(solver.mechanism(), solver.structure());
+        description.standard = Version::Fmi3;
+        let xml = String::from_utf8(description.write(None)).expect("XML is text");
+        let path = folder("modelDescription/fmi3").join(format!("{name}.xml"));
+        let contract = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(
+            masked(&xml) == unversioned(&contract),
+            "the interface of {name} in FMI 3.0 has changed: if that is meant, run `make refresh` \
+             and review modelDescription/fmi3/{name}.xml"
         );
     }
 }

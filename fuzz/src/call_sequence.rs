@@ -1,7 +1,7 @@
 //! Any calls in any order: the state table decides, and what is refused leaves no trace.
 
 use arbitrary::{Arbitrary, Unstructured};
-use biela::fmi::{Call, Error, Failure, Interface, State, Status};
+use biela::fmi::{Call, Error, Failure, Interface, State, Status, Version};
 
 use crate::{FmuState, Instance, instance, reals, shipped};
 
@@ -98,7 +98,7 @@ fn check(instance: &mut Instance, saved: &mut Vec<FmuState>, request: &Request) 
     let (state, interface) = (instance.state(), instance.interface());
     let before = instance.fmu_state();
     let (call, outcome) = make(instance, saved, request);
-    let allowed = call.is_allowed_in(interface, state);
+    let allowed = call.is_allowed_in(Version::Fmi2, interface, state);
     let refused = matches!(outcome, Err(Error::State { .. } | Error::Interface { .. }));
     assert_eq!(!allowed, refused, "{request:?} in {state}: {outcome:?}");
     let Err(error) = outcome else { return };

@@ -94,7 +94,9 @@ class Mechanism:
     def edited(
         self, motions: _Motions, parameters: _Values, estimates: Sequence[float] | None
     ) -> str: ...
-    def fmu(self, runtime: str | os.PathLike[str] | None, platforms: Sequence[str]) -> bytes: ...
+    def fmu(
+        self, fmi: str, runtime: str | os.PathLike[str] | None, platforms: Sequence[str]
+    ) -> bytes: ...
 
 class Run:
     rows: int

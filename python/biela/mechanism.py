@@ -364,15 +364,18 @@ class Mechanism:
         path: str | os.PathLike | None = None,
         platforms: Iterable[str] = (),
         runtime: str | os.PathLike | None = None,
+        fmi: int = 2,
     ) -> Path:
         """Writes the FMU and returns its path, by default the mechanism's name with `.fmu`.
+
+        `fmi` is the version of the standard: 2 or 3.
 
         `platforms` narrows the FMU to some of those of `biela platforms`; `runtime` is a folder of
         runtime libraries that replace those of this package.
         """
         path = Path(path) if path is not None else Path(f"{self.name}.fmu")
         folder = os.fspath(runtime) if runtime is not None else None
-        path.write_bytes(bytes(self._inner.fmu(folder, list(platforms))))
+        path.write_bytes(bytes(self._inner.fmu(str(fmi), folder, list(platforms))))
         return path
 
     def _chosen(self, wanted: Sequence[str] | None) -> tuple[list[str], list[str], list[int]]:

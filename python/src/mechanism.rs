@@ -384,12 +384,21 @@ impl Mechanism {
     fn fmu(
         &self,
         py: Python<'_>,
+        fmi: &str,
         runtime: Option<PathBuf>,
         platforms: Vec<String>,
     ) -> PyResult<Vec<u8>> {
         let platforms: Vec<&str> = platforms.iter().map(String::as_str).collect();
-        py.detach(|| cli::archive(&self.source, &self.model, runtime.as_deref(), &platforms))
-            .map_err(|message| Failure::File(message).raise(py))
+        py.detach(|| {
+            cli::archive(
+                &self.source,
+                &self.model,
+                fmi,
+                runtime.as_deref(),
+                &platforms,
+            )
+        })
+        .map_err(|message| Failure::File(message).raise(py))
     }
 }
 

@@ -14,7 +14,7 @@ use super::signals::Signals;
 use crate::drawing::animation::{Animation, fill, page_with, player};
 use crate::drawing::svg::escape;
 use crate::drawing::{Scene, Sheet, png, svg};
-use crate::fmi::{Causality, Document, Kind, Quantity, Variable, variables};
+use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Version, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
     DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of,
@@ -56,8 +56,13 @@ pub(super) struct Shown {
     ranges: Vec<Option<Range>>,
 }
 
-/// Returns the picture and the page of a mechanism, and the licences, whose own pose `home` has.
-pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, Error> {
+/// Returns the picture and the page of a mechanism, and the licences, for an FMU of a version of the
+/// standard; `home` has the mechanism's own pose.
+pub(super) fn documents(
+    input: &Input,
+    home: &Solver,
+    version: Version,
+) -> Result<Vec<Document>, Error> {
     let refuse = |error| input.error(error);
     let mut solver = Solver::new(Arc::clone(&input.mechanism)).map_err(refuse)?;
     solver.restore(home.pose());
@@ -68,12 +73,27 @@ pub(super) fn documents(input: &Input, home: &Solver) -> Result<Vec<Document>, E
     let shown = show(&mut solver).map_err(refuse)?;
     Ok(vec![
         Document {
-            path: "model.png".to_owned(),
+            path: "terminalsAndIcons/icon.png".to_owned(),
+            content: picture.clone(),
+        },
+        Document {
+            path: match version {
+                Version::Fmi2 => "model.png",
+                Version::Fmi3 => "documentation/diagram.png",
+            }
+            .to_owned(),
             content: picture,
         },
         Document {
             path: "documentation/index.html".to_owned(),
-            content: page(&input.mechanism, &home.pose().parameters, &sheet, &shown).into_bytes(),
+            content: page(
+                &input.mechanism,
+                &home.pose().parameters,
+                &sheet,
+                &shown,
+                version,
+            )
+            .into_bytes(),
         },
         Document {
             path: "documentation/licenses/license.txt".to_owned(),
@@ -183,7 +203,27 @@ fn motion_over(from: f64, range: &Range, start: f64) -> (String, f64) {
     (motion, PERIOD)
 }
 
-fn page(mechanism: &Mechanism, values: &[f64], sheet: &Sheet, shown: &Shown) -> String {
+/// Ends of the sentences about a step that asks for too much and about inputs, by version.
+const FAILURE: [&str; 2] = [
+    "is discarded: <code>fmi2DoStep</code> returns <code>fmi2Discard</code>, a warning names driver, \
+     value and limit, and <code>fmi2LastSuccessfulTime</code> tells the last time whose values were \
+     reached",
+    "ends at the dead point if the host permits an early return, with a warning that names driver, \
+     value and limit; otherwise <code>fmi3DoStep</code> returns <code>fmi3Discard</code>, and the \
+     instance is as before",
+];
+const LAG: [&str; 2] = [
+    "the host gives input derivatives (<code>fmi2SetRealInputDerivatives</code>, order 1 and 2)",
+    "the host sets the inputs of t + h in intermediate update",
+];
+
+fn page(
+    mechanism: &Mechanism,
+    values: &[f64],
+    sheet: &Sheet,
+    shown: &Shown,
+    version: Version,
+) -> String {
     let variables = variables(mechanism);
     let width = ENLARGED * f64::from(sheet.width());
     let drawing = svg::write(sheet, width as u32, false);
@@ -201,6 +241,9 @@ fn page(mechanism: &Mechanism, values: &[f64], sheet: &Sheet, shown: &Shown) -> 
             ("parameters", &parameters(&variables, values)),
             ("outputs", &outputs(&variables)),
             ("version", env!("CARGO_PKG_VERSION")),
+            ("standard", &version.to_string()),
+            ("failure", FAILURE[version as usize]),
+            ("lag", LAG[version as usize]),
         ],
     );
     page_with(&mechanism.name, &mechanism.description, &main, STYLE)

@@ -14,16 +14,17 @@ use super::message::tell;
 use super::output::write;
 use super::runtime;
 use super::stdout::is_stdout;
-use crate::fmi::{Platform, RuntimeLibrary, describe, write_fmu};
+use crate::fmi::{Platform, RuntimeLibrary, Version, describe, write_fmu};
 use crate::kinematics::Solver;
 
-/// Export a mechanism as an FMI 2.0 FMU, for co-simulation and for model exchange.
+/// Export a mechanism as an FMU, for co-simulation and for model exchange.
 ///
 /// The FMU's inputs are the drivers without a prescribed motion, its parameters those of the
 /// file, its outputs position, velocity and acceleration of all bodies. The mechanism is
 /// assembled first; one that does not close is not exported.
 ///
-/// The FMU contains its picture (model.png) and its documentation (documentation/index.html): the
+/// The FMU contains its picture (model.png; with --fmi 3 documentation/diagram.png), its terminals,
+/// and its documentation (documentation/index.html): the
 /// mechanism in motion, its variables and parameters, the limits of its drivers.
 ///
 /// The FMU runs on the platforms that `biela platforms` lists with a library.
@@ -39,6 +40,9 @@ pub(super) struct Export {
     /// folder].
     #[arg(short, long, value_name = "FMU")]
     output: Option<PathBuf>,
+    /// Version of FMI: 2 for FMI 2.0, 3 for FMI 3.0. The library in the FMU is the same.
+    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = version)]
+    fmi: Version,
     /// Write only the FMU's modelDescription.xml to this file, `-` for stdout.
     #[arg(long, value_name = "XML", conflicts_with = "output")]
     model_description: Option<PathBuf>,
@@ -62,8 +66,9 @@ impl Export {
         if let Some(path) = self.model_description {
             files.refuse_as_outputs(&[Some(&path)])?;
             let solver = assemble(&input)?;
-            let xml = describe(mechanism, solver.structure()).write(generated.as_deref());
-            return write(&path, &xml);
+            let mut description = describe(mechanism, solver.structure());
+            description.standard = self.fmi;
+            return write(&path, &description.write(generated.as_deref()));
         }
         let path = self
             .output
@@ -78,8 +83,10 @@ impl Export {
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
-        write(&path, &pack(&input, &solver, &libraries)?)?;
-        let platforms: Vec<_> = libraries.iter().map(|l| l.platform.name).collect();
+        write(&path, &pack(&input, &solver, self.fmi, &libraries)?)?;
+        let platforms: Vec<_> = (libraries.iter())
+            .map(|library| library.platform.folder(self.fmi))
+            .collect();
         let name = if is_stdout(&path) {
             "stdout".into()
         } else {
@@ -94,15 +101,17 @@ impl Export {
 pub(super) fn pack(
     input: &Input,
     solver: &Solver,
+    version: Version,
     libraries: &[RuntimeLibrary],
 ) -> Result<Vec<u8>, Error> {
-    let documents = documentation::documents(input, solver)?;
+    let documents = documentation::documents(input, solver, version)?;
     let mut archive = Cursor::new(Vec::new());
     write_fmu(
         &mut archive,
         &input.source,
         &input.mechanism,
         solver.structure(),
+        version,
         libraries,
         &documents,
         generation_time()?.as_deref(),
@@ -116,6 +125,15 @@ pub(super) fn platform(name: &str) -> Result<Platform, String> {
         let names = Platform::ALL.map(|platform| platform.name);
         format!("expected one of {}", names.join(", "))
     })
+}
+
+/// Reads a version of FMI.
+pub(super) fn version(text: &str) -> Result<Version, String> {
+    match text {
+        "2" | "2.0" => Ok(Version::Fmi2),
+        "3" | "3.0" => Ok(Version::Fmi3),
+        _ => Err("expected 2 or 3".to_owned()),
+    }
 }
 
 /// Returns a solver at the file's own pose; warns of misfits there.

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::check::json::report_on;
 use super::conditions::{check_limits, check_settable};
-use super::export::{pack, platform};
+use super::export::{pack, platform, version};
 use super::input::Input;
 use super::{conditions, range, runtime};
 use crate::fmi::Platform;
@@ -21,21 +21,23 @@ pub fn check(source: &Source, modes: bool) -> Value {
     report_on(source, modes)
 }
 
-/// Returns the FMU that `biela export` writes, for these platforms; for all without any. The
-/// libraries come from the folder `runtime`, or are those of this program.
+/// Returns the FMU that `biela export` writes, of the version `2` or `3` of FMI, for these platforms;
+/// for all without any. The libraries come from the folder `runtime`, or are those of this program.
 ///
 /// # Errors
 ///
-/// The mechanism does not assemble, or there is no library for a platform.
+/// The mechanism does not assemble, there is no such version, or no library for a platform.
 pub fn archive(
     source: &Source,
     mechanism: &Arc<Mechanism>,
+    fmi: &str,
     runtime: Option<&Path>,
     platforms: &[&str],
 ) -> Result<Vec<u8>, String> {
     let platforms: Vec<Platform> = (platforms.iter().copied())
         .map(platform)
         .collect::<Result<_, _>>()?;
+    let version = version(fmi)?;
     let input = Input {
         source: source.clone(),
         mechanism: Arc::clone(mechanism),
@@ -46,7 +48,7 @@ pub fn archive(
             found = runtime::narrow(found, &platforms)?;
         }
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
-        pack(&input, &input.assemble()?, &libraries)
+        pack(&input, &input.assemble()?, version, &libraries)
     };
     pack().map_err(|error: super::error::Error| error.to_string())
 }

@@ -49,7 +49,7 @@ pub use library::{archive, check, check_parameter, describe_end, parameter_value
 ///
 /// A mechanism file lists the bodies, the joints that connect them and the drivers that move them.
 /// biela computes position, velocity and acceleration of every body, exact to
-/// rounding, and exports the mechanism as an FMI 2.0 FMU whose inputs are the drivers and whose
+/// rounding, and exports the mechanism as an FMU (FMI 2.0 or 3.0) whose inputs are the drivers and whose
 /// outputs are the motion of all bodies.
 #[derive(Debug, Parser)]
 #[command(name = "biela", version, max_term_width = 100)]

@@ -2,7 +2,7 @@
 
 use super::UriError;
 use super::log::Category;
-use super::state::{Call, Interface, State};
+use super::state::{Call, Interface, State, Version};
 use super::status::Status;
 use crate::mechanism::shown;
 
@@ -30,10 +30,12 @@ pub enum Error {
         interface: Interface,
     },
     /// The call is not allowed in the present state.
-    #[error("not allowed in state {state}, only in {}", states(call.allowed_in(*interface)))]
+    #[error("not allowed in state {state}, only in {}", states(call.allowed_in(*version, *interface)))]
     State {
         /// The call.
         call: Call,
+        /// The instance's version of the standard.
+        version: Version,
         /// The instance's interface.
         interface: Interface,
         /// The present state.
@@ -91,7 +93,7 @@ pub enum Error {
         /// The variable.
         name: String,
         /// The value.
-        value: i32,
+        value: i64,
         /// The number of items.
         count: usize,
     },
@@ -120,16 +122,59 @@ pub enum Error {
         highest: i32,
     },
     /// The variable is no unknown or known of directional derivatives in this state.
-    #[error(
-        "`{name}`: {role}, in initialization mode of calculated parameters and by parameters as \
-         well"
-    )]
+    #[error("`{name}`: {role}")]
     NoDerivative {
         /// The variable.
         name: String,
         /// The permitted variables.
         role: &'static str,
     },
+    /// The variable has no start value, and nothing is computed before initialization mode.
+    #[error("`{name}` has no value before initialization mode")]
+    NoStart {
+        /// The variable.
+        name: String,
+    },
+    /// Values were set in step mode, and outputs belong to them after the next step only.
+    #[error(
+        "`{name}` cannot be read after values were set: outputs belong to them after the next \
+         step; in event mode they can be read at once"
+    )]
+    NotStepped {
+        /// The variable.
+        name: String,
+    },
+    /// The host did not announce the variable for intermediate update.
+    #[error(
+        "`{name}` is not among the required intermediate variables of the instance, or is no \
+         continuous input or output"
+    )]
+    NotIntermediate {
+        /// The variable.
+        name: String,
+    },
+    /// A variable was read after one was set at the same point of intermediate update.
+    #[error("variables are read before others are set in intermediate update")]
+    ReadAfterSet,
+    /// The call belongs to a capability that the FMU does not have.
+    #[error("{why}")]
+    NotProvided {
+        /// The reason.
+        why: &'static str,
+    },
+    /// The lists of a call do not fit each other.
+    #[error("`{name}` is {given} for {expected} scalar variables")]
+    Count {
+        /// The argument.
+        name: &'static str,
+        /// The number of values.
+        given: usize,
+        /// The number of variables or dependencies.
+        expected: usize,
+    },
+    /// The step was given up, since a call in intermediate update had failed.
+    #[error("a call during intermediate update has failed")]
+    StepAborted,
     /// The status function does not know this kind.
     #[error("this function has no status of kind {kind} while no step is pending")]
     StatusKind {
@@ -137,10 +182,10 @@ pub enum Error {
         kind: i64,
     },
     /// The model has no continuous states and no event indicators.
-    #[error("{call} was called for {given} values; there are none", call = call.name())]
+    #[error("{call} was called for {given} values; there are none")]
     Continuous {
-        /// The call.
-        call: Call,
+        /// Name of the C function.
+        call: &'static str,
         /// The number of values.
         given: usize,
     },
@@ -231,6 +276,17 @@ pub enum StateError {
         /// GUID of this FMU.
         expected: String,
     },
+    /// The state belongs to an instance of another version of the standard.
+    #[error("the FMU state belongs to an instance of {given}; this one is of {expected}")]
+    Standard {
+        /// Version of the state.
+        given: Version,
+        /// Version of the instance.
+        expected: Version,
+    },
+    /// The state belongs to an instance that uses event mode; this one does not.
+    #[error("the FMU state is in event mode, which this instance does not use")]
+    EventMode,
     /// The state belongs to the other interface.
     #[error("the FMU state belongs to an instance for {given}; this one is for {expected}")]
     Interface {

@@ -1,5 +1,6 @@
 //! Messages to the host by category.
 
+use super::state::Version;
 use super::status::Status;
 
 /// A log category, declared in the model description.
@@ -27,8 +28,8 @@ impl Category {
         (Self::All, "every message"),
         (Self::Warning, "advice, and reasons of discarded calls"),
         (Self::Discard, "discarded calls"),
-        (Self::Error, "refused and failed calls; always logged"),
-        (Self::Fatal, "defects of biela; always logged"),
+        (Self::Error, "refused and failed calls"),
+        (Self::Fatal, "defects of biela"),
         (
             Self::Events,
             "initialization, reset, termination, FMU states, change points, sources of rates",
@@ -55,8 +56,9 @@ impl Category {
         all.find(|category| category.name() == name)
     }
 
-    /// Returns whether the host gets messages of this category with any settings.
-    fn always(self) -> bool {
+    /// Returns whether the host of an FMI 2.0 instance gets messages of this category with any
+    /// settings.
+    pub(super) fn always(self) -> bool {
         matches!(self, Self::Error | Self::Fatal)
     }
 
@@ -79,6 +81,9 @@ pub trait Sink {
 pub struct Logger {
     sink: Box<dyn Sink + Send>,
     enabled: u8,
+    /// Whether errors and reasons of discarded calls reach the host with any settings: in FMI 3.0
+    /// they do not (2.3.1).
+    insistent: bool,
 }
 
 impl std::fmt::Debug for Logger {
@@ -90,15 +95,19 @@ impl std::fmt::Debug for Logger {
 }
 
 impl Logger {
-    pub(super) fn new(sink: Box<dyn Sink + Send>, logging_on: bool) -> Self {
+    pub(super) fn new(sink: Box<dyn Sink + Send>, logging_on: bool, version: Version) -> Self {
         let enabled = if logging_on { Category::All.bits() } else { 0 };
-        Self { sink, enabled }
+        Self {
+            sink,
+            enabled,
+            insistent: version == Version::Fmi2,
+        }
     }
 
     /// Returns whether the host gets messages of this category. Callers ask before they format one.
     #[must_use]
     pub fn wants(&self, category: Category) -> bool {
-        category.always() || self.enabled & category.bits() != 0
+        self.insistent && category.always() || self.enabled & category.bits() != 0
     }
 
     /// Sends advice to the host if the category of warnings is on. Its status is `fmi2OK`: several
@@ -109,9 +118,11 @@ impl Logger {
         }
     }
 
-    /// Sends the reason of a discarded call to the host, with any settings.
-    pub(super) fn warn_of_discard(&self, message: &str) {
-        self.sink.write(Status::Warning, Category::Warning, message);
+    /// Sends the reason why the mechanism cannot go on: in FMI 2.0 with any settings.
+    pub(super) fn warn(&self, message: &str) {
+        if self.insistent || self.wants(Category::Warning) {
+            self.sink.write(Status::Warning, Category::Warning, message);
+        }
     }
 
     /// Sends a message to the host if the category is on.
@@ -155,7 +166,7 @@ mod tests {
 
     #[test]
     fn one_category_goes_off_while_the_others_stay_on() {
-        let mut logger = Logger::new(Box::new(Nowhere), true);
+        let mut logger = Logger::new(Box::new(Nowhere), true, Version::Fmi2);
         assert!(logger.wants(Category::Solver) && logger.wants(Category::Events));
         logger.switch(false, &["logNonlinearSystems"]).unwrap();
         assert!(!logger.wants(Category::Solver) && logger.wants(Category::Events));
@@ -167,5 +178,16 @@ mod tests {
         let switched = logger.switch(true, &["logNonlinearSystems", "logX"]);
         assert_eq!(switched, Err("logX"));
         assert!(!logger.wants(Category::Solver));
+    }
+
+    /// FMI 3.0, 2.3.1: no category that is off reaches the host.
+    #[test]
+    fn nothing_is_logged_in_fmi_3_while_logging_is_off() {
+        let mut logger = Logger::new(Box::new(Nowhere), false, Version::Fmi3);
+        for (category, _) in Category::ALL {
+            assert!(!logger.wants(category), "{category:?}");
+        }
+        logger.switch(true, &["logStatusError"]).unwrap();
+        assert!(logger.wants(Category::Error) && !logger.wants(Category::Fatal));
     }
 }

@@ -1,8 +1,8 @@
-//! FMI 2.0: a mechanism as an FMU, for co-simulation and for model exchange.
+//! FMI 2.0 and 3.0: a mechanism as an FMU, for co-simulation and for model exchange.
 //!
 //! | part | subject |
 //! |---|---|
-//! | `abi` | the functions of `fmi2Functions.h`: pointers in, status out |
+//! | `abi` | the functions of `fmi2Functions.h` and `fmi3Functions.h`: pointers in, status out |
 //! | [`Instance`] | the standard: state machine, permitted values, log, FMU states |
 //! | [`Model`] | the interface between an instance and a model |
 //! | [`MechanismModel`] | a mechanism and its solver as a model |
@@ -32,16 +32,18 @@ mod variable;
 
 pub use codec::{Codec, Unreadable};
 pub use error::{Error, Failure, StateError};
-pub use instance::{FmuState, Instance, Reals};
+pub use instance::{CoSimulation, FmuState, Instance, Reals, StepOutcome, StepProgress};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
     Column, ColumnSource, MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal,
     TABLE_VERSION, describe, guid, indeterminate, variables, write_fmu,
 };
 pub use model::{Groups, Model};
-pub use model_description::{Capabilities, DependencyKind, Experiment, ModelDescription, Unknown};
-pub use package::{Document, PackageError, Platform, RuntimeLibrary, write as write_archive};
-pub use state::{Call, Interface, Phase, State};
+pub use model_description::{
+    Capabilities, DependencyKind, Document, Experiment, Member, ModelDescription, Terminal, Unknown,
+};
+pub use package::{PackageError, Platform, RuntimeLibrary, write as write_archive};
+pub use state::{Call, Interface, Phase, State, Version};
 pub use status::Status;
 pub use uri::{UriError, resource_path};
 pub use variable::{Causality, Enumeration, Kind, Variability, Variable};

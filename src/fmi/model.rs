@@ -10,6 +10,7 @@ use std::path::Path;
 use super::codec::{Codec, Unreadable};
 use super::error::Failure;
 use super::log::Logger;
+use super::model_description::DependencyKind;
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 
@@ -137,6 +138,10 @@ pub trait Model: Sized {
     /// Highest order of output derivatives.
     const OUTPUT_DERIVATIVES: i32 = 0;
 
+    /// Whether the model can take a step in parts: [`begin_step`](Self::begin_step) and the methods
+    /// after it.
+    const INTERMEDIATE_UPDATE: bool = false;
+
     /// Everything that decides how the model goes on, time included.
     type State: Clone + Debug + PartialEq;
 
@@ -222,8 +227,20 @@ pub trait Model: Sized {
         Err(Failure::Failed(why.to_owned()))
     }
 
-    /// Makes the point of the values set the committed one: at the end of initialization, and in
-    /// model exchange when the host has accepted a step of its own.
+    /// Returns the variables that an output or a calculated parameter depends on, by value
+    /// reference: in initialization mode, or else after it, over all settings. `None` if the model
+    /// does not know them.
+    fn dependencies(
+        &self,
+        value_reference: u32,
+        initializing: bool,
+    ) -> Option<Vec<(u32, DependencyKind)>> {
+        let _ = (value_reference, initializing);
+        None
+    }
+
+    /// Makes the point of the values set the committed one: at the end of initialization, at an
+    /// event between two steps, and in model exchange when the host has accepted a step of its own.
     ///
     /// # Errors
     ///
@@ -242,6 +259,55 @@ pub trait Model: Sized {
     /// [`Failure::Discarded`] if the model cannot reach the end; it has then committed the point
     /// that it reached. [`Failure::Failed`] if it has not moved.
     fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure>;
+
+    /// Takes a step as [`step`](Self::step) does; if the model cannot reach the end, it stays as it
+    /// was before the call.
+    ///
+    /// # Errors
+    ///
+    /// As [`step`](Self::step).
+    fn try_step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
+        let before = self.save();
+        let stepped = self.step(size, end, log);
+        if stepped.is_err() {
+            self.restore(&before);
+        }
+        stepped
+    }
+
+    /// Begins a step of `size` \[s\] to the time `end` \[s\] that is taken in parts.
+    fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {
+        let _ = (size, end, log);
+    }
+
+    /// Goes on to `time` \[s\] in the step that was begun, and commits the point there.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Discarded`] if the model cannot reach it; it has then committed the point that it
+    /// reached.
+    fn advance(&mut self, time: f64, log: &Logger) -> Result<(), Failure> {
+        let _ = (time, log);
+        unreachable!("the model takes no step in parts")
+    }
+
+    /// Lets the values that are set from now on hold from the present time on.
+    fn split_step(&mut self, log: &Logger) {
+        let _ = log;
+    }
+
+    /// Ends the step that was begun at the present time, with the values set last.
+    ///
+    /// # Errors
+    ///
+    /// As [`advance`](Self::advance).
+    fn end_step(&mut self, log: &Logger) -> Result<(), Failure> {
+        let _ = log;
+        Ok(())
+    }
+
+    /// Restores the model as it was before the step was begun.
+    fn abandon_step(&mut self) {}
 
     /// Returns a copy of the state. This model, or another one with the same GUID, goes on from it
     /// with the same bits.

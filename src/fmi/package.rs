@@ -1,4 +1,4 @@
-//! The `.fmu` archive (FMI 2.0, 2.3).
+//! The `.fmu` archive (FMI 2.0, 2.3; FMI 3.0, 2.5).
 
 use std::borrow::Cow;
 use std::io::{Seek, Write};
@@ -6,14 +6,17 @@ use std::io::{Seek, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::model_description::ModelDescription;
+use super::model_description::{Document, ModelDescription, terminals};
+use super::state::Version;
 
 /// A platform that FMUs run on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Platform {
-    /// Name of its folder in `binaries/`: one of the names of FMI 2.0, or else the platform tuple
-    /// of FMI 3.0, as FMI 2.0.4 has it (section 2.3).
+    /// Name of its folder in `binaries/` of FMI 2.0: one of the names of FMI 2.0, or else the
+    /// platform tuple of FMI 3.0, as FMI 2.0.4 has it (section 2.3).
     pub name: &'static str,
+    /// Name of its folder in `binaries/` of FMI 3.0: the platform tuple (2.5.1.4.1).
+    pub tuple: &'static str,
     /// Extension of its shared libraries.
     pub extension: &'static str,
     /// Name of the system for people.
@@ -24,18 +27,43 @@ impl Platform {
     /// All platforms that runtime libraries are built for. FMI 2.0 reserves `darwin64` for x86-64,
     /// but hosts on Apple silicon open it too: the library there serves both processors.
     pub const ALL: [Self; 5] = [
-        Self::new("linux64", "so", "Linux, x86-64"),
-        Self::new("win64", "dll", "Windows, x86-64"),
-        Self::new("darwin64", "dylib", "macOS, x86-64 and Apple silicon"),
-        Self::new("aarch64-linux", "so", "Linux, ARM 64-bit"),
-        Self::new("aarch64-darwin", "dylib", "macOS, Apple silicon"),
+        Self::new("linux64", "x86_64-linux", "so", "Linux, x86-64"),
+        Self::new("win64", "x86_64-windows", "dll", "Windows, x86-64"),
+        Self::new(
+            "darwin64",
+            "x86_64-darwin",
+            "dylib",
+            "macOS, x86-64 and Apple silicon",
+        ),
+        Self::new("aarch64-linux", "aarch64-linux", "so", "Linux, ARM 64-bit"),
+        Self::new(
+            "aarch64-darwin",
+            "aarch64-darwin",
+            "dylib",
+            "macOS, Apple silicon",
+        ),
     ];
 
-    const fn new(name: &'static str, extension: &'static str, system: &'static str) -> Self {
+    const fn new(
+        name: &'static str,
+        tuple: &'static str,
+        extension: &'static str,
+        system: &'static str,
+    ) -> Self {
         Self {
             name,
+            tuple,
             extension,
             system,
+        }
+    }
+
+    /// Returns the name of its folder in `binaries/`.
+    #[must_use]
+    pub fn folder(&self, version: Version) -> &'static str {
+        match version {
+            Version::Fmi2 => self.name,
+            Version::Fmi3 => self.tuple,
         }
     }
 
@@ -79,16 +107,7 @@ pub enum PackageError {
     Write(#[from] std::io::Error),
 }
 
-/// A file in the archive that documents the FMU.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Document {
-    /// Path in the archive: `model.png`, `documentation/index.html`.
-    pub path: String,
-    /// Content of the file.
-    pub content: Vec<u8>,
-}
-
-/// Writes an FMU: model description, documents, runtime libraries and resources, each resource
+/// Writes an FMU: model description, terminals, documents, runtime libraries and resources, each resource
 /// with its name in `resources/`.
 ///
 /// The same input gives the same bytes: entries have a fixed order and a fixed date.
@@ -113,6 +132,10 @@ pub fn write<Q>(
 
     zip.start_file("modelDescription.xml", text)?;
     zip.write_all(&description.write(generated))?;
+    if let Some(file) = terminals::write(&description.terminals, documents) {
+        zip.start_file(terminals::PATH, text)?;
+        zip.write_all(&file)?;
+    }
     for Document { path, content } in documents {
         zip.start_file(path.as_str(), text)?;
         zip.write_all(content)?;
@@ -120,9 +143,10 @@ pub fn write<Q>(
     let mut libraries: Vec<&RuntimeLibrary> = libraries.iter().collect();
     libraries.sort();
     for RuntimeLibrary { platform, content } in libraries {
+        let folder = platform.folder(description.standard);
         let name = format!(
-            "binaries/{}/{}.{}",
-            platform.name, description.name, platform.extension
+            "binaries/{folder}/{}.{}",
+            description.name, platform.extension
         );
         zip.start_file(name, binary)?;
         zip.write_all(content)?;

@@ -1,5 +1,6 @@
 //! Scalar variables, as setters, getters and the model description see them (FMI 2.0, 2.2.7).
 
+use super::state::Version;
 use crate::unit::Unit;
 
 /// One scalar variable of an FMU. Its value reference is its index in the model's list.
@@ -67,7 +68,8 @@ pub enum Kind {
         /// Usual magnitude of the values, if it is known.
         nominal: Option<f64>,
     },
-    /// A whole number.
+    /// A count, which changes at communication points: a discrete Integer in FMI 2.0, a continuous
+    /// Float64 in FMI 3.0, where discrete variables change at events only (2.4.7.4).
     Integer,
     /// One of a few named items, counted from 1; the start value is 1.
     Enumeration(&'static Enumeration),
@@ -112,12 +114,19 @@ impl Kind {
         matches!(self, Self::Real { .. })
     }
 
+    /// Returns whether host and FMU exchange the values as real numbers in a version of the
+    /// standard.
+    pub(super) fn is_real_in(&self, version: Version) -> bool {
+        self.is_real() || version == Version::Fmi3 && matches!(self, Self::Integer)
+    }
+
     /// Returns the type with its article, for messages.
-    pub(super) fn name(&self) -> &'static str {
-        match self {
-            Self::Real { .. } => "a Real",
-            Self::Integer => "an Integer",
-            Self::Enumeration(_) => "an Enumeration",
+    pub(super) fn name(&self, version: Version) -> &'static str {
+        match (self, version) {
+            (Self::Real { .. }, Version::Fmi2) => "a Real",
+            (Self::Integer, Version::Fmi2) => "an Integer",
+            (Self::Real { .. } | Self::Integer, Version::Fmi3) => "a Float64",
+            (Self::Enumeration(_), _) => "an Enumeration",
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Clauses of FMI 2.0.5, by section, and how hosts' algorithms fare with them.
+//! Clauses of FMI 2.0.5 and 3.0.2, by section, and how hosts' algorithms fare with them.
 
 #![allow(
     clippy::float_cmp,
@@ -13,6 +13,7 @@ mod exchange;
 mod logging;
 mod masters;
 mod rates;
+mod step_mode;
 mod values;
 
 use biela::fmi::Interface;

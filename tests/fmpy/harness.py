@@ -66,9 +66,9 @@ def run_biela(*arguments, **options) -> subprocess.CompletedProcess:
     )
 
 
-def export(mechanism: Path, fmu: Path, **options) -> Path:
-    """Exports a mechanism file as `fmu` and returns that path."""
-    done = run_biela("export", mechanism, "-o", fmu, **options)
+def export(mechanism: Path, fmu: Path, *, version: int = 2, **options) -> Path:
+    """Exports a mechanism file as `fmu`, for a version of FMI, and returns that path."""
+    done = run_biela("export", mechanism, "--fmi", version, "-o", fmu, **options)
     assert done.returncode == 0, done.stderr
     return fmu
 

@@ -82,8 +82,6 @@ PARTS = {
     "initialized at t = … s": "an event",
     "a discrete input, which changes in event mode": "cannot be set: it is …",
     "a tunable parameter, which changes in event mode": "cannot be set: it is …",
-    "derivatives are taken by inputs and time": "`…`: …, in initialization mode",
-    "derivatives are taken of outputs": "`…`: …, in initialization mode",
     "its GUID is longer than itself": "no instance can be in the serialized FMU state: …",
     "it is in state …": "no instance can be in the serialized FMU state: …",
     "this FMU provides no directional derivatives": "of a model without them, which none is",

@@ -66,6 +66,11 @@ impl<'a, T: Copy> Room<'a, T> {
     }
 }
 
+/// Checks that a pointer leads to room for one item.
+pub(super) fn check_room<T>(name: &str, pointer: *mut T) -> Result<(), CallError> {
+    check_array(name, pointer, 1)
+}
+
 #[inline]
 fn check_array<T>(name: &str, pointer: *const T, length: usize) -> Result<(), CallError> {
     let why = if length == 0 {

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Exported;
 use super::floating_point::StandardEnvironment;
+use super::intermediate::IntermediateUpdate;
 use crate::fmi::{Error, Status};
 
 /// An instance as the host sees it: an `fmi2Component`.
@@ -26,6 +27,10 @@ pub(super) struct Component {
     busy: AtomicBool,
     /// Whether another call came meanwhile and was refused.
     disturbed: AtomicBool,
+    /// The host's intermediate update.
+    intermediate_update: Option<IntermediateUpdate>,
+    /// Whether a step has called back and waits for the host.
+    calling_back: AtomicBool,
 }
 
 /// Why a call did not succeed.
@@ -44,11 +49,16 @@ impl From<Error> for CallError {
 
 impl Component {
     /// Hands an instance over to the host.
-    pub(super) fn hand_over(instance: Instance) -> Handle {
+    pub(super) fn hand_over(
+        instance: Instance,
+        intermediate_update: Option<IntermediateUpdate>,
+    ) -> Handle {
         let component = Self {
             instance: UnsafeCell::new(instance),
             busy: AtomicBool::new(false),
             disturbed: AtomicBool::new(false),
+            intermediate_update,
+            calling_back: AtomicBool::new(false),
         };
         Box::into_raw(Box::new(component)).cast()
     }
@@ -67,7 +77,33 @@ impl Component {
         free
     }
 
-    /// Frees a component; while a call on it is being served it stays, as if not asked for.
+    /// Returns the host's intermediate update, which is about to be called: until it has returned,
+    /// the component stays.
+    ///
+    /// # Safety
+    ///
+    /// `c` is a component that has not been freed.
+    pub(super) unsafe fn begin_callback(c: Handle) -> Option<IntermediateUpdate> {
+        // SAFETY: promised by the caller.
+        let component = unsafe { c.cast::<Self>().as_ref() }?;
+        component.calling_back.store(true, Ordering::Relaxed);
+        component.intermediate_update
+    }
+
+    /// Ends what [`begin_callback`](Self::begin_callback) began.
+    ///
+    /// # Safety
+    ///
+    /// `c` is a component that has not been freed.
+    pub(super) unsafe fn end_callback(c: Handle) {
+        // SAFETY: promised by the caller.
+        if let Some(component) = unsafe { c.cast::<Self>().as_ref() } {
+            component.calling_back.store(false, Ordering::Relaxed);
+        }
+    }
+
+    /// Frees a component; while a call on it is being served, or a step waits for the host, it
+    /// stays, as if not asked for.
     ///
     /// # Safety
     ///
@@ -75,7 +111,9 @@ impl Component {
     pub(super) unsafe fn take_back(c: Handle) {
         let component: *mut Self = c.cast();
         // SAFETY: promised by the caller.
-        let seized = unsafe { component.as_ref() }.is_some_and(Self::seize);
+        let seized = unsafe { component.as_ref() }.is_some_and(|component| {
+            !component.calling_back.load(Ordering::Relaxed) && component.seize()
+        });
         if seized {
             // SAFETY: the box was made in `hand_over`, and nobody uses the instance.
             let component = unsafe { Box::from_raw(component) };
@@ -111,11 +149,11 @@ pub(super) unsafe fn with_instance(
     if component.disturbed.load(Ordering::Relaxed) {
         component.disturbed.store(false, Ordering::Relaxed);
         let _ = catch_unwind(AssertUnwindSafe(|| {
-            instance.report_argument(
+            instance.report_disturbance(
                 call,
                 "another call on this instance came meanwhile, from the logger or from another \
                  thread, and was refused",
-            )
+            );
         }));
         // Lest a logger that always calls back be told of it for ever.
         component.disturbed.store(false, Ordering::Relaxed);

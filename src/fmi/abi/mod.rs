@@ -1,20 +1,30 @@
-//! The C interface: every function of `fmi2Functions.h`.
+//! The C interfaces: every function of `fmi2Functions.h` and of `fmi3Functions.h`.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `fmi2`, `fmi3` | the functions of one version, by subject |
+//! | `component` | instances as the host sees them |
+//! | `arguments` | arrays and strings of the host |
+//! | `intermediate` | the host's part in a step of FMI 3.0 |
+//! | `saved_state` | FMU states as the host sees them |
+//! | `message` | messages to the host |
 //!
 //! Pointers come in, a status goes out. Each function checks what it can of its pointers, turns
-//! them into slices and calls the [`Instance`](super::Instance); a panic becomes `fmi2Fatal` and
+//! them into slices and calls the [`Instance`](super::Instance); a panic becomes a fatal status and
 //! never crosses into the host. Nothing is written to stdout or stderr.
 //!
 //! # Safety
 //!
 //! The host promises, by the standard, what no function can check:
 //!
-//! - A component that is not null came from `fmi2Instantiate` and has not been freed. A call on it
+//! - An instance that is not null came from a function of this library that instantiates, and has not
+//!   been freed. A call on it
 //!   while another is being served, from the logger or from another thread, is refused.
 //! - A pointer to an array that is not null points to as many items as are told with it. Those
 //!   that are read hold values and stay as they are during the call; those that are written may
 //!   hold nothing yet, and nobody else touches them during the call.
 //! - A string that is not null ends in NUL.
-//! - An `fmi2FMUstate` that is not null came from this library, has not been freed, and is used by
+//! - An FMU state that is not null came from this library, has not been freed, and is used by
 //!   one call at a time. A pointer from anywhere else cannot be told from one.
 
 #![allow(
@@ -32,7 +42,10 @@ mod arguments;
 mod component;
 mod floating_point;
 mod fmi2;
+mod fmi3;
+mod intermediate;
 mod message;
+mod saved_state;
 
 /// The model whose C interface this is.
 type Exported = super::MechanismModel;

@@ -3,31 +3,36 @@
 use super::stepping::TIME_ROUNDING;
 use super::{Category, Error, Failure, Instance, Status, check_finite};
 use crate::fmi::model::Model;
-use crate::fmi::state::{Call, State};
+use crate::fmi::state::{Call, Interface, State, Version};
 
 impl<M: Model> Instance<M> {
-    /// `fmi2EnterEventMode`: commits the model's present point. If none exists,
-    /// [`new_discrete_states`](Self::new_discrete_states) ends the simulation.
+    /// `fmi2EnterEventMode`, `fmi3EnterEventMode`: commits the model's present point in model
+    /// exchange. If none exists, [`new_discrete_states`](Self::new_discrete_states) ends the
+    /// simulation.
     ///
     /// # Errors
     ///
     /// The state forbids the call, the time is beyond the stop time, or the model failed.
     pub fn enter_event_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterEventMode)?;
+        if self.interface == Interface::CoSimulation {
+            return self.enter_event();
+        }
         self.commit(Call::EnterEventMode)?;
         self.model.update_discrete();
         self.state = State::EventMode;
         Ok(())
     }
 
-    /// `fmi2NewDiscreteStates`: the model has none. Returns whether the simulation must end.
+    /// `fmi2NewDiscreteStates`, `fmi3UpdateDiscreteStates`: the model has none. Commits values that
+    /// jump between two steps of co-simulation. Returns whether the simulation must end.
     ///
     /// # Errors
     ///
     /// The state forbids the call, the time is beyond the stop time, or the model failed.
     pub fn new_discrete_states(&mut self) -> Result<bool, Error> {
         self.allow(Call::NewDiscreteStates)?;
-        if self.terminated {
+        if self.terminated || self.interface == Interface::CoSimulation {
             self.commit(Call::NewDiscreteStates)?;
         }
         Ok(self.terminated)
@@ -67,15 +72,20 @@ impl<M: Model> Instance<M> {
                 message: format!("the time {time} s is beyond the stop time {stop} s"),
             });
         }
-        match self.model.commit(self.state.phase(), &self.logger) {
+        let phase = self.state.phase(self.interface);
+        match self.model.commit(phase, &self.logger) {
             Ok(()) => {
                 self.last_successful_time = self.model.time();
                 self.terminated = false;
                 Ok(())
             }
             Err(Failure::Discarded(reason)) => {
-                let message = format!("{}: the simulation must end: {reason}", call.name());
-                self.logger.write(Status::Error, Category::Error, &message);
+                let name = call.name(self.version);
+                let message = format!("{name}: the simulation must end: {reason}");
+                match self.version {
+                    Version::Fmi2 => self.logger.write(Status::Error, Category::Error, &message),
+                    Version::Fmi3 => self.logger.warn(&message),
+                }
                 self.terminated = true;
                 Ok(())
             }
@@ -106,6 +116,7 @@ impl<M: Model> Instance<M> {
         if count == 0 {
             Ok(())
         } else {
+            let call = call.name(self.version);
             Err(Error::Continuous { call, given: count })
         }
     }

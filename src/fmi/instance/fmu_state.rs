@@ -7,7 +7,7 @@ use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::error::StateError;
 use crate::fmi::model::Model;
 use crate::fmi::serialized;
-use crate::fmi::state::{Call, Interface, State};
+use crate::fmi::state::{Call, Interface, State, Version, is_allowed};
 
 /// A state that [`Instance::fmu_state`] saves and [`Instance::set_fmu_state`] restores.
 ///
@@ -16,12 +16,15 @@ use crate::fmi::state::{Call, Interface, State};
 #[derive(Clone, Debug, PartialEq)]
 pub struct FmuState<S> {
     guid: Arc<str>,
+    version: Version,
     interface: Interface,
     state: State,
     stop_time: Option<f64>,
     last_successful_time: f64,
     discarded: bool,
     terminated: bool,
+    set_since_step: bool,
+    at_dead_point: bool,
     model: S,
 }
 
@@ -40,7 +43,14 @@ impl<M: Model> Instance<M> {
             derivatives: _,
             continuous_inputs: _,
             logger: _,
+            allowed: _,
+            // Agreements with the host.
+            co_simulation: _,
+            intermediate: _,
+            // No state is saved during a step.
+            pending_step: _,
             guid,
+            version,
             model,
             interface,
             state,
@@ -48,17 +58,22 @@ impl<M: Model> Instance<M> {
             last_successful_time,
             discarded,
             terminated,
+            set_since_step,
+            at_dead_point,
             state_held,
         } = self;
         *state_held = true;
         Ok(FmuState {
             guid: Arc::clone(guid),
+            version: *version,
             interface: *interface,
             state: *state,
             stop_time: *stop_time,
             last_successful_time: *last_successful_time,
             discarded: *discarded,
             terminated: *terminated,
+            set_since_step: *set_since_step,
+            at_dead_point: *at_dead_point,
             model: model.save(),
         })
     }
@@ -71,12 +86,18 @@ impl<M: Model> Instance<M> {
     pub fn set_fmu_state(&mut self, state: &FmuState<M::State>) -> Result<(), Error> {
         self.allow(Call::SetFMUstate)?;
         self.check_origin(state)?;
+        let in_event_mode = state.state == State::EventMode;
+        if in_event_mode && !self.has_event_mode() {
+            return Err(Error::FmuState(StateError::EventMode));
+        }
         self.model.restore(&state.model);
         self.state = state.state;
         self.stop_time = state.stop_time;
         self.last_successful_time = state.last_successful_time;
         self.discarded = state.discarded;
         self.terminated = state.terminated;
+        self.set_since_step = state.set_since_step;
+        self.at_dead_point = state.at_dead_point;
         self.state_held = true;
         self.log_event(|model| format!("FMU state set: {} at t = {} s", state.state, model.time()));
         Ok(())
@@ -126,7 +147,7 @@ impl<M: Model> Instance<M> {
         serialized::read(&self.guid, bytes, |reader| Self::visit(&mut state, reader))?;
         self.check_origin(&state)?;
         // No instance ever gets into `stepCanceled`.
-        let allowed = Call::GetFMUstate.is_allowed_in(self.interface, state.state);
+        let allowed = is_allowed(self.allowed, Call::GetFMUstate, state.state);
         if !allowed || state.state == State::StepCanceled {
             return Err(Error::FmuState(StateError::Impossible {
                 why: format!("it is in state {}", state.state),
@@ -146,6 +167,12 @@ impl<M: Model> Instance<M> {
                 expected: self.guid.to_string(),
             }));
         }
+        if state.version != self.version {
+            return Err(Error::FmuState(StateError::Standard {
+                given: state.version,
+                expected: self.version,
+            }));
+        }
         if state.interface != self.interface {
             return Err(Error::FmuState(StateError::Interface {
                 given: state.interface,
@@ -158,20 +185,26 @@ impl<M: Model> Instance<M> {
     fn visit(state: &mut FmuState<M::State>, codec: &mut impl Codec) -> Result<(), Unreadable> {
         let FmuState {
             guid: _,
+            version,
             interface,
             state,
             stop_time,
             last_successful_time,
             discarded,
             terminated,
+            set_since_step,
+            at_dead_point,
             model,
         } = state;
+        codec.one_of(version, &Version::ALL)?;
         codec.one_of(interface, &Interface::ALL)?;
         codec.one_of(state, &State::ALL)?;
         codec.option(stop_time, 0.0, |codec, time| codec.finite(time))?;
         codec.finite(last_successful_time)?;
         codec.flag(discarded)?;
         codec.flag(terminated)?;
+        codec.flag(set_since_step)?;
+        codec.flag(at_dead_point)?;
         M::visit(model, codec)
     }
 }

@@ -1,17 +1,29 @@
 //! An instance of an FMU in safe Rust.
 //!
-//! Each function of the C interface has a method here; `abi` converts pointers only. A refused
-//! call changes neither data nor state, and the instance stays usable. The [`Model`] computes the
-//! values.
+//! Each function of the C interfaces has a method here; `abi` converts pointers only. A refused
+//! call changes neither data nor state, and the instance stays usable; in FMI 3.0 it is then in
+//! state `terminated` (2.3.1). The [`Model`] computes the values.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `values` | setting and getting variables, in both versions |
+//! | `derivatives` | directional and adjoint derivatives, dependencies |
+//! | `fmu_state` | the FMU state |
+//! | `exchange` | model exchange, in both versions |
+//! | `stepping` | steps of co-simulation in FMI 2.0 |
+//! | `step_mode` | steps and events of co-simulation in FMI 3.0 |
 
+mod derivatives;
 mod exchange;
 mod fmu_state;
+mod step_mode;
 mod stepping;
 mod values;
 
 use std::sync::Arc;
 
 pub use fmu_state::FmuState;
+pub use step_mode::{CoSimulation, StepOutcome, StepProgress};
 pub use values::Reals;
 pub(super) use values::check_value;
 
@@ -19,10 +31,13 @@ use super::error::{Error, Failure, check_finite};
 use super::log::{Category, Logger, Sink};
 use super::model::{Groups, Model};
 use super::resource_path;
-use super::state::{Call, Interface, State};
+use super::state::{Allowed, Call, Interface, Phase, State, Version, allowed, is_allowed};
 use super::status::Status;
 use super::variable::{Variable, derivatives};
+use step_mode::PendingStep;
 use values::{groups_of, is_continuous_input};
+
+use std::path::Path;
 
 /// An instance of an FMU: a model inside the standard's state machine.
 #[derive(Debug)]
@@ -37,7 +52,16 @@ pub struct Instance<M: Model> {
     derivatives: Box<[Option<u32>]>,
     /// Whether each variable is an input that accepts any finite value at any time.
     continuous_inputs: Box<[bool]>,
+    version: Version,
     interface: Interface,
+    /// Calls that each state allows.
+    allowed: &'static Allowed,
+    /// Agreements with the host of an FMI 3.0 co-simulation.
+    co_simulation: CoSimulation,
+    /// Whether the host may use each variable in intermediate update.
+    intermediate: Box<[bool]>,
+    /// A step that has called back.
+    pending_step: Option<PendingStep>,
     logger: Logger,
     state: State,
     stop_time: Option<f64>,
@@ -48,10 +72,15 @@ pub struct Instance<M: Model> {
     terminated: bool,
     /// Whether the host holds an FMU state of the last communication point.
     state_held: bool,
+    /// FMI 3.0: whether values were set in step mode since the last step, or at the present point
+    /// of intermediate update.
+    set_since_step: bool,
+    /// FMI 3.0: whether the last step ended at a dead point.
+    at_dead_point: bool,
 }
 
 impl<M: Model> Instance<M> {
-    /// Creates an instance of the model in the folder of the URI `resources`.
+    /// Creates an FMI 2.0 instance of the model in the folder of the URI `resources`.
     ///
     /// # Errors
     ///
@@ -63,17 +92,10 @@ impl<M: Model> Instance<M> {
         sink: Box<dyn Sink + Send>,
         logging_on: bool,
     ) -> Result<Self, Error> {
-        let load = || {
-            let model = M::load(&resource_path(resources)?, interface)?;
-            if model.guid() == guid {
-                return Ok(model);
-            }
-            Err(Error::Guid {
-                given: guid.to_owned(),
-                actual: model.guid().to_owned(),
-            })
-        };
-        match load() {
+        let loaded = resource_path(resources)
+            .map_err(Error::from)
+            .and_then(|folder| Self::load(guid, &folder, interface));
+        match loaded {
             Ok(model) => Ok(Self::new(model, sink, logging_on)),
             Err(error) => {
                 let message = format!("fmi2Instantiate: {error}");
@@ -83,24 +105,70 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Creates an instance of a model.
+    /// Creates an FMI 3.0 instance of the model in the folder `resources`.
+    ///
+    /// # Errors
+    ///
+    /// The resources hold no model, or one with another instantiation token.
+    pub fn instantiate_in(
+        token: &str,
+        resources: &Path,
+        interface: Interface,
+        sink: Box<dyn Sink + Send>,
+        logging_on: bool,
+    ) -> Result<Self, Error> {
+        let model = Self::load(token, resources, interface)?;
+        Ok(Self::of_version(Version::Fmi3, model, sink, logging_on))
+    }
+
+    fn load(guid: &str, folder: &Path, interface: Interface) -> Result<M, Error> {
+        let model = M::load(folder, interface)?;
+        if model.guid() == guid {
+            return Ok(model);
+        }
+        Err(Error::Guid {
+            given: guid.to_owned(),
+            actual: model.guid().to_owned(),
+        })
+    }
+
+    /// Creates an FMI 2.0 instance of a model.
     pub fn new(model: M, sink: Box<dyn Sink + Send>, logging_on: bool) -> Self {
+        Self::of_version(Version::Fmi2, model, sink, logging_on)
+    }
+
+    /// Creates an instance of a model for a version of the standard.
+    pub fn of_version(
+        version: Version,
+        model: M,
+        sink: Box<dyn Sink + Send>,
+        logging_on: bool,
+    ) -> Self {
         let variables = model.variables();
+        let interface = model.interface();
+        let groups = |v| groups_of(version, &model, v);
         Self {
             derivatives: derivatives(variables),
 
             quantities: variables.iter().map(|v| v.quantity).collect(),
-            groups: variables.iter().map(|v| groups_of(&model, v)).collect(),
+            groups: variables.iter().map(groups).collect(),
             continuous_inputs: variables.iter().map(is_continuous_input).collect(),
             guid: model.guid().into(),
-            interface: model.interface(),
-            logger: Logger::new(sink, logging_on),
+            version,
+            interface,
+            allowed: allowed(version, interface),
+            co_simulation: CoSimulation::default(),
+            intermediate: Box::default(),
+            pending_step: None,
+            logger: Logger::new(sink, logging_on, version),
             state: State::Instantiated,
             stop_time: None,
             last_successful_time: model.time(),
             discarded: false,
             terminated: false,
             state_held: false,
+            set_since_step: false,
+            at_dead_point: false,
             model,
         }
     }
@@ -129,9 +197,24 @@ impl<M: Model> Instance<M> {
         self.state
     }
 
-    /// Logs an error and returns the call's status.
-    pub fn report(&self, call: &str, error: &Error) -> Status {
+    /// Returns the version of the standard that the instance follows.
+    #[must_use]
+    pub fn version(&self) -> Version {
+        self.version
+    }
+
+    /// Logs an error and returns the call's status. In FMI 3.0 a call that has failed ends the
+    /// simulation (2.3.1).
+    pub fn report(&mut self, call: &str, error: &Error) -> Status {
         let status = error.status();
+        if self.version == Version::Fmi3 {
+            let category = match status {
+                Status::Discard => Category::Discard,
+                _ => Category::Error,
+            };
+            self.fail(status, category, &format!("{call}: {error}"));
+            return status;
+        }
         match error {
             // A warning has given the reason.
             Error::Model(Failure::Discarded(_)) => {
@@ -143,7 +226,7 @@ impl<M: Model> Instance<M> {
                 self.logger.write(status, Category::Discard, &message);
             }
             Error::Range { .. } | Error::Item { .. } => {
-                self.logger.warn_of_discard(&format!("{call}: {error}"));
+                self.logger.warn(&format!("{call}: {error}"));
             }
             _ => {
                 let message = format!("{call}: {error}");
@@ -153,13 +236,15 @@ impl<M: Model> Instance<M> {
         status
     }
 
-    /// Returns the error of a call in which the model failed. Logs the reason of a discarded call;
-    /// where the standard permits no discard, the call fails.
+    /// Returns the error of a call in which the model failed. Where the standard permits no
+    /// discard, the call fails. FMI 2.0: logs the reason of a discarded call.
     #[cold]
     fn failed(&self, call: Call, failure: Failure) -> Error {
         match failure {
-            Failure::Discarded(reason) if call.may_discard(self.interface) => {
-                self.logger.warn_of_discard(&reason);
+            Failure::Discarded(reason) if call.may_discard(self.version, self.interface) => {
+                if self.version == Version::Fmi2 {
+                    self.logger.warn(&reason);
+                }
                 Failure::Discarded(reason).into()
             }
             Failure::Discarded(reason) | Failure::Failed(reason) => Failure::Failed(reason).into(),
@@ -167,10 +252,26 @@ impl<M: Model> Instance<M> {
     }
 
     /// Logs that an argument is unusable, and returns the call's status.
-    pub fn report_argument(&self, call: &str, message: &str) -> Status {
+    pub fn report_argument(&mut self, call: &str, message: &str) -> Status {
+        let message = format!("{call}: {message}");
+        self.fail(Status::Error, Category::Error, &message);
+        Status::Error
+    }
+
+    /// Logs that a call was refused which cannot belong to the sequence of calls: from the logger,
+    /// or from another thread.
+    pub fn report_disturbance(&self, call: &str, message: &str) {
         let message = format!("{call}: {message}");
         self.logger.write(Status::Error, Category::Error, &message);
-        Status::Error
+    }
+
+    /// Logs that a call has failed; in FMI 3.0 an error ends the simulation.
+    fn fail(&mut self, status: Status, category: Category, message: &str) {
+        self.logger.write(status, category, message);
+        if self.version == Version::Fmi3 && status == Status::Error && self.state != State::Fatal {
+            self.abandon_step();
+            self.state = State::Terminated;
+        }
     }
 
     /// Marks the instance as unusable after a caught defect, and logs the defect.
@@ -186,17 +287,31 @@ impl<M: Model> Instance<M> {
     /// [`Error::State`] if another state does, [`Error::Interface`] if none does.
     #[inline]
     pub fn allow(&self, call: Call) -> Result<(), Error> {
-        let (interface, state) = (self.interface, self.state);
-        if call.is_allowed_in(interface, state) {
+        if is_allowed(self.allowed, call, self.state) {
             Ok(())
-        } else if call.allowed_in(interface).is_empty() {
-            Err(Error::Interface { call, interface })
         } else {
-            Err(Error::State {
+            Err(self.not_allowed(call))
+        }
+    }
+
+    #[cold]
+    fn not_allowed(&self, call: Call) -> Error {
+        let (version, interface, state) = (self.version, self.interface, self.state);
+        let other = Interface::ALL.into_iter().find(|other| *other != interface);
+        let in_other = other.is_some_and(|other| !call.allowed_in(version, other).is_empty());
+        if !call.allowed_in(version, interface).is_empty() {
+            Error::State {
                 call,
+                version,
                 interface,
                 state,
-            })
+            }
+        } else if in_other || version == Version::Fmi2 {
+            Error::Interface { call, interface }
+        } else {
+            Error::NotProvided {
+                why: why_never(call),
+            }
         }
     }
 
@@ -221,6 +336,11 @@ impl<M: Model> Instance<M> {
     /// A time is not finite, or the stop time is before the start time.
     pub fn setup_experiment(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
         self.allow(Call::SetupExperiment)?;
+        self.set_experiment(start, stop)
+    }
+
+    /// Sets start and stop time.
+    fn set_experiment(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
         check_finite("startTime", start)?;
         if let Some(stop) = stop {
             check_finite("stopTime", stop)?;
@@ -247,21 +367,44 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi2ExitInitializationMode`: starts the model with the values set.
+    /// `fmi3EnterInitializationMode`: start and stop time \[s\]. The tolerance has no effect.
     ///
     /// # Errors
     ///
-    /// The model cannot start with these values; the instance is then in state `error`.
+    /// A time is not finite, or the stop time is before the start time.
+    pub fn enter_initialization_mode_at(
+        &mut self,
+        start: f64,
+        stop: Option<f64>,
+    ) -> Result<(), Error> {
+        self.allow(Call::EnterInitializationMode)?;
+        self.set_experiment(start, stop)?;
+        self.state = State::InitializationMode;
+        Ok(())
+    }
+
+    /// `fmi2ExitInitializationMode`, `fmi3ExitInitializationMode`: starts the model with the values
+    /// set.
+    ///
+    /// # Errors
+    ///
+    /// The model cannot start with these values; an FMI 2.0 instance is then in state `error`.
     pub fn exit_initialization_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::ExitInitializationMode)?;
-        if let Err(failure) = self.model.commit(self.state.phase(), &self.logger) {
-            self.state = State::Error;
+        if let Err(failure) = self.model.commit(Phase::Initialization, &self.logger) {
+            if self.version == Version::Fmi2 {
+                self.state = State::Error;
+            }
             return Err(self.failed(Call::ExitInitializationMode, failure));
         }
         self.model.update_discrete();
-        self.state = match self.interface {
-            Interface::ModelExchange => State::EventMode,
-            Interface::CoSimulation => State::StepComplete,
+        self.state = match (self.interface, self.version) {
+            (Interface::ModelExchange, _) => State::EventMode,
+            (Interface::CoSimulation, Version::Fmi2) => State::StepComplete,
+            (Interface::CoSimulation, Version::Fmi3) if self.co_simulation.event_mode_used => {
+                State::EventMode
+            }
+            (Interface::CoSimulation, Version::Fmi3) => State::StepMode,
         };
         self.last_successful_time = self.model.time();
         self.log_event(|model| format!("initialized at t = {} s", model.time()));
@@ -294,6 +437,8 @@ impl<M: Model> Instance<M> {
         self.discarded = false;
         self.terminated = false;
         self.state_held = false;
+        self.set_since_step = false;
+        self.at_dead_point = false;
         self.log_event(|_| "reset".to_owned());
         Ok(())
     }
@@ -303,5 +448,16 @@ impl<M: Model> Instance<M> {
             let message = message(&self.model);
             self.logger.write(Status::Ok, Category::Events, &message);
         }
+    }
+}
+
+/// Returns why no state allows a call of FMI 3.0.
+fn why_never(call: Call) -> &'static str {
+    match call {
+        Call::EnterConfigurationMode | Call::ExitConfigurationMode => {
+            "the FMU has no structural parameters, and so no configuration mode"
+        }
+        Call::ActivateModelPartition => "the FMU has no clocks, and so no model partitions",
+        _ => "not a function of FMI 3.0, for which this instance was made",
     }
 }

@@ -1,4 +1,4 @@
-//! Co-simulation: steps and their outcome.
+//! Co-simulation in FMI 2.0: steps and their outcome.
 
 use super::{Error, Failure, Instance, check_finite};
 use crate::fmi::model::Model;
@@ -45,7 +45,8 @@ impl<M: Model> Instance<M> {
         self.failed(Call::DoStep, failure)
     }
 
-    fn check_step(&self, communication_point: f64, h: f64) -> Result<(), Error> {
+    /// Checks that a step starts where the last one has ended, and passes no stop time.
+    pub(super) fn check_step(&self, communication_point: f64, h: f64) -> Result<(), Error> {
         check_finite("currentCommunicationPoint", communication_point)?;
         check_finite("communicationStepSize", h)?;
         let refuse = |message: String| Err(Error::Time { message });

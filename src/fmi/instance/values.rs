@@ -7,15 +7,19 @@ use std::slice::Iter;
 use super::{Error, Instance, check_finite};
 use crate::fmi::error::check_limits;
 use crate::fmi::model::{Groups, Model};
-use crate::fmi::state::{Call, State};
+use crate::fmi::state::{Call, State, Version};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 
 /// Groups of a variable that is no Real: a bit that no model uses, as it is the last one.
 const NO_REAL: Groups = 1 << (Groups::BITS - 1);
 
 /// Returns the groups of a variable's value.
-pub(super) fn groups_of<M: Model>(model: &M, variable: &Variable<M::Quantity>) -> Groups {
-    if variable.kind.is_real() {
+pub(super) fn groups_of<M: Model>(
+    version: Version,
+    model: &M,
+    variable: &Variable<M::Quantity>,
+) -> Groups {
+    if variable.kind.is_real_in(version) {
         model.groups(variable.quantity)
     } else {
         NO_REAL
@@ -37,12 +41,18 @@ impl<M: Model> Instance<M> {
     /// that of a parameter is outside `min` and `max`.
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
+        if self.version == Version::Fmi3 {
+            self.check_intermediate_inputs(value_references)?;
+        }
         for (&value_reference, &value) in value_references.iter().zip(values) {
             let is_input = self.continuous_inputs.get(value_reference as usize);
             if !(is_input == Some(&true) && value.is_finite()) {
                 let variable = self.settable(value_reference, "Real")?;
                 check_value(variable, value)?;
             }
+        }
+        if self.version == Version::Fmi3 {
+            self.note_values_set(value_references);
         }
         let quantities = &self.quantities;
         let values = value_references.iter().zip(values);
@@ -58,23 +68,41 @@ impl<M: Model> Instance<M> {
     /// A variable is unknown, no Integer or Enumeration, or not settable in this state; a value is
     /// no item of its Enumeration.
     pub fn set_integer(&mut self, value_references: &[u32], values: &[i32]) -> Result<(), Error> {
+        self.set_items(value_references, values.iter().map(|&value| value.into()))
+    }
+
+    /// `fmi3SetInt64`, for Enumerations. Sets all values or none.
+    ///
+    /// # Errors
+    ///
+    /// As [`set_integer`](Self::set_integer).
+    pub fn set_int64(&mut self, value_references: &[u32], values: &[i64]) -> Result<(), Error> {
+        self.set_items(value_references, values.iter().copied())
+    }
+
+    fn set_items(
+        &mut self,
+        value_references: &[u32],
+        values: impl Iterator<Item = i64> + Clone,
+    ) -> Result<(), Error> {
         self.allow(Call::SetInteger)?;
-        for (&value_reference, &value) in value_references.iter().zip(values) {
+        for (&value_reference, value) in value_references.iter().zip(values.clone()) {
             let variable = self.settable(value_reference, "Integer or Enumeration")?;
-            if let Kind::Enumeration(enumeration) = variable.kind
-                && !(1..=enumeration.items.len()).contains(&(value as usize))
-            {
-                return Err(Error::Item {
-                    name: variable.name.clone(),
-                    value,
-                    count: enumeration.items.len(),
-                });
+            if let Kind::Enumeration(enumeration) = variable.kind {
+                let count = enumeration.items.len();
+                if !usize::try_from(value).is_ok_and(|value| (1..=count).contains(&value)) {
+                    return Err(Error::Item {
+                        name: variable.name.clone(),
+                        value,
+                        count,
+                    });
+                }
             }
         }
         let quantities = &self.quantities;
         let values = value_references.iter().zip(values);
         self.model
-            .set_integers(values.map(|(&vr, &value)| (quantities[vr as usize], value)));
+            .set_integers(values.map(|(&vr, value)| (quantities[vr as usize], value as i32)));
         Ok(())
     }
 
@@ -92,7 +120,7 @@ impl<M: Model> Instance<M> {
         self.allow(call)?;
         match value_references {
             [] => Ok(()),
-            [first, ..] => Err(wrong_type(self.variable(*first)?, expected)),
+            [first, ..] => Err(self.wrong_type(self.variable(*first)?, expected)),
         }
     }
 
@@ -160,6 +188,9 @@ impl<M: Model> Instance<M> {
         if groups & NO_REAL != 0 {
             return Err(self.why_not_real(value_references));
         }
+        if self.version == Version::Fmi3 {
+            self.check_readable(value_references)?;
+        }
         self.refresh(Call::GetReal, groups)?;
         let values = self.model.reals();
         Ok(Reals(match run {
@@ -172,9 +203,9 @@ impl<M: Model> Instance<M> {
     #[cold]
     fn why_not_real(&self, value_references: &[u32]) -> Error {
         let mut variables = value_references.iter().map(|&vr| self.variable(vr));
-        let first = variables.find(|v| !v.as_ref().is_ok_and(|v| v.kind.is_real()));
+        let first = variables.find(|v| !v.as_ref().is_ok_and(|v| v.kind.is_real_in(self.version)));
         match first.expect("the caller has found one") {
-            Ok(variable) => wrong_type(variable, "Real"),
+            Ok(variable) => self.wrong_type(variable, "Real"),
             Err(unknown) => unknown,
         }
     }
@@ -207,8 +238,8 @@ impl<M: Model> Instance<M> {
         self.allow(Call::GetInteger)?;
         for &value_reference in value_references {
             let variable = self.variable(value_reference)?;
-            if variable.kind.is_real() {
-                return Err(wrong_type(variable, "Integer or Enumeration"));
+            if variable.kind.is_real_in(self.version) {
+                return Err(self.wrong_type(variable, "Integer or Enumeration"));
             }
         }
         let (model, quantities) = (&self.model, &self.quantities);
@@ -249,6 +280,9 @@ impl<M: Model> Instance<M> {
                 groups |= self.groups[derivative as usize];
             }
         }
+        if self.version == Version::Fmi3 {
+            self.check_readable(value_references)?;
+        }
         self.refresh(Call::GetRealOutputDerivatives, groups)?;
         Ok(entries.map(|(&value_reference, &order)| {
             let derivative = self.derivative(value_reference, order);
@@ -261,70 +295,15 @@ impl<M: Model> Instance<M> {
         (0..order).try_fold(value_reference, |vr, _| self.derivatives[vr as usize])
     }
 
-    /// `fmi2GetDirectionalDerivative`: returns the directional derivatives of outputs by inputs and
-    /// time; in initialization mode also of calculated parameters and by parameters.
-    ///
-    /// # Errors
-    ///
-    /// A variable is none of these; a change is not finite; or the derivative does not exist for
-    /// the values set.
-    pub fn directional_derivative(
-        &mut self,
-        unknowns: &[u32],
-        knowns: &[u32],
-        changes: &[f64],
-    ) -> Result<Vec<f64>, Error> {
-        self.allow(Call::GetDirectionalDerivative)?;
-        let initializing = self.state == State::InitializationMode;
-        let refuse = |variable: &Variable<_>, role| {
-            Err(Error::NoDerivative {
-                name: variable.name.clone(),
-                role,
-            })
-        };
-        let mut directions = Vec::with_capacity(knowns.len());
-        for (&value_reference, &change) in knowns.iter().zip(changes) {
-            let variable = self.variable(value_reference)?;
-            let known = match variable.causality {
-                Causality::Input | Causality::Independent => true,
-                Causality::Parameter => initializing && variable.kind.is_real(),
-                _ => false,
-            };
-            if !known {
-                return refuse(variable, "derivatives are taken by inputs and time");
-            }
-            check_finite(&variable.name, change)?;
-            directions.push((variable.quantity, change));
-        }
-        let mut wanted = Vec::with_capacity(unknowns.len());
-        for &value_reference in unknowns {
-            let variable = self.variable(value_reference)?;
-            let unknown = match variable.causality {
-                Causality::Output => true,
-                Causality::CalculatedParameter => initializing,
-                _ => false,
-            };
-            if !unknown {
-                return refuse(variable, "derivatives are taken of outputs");
-            }
-            wanted.push(variable.quantity);
-        }
-        let phase = self.state.phase();
-        let logger = &self.logger;
-        self.model
-            .directional_derivatives(&wanted, &directions, phase, logger)
-            .map_err(|failure| self.failed(Call::GetDirectionalDerivative, failure))
-    }
-
     #[inline]
     fn refresh(&mut self, call: Call, groups: Groups) -> Result<(), Error> {
-        let phase = self.state.phase();
+        let phase = self.state.phase(self.interface);
         self.model
             .refresh(groups, phase, &self.logger)
             .map_err(|failure| self.failed(call, failure))
     }
 
-    fn variable(&self, value_reference: u32) -> Result<&Variable<M::Quantity>, Error> {
+    pub(super) fn variable(&self, value_reference: u32) -> Result<&Variable<M::Quantity>, Error> {
         let variables = self.variables();
         variables
             .get(value_reference as usize)
@@ -334,6 +313,20 @@ impl<M: Model> Instance<M> {
             })
     }
 
+    /// Returns the error for a variable of another type than `expected`.
+    #[cold]
+    fn wrong_type(&self, variable: &Variable<M::Quantity>, expected: &'static str) -> Error {
+        Error::Type {
+            name: variable.name.clone(),
+            actual: variable.kind.name(self.version),
+            expected: match (self.version, expected) {
+                (Version::Fmi3, "Real") => "Float64",
+                (Version::Fmi3, "Integer or Enumeration") => "Enumeration",
+                _ => expected,
+            },
+        }
+    }
+
     /// Returns a variable that has this type and that the host may set in the present state.
     fn settable(
         &self,
@@ -341,8 +334,8 @@ impl<M: Model> Instance<M> {
         expected: &'static str,
     ) -> Result<&Variable<M::Quantity>, Error> {
         let variable = self.variable(value_reference)?;
-        if variable.kind.is_real() != (expected == "Real") {
-            return Err(wrong_type(variable, expected));
+        if variable.kind.is_real_in(self.version) != (expected == "Real") {
+            return Err(self.wrong_type(variable, expected));
         }
         let initializing = matches!(self.state, State::Instantiated | State::InitializationMode);
         let why = match variable.causality {
@@ -436,12 +429,4 @@ pub(in crate::fmi) fn check_value<Q>(variable: &Variable<Q>, value: f64) -> Resu
         Kind::Integer | Kind::Enumeration(_) => [None; 2],
     };
     check_limits(&variable.name, value, limits)
-}
-
-fn wrong_type<Q>(variable: &Variable<Q>, expected: &'static str) -> Error {
-    Error::Type {
-        name: variable.name.clone(),
-        actual: variable.kind.name(),
-        expected,
-    }
 }

@@ -38,7 +38,8 @@ impl MechanismModel {
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
-                    let [position, velocity, acceleration] = self.derivatives_by(driver, order);
+                    let [position, velocity, acceleration] =
+                        self.derivatives_by(driver, order, phase);
                     let driver = &mut direction.drivers[driver.index()];
                     driver.value += position * change;
                     driver.derivatives[0] += velocity * change;
@@ -74,13 +75,15 @@ impl MechanismModel {
 
     /// Returns the derivatives of a driver's value, velocity and acceleration in force by one of its
     /// inputs.
-    fn derivatives_by(&self, driver: DriverId, order: Order) -> [f64; 3] {
+    fn derivatives_by(&self, driver: DriverId, order: Order, phase: Phase) -> [f64; 3] {
         let input = &self.inputs[driver.index()];
         let rates = match self.interface {
             Interface::ModelExchange => RateSource::Inputs,
             Interface::CoSimulation => self.settings.rule.rates,
         };
-        if self.at_committed && input.has_stepped() {
+        if phase == Phase::Event && !self.at_committed {
+            input.change_at_event(rates, self.time, order)
+        } else if self.at_committed && input.has_stepped() {
             input.change_by_step(rates, self.monitors[driver.index()].sources(), order)
         } else {
             input.change_by_value(rates, self.time, order)

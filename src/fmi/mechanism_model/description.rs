@@ -7,8 +7,9 @@ use super::variables::{Order, Quantity, Signal, is_angle, variables};
 use super::{MechanismModel, guid};
 use crate::fmi::model::Model;
 use crate::fmi::model_description::{
-    Capabilities, DependencyKind, Experiment, ModelDescription, Unknown,
+    Capabilities, DependencyKind, Experiment, Member, ModelDescription, Terminal, Unknown,
 };
+use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable};
 use crate::kinematics::{Dependencies, ForceQuantity, Structure, System};
 use crate::mechanism::{DriverId, Load, Mechanism, Unit, Variable as Of};
@@ -18,9 +19,11 @@ const CAPABILITIES: Capabilities = Capabilities {
     interpolates_inputs: true,
     output_derivatives: MechanismModel::OUTPUT_DERIVATIVES as u32,
     directional_derivatives: true,
+    intermediate_update: MechanismModel::INTERMEDIATE_UPDATE,
 };
 
-/// Returns the model description of a mechanism's FMU.
+/// Returns the model description of a mechanism's FMU of FMI 2.0. Its field `standard` makes it one
+/// of FMI 3.0.
 #[must_use]
 pub fn describe<'a>(
     mechanism: &'a Mechanism,
@@ -32,26 +35,26 @@ pub fn describe<'a>(
     let mut outputs = Vec::new();
     let mut initial_unknowns = Vec::new();
     for (index, variable) in (1..).zip(&variables) {
-        let order = match (variable.quantity, variable.causality) {
-            (Quantity::Output(_, order), _) => order,
-            (Quantity::Force(quantity), _) => order_of(quantity),
-            (_, Causality::CalculatedParameter) => Order::Position,
-            _ => continue,
+        let Some(order) = order_of_unknown(variable) else {
+            continue;
         };
         let dependencies = variable.quantity.dependencies(mechanism, structure);
         if variable.causality == Causality::Output {
             outputs.push(Unknown {
                 index,
                 dependencies: indices.outputs(mechanism, variable.quantity, &dependencies),
+                parameters: indices.parameters_of_output(variable.quantity, &dependencies, order),
             });
         }
         initial_unknowns.push(Unknown {
             index,
             dependencies: indices.initial(mechanism, variable.quantity, &dependencies, order),
+            parameters: BTreeMap::new(),
         });
     }
     let simulation = &mechanism.simulation;
     ModelDescription {
+        standard: Version::Fmi2,
         name: &mechanism.name,
         description: &mechanism.description,
         author: mechanism.author.as_deref(),
@@ -66,9 +69,88 @@ pub fn describe<'a>(
             tolerance: simulation.tolerance,
         },
         capabilities: CAPABILITIES,
+        terminals: terminals(mechanism, &variables),
         variables,
         outputs,
         initial_unknowns,
+    }
+}
+
+/// Returns a terminal per driver, with all variables of the driver that cross the interface, and one
+/// per marker among the outputs.
+fn terminals(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Vec<Terminal> {
+    let drivers = mechanism.drivers.iter().map(|driver| {
+        let description = if driver.description.is_empty() {
+            format!("driver `{}`", driver.name)
+        } else {
+            driver.description.clone()
+        };
+        (driver.name.clone(), description)
+    });
+    let markers = mechanism.outputs.markers.iter().map(|&id| {
+        let path = mechanism.marker_path(id);
+        let description = format!("marker `{path}`");
+        (path, description)
+    });
+    let terminals = drivers.chain(markers).map(|(name, description)| {
+        let members = variables.iter().filter_map(|variable| {
+            let member = variable.name.strip_prefix(&name)?.strip_prefix('.')?;
+            let crosses = matches!(variable.causality, Causality::Input | Causality::Output);
+            (crosses && !member.contains('.')).then(|| Member {
+                name: member.to_owned(),
+                variable: variable.name.clone(),
+                is_flow: member == "effort",
+            })
+        });
+        let members = members.collect();
+        Terminal {
+            name,
+            description,
+            members,
+        }
+    });
+    terminals.collect()
+}
+
+impl MechanismModel {
+    /// Returns the value references that an output or a calculated parameter depends on, in
+    /// initialization mode or after it.
+    pub(super) fn dependencies_of(
+        &self,
+        value_reference: u32,
+        initializing: bool,
+    ) -> Option<Vec<(u32, DependencyKind)>> {
+        let variable = &self.variables[value_reference as usize];
+        let order = order_of_unknown(variable)?;
+        let mechanism = self.mechanism();
+        let of_quantity = variable
+            .quantity
+            .dependencies(mechanism, self.solver.structure());
+        let indices = Indices::new(mechanism, &self.variables);
+        let is_output = variable.causality == Causality::Output;
+        let found = if is_output && !initializing {
+            let mut all = indices.outputs(mechanism, variable.quantity, &of_quantity);
+            all.extend(indices.parameters_of_output(variable.quantity, &of_quantity, order));
+            all
+        } else {
+            indices.initial(mechanism, variable.quantity, &of_quantity, order)
+        };
+        let found = found.into_iter();
+        Some(
+            found
+                .map(|(index, kind)| (index as u32 - 1, kind))
+                .collect(),
+        )
+    }
+}
+
+/// Returns the order of an output or a calculated parameter.
+fn order_of_unknown(variable: &Variable<Quantity>) -> Option<Order> {
+    match (variable.quantity, variable.causality) {
+        (Quantity::Output(_, order), _) => Some(order),
+        (Quantity::Force(quantity), _) => Some(order_of(quantity)),
+        (_, Causality::CalculatedParameter) => Some(Order::Position),
+        _ => None,
     }
 }
 
@@ -81,6 +163,7 @@ struct Indices {
     /// Each parameter.
     parameters: Vec<usize>,
     rate_source: Option<usize>,
+    extrapolation: Option<usize>,
     time: usize,
 }
 
@@ -91,6 +174,7 @@ impl Indices {
             force_inputs: Vec::new(),
             parameters: vec![0; mechanism.parameters.len()],
             rate_source: None,
+            extrapolation: None,
             time: 0,
         };
         for (index, variable) in (1..).zip(variables) {
@@ -101,6 +185,7 @@ impl Indices {
                 Quantity::ForceInput(_) => indices.force_inputs.push(index),
                 Quantity::Parameter(parameter) => indices.parameters[parameter.index()] = index,
                 Quantity::RateSource => indices.rate_source = Some(index),
+                Quantity::Extrapolation => indices.extrapolation = Some(index),
                 Quantity::Time => indices.time = index,
                 _ => {}
             }
@@ -148,6 +233,45 @@ impl Indices {
         }
     }
 
+    /// Returns the parameters that an output of this order depends on after initialization.
+    fn parameters_of_output(
+        &self,
+        quantity: Quantity,
+        dependencies: &Dependencies,
+        order: Order,
+    ) -> BTreeMap<usize, DependencyKind> {
+        let mut indices = BTreeMap::new();
+        let mut add = |index: usize| {
+            indices.insert(index, DependencyKind::Dependent);
+        };
+        self.mechanism_parameters(quantity, dependencies, order, &mut add);
+        let mut drivers = dependencies.drivers.iter();
+        if drivers.any(|id| self.inputs[id.index()].is_some()) {
+            [self.rate_source, self.extrapolation]
+                .into_iter()
+                .flatten()
+                .for_each(add);
+        }
+        indices
+    }
+
+    /// Adds the mechanism's own parameters that a quantity of this order depends on: one that no
+    /// driver moves has rates of zero for any parameters.
+    fn mechanism_parameters(
+        &self,
+        quantity: Quantity,
+        dependencies: &Dependencies,
+        order: Order,
+        add: &mut impl FnMut(usize),
+    ) {
+        let is_force = matches!(quantity, Quantity::Force(_));
+        if order == Order::Position || is_force || !dependencies.drivers.is_empty() {
+            for id in &dependencies.parameters {
+                add(self.parameters[id.index()]);
+            }
+        }
+    }
+
     /// Returns the inputs up to an order, and the time.
     fn drivers(
         &self,
@@ -181,17 +305,13 @@ impl Indices {
         {
             indices.insert(index, DependencyKind::Constant);
         }
-        let mut add = |index| indices.insert(index, DependencyKind::Dependent);
-        // A quantity that no driver moves has rates of zero for any parameters.
-        let is_force = matches!(quantity, Quantity::Force(_));
-        if order == Order::Position || is_force || !dependencies.drivers.is_empty() {
-            for id in &dependencies.parameters {
-                add(self.parameters[id.index()]);
-            }
-        }
+        let mut add = |index: usize| {
+            indices.insert(index, DependencyKind::Dependent);
+        };
+        self.mechanism_parameters(quantity, dependencies, order, &mut add);
         let mut drivers = dependencies.drivers.iter();
         if order > Order::Position && drivers.any(|id| self.inputs[id.index()].is_some()) {
-            self.rate_source.map(add);
+            self.rate_source.into_iter().for_each(add);
         }
         indices
     }

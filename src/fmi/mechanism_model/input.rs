@@ -86,6 +86,18 @@ impl DriverInput {
         self.used = [false; 2];
     }
 
+    /// Forgets the samples before a jump: no estimate differentiates it.
+    pub(super) fn forget_samples(&mut self) {
+        self.history = History::default();
+    }
+
+    /// Returns the derivatives of position, velocity and acceleration in force at an event by one of
+    /// the three inputs: rates that are not given stay those of the last step.
+    pub(super) fn change_at_event(&self, rates: RateSource, time: f64, order: Order) -> [f64; 3] {
+        let (_, sources) = self.rates(rates, time, 0.0, 0.0);
+        History::default().change(rates, sources, order)
+    }
+
     /// Returns the rate inputs.
     pub(super) fn given_rates(&self) -> DriverRates {
         DriverRates {

@@ -82,7 +82,7 @@ impl MechanismModel {
     }
 
     /// Reports each approach to a singular position once.
-    fn report_approach(&mut self, log: &Logger) {
+    pub(super) fn report_approach(&mut self, log: &Logger) {
         if let Some(approach) = self.solver.approach(&mut self.near_singular) {
             log.advise(|| format!("t = {} s: {approach}", self.time));
         }

@@ -10,6 +10,7 @@
 //! | `force_input` | one input of a force |
 //! | `forces` | forces at the pose, and contacts that lift off |
 //! | `monitor` | one driver's observations: contradictions, falls, limits |
+//! | `parts` | a step in parts, between which the host sets inputs |
 //! | `pose` | initialization, steps, and the pose and rates of the values set |
 //! | `messages` | messages about poses and steps |
 //! | `outputs` | values by value reference |
@@ -27,6 +28,7 @@ mod input;
 mod messages;
 mod monitor;
 mod outputs;
+mod parts;
 mod pose;
 mod resource;
 mod rule;
@@ -47,6 +49,7 @@ use super::codec::{Codec, Unreadable};
 use super::error::Failure;
 use super::log::Logger;
 use super::model::{Groups, Model};
+use super::model_description::DependencyKind;
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Carryover, Path, Pose, Progress, Rates, Solver};
@@ -56,6 +59,7 @@ use forces::ModelForces;
 use input::DriverInput;
 use monitor::Monitor;
 use outputs::Reals;
+use parts::Parts;
 use rule::{Extrapolation, RateSource, Rule, Source};
 
 /// A mechanism at the values that a host has set.
@@ -107,6 +111,8 @@ pub struct MechanismModel {
     /// Effort of the last step or, in model exchange, up to the last event.
     progress: Progress,
     time: f64,
+    /// The step that is being taken in parts.
+    parts: Option<Box<Parts>>,
     /// Whether the host has been warned of the singular position nearby.
     near_singular: bool,
 }
@@ -168,6 +174,7 @@ impl MechanismModel {
             path_progress: Progress::default(),
             progress: Progress::default(),
             time: file_pose.time,
+            parts: None,
             near_singular: false,
             start_pose: Arc::clone(&file_pose),
             file_pose,
@@ -196,6 +203,7 @@ impl Model for MechanismModel {
     type State = MechanismState;
 
     const OUTPUT_DERIVATIVES: i32 = 2;
+    const INTERMEDIATE_UPDATE: bool = true;
 
     fn load(resources: &FilePath, interface: Interface) -> Result<Self, Failure> {
         let mechanism = Arc::new(resource::read(resources)?);
@@ -239,6 +247,7 @@ impl Model for MechanismModel {
         self.path_progress = Progress::default();
         self.progress = Progress::default();
         self.time = self.start_pose.time;
+        self.parts = None;
         self.near_singular = false;
     }
 
@@ -344,6 +353,14 @@ impl Model for MechanismModel {
         self.derivatives_along(unknowns, knowns, phase, log)
     }
 
+    fn dependencies(
+        &self,
+        value_reference: u32,
+        initializing: bool,
+    ) -> Option<Vec<(u32, DependencyKind)>> {
+        self.dependencies_of(value_reference, initializing)
+    }
+
     fn commit(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         self.commit_values(phase, log)
     }
@@ -354,6 +371,30 @@ impl Model for MechanismModel {
 
     fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
         self.take_step(size, end, log)
+    }
+
+    fn try_step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
+        self.take_step_or_stay(size, end, log)
+    }
+
+    fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {
+        self.begin_parts(size, end, log);
+    }
+
+    fn advance(&mut self, time: f64, log: &Logger) -> Result<(), Failure> {
+        self.take_part(time, log)
+    }
+
+    fn split_step(&mut self, log: &Logger) {
+        self.split_parts(log);
+    }
+
+    fn end_step(&mut self, log: &Logger) -> Result<(), Failure> {
+        self.end_parts(log)
+    }
+
+    fn abandon_step(&mut self) {
+        self.abandon_parts();
     }
 
     fn save(&mut self) -> MechanismState {

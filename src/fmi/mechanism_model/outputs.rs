@@ -9,7 +9,7 @@ use crate::fmi::state::Phase;
 use crate::fmi::variable::{Variable, derivatives};
 use crate::kinematics::{ForceParts, ForceQuantity};
 
-/// Inputs, parameters and time.
+/// Inputs, parameters, time, and counts of the last step.
 const SETTINGS: Groups = 1;
 /// Residual and condition at the pose.
 const SOLVER: Groups = 1 << 1;
@@ -74,23 +74,23 @@ impl Signal {
     }
 }
 
-/// Returns the group of a quantity; 0 for a quantity that is no Real.
+/// Returns the group of a quantity; 0 for a choice among items.
 pub(super) fn group(quantity: Quantity) -> Groups {
     match quantity {
-        Quantity::Input(..) | Quantity::ForceInput(_) | Quantity::Parameter(_) | Quantity::Time => {
-            SETTINGS
-        }
+        Quantity::Input(..)
+        | Quantity::ForceInput(_)
+        | Quantity::Parameter(_)
+        | Quantity::Time
+        | Quantity::Iterations
+        | Quantity::Substeps
+        | Quantity::Proved => SETTINGS,
         Quantity::Force(force) if force.needs_efforts() => EFFORTS,
         Quantity::Force(force) if force.needs_reactions() => REACTIONS,
         Quantity::Force(_) => LOADS,
         Quantity::Residual | Quantity::Rcond => SOLVER,
         Quantity::Output(signal, Order::Position) => signal.group(),
         Quantity::Output(signal, _) => signal.group() << 1,
-        Quantity::RateSource
-        | Quantity::Extrapolation
-        | Quantity::Iterations
-        | Quantity::Substeps
-        | Quantity::Proved => 0,
+        Quantity::RateSource | Quantity::Extrapolation => 0,
     }
 }
 
@@ -248,6 +248,9 @@ impl MechanismModel {
                 Quantity::Time => self.time,
                 Quantity::Residual => self.solver.residual(),
                 Quantity::Rcond => self.solver.rcond(),
+                Quantity::Iterations => f64::from(self.progress.iterations),
+                Quantity::Substeps => f64::from(self.progress.substeps),
+                Quantity::Proved => f64::from(u8::from(self.progress.checked == 0)),
                 _ => unreachable!("the list has no other quantities"),
             };
         }

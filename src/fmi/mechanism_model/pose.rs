@@ -1,6 +1,6 @@
 //! Initialization, steps, and the pose and rates of the values set.
 
-use super::rule::DriverRates;
+use super::rule::{DriverRates, Source};
 use super::{Freshness, MechanismModel, RateSource, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
@@ -22,29 +22,89 @@ impl MechanismModel {
     /// the last time whose driver values it reached.
     pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
         let start = self.time;
+        match self.follow_step(h) {
+            Ok(progress) => {
+                self.reach_end(progress, start, h, end, log);
+                Ok(())
+            }
+            Err(blocked) => {
+                self.report_falls(log);
+                Err(self.fail_step(blocked, start, h, log))
+            }
+        }
+    }
+
+    /// Takes a step as [`take_step`](Self::take_step) does, but stays at the last communication
+    /// point if it fails.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Discarded`] if no continuous motion leads to the end.
+    pub(super) fn take_step_or_stay(
+        &mut self,
+        h: f64,
+        end: f64,
+        log: &Logger,
+    ) -> Result<(), Failure> {
+        let start = self.time;
+        let was_current = self.note_committed();
+        match self.follow_step(h) {
+            Ok(progress) => {
+                self.reach_end(progress, start, h, end, log);
+                Ok(())
+            }
+            Err(blocked) => {
+                let message = self.describe_dead_point(&blocked, start, h);
+                self.stay_at_committed(was_current);
+                Err(Failure::Discarded(message))
+            }
+        }
+    }
+
+    /// Follows the path of a step of size `h` from the committed pose.
+    fn follow_step(&mut self, h: f64) -> Result<Progress, Blocked> {
         if !self.at_committed {
             self.return_to_committed();
         }
-        self.set_path(start, h);
+        self.set_path(self.time, h);
+        self.solver.track(&self.path)
+    }
+
+    /// Ends a step of size `h` from `start` that the solver has followed.
+    fn reach_end(&mut self, progress: Progress, start: f64, h: f64, end: f64, log: &Logger) {
         self.report_falls(log);
-        match self.solver.track(&self.path) {
-            Ok(progress) => {
-                self.path_progress = progress;
-                self.progress = progress;
-                self.set_driver_rates(start, h, 1.0);
-                self.advance_forces(h);
-                self.time = end;
-                self.commit_pose();
-                self.complete_step(start, h, log);
-                Ok(())
-            }
-            Err(blocked) => Err(self.fail_step(blocked, start, h, log)),
+        self.path_progress = progress;
+        self.progress = progress;
+        self.set_driver_rates(start, h, 1.0);
+        self.advance_forces(h);
+        self.time = end;
+        self.commit_pose();
+        self.complete_step(start, h, log);
+    }
+
+    /// Notes the solver's choices at the committed pose, to which a step may have to return. Returns
+    /// whether that pose belongs to the values set.
+    pub(super) fn note_committed(&mut self) -> bool {
+        if self.at_committed {
+            self.solver.carry_over(&mut self.committed_carryover);
         }
+        self.at_committed && self.freshness != Freshness::Stale
+    }
+
+    /// Returns to the committed pose as [`note_committed`](Self::note_committed) found it.
+    pub(super) fn stay_at_committed(&mut self, was_current: bool) {
+        self.return_to_committed();
+        self.driver_rates.copy_from_slice(&self.committed_rates);
+        self.set_freshness(if was_current {
+            Freshness::Pose
+        } else {
+            Freshness::Stale
+        });
     }
 
     /// Sets the path from the committed pose to the values in force at the end of a step of size
     /// `h` from `start`; with `h = 0` to the values set.
-    fn set_path(&mut self, start: f64, h: f64) {
+    pub(super) fn set_path(&mut self, start: f64, h: f64) {
         let Self {
             path,
             committed,
@@ -80,7 +140,7 @@ impl MechanismModel {
     }
 
     /// Sets the drivers' rates to those at the part `s` of a step of size `h` from `start`.
-    fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
+    pub(super) fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
         let Self {
             driver_rates,
             sources,
@@ -114,6 +174,21 @@ impl MechanismModel {
         }
     }
 
+    /// Sets the drivers' rates at an event: those that are given, and otherwise those of the last
+    /// step, since no estimate is made from values that no step has reached.
+    fn set_driver_rates_at_event(&mut self) {
+        self.set_driver_rates(self.time, 0.0, 0.0);
+        let now = self.driver_rates.iter_mut().zip(&self.sources);
+        for ((rates, sources), last) in now.zip(&self.committed_rates) {
+            let last = last.derivatives;
+            for ((rate, last), source) in rates.derivatives.iter_mut().zip(last).zip(sources) {
+                if matches!(source, Source::Estimate | Source::Difference) {
+                    *rate = last;
+                }
+            }
+        }
+    }
+
     /// Commits the pose of the values set.
     ///
     /// # Errors
@@ -126,6 +201,9 @@ impl MechanismModel {
             let why = "`rates` is `estimated`, which needs communication points; in model exchange \
                        the velocity and acceleration inputs have to be given";
             return Err(Failure::Failed(why.to_owned()));
+        }
+        if phase == Phase::Event {
+            return self.commit_event(log);
         }
         self.refresh_pose(phase, log)?;
         if !starting {
@@ -143,8 +221,26 @@ impl MechanismModel {
         Ok(())
     }
 
+    /// Commits the pose of the values set at an event. An input that has jumped starts its history
+    /// anew.
+    fn commit_event(&mut self, log: &Logger) -> Result<(), Failure> {
+        if self.freshness != Freshness::Stale && self.at_committed {
+            return Ok(());
+        }
+        self.refresh_pose(Phase::Event, log)?;
+        for (input, last) in self.inputs.iter_mut().zip(&self.committed.drivers) {
+            if (input.position() - last).abs() > 0.0 {
+                input.forget_samples();
+            }
+        }
+        self.commit_pose();
+        self.report_approach(log);
+        self.log_crossings(log);
+        Ok(())
+    }
+
     /// Commits the solver's pose.
-    fn commit_pose(&mut self) {
+    pub(super) fn commit_pose(&mut self) {
         self.solver.save(&mut self.committed);
         self.committed_rates.copy_from_slice(&self.driver_rates);
         self.at_committed = true;
@@ -168,14 +264,20 @@ impl MechanismModel {
     }
 
     /// Restores the committed pose and its rates.
-    fn restore_committed(&mut self) {
+    pub(super) fn restore_committed(&mut self) {
         self.leave_committed();
         self.driver_rates.copy_from_slice(&self.committed_rates);
         self.at_committed = true;
     }
 
     /// Commits the last pose before a dead point at the part `blocked.s` of a step.
-    fn fail_step(&mut self, blocked: Blocked, start: f64, h: f64, log: &Logger) -> Failure {
+    pub(super) fn fail_step(
+        &mut self,
+        blocked: Blocked,
+        start: f64,
+        h: f64,
+        log: &Logger,
+    ) -> Failure {
         let message = self.describe_dead_point(&blocked, start, h);
         self.path_progress = blocked.progress;
         self.progress = blocked.progress;
@@ -204,7 +306,7 @@ impl MechanismModel {
     }
 
     /// Moves the inputs of forces on by a time `h`.
-    fn advance_forces(&mut self, h: f64) {
+    pub(super) fn advance_forces(&mut self, h: f64) {
         for input in &mut self.force_inputs {
             input.advance(h);
         }
@@ -222,6 +324,10 @@ impl MechanismModel {
         match phase {
             Phase::Initialization => self.initialize(log)?,
             Phase::Running => self.evaluate()?,
+            Phase::Event => {
+                self.evaluate()?;
+                self.set_driver_rates_at_event();
+            }
             Phase::Halted => self.restore_committed(),
         }
         self.set_freshness(Freshness::Pose);

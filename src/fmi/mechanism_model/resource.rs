@@ -5,7 +5,9 @@ use std::path::Path;
 
 use super::describe;
 use crate::fmi::error::Failure;
-use crate::fmi::package::{self, Document, PackageError, RuntimeLibrary};
+use crate::fmi::model_description::Document;
+use crate::fmi::package::{self, PackageError, RuntimeLibrary};
+use crate::fmi::state::Version;
 use crate::kinematics::Structure;
 use crate::mechanism::{Diagnostic, Mechanism, Severity, Source};
 
@@ -32,17 +34,22 @@ pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
         })
 }
 
-/// Writes the FMU of a mechanism: its file, its model description, runtime libraries and
+/// Writes the FMU of a mechanism for a version of the standard: its file, its model description, runtime libraries and
 /// documents. The same input gives the same bytes.
 ///
 /// # Errors
 ///
 /// `out` cannot be written.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the parts of an archive, which have no common owner"
+)]
 pub fn write_fmu(
     out: impl Write + Seek,
     source: &Source,
     mechanism: &Mechanism,
     structure: &Structure,
+    version: Version,
     libraries: &[RuntimeLibrary],
     documents: &[Document],
     generated: Option<&str>,
@@ -51,7 +58,8 @@ pub fn write_fmu(
     for file in &mechanism.table_files {
         resources.push((file.name.as_str(), file.text.as_bytes()));
     }
-    let description = describe(mechanism, structure);
+    let mut description = describe(mechanism, structure);
+    description.standard = version;
     package::write(
         out,
         &description,

@@ -63,6 +63,8 @@ impl MechanismModel {
             file_carryover: _,
             // Set for each step.
             path: _,
+            // No state is saved during a step.
+            parts: _,
             // Computed with the rates of the drivers.
             sources: _,
             // Computed from the pose.
@@ -139,6 +141,7 @@ impl MechanismModel {
         self.progress = state.progress;
         self.time = state.time;
         self.near_singular = state.near_singular;
+        self.parts = None;
     }
 
     /// Checks that a model can be in a state that was read. Leaves the solver at any pose.

@@ -3,18 +3,29 @@
 //! | file | subject |
 //! |---|---|
 //! | `xml` | helpers of the writers |
-//! | `fmi2` | FMI 2.0, 2.2, 3.3.1 and 4.3.1 |
+//! | `elements` | elements that the versions have alike |
+//! | `fmi2` | FMI 2.0: 2.2, 3.3.1 and 4.3.1 |
+//! | `terminals` | terminals and icon |
+//! | `fmi3` | FMI 3.0: 2.4, 3.4 and 4.4 |
 
+mod elements;
 mod fmi2;
+mod fmi3;
+pub(super) mod terminals;
 mod xml;
 
 use std::collections::BTreeMap;
 
+pub use terminals::{Member, Terminal};
+
+use super::state::Version;
 use super::variable::Variable;
 
 /// Content of `modelDescription.xml`.
 #[derive(Clone, Debug)]
 pub struct ModelDescription<'a, Q> {
+    /// Version of the standard that the file follows.
+    pub standard: Version,
     /// FMI modelName and modelIdentifier: a C identifier.
     pub name: &'a str,
     /// One line for people; may be empty.
@@ -27,7 +38,7 @@ pub struct ModelDescription<'a, Q> {
     pub copyright: Option<&'a str>,
     /// License of the model.
     pub license: Option<&'a str>,
-    /// GUID, which the resources must have too.
+    /// GUID, in FMI 3.0 the instantiation token, which the resources must have too.
     pub guid: String,
     /// Default experiment.
     pub experiment: Experiment,
@@ -39,6 +50,17 @@ pub struct ModelDescription<'a, Q> {
     pub outputs: Vec<Unknown>,
     /// All outputs and calculated parameters.
     pub initial_unknowns: Vec<Unknown>,
+    /// Groups of variables that are connected together.
+    pub terminals: Vec<Terminal>,
+}
+
+/// A file in the archive that documents the FMU.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Document {
+    /// Path in the archive: `model.png`, `documentation/index.html`.
+    pub path: String,
+    /// Content of the file.
+    pub content: Vec<u8>,
 }
 
 /// The default experiment \[s, s, s, 1\].
@@ -63,6 +85,8 @@ pub struct Capabilities {
     pub output_derivatives: u32,
     /// Whether the model provides directional derivatives.
     pub directional_derivatives: bool,
+    /// Whether the model takes steps in parts.
+    pub intermediate_update: bool,
 }
 
 /// A computed variable and its dependencies, as indices counted from 1.
@@ -72,6 +96,9 @@ pub struct Unknown {
     pub index: usize,
     /// Indices of the variables that it depends on, and the kind of each dependency.
     pub dependencies: BTreeMap<usize, DependencyKind>,
+    /// Indices of the parameters that it depends on after initialization, which FMI 3.0 counts
+    /// among the dependencies of an output (2.4.8).
+    pub parameters: BTreeMap<usize, DependencyKind>,
 }
 
 /// Kind of a dependency (FMI 2.0, 2.2.8).
@@ -100,6 +127,9 @@ impl<Q> ModelDescription<'_, Q> {
     /// same bytes.
     #[must_use]
     pub fn write(&self, generated: Option<&str>) -> Vec<u8> {
-        xml::document(|xml| fmi2::write(xml, self, generated))
+        xml::document(|xml| match self.standard {
+            Version::Fmi2 => fmi2::write(xml, self, generated),
+            Version::Fmi3 => fmi3::write(xml, self, generated),
+        })
     }
 }

@@ -94,7 +94,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
         )?)
     }));
     match attempt {
-        Ok(Ok(instance)) => Component::hand_over(instance),
+        Ok(Ok(instance)) => Component::hand_over(instance, None),
         Ok(Err(CallError::Argument(message))) => complain(&message),
         // The instance has told its sink already.
         Ok(Err(_)) => std::ptr::null_mut(),

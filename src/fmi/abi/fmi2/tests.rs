@@ -41,7 +41,7 @@ fn component(sink: impl Sink + Send + 'static) -> fmi2Component {
     let text = include_str!("../../../../mechanisms/pendulum.toml");
     let (mechanism, _) = Mechanism::parse(&Source::new("pendulum.toml", text)).unwrap();
     let model = MechanismModel::new(mechanism.into(), Interface::CoSimulation).unwrap();
-    Component::hand_over(Instance::new(model, Box::new(sink), false))
+    Component::hand_over(Instance::new(model, Box::new(sink), false), None)
 }
 
 /// Answers of each function that goes to an instance, given nothing.

@@ -1,0 +1,46 @@
+//! The host's logger callback.
+
+use std::ffi::c_void;
+
+use super::types::fmi3LogMessageCallback;
+use crate::fmi::abi::component::status_code;
+use crate::fmi::abi::message::{c_string, message_text};
+use crate::fmi::{Category, Sink, Status};
+
+/// The host's logger, with the environment that it wants to be called with.
+pub(super) struct HostLogger {
+    callback: fmi3LogMessageCallback,
+    environment: *mut c_void,
+}
+
+// SAFETY: the environment pointer is never read here, only handed back to the host, which uses an
+// instance from one thread at a time and so gets its callback from one thread at a time.
+unsafe impl Send for HostLogger {}
+
+impl HostLogger {
+    pub(super) fn new(callback: fmi3LogMessageCallback, environment: *mut c_void) -> Self {
+        Self {
+            callback,
+            environment,
+        }
+    }
+}
+
+impl Sink for HostLogger {
+    fn write(&self, status: Status, category: Category, message: &str) {
+        let Some(callback) = self.callback else {
+            return;
+        };
+        let (category, message) = (c_string(category.name()), message_text(message));
+        // SAFETY: the host promises a function with the signature of the header, and all strings
+        // live until it returns.
+        unsafe {
+            callback(
+                self.environment,
+                status_code(status),
+                category.as_ptr(),
+                message.as_ptr(),
+            );
+        }
+    }
+}

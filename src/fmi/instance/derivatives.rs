@@ -1,0 +1,156 @@
+//! Directional and adjoint derivatives, and the dependencies of variables.
+
+use super::{Error, Instance, check_finite};
+use crate::fmi::model::Model;
+use crate::fmi::model_description::DependencyKind;
+use crate::fmi::state::{Call, State, Version};
+use crate::fmi::variable::Causality;
+
+impl<M: Model> Instance<M> {
+    /// `fmi2GetDirectionalDerivative`, `fmi3GetDirectionalDerivative`: returns the directional
+    /// derivatives of outputs by inputs and time, in FMI 3.0 by parameters as well; in
+    /// initialization mode also of calculated parameters and by parameters.
+    ///
+    /// # Errors
+    ///
+    /// A variable is none of these; a change is not finite; or the derivative does not exist for
+    /// the values set.
+    pub fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        changes: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        self.allow(Call::GetDirectionalDerivative)?;
+        let directions = self.knowns(knowns, changes)?;
+        let wanted = self.unknowns(unknowns)?;
+        self.derivatives_along(Call::GetDirectionalDerivative, &wanted, &directions)
+    }
+
+    /// `fmi3GetAdjointDerivative`: returns, per known, the sum over the unknowns of ∂unknown/∂known
+    /// times the unknown's weight (FMI 3.0, 2.2.11).
+    ///
+    /// # Errors
+    ///
+    /// As [`directional_derivative`](Self::directional_derivative).
+    pub fn adjoint_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        weights: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        self.allow(Call::GetAdjointDerivative)?;
+        let wanted = self.unknowns(unknowns)?;
+        for (&value_reference, &weight) in unknowns.iter().zip(weights) {
+            check_finite(&self.variable(value_reference)?.name, weight)?;
+        }
+        let ones = vec![1.0; knowns.len()];
+        let directions = self.knowns(knowns, &ones)?;
+        let mut sums = Vec::with_capacity(directions.len());
+        for direction in directions {
+            let column =
+                self.derivatives_along(Call::GetAdjointDerivative, &wanted, &[direction])?;
+            sums.push(column.iter().zip(weights).map(|(d, w)| d * w).sum());
+        }
+        Ok(sums)
+    }
+
+    fn derivatives_along(
+        &mut self,
+        call: Call,
+        unknowns: &[M::Quantity],
+        directions: &[(M::Quantity, f64)],
+    ) -> Result<Vec<f64>, Error> {
+        let phase = self.state.phase(self.interface);
+        let logger = &self.logger;
+        self.model
+            .directional_derivatives(unknowns, directions, phase, logger)
+            .map_err(|failure| self.failed(call, failure))
+    }
+
+    /// Returns the knowns of derivatives with their changes.
+    fn knowns(
+        &self,
+        value_references: &[u32],
+        changes: &[f64],
+    ) -> Result<Vec<(M::Quantity, f64)>, Error> {
+        let initializing = self.state == State::InitializationMode;
+        let (by_parameters, role) = match self.version {
+            Version::Fmi2 => (
+                initializing,
+                "derivatives are taken by inputs and time, in initialization mode of calculated \
+                 parameters and by parameters as well",
+            ),
+            Version::Fmi3 => (true, "derivatives are taken by inputs, parameters and time"),
+        };
+        let mut knowns = Vec::with_capacity(value_references.len());
+        for (&value_reference, &change) in value_references.iter().zip(changes) {
+            let variable = self.variable(value_reference)?;
+            let known = match variable.causality {
+                Causality::Input | Causality::Independent => true,
+                Causality::Parameter => by_parameters && variable.kind.is_real(),
+                _ => false,
+            };
+            if !known {
+                let name = variable.name.clone();
+                return Err(Error::NoDerivative { name, role });
+            }
+            check_finite(&variable.name, change)?;
+            knowns.push((variable.quantity, change));
+        }
+        Ok(knowns)
+    }
+
+    /// Returns the unknowns of derivatives.
+    fn unknowns(&self, value_references: &[u32]) -> Result<Vec<M::Quantity>, Error> {
+        let initializing = self.state == State::InitializationMode;
+        let role = match self.version {
+            Version::Fmi2 => {
+                "derivatives are taken of outputs, in initialization mode of calculated \
+                 parameters and by parameters as well"
+            }
+            Version::Fmi3 => {
+                "derivatives are taken of outputs, in initialization mode of calculated \
+                 parameters as well"
+            }
+        };
+        if self.version == Version::Fmi3 {
+            self.check_readable(value_references)?;
+        }
+        let mut unknowns = Vec::with_capacity(value_references.len());
+        for &value_reference in value_references {
+            let variable = self.variable(value_reference)?;
+            let unknown = match variable.causality {
+                Causality::Output => true,
+                Causality::CalculatedParameter => initializing,
+                _ => false,
+            };
+            if !unknown {
+                let name = variable.name.clone();
+                return Err(Error::NoDerivative { name, role });
+            }
+            unknowns.push(variable.quantity);
+        }
+        Ok(unknowns)
+    }
+
+    /// `fmi3GetNumberOfVariableDependencies`, `fmi3GetVariableDependencies`: returns the value
+    /// references that a variable depends on, and the kind of each dependency: those of
+    /// initialization mode before its end, and the others after it. None for variables that
+    /// nothing computes.
+    ///
+    /// # Errors
+    ///
+    /// The variable is unknown.
+    pub fn dependencies(
+        &self,
+        call: Call,
+        value_reference: u32,
+    ) -> Result<Vec<(u32, DependencyKind)>, Error> {
+        self.allow(call)?;
+        self.variable(value_reference)?;
+        let initializing = matches!(self.state, State::Instantiated | State::InitializationMode);
+        let found = self.model.dependencies(value_reference, initializing);
+        Ok(found.unwrap_or_default())
+    }
+}

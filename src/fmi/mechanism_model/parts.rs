@@ -1,0 +1,295 @@
+//! A step in parts, between which the host reads outputs and sets inputs: intermediate update of
+//! FMI 3.0 (4.2.1).
+//!
+//! The path of the step leads from the committed pose to the values in force at its end, as that
+//! of a whole step does. Values that the host sets on the way hold from there on: the mechanism
+//! goes to them at that time, and the path starts anew.
+
+use super::MechanismModel;
+use super::force_input::ForceInput;
+use super::input::DriverInput;
+use super::monitor::Monitor;
+use crate::fmi::error::Failure;
+use crate::fmi::log::Logger;
+use crate::kinematics::{Carryover, Curve, Path, Pose, Progress};
+use crate::mechanism::Jet;
+
+/// A step that is being taken in parts.
+#[derive(Debug)]
+pub(super) struct Parts {
+    /// Time of the end \[s\].
+    end: f64,
+    /// The path of the values in force, from the time at which they were set to the end.
+    path: Path,
+    /// Whether values were set at the present time, which the mechanism has not reached yet.
+    split: bool,
+    before: Before,
+}
+
+/// State of the model before the step.
+#[derive(Debug)]
+struct Before {
+    time: f64,
+    committed: Pose,
+    committed_carryover: Carryover,
+    committed_rates: Vec<Jet>,
+    inputs: Vec<DriverInput>,
+    force_inputs: Vec<ForceInput>,
+    lifted: Vec<bool>,
+    monitors: Vec<Monitor>,
+    was_current: bool,
+    near_singular: bool,
+    path_progress: Progress,
+    progress: Progress,
+}
+
+impl MechanismModel {
+    /// Begins a step of size `h` to the time `end`.
+    pub(super) fn begin_parts(&mut self, h: f64, end: f64, log: &Logger) {
+        let was_current = self.note_committed();
+        let before = Before {
+            time: self.time,
+            committed: self.committed.clone(),
+            committed_carryover: self.committed_carryover.clone(),
+            committed_rates: self.committed_rates.clone(),
+            inputs: self.inputs.clone(),
+            force_inputs: self.force_inputs.clone(),
+            lifted: self.lifted.clone(),
+            monitors: self.monitors.clone(),
+            was_current,
+            near_singular: self.near_singular,
+            path_progress: self.path_progress,
+            progress: self.progress,
+        };
+        if !self.at_committed {
+            self.return_to_committed();
+        }
+        self.set_path(self.time, h);
+        self.report_falls(log);
+        self.path_progress = Progress::default();
+        self.parts = Some(Box::new(Parts {
+            end,
+            path: self.path.clone(),
+            split: false,
+            before,
+        }));
+    }
+
+    /// Goes on to `time` and commits the pose there.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Discarded`] if no continuous motion leads there. The mechanism is then at the last
+    /// time whose driver values it reached.
+    pub(super) fn take_part(&mut self, time: f64, log: &Logger) -> Result<(), Failure> {
+        let Some(mut parts) = self.parts.take() else {
+            return Ok(());
+        };
+        let taken = self
+            .reach_values_set(&mut parts, log)
+            .and_then(|()| self.follow_part(&parts, time, log));
+        self.parts = Some(parts);
+        taken
+    }
+
+    /// Lets values that are set from now on hold from the present time on.
+    pub(super) fn split_parts(&mut self, log: &Logger) {
+        if let Some(parts) = &mut self.parts {
+            parts.split = true;
+            let start = parts.path.start;
+            self.complete_step(start, self.time - start, log);
+        }
+    }
+
+    /// Ends the step at the present time, at the values set last.
+    ///
+    /// # Errors
+    ///
+    /// As [`take_part`](Self::take_part).
+    pub(super) fn end_parts(&mut self, log: &Logger) -> Result<(), Failure> {
+        let Some(mut parts) = self.parts.take() else {
+            return Ok(());
+        };
+        let ended = self
+            .reach_values_set(&mut parts, log)
+            .and_then(|()| self.reach_held_values(&parts, log));
+        match ended {
+            Ok(()) => {
+                self.progress = self.path_progress;
+                let start = parts.path.start;
+                self.complete_step(start, self.time - start, log);
+                Ok(())
+            }
+            Err(failure) => {
+                self.parts = Some(parts);
+                Err(failure)
+            }
+        }
+    }
+
+    /// Restores the model as it was before the step.
+    pub(super) fn abandon_parts(&mut self) {
+        let Some(parts) = self.parts.take() else {
+            return;
+        };
+        let Before {
+            time,
+            committed,
+            committed_carryover,
+            committed_rates,
+            inputs,
+            force_inputs,
+            lifted,
+            monitors,
+            was_current,
+            near_singular,
+            path_progress,
+            progress,
+        } = parts.before;
+        self.time = time;
+        self.committed = committed;
+        self.committed_carryover = committed_carryover;
+        self.committed_rates = committed_rates;
+        self.inputs = inputs;
+        self.force_inputs = force_inputs;
+        self.lifted = lifted;
+        self.monitors = monitors;
+        self.near_singular = near_singular;
+        self.path_progress = path_progress;
+        self.progress = progress;
+        self.stay_at_committed(was_current);
+    }
+
+    /// Goes to the values that the host has set at the present time, and lets the path start there.
+    fn reach_values_set(&mut self, parts: &mut Parts, log: &Logger) -> Result<(), Failure> {
+        if std::mem::take(&mut parts.split) {
+            self.set_path(self.time, 0.0);
+            self.follow(log)?;
+            self.set_driver_rates(self.time, 0.0, 0.0);
+            self.commit_pose();
+            self.set_path(self.time, parts.end - self.time);
+            parts.path.clone_from(&self.path);
+        }
+        Ok(())
+    }
+
+    /// Follows the path of the step to `time`.
+    fn follow_part(&mut self, parts: &Parts, time: f64, log: &Logger) -> Result<(), Failure> {
+        let whole = &parts.path;
+        let to_end = time >= parts.end;
+        if to_end && self.time.to_bits() == whole.start.to_bits() {
+            // The same bits as a step that is taken at once.
+            self.path.clone_from(whole);
+        } else {
+            let end = if to_end {
+                1.0
+            } else {
+                (time - whole.start) / whole.duration
+            };
+            self.set_part_of_path(whole, (self.time - whole.start) / whole.duration, end);
+        }
+        let followed = self.follow(log);
+        if followed.is_ok() {
+            self.advance_forces(self.path.duration);
+        }
+        // Also after a dead point, whose time may be earlier.
+        let reached = if followed.is_ok() { time } else { self.time };
+        let s = if to_end && followed.is_ok() {
+            1.0
+        } else {
+            (reached - whole.start) / whole.duration
+        };
+        if followed.is_ok() || self.time > self.path.start {
+            self.set_driver_rates(whole.start, whole.duration, s);
+            self.time = if s < 1.0 { reached } else { parts.end };
+            self.commit_pose();
+        }
+        followed
+    }
+
+    /// Goes to the values in force at the present time where the step ends before its path does:
+    /// held inputs and parameters reach their values at the end of a step.
+    fn reach_held_values(&mut self, parts: &Parts, log: &Logger) -> Result<(), Failure> {
+        if self.time >= parts.end {
+            return Ok(());
+        }
+        let whole = &parts.path;
+        let elapsed = self.time - whole.start;
+        self.path.start = self.time;
+        self.path.duration = 0.0;
+        self.path.from.copy_from_slice(&self.committed.parameters);
+        self.path.to.copy_from_slice(&whole.to);
+        let curves = self.path.curves.iter_mut().zip(&whole.curves);
+        for ((curve, whole), now) in curves.zip(&self.committed.drivers) {
+            if let Curve::Input {
+                position,
+                velocity,
+                acceleration,
+                ..
+            } = *whole
+            {
+                let position = position + elapsed * (velocity + 0.5 * elapsed * acceleration);
+                *curve = Curve::held(position, *now);
+            }
+        }
+        self.follow(log)?;
+        self.set_driver_rates(whole.start, whole.duration, elapsed / whole.duration);
+        self.commit_pose();
+        Ok(())
+    }
+
+    /// Sets the path to the part from `s0` to `s1` of a whole one.
+    fn set_part_of_path(&mut self, whole: &Path, s0: f64, s1: f64) {
+        let path = &mut self.path;
+        path.start = self.time;
+        path.duration = (s1 - s0) * whole.duration;
+        path.from.copy_from_slice(&self.committed.parameters);
+        for ((to, from), end) in path.to.iter_mut().zip(&whole.from).zip(&whole.to) {
+            *to = if s1 < 1.0 {
+                from + s1 * (end - from)
+            } else {
+                *end
+            };
+        }
+        self.mechanism.derive_parameters(&mut path.to);
+        let curves = path.curves.iter_mut().zip(&whole.curves);
+        for ((curve, whole_curve), now) in curves.zip(&self.committed.drivers) {
+            if let Curve::Input {
+                position,
+                velocity,
+                acceleration,
+                jump,
+            } = *whole_curve
+            {
+                let tau = s0 * whole.duration;
+                // The rest of the jump at the end of the part belongs to the part's polynomial.
+                let position =
+                    position + tau * (velocity + 0.5 * tau * acceleration) + (1.0 - s1) * jump;
+                *curve = Curve::Input {
+                    position,
+                    velocity: velocity + tau * acceleration,
+                    acceleration,
+                    jump: now - position,
+                };
+            }
+        }
+    }
+
+    /// Follows the path that is set.
+    fn follow(&mut self, log: &Logger) -> Result<(), Failure> {
+        match self.solver.track(&self.path) {
+            Ok(progress) => {
+                let total = &mut self.path_progress;
+                total.iterations += progress.iterations;
+                total.substeps += progress.substeps;
+                total.crossings += progress.crossings;
+                total.checked += progress.checked;
+                Ok(())
+            }
+            Err(blocked) => {
+                let (start, h) = (self.path.start, self.path.duration);
+                Err(self.fail_step(blocked, start, h, log))
+            }
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Elements of the model description that the versions of the standard have alike.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
+
+use quick_xml::writer::ElementWriter;
+
+use super::xml::{WithOptional, Xml, number};
+use super::{DependencyKind, Experiment};
+use crate::fmi::log::Category;
+use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
+use crate::unit::Unit;
+
+fn real_unit<Q>(variable: &Variable<Q>) -> Option<Unit> {
+    match variable.kind {
+        Kind::Real { unit, .. } => unit,
+        _ => None,
+    }
+}
+
+/// Writes the units of the variables in the order of first use, each with the display units that
+/// variables use.
+pub(super) fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
+    let mut units: Vec<(Unit, Vec<_>)> = Vec::new();
+    for unit in variables.iter().filter_map(real_unit) {
+        let index = units
+            .iter()
+            .position(|(known, _)| known.name == unit.name)
+            .unwrap_or_else(|| {
+                units.push((unit, Vec::new()));
+                units.len() - 1
+            });
+        let displays = &mut units[index].1;
+        displays.extend(unit.display.filter(|display| !displays.contains(display)));
+    }
+    xml.create_element("UnitDefinitions")
+        .write_inner_content(|xml| {
+            for (unit, displays) in &units {
+                let definition = xml
+                    .create_element("Unit")
+                    .with_attribute(("name", unit.name));
+                definition.write_inner_content(|xml| {
+                    let dimension = unit.dimension;
+                    let exponents = [
+                        ("kg", dimension.kg),
+                        ("m", dimension.m),
+                        ("s", dimension.s),
+                        ("rad", dimension.rad),
+                    ];
+                    let mut base = xml.create_element("BaseUnit");
+                    for (name, exponent) in exponents {
+                        if exponent != 0 {
+                            base = base.with_attribute((name, exponent.to_string().as_str()));
+                        }
+                    }
+                    base.write_empty()?;
+                    for display in displays {
+                        xml.create_element("DisplayUnit")
+                            .with_attributes([
+                                ("name", display.name),
+                                ("factor", &number(display.factor)),
+                            ])
+                            .write_empty()?;
+                    }
+                    Ok(())
+                })?;
+            }
+            Ok(())
+        })?;
+    Ok(())
+}
+
+/// Returns the simple type of variables with this unit.
+pub(super) fn type_of(unit: Unit) -> Option<&'static str> {
+    // No variable has such a name (2.2.3): a name of two parts ends with a lower-case word.
+    let types = [
+        (Unit::METRE, "biela.Length"),
+        (Unit::METRE_PER_SECOND, "biela.Velocity"),
+        (Unit::METRE_PER_SECOND_SQUARED, "biela.Acceleration"),
+        (Unit::RADIAN, "biela.Angle"),
+        (Unit::RADIAN_PER_SECOND, "biela.AngularVelocity"),
+        (Unit::RADIAN_PER_SECOND_SQUARED, "biela.AngularAcceleration"),
+    ];
+    let mut types = types.into_iter();
+    types
+        .find(|(known, _)| known.name == unit.name)
+        .map(|(_, name)| name)
+}
+
+/// A declared type.
+pub(super) enum Type {
+    /// A real number with this unit.
+    Real(&'static str, Unit),
+    /// A choice.
+    Enumeration(&'static Enumeration),
+}
+
+/// Returns the types of the variables in the order of first use.
+pub(super) fn types<Q>(variables: &[Variable<Q>]) -> Vec<Type> {
+    let mut names = BTreeSet::new();
+    let mut types = Vec::new();
+    for variable in variables {
+        match variable.kind {
+            Kind::Real {
+                unit: Some(unit), ..
+            } => {
+                // A variable may have another display unit than its type.
+                let usual = Unit::by_name(unit.name).unwrap_or(unit);
+                if let Some(name) = type_of(usual).filter(|name| names.insert(*name)) {
+                    types.push(Type::Real(name, usual));
+                }
+            }
+            Kind::Enumeration(enumeration) if names.insert(enumeration.name) => {
+                types.push(Type::Enumeration(enumeration));
+            }
+            _ => {}
+        }
+    }
+    types
+}
+
+/// Writes quantity and units of a type of real numbers into an element.
+pub(super) fn write_real_type(
+    element: ElementWriter<'_, Vec<u8>>,
+    name: &str,
+    unit: Unit,
+) -> io::Result<()> {
+    let display = unit.display.map(|display| display.name);
+    let quantity = name.trim_start_matches("biela.");
+    element
+        .with_attributes([("quantity", quantity), ("unit", unit.name)])
+        .with_optional(&[("displayUnit", display)])
+        .write_empty()?;
+    Ok(())
+}
+
+/// Writes the items of an enumeration into an element.
+pub(super) fn write_items(
+    element: ElementWriter<'_, Vec<u8>>,
+    enumeration: &Enumeration,
+) -> io::Result<()> {
+    element.write_inner_content(|xml| {
+        for (index, (name, description)) in enumeration.items.iter().enumerate() {
+            xml.create_element("Item")
+                .with_attributes([
+                    ("name", *name),
+                    ("value", &(index + 1).to_string()),
+                    ("description", description),
+                ])
+                .write_empty()?;
+        }
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// Writes the log categories; `always` is appended to the descriptions of those that reach the host
+/// with any settings.
+pub(super) fn write_log_categories(xml: &mut Xml, always: &str) -> io::Result<()> {
+    xml.create_element("LogCategories")
+        .write_inner_content(|xml| {
+            for (category, description) in Category::ALL {
+                let always = if category.always() { always } else { "" };
+                let description = format!("{description}{always}");
+                xml.create_element("Category")
+                    .with_attributes([("name", category.name()), ("description", &description)])
+                    .write_empty()?;
+            }
+            Ok(())
+        })?;
+    Ok(())
+}
+
+/// Writes the default experiment.
+pub(super) fn write_experiment(xml: &mut Xml, experiment: Experiment) -> io::Result<()> {
+    xml.create_element("DefaultExperiment")
+        .with_attributes([
+            ("startTime", number(experiment.start).as_str()),
+            ("stopTime", &number(experiment.stop)),
+            ("tolerance", &number(experiment.tolerance)),
+            ("stepSize", &number(experiment.step)),
+        ])
+        .write_empty()?;
+    Ok(())
+}
+
+/// Returns the name of a causality.
+pub(super) fn causality_name(causality: Causality) -> &'static str {
+    match causality {
+        Causality::Parameter => "parameter",
+        Causality::CalculatedParameter => "calculatedParameter",
+        Causality::Input => "input",
+        Causality::Output => "output",
+        Causality::Local => "local",
+        Causality::Independent => "independent",
+    }
+}
+
+/// Returns the name of a variability.
+pub(super) fn variability_name(variability: Variability) -> &'static str {
+    match variability {
+        Variability::Fixed => "fixed",
+        Variability::Tunable => "tunable",
+        Variability::Discrete => "discrete",
+        Variability::Continuous => "continuous",
+    }
+}
+
+/// Returns the attribute `initial` of variables of a causality.
+pub(super) fn initial_name(causality: Causality) -> Option<&'static str> {
+    match causality {
+        Causality::Parameter => Some("exact"),
+        Causality::CalculatedParameter | Causality::Output | Causality::Local => Some("calculated"),
+        Causality::Input | Causality::Independent => None,
+    }
+}
+
+/// Returns dependencies as a list of numbers and a list of kinds; `number` converts an index.
+pub(super) fn lists(
+    dependencies: &BTreeMap<usize, DependencyKind>,
+    number: impl Fn(&usize) -> usize,
+) -> [String; 2] {
+    let numbers = dependencies.keys().map(|index| number(index).to_string());
+    let kinds = dependencies.values().map(|kind| kind.name());
+    [
+        numbers.collect::<Vec<_>>().join(" "),
+        kinds.collect::<Vec<_>>().join(" "),
+    ]
+}
