@@ -77,6 +77,7 @@ PARTS = {
     "a value … bytes before its end is impossible": "no instance can be in the serialized FMU state: …",
     "its change points do not belong to this mechanism": "no instance can be in the serialized FMU state: …",
     "its joints are open by …": "no instance can be in the serialized FMU state: …",
+    "its choice of equations is none of this mechanism": "no instance can be in the serialized FMU state: …",
     "from theta = … to … deg": "does not fit into hollows: …",
     ", and in … more places": "does not fit into hollows: …",
     "initialized at t = … s": "an event",
