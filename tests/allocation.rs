@@ -13,7 +13,9 @@ mod generated;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use biela::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
+use biela::fmi::{
+    Category, CoSimulation, Instance, Interface, MechanismModel, Sink, Status, Version,
+};
 use biela::kinematics::Rates;
 use biela::mechanism::{Jet, MarkerId};
 use common::{assembled, parse, shipped, straight_to};
@@ -122,6 +124,45 @@ fn a_cycle_of_set_step_and_get_allocates_nothing() {
         });
         assert_eq!(count, 0, "{name}");
         assert!(values.iter().all(|value| value.is_finite()));
+    }
+}
+
+/// Steps of FMI 3.0 with and without early return, and events between them.
+#[test]
+fn steps_and_events_of_fmi_3_allocate_nothing() {
+    for name in ["pendulum", "four_bar", "jansen_leg", "andrews"] {
+        for early_return_allowed in [false, true] {
+            let model = MechanismModel::new(shipped(name), Interface::CoSimulation).unwrap();
+            let mut instance = Instance::of_version(Version::Fmi3, model, Box::new(Silent), false);
+            let agreed = CoSimulation {
+                event_mode_used: true,
+                early_return_allowed,
+                ..CoSimulation::default()
+            };
+            instance.agree(agreed).unwrap();
+            let references: Vec<u32> = (0..instance.variables().len() as u32)
+                .filter(|vr| {
+                    let variable = &instance.variables()[*vr as usize];
+                    variable.kind.is_real()
+                })
+                .collect();
+            let mut values = vec![0.0; references.len()];
+            instance.enter_initialization_mode_at(0.0, None).unwrap();
+            instance.exit_initialization_mode().unwrap();
+            let count = allocations(|| {
+                for step in 0..50 {
+                    let t = 0.01 * f64::from(step);
+                    instance.set_real(&[0, 1, 2], &[0.6 + t, 1.0, 0.1]).unwrap();
+                    instance.get_real(&references, &mut values).unwrap();
+                    instance.new_discrete_states().unwrap();
+                    instance.enter_step_mode().unwrap();
+                    instance.begin_step(t, 0.01).unwrap();
+                    instance.get_real(&references, &mut values).unwrap();
+                    instance.enter_event_mode().unwrap();
+                }
+            });
+            assert_eq!(count, 0, "{name}");
+        }
     }
 }
 
