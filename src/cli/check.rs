@@ -1,7 +1,7 @@
 //! `biela check`
 
 mod forces;
-mod json;
+pub(super) mod json;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -1,72 +1,13 @@
-//! The quantities of a run, as columns of its results.
+//! Choices among the columns of a run.
 
 use super::error::Error;
 use super::motion::Motion;
-use crate::fmi::{Kind, Order, Quantity, Signal, variables};
+use crate::fmi::Signal;
+pub(super) use crate::fmi::{Column, ColumnSource as Source};
 use crate::kinematics::ForceQuantity;
-use crate::mechanism::{BodyId, MarkerId, Mechanism, ParameterId, Unit, help};
-
-/// One quantity of a run.
-#[derive(Clone, Debug)]
-pub(super) struct Column {
-    /// Name of the FMU's variable.
-    pub(super) name: String,
-    pub(super) source: Source,
-    pub(super) unit: Unit,
-}
-
-/// Meaning of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Source {
-    /// A signal or a time derivative of it.
-    Signal(Signal, Order),
-    /// A measure that is computed from others, by its index.
-    Derived(usize),
-    /// A force, an energy or an inertia.
-    Force(ForceQuantity),
-}
-
-impl Source {
-    /// Returns whether two columns belong to one signal.
-    pub(super) fn is_akin(self, other: Self) -> bool {
-        match (self, other) {
-            (Self::Signal(one, _), Self::Signal(other, _)) => one == other,
-            (one, other) => one == other,
-        }
-    }
-}
+use crate::mechanism::{BodyId, MarkerId, Mechanism, help};
 
 impl Column {
-    /// Returns value, velocity and acceleration of every driver, then all outputs of the FMU.
-    pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
-        let variables = variables(mechanism).into_iter();
-        let mut columns: Vec<Self> = variables
-            .filter_map(|variable| {
-                let Kind::Real { unit, .. } = variable.kind else {
-                    return None;
-                };
-                let source = match variable.quantity {
-                    // In a run an input follows a motion.
-                    Quantity::Input(driver, order) => Source::Signal(Signal::Motion(driver), order),
-                    Quantity::Output(signal, order) => Source::Signal(signal, order),
-                    Quantity::Derived(index, _) => Source::Derived(index),
-                    Quantity::Force(force) => Source::Force(force),
-                    _ => return None,
-                };
-                Some(Self {
-                    name: variable.name,
-                    source,
-                    unit: unit.unwrap_or(Unit::ONE),
-                })
-            })
-            .collect();
-        columns.sort_by_key(|column| match column.source {
-            Source::Signal(Signal::Motion(driver), _) => driver.index(),
-            _ => usize::MAX,
-        });
-        columns
-    }
-
     /// Returns the columns of these names: of a variable, or of a body, marker, driver or measure
     /// with all its variables.
     pub(super) fn named(
@@ -115,35 +56,17 @@ impl Column {
     /// Returns the columns that a film tells in numbers by default: positions of drivers, points
     /// of interest and measures.
     pub(super) fn told(columns: &[Self]) -> Vec<Self> {
-        let columns = columns.iter().filter(|column| match column.source {
-            Source::Signal(Signal::Body(..), _) => false,
-            Source::Signal(_, order) => order == Order::Position,
-            Source::Derived(_) => true,
-            Source::Force(_) => false,
-        });
-        columns.cloned().collect()
-    }
-
-    /// Returns whether it shows a force.
-    pub(super) fn is_force(&self) -> bool {
-        matches!(self.source, Source::Force(_))
+        let told = columns.iter().filter(|column| column.is_told());
+        told.cloned().collect()
     }
 
     /// Returns the current value \[SI\].
     pub(super) fn read(&self, motion: &Motion) -> f64 {
-        let Motion {
-            solver,
-            rates,
-            driver_rates,
-            ..
-        } = motion;
         match self.source {
-            Source::Signal(signal, order) => order.of(signal.jet(solver, rates, driver_rates)),
-            Source::Derived(index) => solver.mechanism().derived[index].evaluate(
-                &|p: ParameterId| solver.pose().parameters[p.index()],
-                &|signal, order| order.of(signal.jet(solver, rates, driver_rates)),
-            ),
             Source::Force(force) => motion.force(force),
+            Source::Signal(..) | Source::Derived(_) => {
+                self.value(&motion.solver, &motion.rates, &motion.driver_rates)
+            }
         }
     }
 }

@@ -121,17 +121,14 @@ impl Conditions {
         let names = mechanism.parameters.iter().map(|p| p.name.as_str());
         for (index, text) in SET.assignments(&self.set, &names.collect::<Vec<_>>())? {
             let parameter = &mechanism.parameters[index];
-            if parameter.derived {
-                return Err(Error::Usage(format!(
-                    "--set: `{}` is derived from other parameters; set those",
-                    parameter.name
-                )));
-            }
+            check_settable(parameter)
+                .map_err(|message| Error::Usage(format!("--set: {message}")))?;
             values[index] = mechanism
                 .parse_expression(text, None)
                 .map_err(|error| SET.refuse(text, &error))?
                 .evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
-            check_limits(parameter, values[index])?;
+            check_limits(parameter, values[index])
+                .map_err(|message| Error::Usage(format!("--set: {message}")))?;
         }
         mechanism.derive_parameters(&mut values);
         Ok(values)
@@ -296,8 +293,19 @@ fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
     Error::Usage(message)
 }
 
+/// Refuses a parameter that follows from others.
+pub(super) fn check_settable(parameter: &Parameter) -> Result<(), String> {
+    if parameter.derived {
+        return Err(format!(
+            "`{}` is derived from other parameters; set those",
+            parameter.name
+        ));
+    }
+    Ok(())
+}
+
 /// Refuses a value that the FMU refuses, in its words.
-fn check_limits(parameter: &Parameter, value: f64) -> Result<(), Error> {
+pub(super) fn check_limits(parameter: &Parameter, value: f64) -> Result<(), String> {
     let limits = [parameter.min, parameter.max];
     fmi::error::check_limits(&parameter.name, value, limits).map_err(|error| {
         let unit = parameter.unit.filter(|unit| *unit != Unit::ONE);
@@ -305,16 +313,21 @@ fn check_limits(parameter: &Parameter, value: f64) -> Result<(), Error> {
             (fmi::Error::Range { .. }, Some(unit)) => format!(" {}", unit.name),
             _ => String::new(),
         };
-        Error::Usage(format!("--set: {error}{unit}"))
+        format!("{error}{unit}")
     })
 }
 
 /// Returns the error of an unknown name, with the known name that may be meant.
 pub(super) fn unknown(option: &str, kind: &str, name: &str, names: &[&str]) -> Error {
+    Error::Usage(format!("{option}: {}", unknown_name(kind, name, names)))
+}
+
+/// Says that a name is unknown, with the known name that may be meant.
+pub(super) fn unknown_name(kind: &str, name: &str, names: &[&str]) -> String {
     let help = match names {
         [] => Some("the mechanism has none".to_owned()),
         _ => help(name, names, &[]),
     };
     let help = help.map_or_else(String::new, |help| format!("; {help}"));
-    Error::Usage(format!("{option}: no {kind} `{name}`{help}"))
+    format!("no {kind} `{name}`{help}")
 }

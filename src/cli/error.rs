@@ -1,7 +1,6 @@
 //! Errors of commands, and their exit status.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use super::message::Message;
 use super::stdout::shown;
@@ -57,18 +56,16 @@ impl Error {
     }
 
     /// Returns 1 for an error in the mechanism, 2 for one in the command.
-    pub(super) fn exit_code(&self) -> ExitCode {
+    pub(super) fn exit_status(&self) -> u8 {
         match self {
-            Self::Diagnosed | Self::Mechanism { .. } | Self::DeadPoint { .. } => ExitCode::from(1),
+            Self::Diagnosed | Self::Mechanism { .. } | Self::DeadPoint { .. } => 1,
             // A reader that has read enough closes the pipe.
-            Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => {
-                ExitCode::SUCCESS
-            }
+            Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => 0,
             Self::Usage(_)
             | Self::Read { .. }
             | Self::Write { .. }
             | Self::Listen { .. }
-            | Self::Package(_) => ExitCode::from(2),
+            | Self::Package(_) => 2,
         }
     }
 }

@@ -14,7 +14,7 @@ use super::message::tell;
 use super::output::write;
 use super::runtime;
 use super::stdout::is_stdout;
-use crate::fmi::{Platform, Version, describe, write_fmu};
+use crate::fmi::{Platform, RuntimeLibrary, Version, describe, write_fmu};
 use crate::kinematics::Solver;
 
 /// Export a mechanism as an FMU, for co-simulation and for model exchange.
@@ -83,19 +83,7 @@ impl Export {
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
-        let documents = documentation::documents(&input, &solver, self.fmi)?;
-        let mut archive = Cursor::new(Vec::new());
-        write_fmu(
-            &mut archive,
-            &input.source,
-            mechanism,
-            solver.structure(),
-            self.fmi,
-            &libraries,
-            &documents,
-            generated.as_deref(),
-        )?;
-        write(&path, archive.get_ref())?;
+        write(&path, &pack(&input, &solver, self.fmi, &libraries)?)?;
         let platforms: Vec<_> = (libraries.iter())
             .map(|library| library.platform.folder(self.fmi))
             .collect();
@@ -109,8 +97,30 @@ impl Export {
     }
 }
 
+/// Returns the FMU of a mechanism, which `solver` has assembled.
+pub(super) fn pack(
+    input: &Input,
+    solver: &Solver,
+    version: Version,
+    libraries: &[RuntimeLibrary],
+) -> Result<Vec<u8>, Error> {
+    let documents = documentation::documents(input, solver, version)?;
+    let mut archive = Cursor::new(Vec::new());
+    write_fmu(
+        &mut archive,
+        &input.source,
+        &input.mechanism,
+        solver.structure(),
+        version,
+        libraries,
+        &documents,
+        generation_time()?.as_deref(),
+    )?;
+    Ok(archive.into_inner())
+}
+
 /// Reads the name of a platform.
-fn platform(name: &str) -> Result<Platform, String> {
+pub(super) fn platform(name: &str) -> Result<Platform, String> {
     Platform::named(name).ok_or_else(|| {
         let names = Platform::ALL.map(|platform| platform.name);
         format!("expected one of {}", names.join(", "))
@@ -118,7 +128,7 @@ fn platform(name: &str) -> Result<Platform, String> {
 }
 
 /// Reads a version of FMI.
-fn version(text: &str) -> Result<Version, String> {
+pub(super) fn version(text: &str) -> Result<Version, String> {
     match text {
         "2" | "2.0" => Ok(Version::Fmi2),
         "3" | "3.0" => Ok(Version::Fmi3),

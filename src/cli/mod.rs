@@ -1,7 +1,8 @@
 //! The command line: one file per command.
 //!
 //! Results go to stdout, messages to stderr. The exit status is 0 for success, 1 for an error in
-//! the mechanism, 2 for an error in the command.
+//! the mechanism, 2 for an error in the command. Some commands are also functions, for programs
+//! without a command line.
 
 mod check;
 mod column;
@@ -15,6 +16,7 @@ mod export;
 mod film;
 mod input;
 mod input_files;
+mod library;
 mod message;
 mod motion;
 mod new;
@@ -32,12 +34,16 @@ mod schema;
 mod signals;
 mod stdout;
 mod suggested_estimates;
+mod times;
+mod tolerance;
 mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+pub use library::{archive, check, check_parameter, describe_end, parameter_value, unknown_name};
 
 /// Planar mechanisms as text files: check them, run them, export them as FMUs.
 ///
@@ -58,6 +64,7 @@ enum Command {
     Check(check::Check),
     Run(run::Run),
     Range(range::Range),
+    Tolerance(tolerance::Tolerance),
     Draw(draw::Draw),
     Watch(watch::Watch),
     Export(export::Export),
@@ -68,12 +75,17 @@ enum Command {
 
 /// Runs the program with these arguments, the first being its own name.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    ExitCode::from(status(arguments))
+}
+
+/// Runs the program with these arguments and returns its exit status.
+pub fn status(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // clap prints help to stdout and errors to stderr; a closed pipe is no error.
             let _ = error.print();
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+            return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
     let outcome = match arguments.command {
@@ -81,6 +93,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(command) => command.run(),
         Command::Run(command) => command.run(),
         Command::Range(command) => command.run(),
+        Command::Tolerance(command) => command.run(),
         Command::Draw(command) => command.run(),
         Command::Watch(command) => command.run(),
         Command::Export(command) => command.run(),
@@ -89,10 +102,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Completions(command) => command.run(),
     };
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(error) => {
             error.show();
-            error.exit_code()
+            error.exit_status()
         }
     }
 }

@@ -4,8 +4,7 @@ use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
 use crate::kinematics::{
-    Blocked, Curve, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Path, Rates, Reason,
-    Solver,
+    Blocked, Curve, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Path, Rates, Solver,
 };
 use crate::mechanism::{DriverId, Jet, shown};
 
@@ -180,35 +179,10 @@ impl Motion {
 
     /// Says what stops the mechanism, when, and at which values of the moving drivers.
     fn describe(&self, blocked: &Blocked) -> String {
-        let reason = match &blocked.reason {
-            Reason::Value(error) => error.to_string(),
-            Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
-            Reason::TooLong => "the motion is too fast for the steps".to_owned(),
-            Reason::Singular(point) => point.to_string(),
-            Reason::Jump(driver) => {
-                let driver = &self.solver.mechanism().drivers[driver.index()];
-                format!("the motion of driver `{}` jumps", driver.name)
-            }
-            _ => "no continuous motion".to_owned(),
-        };
-        let pose = self.solver.pose();
-        let values = match &blocked.reason {
-            Reason::Singular(point) => &point.drivers,
-            _ => &pose.drivers,
-        };
-        let drivers = self.solver.mechanism().drivers.iter().zip(values);
-        let moving: Vec<String> = drivers
-            .enumerate()
-            .filter(|(index, (driver, _))| {
-                driver.motion().is_some() || self.signals.has(DriverId(*index))
-            })
-            .map(|(_, (driver, value))| {
-                let value = driver.coordinate.kind.show(*value);
-                format!("`{}` at {value}", driver.name)
-            })
-            .collect();
-        let (time, moving) = (pose.time, moving.join(", "));
-        format!("{reason} at t = {time:.9} s: the mechanism cannot go on, with {moving}")
+        let mechanism = self.solver.mechanism();
+        blocked.describe(mechanism, self.solver.pose(), |driver| {
+            mechanism.drivers[driver.index()].motion().is_some() || self.signals.has(driver)
+        })
     }
 
     fn solve_rates(&mut self) -> Result<(), Error> {

@@ -19,7 +19,8 @@ use super::plot::Plot;
 use super::progress::Progress;
 use super::recorder::Recorder;
 use super::stdout::{STDOUT, is_stdout};
-use crate::mechanism::{Driver, DriverSource, Mechanism, Motion as Prescribed, shown};
+use super::times::{Span, Times};
+use crate::mechanism::{Driver, DriverSource, Mechanism, Motion as Prescribed};
 
 /// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
@@ -48,15 +49,8 @@ pub(super) struct Run {
     /// by commas, semicolons, tabs or blanks.
     #[arg(short, long, value_name = "CSV")]
     input: Option<PathBuf>,
-    /// Start time in seconds [default: the file's].
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    start: Option<f64>,
-    /// Stop time in seconds [default: the file's].
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    stop: Option<f64>,
-    /// Time between rows in seconds [default: the file's].
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    step: Option<f64>,
+    #[command(flatten)]
+    span: Span,
     /// Variables to write and plot, separated by commas: one such as crank.phi, or all variables
     /// of a body, marker, driver, measure, joint or force by its name [default: in the CSV all; in
     /// plots drivers with their efforts and measures, or points of interest, or bodies].
@@ -76,8 +70,6 @@ pub(super) struct Run {
     animate: Option<PathBuf>,
 }
 
-/// Largest number of rows; more are a slip in --step.
-const MOST_ROWS: f64 = 1e9;
 /// Largest number of rows that a picture holds.
 const MOST_PLOTTED: u64 = 1_000_000;
 /// Size of a CSV \[bytes\] above which a note tells it before.
@@ -94,7 +86,13 @@ impl Run {
         self.check_page()?;
         let input = Input::read(&self.file)?;
         self.refuse_overwriting(&input.mechanism)?;
-        let times = self.times(&input.mechanism)?;
+        let times = self.span.times(&input.mechanism)?;
+        let rows = times.steps + 1;
+        if self.plot.is_some() && rows > MOST_PLOTTED {
+            return Err(Error::Usage(format!(
+                "--plot: {rows} rows are more than the {MOST_PLOTTED} of which a picture is made"
+            )));
+        }
         let scenario =
             (self.conditions).scenario(&input.mechanism, times.start, self.input.as_deref())?;
         let all = Column::all(&scenario.mechanism);
@@ -184,48 +182,6 @@ impl Run {
         Ok(())
     }
 
-    fn times(&self, mechanism: &Mechanism) -> Result<Times, Error> {
-        let simulation = &mechanism.simulation;
-        let start = self.start.unwrap_or(simulation.start);
-        let stop = self.stop.unwrap_or(simulation.stop);
-        let step = self.step.unwrap_or(simulation.step);
-        let refuse = |message: String| Err(Error::Usage(message));
-        for (option, value) in [("--start", start), ("--stop", stop), ("--step", step)] {
-            if !value.is_finite() {
-                return refuse(format!("{option} is {value}; expected a finite number"));
-            }
-        }
-        let [from, to, apart] = [start, stop, step].map(shown);
-        if stop < start {
-            return refuse(format!(
-                "cannot run from {from} s to {to} s: the stop time must not be before the start"
-            ));
-        }
-        if step <= 0.0 {
-            return refuse(format!("--step is {apart}; expected a positive time"));
-        }
-        // A last step shorter than this part of the others is rounding.
-        let steps = ((stop - start) / step - 1e-9).ceil().max(0.0);
-        if steps >= MOST_ROWS {
-            return refuse(format!(
-                "a step of {apart} s from {from} s to {to} s makes more than {MOST_ROWS:e} rows"
-            ));
-        }
-        let steps = steps as u64;
-        let rows = steps + 1;
-        if self.plot.is_some() && rows > MOST_PLOTTED {
-            return refuse(format!(
-                "--plot: {rows} rows are more than the {MOST_PLOTTED} of which a picture is made"
-            ));
-        }
-        Ok(Times {
-            start,
-            stop,
-            step,
-            steps,
-        })
-    }
-
     /// Refuses a page whose name is not that of a page.
     fn check_page(&self) -> Result<(), Error> {
         match &self.animate {
@@ -293,22 +249,4 @@ fn example(driver: &Driver) -> Option<String> {
 /// Rounds to six digits.
 fn round(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
-}
-
-/// Times of the rows.
-struct Times {
-    start: f64,
-    stop: f64,
-    step: f64,
-    steps: u64,
-}
-
-impl Times {
-    fn at(&self, row: u64) -> f64 {
-        match row {
-            0 => self.start,
-            row if row == self.steps => self.stop,
-            row => self.start + row as f64 * self.step,
-        }
-    }
 }

@@ -23,6 +23,8 @@ pub struct Parameter {
     pub min: Option<f64>,
     /// Largest permitted value \[SI\].
     pub max: Option<f64>,
+    /// Largest deviation of the real value from the value in the file, up or down \[SI\].
+    pub tolerance: Option<f64>,
 }
 
 impl Mechanism {

@@ -72,6 +72,15 @@ impl Source {
         })
     }
 
+    /// Returns the source with the folder of the files that it names.
+    #[must_use]
+    pub fn in_folder(self, folder: impl Into<PathBuf>) -> Self {
+        Self {
+            folder: Some(folder.into()),
+            ..self
+        }
+    }
+
     /// Returns the content of a file in the same folder.
     ///
     /// # Errors

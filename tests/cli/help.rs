@@ -13,6 +13,7 @@ fn help_goes_to_stdout() {
         &["export", "-h"],
         &["new", "-h"],
         &["range", "--help"],
+        &["tolerance", "--help"],
         &["watch", "--help"],
         &["schema", "--help"],
         &["completions", "-h"],

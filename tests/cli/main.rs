@@ -15,3 +15,4 @@ mod pictures_of_runs;
 mod program;
 mod range;
 mod run;
+mod tolerance;

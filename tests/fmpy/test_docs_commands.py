@@ -84,7 +84,14 @@ def run(at, command, folder, *, may_fail=False) -> list[str]:
     path = os.pathsep.join(
         [str(program().parent), str(Path(sys.executable).parent), os.environ["PATH"]]
     )
-    environment = {**os.environ, "PATH": path, "MPLBACKEND": "agg", "BIELA_EXAMPLE": "small"}
+    environment = {
+        **os.environ,
+        "PATH": path,
+        # The module that `make module` has built.
+        "PYTHONPATH": str(ROOT / "python"),
+        "MPLBACKEND": "agg",
+        "BIELA_EXAMPLE": "small",
+    }
     done = subprocess.run(
         command,
         cwd=folder,

@@ -11,38 +11,49 @@ use crate::cli::error::Error;
 use crate::kinematics::{self, Element, Path, Rates, Solver, System};
 use crate::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
 
-/// Returns the report on a file, in SI units, and the outcome of the command.
-///
-/// Keys without a value are left out: `mechanism` if the file has errors, `assembled` if the
-/// mechanism does not close, `modes` if they were not asked for.
+/// Returns the report on a file and the outcome of the command.
 ///
 /// The report tells all errors but that of a file that cannot be read.
 pub(super) fn report(file: &FilePath, modes: bool) -> (Value, Result<(), Error>) {
     let name = file.display().to_string();
-    let mut report = json!({ "file": name, "ok": false });
-    let source = match Source::open(name, file) {
-        Ok(source) => source,
+    match Source::open(name.clone(), file) {
+        Ok(source) => {
+            let report = report_on(&source, modes);
+            let outcome = match report["ok"].as_bool() {
+                Some(true) => Ok(()),
+                _ => Err(Error::Diagnosed),
+            };
+            (report, outcome)
+        }
         Err(source) => {
             let path = file.to_owned();
             let error = Error::Read { path, source };
-            report["error"] = json!({ "message": error.to_string() });
-            return (report, Err(error));
+            let message = error.to_string();
+            let report = json!({ "file": name, "ok": false, "error": { "message": message } });
+            (report, Err(error))
         }
-    };
-    let (mechanism, warnings) = match Mechanism::parse(&source) {
+    }
+}
+
+/// Returns the report on a mechanism, in SI units.
+///
+/// Keys without a value are left out: `mechanism` if the file has errors, `assembled` if the
+/// mechanism does not close, `modes` if they were not asked for.
+pub(in crate::cli) fn report_on(source: &Source, modes: bool) -> Value {
+    let mut report = json!({ "file": source.name(), "ok": false });
+    let (mechanism, warnings) = match Mechanism::parse(source) {
         Ok((mechanism, warnings)) => (Arc::new(mechanism), warnings),
         Err(errors) => {
-            report["diagnostics"] = diagnostics(&source, &errors);
-            return (report, Err(Error::Diagnosed));
+            report["diagnostics"] = diagnostics(source, &errors);
+            return report;
         }
     };
-    report["diagnostics"] = diagnostics(&source, &warnings);
+    report["diagnostics"] = diagnostics(source, &warnings);
     report["mechanism"] = describe(&mechanism);
     match assembled(&mechanism, modes) {
         Ok(found) => {
             report["ok"] = json!(true);
             report["assembled"] = found;
-            (report, Ok(()))
         }
         Err(error) => {
             report["error"] = json!({ "message": error.to_string() });
@@ -53,9 +64,9 @@ pub(super) fn report(file: &FilePath, modes: bool) -> (Value, Result<(), Error>)
                     .collect();
                 report["error"]["nearest"] = poses(&mechanism, nearest);
             }
-            (report, Err(Error::Diagnosed))
         }
     }
+    report
 }
 
 fn diagnostics(source: &Source, diagnostics: &[Diagnostic]) -> Value {

@@ -7,7 +7,7 @@ use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Direction, Sensitivity};
-use crate::mechanism::{DriverId, Jet, ParameterId};
+use crate::mechanism::{DriverId, Jet};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.
@@ -60,18 +60,6 @@ impl MechanismModel {
         } else {
             None
         };
-        // Values at the pose, of what measures are computed from.
-        let mut signals: Vec<((Signal, Order), f64)> = Vec::new();
-        for unknown in unknowns {
-            if let Quantity::Derived(index, _) = *unknown {
-                signals.extend(self.mechanism.derived[index].signals().map(|of| {
-                    let (signal, order) = of;
-                    let jet = signal.jet(&self.solver, &self.rates, &self.driver_rates);
-                    (of, order.of(jet))
-                }));
-            }
-        }
-        let parameters = self.solver.pose().parameters.clone();
         let sensitivity = self
             .solver
             .sensitivity(&self.rates, &self.driver_rates, &direction)
@@ -79,18 +67,7 @@ impl MechanismModel {
         let change = |&unknown: &Quantity| match unknown {
             Quantity::Output(signal, order) => order.of(signal.change(&sensitivity)),
             Quantity::Parameter(parameter) => sensitivity.parameter(parameter),
-            Quantity::Derived(index, _) => {
-                let parameter = |id: ParameterId| {
-                    Jet::linear(parameters[id.index()], sensitivity.parameter(id))
-                };
-                let signal = |signal: Signal, order: Order| {
-                    let known = signals.iter().find(|(of, _)| *of == (signal, order));
-                    let value = known.map_or(f64::NAN, |(_, value)| *value);
-                    Jet::linear(value, order.of(signal.change(&sensitivity)))
-                };
-                let measure = &self.mechanism.derived[index];
-                measure.evaluate(&parameter, &signal).first()
-            }
+            Quantity::Derived(index, _) => sensitivity.derived(&self.mechanism.derived[index]),
             Quantity::Force(force) => of_forces.as_ref().map_or(0.0, |f| f.change(force)),
             _ => unreachable!("unknowns are outputs and parameters"),
         };
@@ -117,7 +94,8 @@ impl MechanismModel {
 
 impl Signal {
     /// Returns the changes of value, velocity and acceleration.
-    fn change(self, sensitivity: &Sensitivity<'_>) -> Jet {
+    #[must_use]
+    pub fn change(self, sensitivity: &Sensitivity<'_>) -> Jet {
         match self {
             Self::Body(body, component) => sensitivity.coordinate(3 * body.index() + component),
             Self::Marker(marker, component) => sensitivity.marker(marker)[component],

@@ -2,7 +2,7 @@
 //!
 //! | file | subject |
 //! |---|---|
-//! | `variables` | the table of variables |
+//! | `variables`, `column` | the table of variables, and those that a run records |
 //! | `description`, `guid`, `resource` | the FMU's files |
 //! | `rule` | the parameters `rates` and `extrapolation`, and the sources of rates |
 //! | `history` | the last samples of one driver, and the rates estimated from them |
@@ -17,6 +17,7 @@
 //! | `derivatives` | directional derivatives |
 //! | `state` | the saved state |
 
+mod column;
 mod derivatives;
 mod description;
 mod force_input;
@@ -37,6 +38,7 @@ mod variables;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
+pub use column::{Column, ColumnSource};
 pub use description::describe;
 pub use guid::guid;
 pub use resource::{RESOURCE, write_fmu};

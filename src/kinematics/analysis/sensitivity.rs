@@ -20,7 +20,9 @@ use crate::kinematics::path::Rates;
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::Target;
 use crate::kinematics::variation::{Varied, VariedConfiguration, VariedVector, evaluate};
-use crate::mechanism::{DriverId, Dual, Jet, MarkerId, MotionInForce, ParameterId};
+use crate::mechanism::{
+    DerivedMeasure, DriverId, Dual, Jet, MarkerId, MotionInForce, Order, ParameterId, Signal,
+};
 
 /// A direction in the space of drivers and parameters.
 #[derive(Clone, Debug)]
@@ -82,6 +84,26 @@ impl Sensitivity<'_> {
     /// Returns a parameter with its change.
     pub(in crate::kinematics) fn parameter_value(&self, parameter: ParameterId) -> Dual {
         self.parameters[parameter.index()].value
+    }
+
+    /// Returns the change of a measure that is computed from others.
+    #[must_use]
+    pub fn derived(&self, measure: &DerivedMeasure) -> f64 {
+        let signal = |signal: Signal, order: Order| {
+            let varied = match signal {
+                Signal::Body(body, component) => self.at.coordinate(3 * body.index() + component),
+                Signal::Marker(marker, component) => self.at.marker(marker).point[component],
+                Signal::Measure(index) => self.measures[index].along(&self.at),
+                Signal::Motion(driver) => self.drivers[driver.index()],
+            };
+            match order {
+                Order::Position => varied.value,
+                Order::Velocity => varied.derivatives[0],
+                Order::Acceleration => varied.derivatives[1],
+            }
+        };
+        let parameter = |id: ParameterId| self.parameter_value(id);
+        measure.evaluate(&parameter, &signal).first()
     }
 
     /// Returns the change of a parameter; the change of a derived one follows from the others.

@@ -3,7 +3,8 @@
 use crate::kinematics::Error;
 use crate::kinematics::error::OpenJoint;
 use crate::kinematics::singular::SingularPoint;
-use crate::mechanism::DriverId;
+use crate::kinematics::state::Pose;
+use crate::mechanism::{DriverId, Mechanism};
 
 /// The cause of a stop before the end of a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,4 +51,42 @@ pub struct Blocked {
     pub reason: Reason,
     /// The work spent.
     pub progress: Progress,
+}
+
+impl Blocked {
+    /// Returns the cause of the stop, its time, and the values of the drivers that move; `pose` is
+    /// the last one reached.
+    #[must_use]
+    pub fn describe(
+        &self,
+        mechanism: &Mechanism,
+        pose: &Pose,
+        moves: impl Fn(DriverId) -> bool,
+    ) -> String {
+        let reason = match &self.reason {
+            Reason::Value(error) => error.to_string(),
+            Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
+            Reason::TooLong => "the motion is too fast for the steps".to_owned(),
+            Reason::Singular(point) => point.to_string(),
+            Reason::Jump(driver) => {
+                let driver = &mechanism.drivers[driver.index()];
+                format!("the motion of driver `{}` jumps", driver.name)
+            }
+            Reason::Lost => "no continuous motion".to_owned(),
+        };
+        let values = match &self.reason {
+            Reason::Singular(point) => &point.drivers,
+            _ => &pose.drivers,
+        };
+        let drivers = (0..).map(DriverId).zip(&mechanism.drivers).zip(values);
+        let moving: Vec<String> = drivers
+            .filter(|((id, _), _)| moves(*id))
+            .map(|((_, driver), value)| {
+                let value = driver.coordinate.kind.show(*value);
+                format!("`{}` at {value}", driver.name)
+            })
+            .collect();
+        let (time, moving) = (pose.time, moving.join(", "));
+        format!("{reason} at t = {time:.9} s: the mechanism cannot go on, with {moving}")
+    }
 }

@@ -15,7 +15,7 @@ use super::context::Context;
 use super::kind::{Described, Entry, Flag, Item, Kind, Text, Word, schema};
 #[cfg(feature = "cli")]
 use super::number::NUMBER;
-use super::number::{Formula, Quantity};
+use super::number::{Formula, Limit, Quantity};
 use super::table::{Field, table};
 
 table! {
@@ -32,6 +32,8 @@ table! {
         min: Quantity = Formula,
         /// Largest permitted value.
         max: Quantity = Formula,
+        /// Largest deviation of the real value from the value, up or down.
+        tolerance: Quantity = Formula,
         /// Whether the value may change between steps.
         tunable: bool = Flag,
         /// Description in one line.
@@ -226,9 +228,11 @@ impl<'a> Context<'a> {
             unit: None,
             min: None,
             max: None,
+            tolerance: None,
         };
         if let Some(keys) = draft.keys {
             parameter.tunable = self.tunable(&keys.tunable, &parameter);
+            parameter.tolerance = self.tolerance(keys.tolerance, &parameter);
             parameter.unit = self.unit(keys.unit, keys.display, &keys.owner.subject);
             let name = quoted(&parameter.name);
             [parameter.min, parameter.max] =
@@ -250,6 +254,20 @@ impl<'a> Context<'a> {
                 .suggest("make those parameters tunable");
         }
         tunable
+    }
+
+    /// Returns the tolerance, which a derived parameter has from those that it uses.
+    fn tolerance(&mut self, field: Field<Quantity>, parameter: &Parameter) -> Option<f64> {
+        let mut quantity = field.value?;
+        self.evaluate(&mut quantity)?;
+        let name = quoted(&parameter.name);
+        if parameter.derived {
+            let message = format!("{name} is derived from other parameters and has no tolerance");
+            self.error(code::ILLEGAL_VALUE, quantity.span.clone(), message)
+                .suggest("give those parameters tolerances");
+        }
+        self.check_limit(Limit::Positive, &quantity, "`tolerance`");
+        quantity.value
     }
 
     /// Returns the unit with the display unit, which must have its dimension.

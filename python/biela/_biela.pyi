@@ -1,0 +1,113 @@
+"""Compiled part of the package. Arrays are flat; the package gives them shapes and names."""
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+_Drive = tuple[str, str | Sequence[Any]]
+_Motions = tuple[Any, Sequence[_Drive]]
+_Values = Sequence[tuple[str, float | str]]
+_Problem = tuple[str, str, str, str | None, tuple[int, int] | None]
+_EndRow = tuple[str, float | None, str, int | None]
+_Floats = NDArray[np.float64]
+
+def program(arguments: Sequence[str]) -> int: ...
+def unknown_name(kind: str, name: str, known: Sequence[str]) -> str: ...
+
+class Mechanism:
+    def __init__(self, name: str, text: str | None = None, path: str | None = None) -> None: ...
+    @staticmethod
+    def check(
+        name: str, text: str | None = None, path: str | None = None, modes: bool = False
+    ) -> str: ...
+    def report(self, modes: bool) -> str: ...
+    @property
+    def has_tables(self) -> bool: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def description(self) -> str: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def warnings(self) -> list[_Problem]: ...
+    @property
+    def warnings_text(self) -> str: ...
+    @property
+    def parameters(
+        self,
+    ) -> list[
+        tuple[str, str, float, str, float | None, float | None, float | None, bool]
+    ]: ...
+    @property
+    def drivers(
+        self,
+    ) -> list[tuple[str, str, str, float | None, float | None, float | None, bool]]: ...
+    @property
+    def bodies(self) -> list[str]: ...
+    @property
+    def columns(self) -> list[tuple[str, str]]: ...
+    @property
+    def simulation(self) -> tuple[float, float, float]: ...
+    def run(
+        self,
+        motions: _Motions,
+        parameters: _Values,
+        columns: Sequence[int],
+        by: Sequence[str],
+    ) -> Run: ...
+    def sweep(
+        self,
+        motions: _Motions,
+        parameters: _Values,
+        swept: Sequence[tuple[str, Any]],
+        variants: int,
+        columns: Sequence[int],
+    ) -> Sweep: ...
+    def range(
+        self, driver: str, motions: _Motions, parameters: _Values
+    ) -> tuple[
+        _EndRow,
+        _EndRow,
+        list[tuple[float, list[str]]],
+        _Floats,
+        _Floats,
+        _Floats,
+        _Floats,
+    ]: ...
+    def modes(
+        self, motions: _Motions, parameters: _Values
+    ) -> tuple[list[tuple[list[float], float]], bool]: ...
+    def draw(
+        self,
+        motions: _Motions,
+        parameters: _Values,
+        traces: bool,
+        width: int | None,
+        transparent: bool,
+    ) -> str: ...
+    def edited(
+        self, motions: _Motions, parameters: _Values, estimates: Sequence[float] | None
+    ) -> str: ...
+    def fmu(
+        self, fmi: str, runtime: str | os.PathLike[str] | None, platforms: Sequence[str]
+    ) -> bytes: ...
+
+class Run:
+    rows: int
+    stop: str | None
+    notices: list[str]
+    def values(self) -> _Floats: ...
+    def gradient(self) -> _Floats: ...
+    def page(self) -> str | None: ...
+
+class Sweep:
+    rows: list[int]
+    reasons: list[tuple[int, str]]
+    reassembled: list[int]
+    def take_values(self) -> _Floats: ...

@@ -1,0 +1,489 @@
+"""Mechanisms: files that were read, and the questions that can be asked of them."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _biela
+from .errors import (
+    Diagnostic,
+    MechanismWarning,
+    StoppedError,
+    UsageError,
+    diagnostics,
+)
+from .rates import differentiate
+from .results import ChangePoint, Drawing, End, Mode, Modes, Range, Report, Result, Sweep
+
+Drive = Mapping[str, Any]
+"""Motions by the drivers' names: an expression in `t`, such as `"60*deg + 2*pi*t"`; positions; or
+a tuple of positions, velocities and accelerations. Numbers stand for constant arrays."""
+Parameters = Mapping[str, Union[float, str]]
+"""Values by the parameters' names: numbers in SI units, or expressions such as `"120*mm"`."""
+
+TURN = 2 * np.pi
+CHUNKS = 100
+"""Number of parts of a long sweep, after each of which the progress is shown."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Parameter of a mechanism, in SI units."""
+
+    name: str
+    description: str
+    value: float
+    unit: str
+    min: float | None
+    max: float | None
+    tolerance: float | None
+    """Largest deviation of the real value."""
+    derived: bool
+    """Whether the value follows from other parameters and cannot be set."""
+
+
+@dataclass(frozen=True)
+class Driver:
+    """Driver of a mechanism, in SI units."""
+
+    name: str
+    description: str
+    unit: str
+    start: float | None
+    """Value at the start; `None` for a prescribed motion."""
+    min: float | None
+    max: float | None
+    wrapped: bool
+    """Whether values mean angles modulo one turn."""
+
+
+def load(path: str | os.PathLike) -> Mechanism:
+    """Reads a mechanism file; the tables that it names are beside it.
+
+    Raises `MechanismError` with all errors of the file; its warnings are warnings of Python.
+    """
+    name = os.fspath(path)
+    return Mechanism(_biela.Mechanism(name, None, name), name)
+
+
+def loads(text: str, name: str = "mechanism.toml") -> Mechanism:
+    """Reads the text of a mechanism file, called `name` in messages."""
+    return Mechanism(_biela.Mechanism(name, text, None))
+
+
+def check(source: str | os.PathLike, modes: bool = False) -> Report:
+    """Checks a mechanism file, or a text of several lines, and reports all problems.
+
+    >>> report = check('format = 1\\nname = "a"')
+    >>> report.ok, [problem.code for problem in report.diagnostics]
+    (False, ['no-bodies'])
+    """
+    name = os.fspath(source)
+    if "\n" in name:
+        found = _biela.Mechanism.check("mechanism.toml", name, None, modes)
+    else:
+        found = _biela.Mechanism.check(name, None, name, modes)
+    return Report(json.loads(found))
+
+
+class Mechanism:
+    """Mechanism of a file that has no errors. See `load` and `loads`."""
+
+    def __init__(self, inner: _biela.Mechanism, path: str | None = None):
+        self._inner = inner
+        self._path = path
+        if inner.warnings:
+            warnings.warn(inner.warnings_text, MechanismWarning, stacklevel=3)
+
+    @property
+    def name(self) -> str:
+        """Name, which is the FMU's model name too."""
+        return self._inner.name
+
+    @property
+    def description(self) -> str:
+        """Description in one line; may be empty."""
+        return self._inner.description
+
+    @property
+    def text(self) -> str:
+        """Text of the file."""
+        return self._inner.text
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Warnings about the file."""
+        return diagnostics(self._inner.warnings)
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Parameters by name, with the values of the file."""
+        return {row[0]: Parameter(*row) for row in self._inner.parameters}
+
+    @property
+    def drivers(self) -> dict[str, Driver]:
+        """Drivers by name."""
+        return {row[0]: Driver(*row) for row in self._inner.drivers}
+
+    @property
+    def bodies(self) -> list[str]:
+        """Names of the moving bodies."""
+        return self._inner.bodies
+
+    @property
+    def variables(self) -> dict[str, str]:
+        """Units of all variables of a run, by the names that they have in the FMU."""
+        return dict(self._inner.columns)
+
+    def __repr__(self) -> str:
+        return f"<biela.Mechanism {self.name}: {', '.join(self.bodies)}>"
+
+    def _repr_svg_(self) -> str:
+        return str(self.draw())
+
+    def __reduce__(self):
+        return _reread, (self.text, self._path, self._inner.has_tables)
+
+    def check(self, modes: bool = False) -> Report:
+        """Assembles the mechanism at its start values and reports the pose.
+
+        `modes` looks for the other assembly modes, too.
+        """
+        return Report(json.loads(self._inner.report(modes)))
+
+    def run(
+        self,
+        t: ArrayLike | None = None,
+        drive: Drive | None = None,
+        parameters: Parameters | None = None,
+        variables: Sequence[str] | None = None,
+        gradient: Sequence[str] = (),
+        stop: str = "raise",
+    ) -> Result:
+        """Moves the mechanism through the times `t` [s] and returns its motion.
+
+        Without `t` the times are those of the file, or there is no time if `drive` has arrays with
+        rates or single poses are wanted. Each driver moves as `drive` says; the others follow the
+        prescribed motions of the file, or stay at their start values. Samples without rates are
+        differentiated. The mechanism starts in the assembly mode of its file and stays on the
+        continuous motion.
+
+        `variables` narrows the result to these variables, or to all of a body, marker, driver or
+        measure. `gradient` names parameters by which the variables are differentiated, exactly, at
+        each time.
+
+        A motion that cannot go on raises `StoppedError`, or with `stop="keep"` returns a result
+        with fewer rows and its `stopped`.
+
+        >>> result = four_bar.run(t=[0, 0.5, 1], drive={"crank_angle": "60*deg + 2*pi*t"})
+        >>> print(result["rocker.phi"].round(6))
+        [2.143697 2.803644 2.143697]
+        """
+        if stop not in ("raise", "keep"):
+            raise UsageError(f"stop is {stop!r}; expected 'raise' or 'keep'")
+        motions = self._motions(t, drive)
+        names, units, indices = self._chosen(variables)
+        by = [gradient] if isinstance(gradient, str) else list(gradient)
+        raw = self._inner.run(motions, list((parameters or {}).items()), indices, by)
+        rows = raw.rows
+        result = Result(
+            raw,
+            np.asarray(motions[0])[:rows],
+            dict(zip(names, units)),
+            raw.values().reshape(rows, len(names)),
+            by,
+            raw.gradient().reshape(rows, len(by), len(names)),
+        )
+        for notice in raw.notices:
+            warnings.warn(notice, MechanismWarning, stacklevel=2)
+        if raw.stop is not None and stop == "raise":
+            raise StoppedError(f"{self.name}: {raw.stop}", result)
+        return result
+
+    def sweep(
+        self,
+        parameters: Mapping[str, ArrayLike],
+        t: ArrayLike | None = None,
+        drive: Drive | None = None,
+        variables: Sequence[str] | None = None,
+        progress: bool = False,
+    ) -> Sweep:
+        """Runs a variant of the mechanism per entry of the arrays of `parameters`, on all cores.
+
+        Arrays of any one shape, which single values fit. Each variant starts from the file's own
+        pose and is followed on its continuous motion, as in `run`. A variant that does not
+        assemble, or stops, is no error: `reason` tells why, and its values are not numbers from
+        there on. `progress` shows a bar (tqdm).
+
+        The values do not depend on the number of cores or on the order of the variants.
+
+        >>> sweep = four_bar.sweep({"base": [0.40, 0.42, 0.80]}, drive={"crank_angle": [1.0, 1.1]},
+        ...     variables=["rocker.phi"])
+        >>> print(sweep["rocker.phi"].round(4))
+        [[2.1391 2.1499]
+         [2.1897 2.2019]
+         [   nan    nan]]
+        >>> sweep.ok
+        array([ True,  True, False])
+        """
+        motions = self._motions(t, drive)
+        names, units, indices = self._chosen(variables)
+        if not names:
+            raise UsageError("variables: no variable is named")
+        fixed = {n: v for n, v in parameters.items() if isinstance(v, str)}
+        arrays = {n: np.asarray(v, dtype=float) for n, v in parameters.items() if n not in fixed}
+        try:
+            series = dict(zip(arrays, np.broadcast_arrays(*arrays.values())))
+        except ValueError:
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+            raise UsageError(f"parameters: the shapes do not fit together: {shapes}") from None
+        shape = next(iter(series.values())).shape if series else ()
+        count = int(np.prod(shape, dtype=int))
+        flat = {name: values.reshape(-1) for name, values in series.items()}
+        values = np.empty((count, len(names), len(motions[0])))
+        rows = np.empty(count, dtype=int)
+        reasons: dict[int, str] = {}
+        reassembled = np.zeros(count, dtype=bool)
+        bar = _progress_bar(count) if progress else None
+        size = max(1, -(-count // CHUNKS)) if bar is not None else max(1, count)
+        for first in range(0, count, size):
+            part = slice(first, min(first + size, count))
+            raw = self._inner.sweep(
+                motions,
+                list(fixed.items()),
+                [(name, array[part]) for name, array in flat.items()],
+                part.stop - first,
+                indices,
+            )
+            values[part] = raw.take_values().reshape(part.stop - first, *values.shape[1:])
+            rows[part] = raw.rows
+            reasons.update((first + index, reason) for index, reason in raw.reasons)
+            reassembled[first + np.asarray(raw.reassembled, dtype=int)] = True
+            if bar is not None:
+                bar.update(part.stop - first)
+        if bar is not None:
+            bar.close()
+        return Sweep(
+            np.asarray(motions[0]),
+            dict(zip(names, units)),
+            series,
+            shape,
+            values,
+            rows,
+            reasons,
+            reassembled,
+        )
+
+    def range(
+        self, driver: str, drive: Drive | None = None, parameters: Parameters | None = None
+    ) -> Range:
+        """Finds how far a driver can go both ways, with the others held.
+
+        >>> str(four_bar.range("crank_angle").upper)
+        'no limit'
+        """
+        found = self._inner.range(driver, self._start(drive), list((parameters or {}).items()))
+        lower, upper, crossings, values, transmission, rcond, poses = found
+        return Range(
+            driver,
+            End(*lower),
+            End(*upper),
+            tuple(ChangePoint(value, tuple(bodies)) for value, bodies in crossings),
+            values,
+            transmission,
+            rcond,
+            dict(zip(self.bodies, np.moveaxis(poses.reshape(len(values), -1, 3), 0, 1))),
+        )
+
+    def modes(self, drive: Drive | None = None, parameters: Parameters | None = None) -> Modes:
+        """Finds the other poses in which the mechanism closes for the same values of its drivers.
+
+        >>> len(four_bar.modes().others)
+        1
+        """
+        others, complete = self._inner.modes(self._start(drive), list((parameters or {}).items()))
+        pose = lambda q: dict(zip(self.bodies, np.reshape(q, (-1, 3))))
+        return Modes(tuple(Mode(pose(q), rcond) for q, rcond in others), complete)
+
+    def draw(
+        self,
+        drive: Drive | None = None,
+        parameters: Parameters | None = None,
+        traces: bool = True,
+        width: int | None = None,
+        transparent: bool = False,
+    ) -> Drawing:
+        """Draws the mechanism at the start values, as SVG that notebooks show."""
+        parameters = list((parameters or {}).items())
+        start = self._start(drive)
+        return Drawing(self._inner.draw(start, parameters, traces, width, transparent))
+
+    def changed(self, parameters: Parameters | None = None, drive: Drive | None = None) -> Mechanism:
+        """Returns the mechanism with other parameters and start values of drivers.
+
+        Its file differs in these values and in the estimates, which are those of the pose there;
+        comments stay.
+
+        >>> longer = four_bar.changed({"base": 0.42}, drive={"crank_angle": 1.0})
+        >>> print(longer.check().poses["rocker"].round(4))
+        [0.42   0.     2.1897]
+        """
+        given = list((parameters or {}).items())
+        text = self._inner.edited(self._start(drive), given, None)
+        return _reread(text, self._path, self._inner.has_tables)
+
+    def posed(self, mode: Mode) -> Mechanism:
+        """Returns the mechanism in another of its assembly modes: the file with other estimates.
+
+        >>> (other,) = four_bar.modes().others
+        >>> mirrored = four_bar.posed(other)
+        >>> bool(np.allclose(mirrored.check().poses["rocker"], other.poses["rocker"]))
+        True
+        """
+        estimates = np.concatenate([mode.poses[body] for body in self.bodies])
+        text = self._inner.edited(self._start(None), [], estimates.tolist())
+        return _reread(text, self._path, self._inner.has_tables)
+
+    def write(self, path: str | os.PathLike) -> Path:
+        """Writes the mechanism file and returns its path."""
+        path = Path(path)
+        path.write_text(self.text, encoding="utf-8")
+        return path
+
+    def export(
+        self,
+        path: str | os.PathLike | None = None,
+        platforms: Iterable[str] = (),
+        runtime: str | os.PathLike | None = None,
+        fmi: int = 2,
+    ) -> Path:
+        """Writes the FMU and returns its path, by default the mechanism's name with `.fmu`.
+
+        `fmi` is the version of the standard: 2 or 3.
+
+        `platforms` narrows the FMU to some of those of `biela platforms`; `runtime` is a folder of
+        runtime libraries that replace those of this package.
+        """
+        path = Path(path) if path is not None else Path(f"{self.name}.fmu")
+        folder = os.fspath(runtime) if runtime is not None else None
+        path.write_bytes(bytes(self._inner.fmu(str(fmi), folder, list(platforms))))
+        return path
+
+    def _chosen(self, wanted: Sequence[str] | None) -> tuple[list[str], list[str], list[int]]:
+        """Returns names, units and indices of variables, or of all variables of owners."""
+        columns = self._inner.columns
+        if wanted is None:
+            indices = list(range(len(columns)))
+        else:
+            wanted = [wanted] if isinstance(wanted, str) else list(wanted)
+            indices = []
+            for name in wanted:
+                belongs = lambda known: known == name or known.startswith(f"{name}.")
+                found = [index for index, (known, _) in enumerate(columns) if belongs(known)]
+                if not found:
+                    known = [known for known, _ in columns]
+                    raise UsageError(f"variables: {_biela.unknown_name('variable', name, known)}")
+                indices += [index for index in found if index not in indices]
+        return [columns[i][0] for i in indices], [columns[i][1] for i in indices], indices
+
+    def _start(self, drive: Drive | None) -> tuple[list[float], list]:
+        """Returns the motions at the file's start time, where drivers have single values."""
+        start = self._inner.simulation[0]
+        constant = {
+            name: value if isinstance(value, str) else (float(value), 0.0, 0.0)
+            for name, value in (drive or {}).items()
+        }
+        return self._motions([start], constant)
+
+    def _motions(self, t: ArrayLike | None, drive: Drive | None) -> tuple[list[float], list]:
+        """Returns times and motions of drivers as the compiled module takes them."""
+        drive = dict(drive or {})
+        arrays = {name: value for name, value in drive.items() if not isinstance(value, str)}
+        orders = {name: _orders(name, value) for name, value in arrays.items()}
+        lengths = {len(order) for each in orders.values() for order in each if order.ndim}
+        if len(lengths) > 1:
+            counts = ", ".join(map(str, sorted(lengths)))
+            raise UsageError(f"drive: the arrays have different lengths: {counts}")
+        timeless = t is None and bool(orders)
+        if t is not None:
+            times = np.atleast_1d(np.asarray(t, dtype=float))
+            if times.ndim != 1:
+                raise UsageError(f"t has {times.ndim} dimensions; expected an array of times")
+        elif timeless:
+            times = np.full(lengths.pop() if lengths else 1, self._inner.simulation[0])
+        else:
+            start, stop, step = self._inner.simulation
+            # A last step shorter than this part of the others is rounding.
+            steps = max(0, int(np.ceil((stop - start) / step - 1e-9)))
+            times = np.minimum(start + step * np.arange(steps + 1), stop)
+        drivers = self.drivers
+        motions: list = []
+        for name, value in drive.items():
+            if isinstance(value, str):
+                motions.append((name, value))
+                continue
+            given = orders[name]
+            full = [np.broadcast_to(order, times.shape) if not order.ndim else order for order in given]
+            if name in drivers and drivers[name].wrapped:
+                full[0] = np.unwrap(full[0], period=TURN)
+            full += self._missing_rates(times, full, constant=not given[0].ndim, timeless=timeless)
+            motions.append((name, [np.ascontiguousarray(order) for order in full]))
+        return times, motions
+
+    def _missing_rates(
+        self, times: NDArray, given: list[NDArray], constant: bool, timeless: bool
+    ) -> list[NDArray]:
+        """Returns the rates that are not given."""
+        missing = 3 - len(given)
+        if missing == 0 or len(given[-1]) != len(times):
+            return [np.zeros(len(times))] * missing
+        if constant or timeless:
+            # Without time nothing moves: velocities are zero unless given.
+            return [np.zeros(len(times))] * missing
+        if np.any(np.diff(times) <= 0):
+            raise UsageError("drive: samples at equal times cannot be differentiated; give the rates")
+        velocity, acceleration = differentiate(times, given[0])
+        if missing == 2:
+            return [velocity, acceleration]
+        return [differentiate(times, given[1])[0]]
+
+
+def _orders(name: str, value: Any) -> list[NDArray]:
+    """Returns position and the given rates of a driver as arrays."""
+    parts = value if isinstance(value, tuple) else (value,)
+    if not 1 <= len(parts) <= 3:
+        raise UsageError(
+            f"drive: `{name}` is a tuple of {len(parts)}; "
+            "expected (position, velocity, acceleration)"
+        )
+    orders = [np.asarray(part, dtype=float) for part in parts]
+    if any(order.ndim > 1 for order in orders):
+        raise UsageError(f"drive: `{name}` has several dimensions; expected one value per time")
+    return orders
+
+
+def _progress_bar(count: int):
+    """Returns a bar of tqdm."""
+    try:
+        from tqdm.auto import tqdm
+    except ModuleNotFoundError:
+        raise UsageError("progress needs the package tqdm: pip install tqdm") from None
+    return tqdm(total=count, unit="variant")
+
+
+def _reread(text: str, path: str | None, has_tables: bool) -> Mechanism:
+    """Returns the mechanism of another text of its file, or in another process; tables are beside
+    the file. Warnings were shown when the file was read."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MechanismWarning)
+        inner = _biela.Mechanism(path or "mechanism.toml", text, path if has_tables else None)
+        return Mechanism(inner, path)

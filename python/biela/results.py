@@ -1,0 +1,312 @@
+"""Results: motions, sweeps, ranges, reports."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import Diagnostic, UsageError
+
+
+def _unknown(name: Any, known: list[str], kind: str = "variable") -> UsageError:
+    from . import _biela
+
+    return UsageError(_biela.unknown_name(kind, str(name), known))
+
+
+class Drawing(str):
+    """SVG document that notebooks show."""
+
+    def _repr_svg_(self) -> str:
+        return str(self)
+
+
+class Result(Mapping):
+    """Motion of a mechanism: a mapping from the FMU's names of variables to arrays over time.
+
+    Values are in SI units; `units` tells which.
+    """
+
+    def __init__(self, raw, t, units, values, by, gradient):
+        self._raw = raw
+        self.t: NDArray = t
+        """Times [s]."""
+        self.units: dict[str, str] = units
+        """Units by the variables' names."""
+        self._values = values
+        self._places = {name: place for place, name in enumerate(units)}
+        self.gradient = Gradient(list(units), by, gradient)
+        """Derivatives of the variables by parameters: `gradient[variable, parameter]`."""
+        self.stopped: str | None = raw.stop
+        """Reason why the motion ends early; `None` for a whole motion."""
+
+    def __getitem__(self, name: str) -> NDArray:
+        if name == "time":
+            return self.t
+        if name not in self._places:
+            raise _unknown(name, list(self._places))
+        return self._values[:, self._places[name]]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.units)
+
+    def __len__(self) -> int:
+        return len(self.units)
+
+    def __contains__(self, name: object) -> bool:
+        return name == "time" or name in self._places
+
+    def to_numpy(self) -> NDArray:
+        """Returns all values: rows by columns, in the order of the names."""
+        return self._values
+
+    def to_pandas(self):
+        """Returns the motion as a `pandas.DataFrame` with the times as index."""
+        import pandas
+
+        return pandas.DataFrame(
+            self._values, index=pandas.Index(self.t, name="time"), columns=list(self.units)
+        )
+
+    def to_html(self) -> str:
+        """Returns a page on which the mechanism moves: one HTML file that needs no other."""
+        return self._raw.page()
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.to_html(), quote=True)
+        return (
+            f'<iframe srcdoc="{page}" style="width: 100%; height: 640px; border: 0" '
+            'sandbox="allow-scripts" title="motion"></iframe>'
+        )
+
+    def __repr__(self) -> str:
+        stopped = f", stopped: {self.stopped}" if self.stopped else ""
+        return f"<biela.Result: {len(self.t)} rows of {len(self.units)} variables{stopped}>"
+
+
+class Gradient:
+    """Derivatives of variables by parameters, each an array over time, in SI units."""
+
+    def __init__(self, variables: list[str], parameters: list[str], values: NDArray):
+        self.variables = variables
+        """Names of the variables."""
+        self.parameters = parameters
+        """Names of the parameters."""
+        self._values = values
+
+    def __getitem__(self, key: tuple[str, str]) -> NDArray:
+        if not isinstance(key, tuple) or len(key) != 2:
+            raise UsageError("gradient: expected gradient[variable, parameter]")
+        variable, parameter = key
+        if variable not in self.variables:
+            raise _unknown(variable, self.variables)
+        if parameter not in self.parameters:
+            raise _unknown(parameter, self.parameters, "parameter among `gradient`")
+        place = self.parameters.index(parameter), self.variables.index(variable)
+        return self._values[:, place[0], place[1]]
+
+    def to_numpy(self) -> NDArray:
+        """Returns all derivatives: rows by parameters by variables."""
+        return self._values
+
+    def __repr__(self) -> str:
+        return f"<biela.Gradient of {len(self.variables)} variables by {', '.join(self.parameters)}>"
+
+
+class Sweep(Mapping):
+    """Motions of many variants: a mapping from names of variables to arrays.
+
+    Each array has the shape of the swept parameters, then one axis over time.
+    """
+
+    def __init__(self, t, units, parameters, shape, values, rows, reasons, reassembled):
+        self.t: NDArray = t
+        """Times [s]."""
+        self.units: dict[str, str] = units
+        """Units by the variables' names."""
+        self.parameters: dict[str, NDArray] = parameters
+        """Swept values by the parameters' names."""
+        self.shape: tuple[int, ...] = shape
+        """Shape of the variants."""
+        self._values = values
+        self._places = {name: place for place, name in enumerate(units)}
+        self.rows: NDArray = rows.reshape(shape)
+        """Number of rows that each variant reached."""
+        self._reasons = reasons
+        self.reassembled: NDArray = reassembled.reshape(shape)
+        """Whether a variant was assembled from the estimates, possibly in another assembly mode:
+        no continuous motion leads there from the file's own pose."""
+
+    @property
+    def ok(self) -> NDArray:
+        """Whether each variant went through the whole motion."""
+        return self.rows == len(self.t)
+
+    def reason(self, *variant: int) -> str | None:
+        """Returns why a variant stopped; `None` for one that went through."""
+        flat = np.ravel_multi_index(variant, self.shape) if self.shape else 0
+        return self._reasons.get(int(flat))
+
+    @property
+    def reasons(self) -> dict[tuple[int, ...], str]:
+        """Reasons of all variants that stopped, by their indices."""
+        place = lambda flat: tuple(int(i) for i in np.unravel_index(flat, self.shape))
+        return {place(flat): reason for flat, reason in self._reasons.items()}
+
+    def __getitem__(self, name: str) -> NDArray:
+        if name not in self._places:
+            raise _unknown(name, list(self._places))
+        return self._values[:, self._places[name]].reshape(*self.shape, len(self.t))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.units)
+
+    def __len__(self) -> int:
+        return len(self.units)
+
+    def __repr__(self) -> str:
+        whole = int(np.count_nonzero(self.ok))
+        return f"<biela.Sweep: {self.ok.size} variants, {whole} whole, {len(self.t)} rows each>"
+
+
+@dataclass(frozen=True)
+class End:
+    """End of a driver's range in one direction."""
+
+    kind: str
+    """`turns`: none; `singular`: a dead point; `blocked`; `not found`: none up to `value`."""
+    value: float | None
+    """Value of the driver there [m or rad]."""
+    text: str
+    """Description, as `biela range` prints it."""
+    turns: int | None = None
+    """Number of turns after which the mechanism is where it was."""
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True)
+class ChangePoint:
+    """Change point that a motion passes."""
+
+    value: float
+    """Value of the driver [m or rad]."""
+    bodies: tuple[str, ...]
+    """Bodies that line up."""
+
+
+@dataclass(frozen=True)
+class Range:
+    """Range of a driver, with samples of the motion from end to end."""
+
+    driver: str
+    lower: End
+    upper: End
+    crossings: tuple[ChangePoint, ...]
+    values: NDArray
+    """Values of the driver [m or rad]."""
+    transmission: NDArray
+    """Smallest transmission angle at each sample [rad]; not a number without links."""
+    rcond: NDArray
+    """Reciprocal condition at each sample."""
+    poses: dict[str, NDArray]
+    """Poses of each body: x, y, phi by sample."""
+
+    @property
+    def turns(self) -> bool:
+        """Whether the driver turns without limit."""
+        return self.upper.kind == "turns"
+
+
+@dataclass(frozen=True)
+class Mode:
+    """Assembly mode."""
+
+    poses: dict[str, NDArray]
+    """Pose of each body: x, y, phi."""
+    rcond: float
+    """Reciprocal condition."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Assembly modes besides the mechanism's own."""
+
+    others: tuple[Mode, ...]
+    complete: bool
+    """Whether there are no others."""
+
+
+class Report:
+    """Report on a mechanism: `biela check --format json` in attributes."""
+
+    def __init__(self, data: dict[str, Any]):
+        self.data = data
+        """All keys of the JSON report."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether the file has no errors and the mechanism closes."""
+        return self.data["ok"]
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Errors or warnings about the file."""
+        found = []
+        for row in self.data.get("diagnostics", []):
+            place = row["labels"][0]["start"] if row["labels"] else {}
+            line, column = place.get("line"), place.get("column")
+            found.append(
+                Diagnostic(row["severity"], row["code"], row["message"], row["help"], line, column)
+            )
+        return tuple(found)
+
+    @property
+    def error(self) -> str | None:
+        """Reason why the mechanism does not close."""
+        return self.data.get("error", {}).get("message")
+
+    @property
+    def poses(self) -> dict[str, NDArray]:
+        """Pose of each body: x, y, phi. The nearest one if the mechanism does not close."""
+        rows = self._assembled.get("bodies") or self.data.get("error", {}).get("nearest") or []
+        return {row["name"]: np.array([row["x"], row["y"], row["phi"]]) for row in rows}
+
+    @property
+    def measures(self) -> dict[str, float]:
+        """Values of the measures [m or rad]."""
+        return {row["name"]: row["value"] for row in self._assembled.get("measures", [])}
+
+    @property
+    def degrees_of_freedom(self) -> int | None:
+        """Number of degrees of freedom, all of them driven."""
+        return self._assembled.get("degrees_of_freedom")
+
+    @property
+    def rcond(self) -> float | None:
+        """Reciprocal condition: 1 is best, 0 a singular position."""
+        return self._assembled.get("rcond")
+
+    @property
+    def residual(self) -> float | None:
+        """Largest scaled residual of the constraint equations."""
+        return self._assembled.get("residual")
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Redundant joints, and joints that do not fit their own numbers."""
+        return (*self._assembled.get("redundancies", ()), *self._assembled.get("misfits", ()))
+
+    @property
+    def _assembled(self) -> dict[str, Any]:
+        return self.data.get("assembled", {})
+
+    def __repr__(self) -> str:
+        state = "closes" if self.ok else self.error or "has errors"
+        return f"<biela.Report: {state}>"

@@ -1,0 +1,109 @@
+//! The animation of a run.
+
+use biela::drawing::Scene;
+use biela::drawing::animation::{Animation, Clock, Moment, Reading, page};
+use biela::fmi::Column;
+use biela::mechanism::Mechanism;
+
+use crate::runner::Runner;
+
+/// Largest number of moments of a film; of more rows it has every second, third and so on.
+const MOST_MOMENTS: usize = 10_000;
+/// Largest number of poses that the paths of the points of interest are made from.
+const MOST_POSES: usize = 2000;
+/// Time between two poses of a motion without times \[s\].
+const FRAME: f64 = 0.02;
+/// Largest difference of two intervals that count as equal, relative.
+const SAME: f64 = 1e-6;
+
+/// The poses of a run.
+pub(crate) struct Film {
+    columns: Vec<Column>,
+    parameters: Vec<f64>,
+    stride: usize,
+    times: Vec<f64>,
+    moments: Vec<Moment>,
+}
+
+impl Film {
+    /// Returns an empty film of a run of so many rows.
+    pub(crate) fn new(mechanism: &Mechanism, rows: usize, parameters: &[f64]) -> Self {
+        let columns = Column::all(mechanism).into_iter();
+        Self {
+            columns: columns.filter(Column::is_told).collect(),
+            parameters: parameters.to_vec(),
+            stride: rows.div_ceil(MOST_MOMENTS).max(1),
+            times: Vec::new(),
+            moments: Vec::new(),
+        }
+    }
+
+    /// Adds a row, if it is one to show.
+    pub(crate) fn add(&mut self, row: usize, runner: &Runner<'_>) {
+        if !row.is_multiple_of(self.stride) {
+            return;
+        }
+        let readings = self.columns.iter().map(|column| {
+            let factor = column.unit.display.map_or(1.0, |display| display.factor);
+            factor * column.value(&runner.solver, &runner.rates, &runner.driver_rates)
+        });
+        let rates = [runner.rates.velocity(), runner.rates.acceleration()];
+        self.moments.push(Moment {
+            q: runner.solver.pose().q.clone(),
+            rates: rates.map(<[f64]>::to_vec),
+            readings: readings.collect(),
+        });
+        self.times.push(runner.solver.pose().time);
+    }
+
+    /// Returns the page on which the mechanism moves; `None` without a pose.
+    pub(crate) fn page(&self, mechanism: &Mechanism) -> Option<String> {
+        let home = &self.moments.first()?.q;
+        let stride = self.moments.len().div_ceil(MOST_POSES);
+        let poses: Vec<Vec<f64>> = (self.moments.iter().step_by(stride))
+            .chain(self.moments.last())
+            .map(|moment| moment.q.clone())
+            .collect();
+        let (clock, moments) = self.paced();
+        Some(page(&Animation {
+            scene: Scene::along(mechanism, &self.parameters, home, &poses, true),
+            clock,
+            readings: (self.columns.iter())
+                .map(|column| Reading {
+                    name: column.name.trim_end_matches(".position").to_owned(),
+                    unit: (column.unit.display)
+                        .map_or(column.unit.name, |display| display.name)
+                        .replace('2', "²"),
+                })
+                .collect(),
+            moments,
+        }))
+    }
+
+    /// Returns the moments with equal times between them, each the last one not after its time.
+    fn paced(&self) -> (Clock, Vec<Moment>) {
+        let last = self.times.len() - 1;
+        let [start, stop] = [self.times[0], self.times[last]];
+        let mut clock = Clock {
+            start,
+            step: (stop - start) / last.max(1) as f64,
+            stop,
+        };
+        if stop <= start {
+            clock.step = FRAME;
+            clock.stop = start + FRAME * last as f64;
+            return (clock, self.moments.clone());
+        }
+        let due = |row: usize| start + row as f64 * clock.step;
+        let is_even = (0..=last).all(|row| (self.times[row] - due(row)).abs() <= SAME * clock.step);
+        if is_even {
+            return (clock, self.moments.clone());
+        }
+        let shown = |row: usize| {
+            let time = due(row) + SAME * clock.step;
+            self.times.partition_point(|known| *known <= time).max(1) - 1
+        };
+        let moments = (0..=last).map(|row| self.moments[shown(row)].clone());
+        (clock, moments.collect())
+    }
+}

@@ -1,0 +1,49 @@
+//! The Python module `biela._biela`: what the package `biela` computes in Rust.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `error` | errors as exceptions of the package |
+//! | `scenario` | parameters, and motions of drivers as samples |
+//! | `runner` | a mechanism that moves along samples |
+//! | `run`, `film` | one motion with its gradients; its animation |
+//! | `edit` | the text of a mechanism file with other values |
+//! | `sweep` | the same motion of many variants, on all cores |
+//! | `mechanism` | the class `Mechanism` |
+//!
+//! Shapes, units and names of Python are the package's business; here arrays are flat.
+
+mod edit;
+mod error;
+mod film;
+mod mechanism;
+mod run;
+mod runner;
+mod scenario;
+mod sweep;
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+/// Runs the program with these arguments, the first being its own name; returns its exit status.
+#[pyfunction]
+fn program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| biela::cli::status(arguments))
+}
+
+/// Says that a name is unknown, with the known name that may be meant.
+#[pyfunction]
+fn unknown_name(kind: &str, name: &str, known: Vec<String>) -> String {
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    biela::cli::unknown_name(kind, name, &known)
+}
+
+#[pymodule]
+fn _biela(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_function(wrap_pyfunction!(program, module)?)?;
+    module.add_function(wrap_pyfunction!(unknown_name, module)?)?;
+    module.add_class::<mechanism::Mechanism>()?;
+    module.add_class::<run::Run>()?;
+    module.add_class::<sweep::Sweep>()
+}

@@ -1,0 +1,491 @@
+//! The class `Mechanism`: a mechanism file, and what can be asked of it.
+
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
+
+use biela::cli;
+use biela::drawing::{Scene, Sheet, svg};
+use biela::fmi::Column;
+use biela::kinematics::{Carryover, End, Mode, Path, RangeSettings, Solver};
+use biela::mechanism::{
+    Diagnostic, DriverId, DriverSource, Mechanism as Model, ParameterId, Source, Unit,
+};
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+
+use crate::edit::edit;
+use crate::error::{Failure, exception};
+use crate::run::{Run, run};
+use crate::runner::Runner;
+use crate::scenario::{Drive, Home, Scenario, Value, parameter};
+use crate::sweep::{Sweep, sweep};
+
+/// A diagnostic: severity, code, message, help, line and column of the primary place, both from 1.
+type Problem = (
+    &'static str,
+    &'static str,
+    String,
+    Option<String>,
+    Option<(usize, usize)>,
+);
+
+/// A parameter: name, description, value, unit, smallest and largest value, tolerance, whether it is
+/// derived.
+type ParameterRow = (
+    String,
+    String,
+    f64,
+    &'static str,
+    Option<f64>,
+    Option<f64>,
+    Option<f64>,
+    bool,
+);
+
+/// A driver: name, description, unit, start value of an input, limits, whether it is wrapped.
+type DriverRow = (
+    String,
+    String,
+    &'static str,
+    Option<f64>,
+    Option<f64>,
+    Option<f64>,
+    bool,
+);
+
+/// An end of a range: its kind, the driver's value, its text, the number of turns.
+type EndRow = (&'static str, Option<f64>, String, Option<u32>);
+
+/// A range: both ends, then the change points with the bodies that line up, then by sample the
+/// driver's value, the transmission angle, the reciprocal condition, and the poses of the bodies.
+type RangeRow<'py> = (
+    EndRow,
+    EndRow,
+    Vec<(f64, Vec<String>)>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+);
+
+/// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
+/// these are all.
+type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
+
+/// Times, and motions of drivers.
+type Motions = (Vec<f64>, Vec<(String, Drive)>);
+
+/// A mechanism file that has no errors.
+#[pyclass(frozen)]
+pub(crate) struct Mechanism {
+    source: Source,
+    model: Arc<Model>,
+    warnings: Vec<Diagnostic>,
+    /// The pose of the file's own values, once it was asked for.
+    home: OnceLock<Arc<Home>>,
+}
+
+#[pymethods]
+impl Mechanism {
+    /// Reads a text, or the file at `path`.
+    #[new]
+    #[pyo3(signature = (name, text=None, path=None))]
+    fn new(
+        py: Python<'_>,
+        name: String,
+        text: Option<String>,
+        path: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let source = source(&name, text, path).map_err(|failure| failure.raise(py))?;
+        match Model::parse(&source) {
+            Ok((model, warnings)) => Ok(Self {
+                source,
+                model: Arc::new(model),
+                warnings,
+                home: OnceLock::new(),
+            }),
+            Err(errors) => {
+                let text = cli::render::render(&source, &errors, false);
+                Err(exception(
+                    py,
+                    "MechanismError",
+                    (text, problems(&source, &errors)),
+                ))
+            }
+        }
+    }
+
+    /// Returns the report of `biela check --format json` on a text, or on the file at `path`.
+    #[staticmethod]
+    #[pyo3(signature = (name, text=None, path=None, modes=false))]
+    fn check(
+        py: Python<'_>,
+        name: String,
+        text: Option<String>,
+        path: Option<PathBuf>,
+        modes: bool,
+    ) -> PyResult<String> {
+        let source = source(&name, text, path).map_err(|failure| failure.raise(py))?;
+        Ok(py.detach(|| cli::check(&source, modes).to_string()))
+    }
+
+    /// Returns the report of `biela check --format json`.
+    fn report(&self, py: Python<'_>, modes: bool) -> String {
+        py.detach(|| cli::check(&self.source, modes).to_string())
+    }
+
+    /// Whether the file names tables, which are beside it.
+    #[getter]
+    fn has_tables(&self) -> bool {
+        !self.model.table_files.is_empty()
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.model.name
+    }
+
+    #[getter]
+    fn description(&self) -> &str {
+        &self.model.description
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        self.source.text()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<Problem> {
+        problems(&self.source, &self.warnings)
+    }
+
+    /// Returns the warnings as the program shows them.
+    #[getter]
+    fn warnings_text(&self) -> String {
+        cli::render::render(&self.source, &self.warnings, false)
+    }
+
+    #[getter]
+    fn parameters(&self) -> Vec<ParameterRow> {
+        let parameters = self.model.parameters.iter();
+        let unit = |unit: Option<Unit>| unit.unwrap_or(Unit::ONE).name;
+        parameters
+            .map(|p| {
+                let (name, description) = (p.name.clone(), p.description.clone());
+                let unit = unit(p.unit);
+                let (limits, tolerance) = ((p.min, p.max), p.tolerance);
+                (
+                    name,
+                    description,
+                    p.default,
+                    unit,
+                    limits.0,
+                    limits.1,
+                    tolerance,
+                    p.derived,
+                )
+            })
+            .collect()
+    }
+
+    #[getter]
+    fn drivers(&self) -> Vec<DriverRow> {
+        let drivers = self.model.drivers.iter();
+        drivers
+            .map(|d| {
+                let start = match d.source {
+                    DriverSource::Input { start } => Some(start),
+                    DriverSource::Motion(_) => None,
+                };
+                let (name, description) = (d.name.clone(), d.description.clone());
+                let unit = d.coordinate.kind.unit().name;
+                (name, description, unit, start, d.min, d.max, d.wrapped)
+            })
+            .collect()
+    }
+
+    #[getter]
+    fn bodies(&self) -> Vec<String> {
+        let bodies = self.model.bodies.iter();
+        bodies.map(|body| body.name.clone()).collect()
+    }
+
+    /// Returns the names and units of the columns of a run.
+    #[getter]
+    fn columns(&self) -> Vec<(String, &'static str)> {
+        let columns = columns(&self.model).into_iter();
+        columns
+            .map(|column| (column.name, column.unit.name))
+            .collect()
+    }
+
+    /// Returns start, stop and step of the file \[s\].
+    #[getter]
+    fn simulation(&self) -> (f64, f64, f64) {
+        let simulation = &self.model.simulation;
+        (simulation.start, simulation.stop, simulation.step)
+    }
+
+    /// Runs the mechanism; `columns` are indices, `by` names of parameters.
+    fn run(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        columns: Vec<usize>,
+        by: Vec<String>,
+    ) -> PyResult<Run> {
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let parameters = scenario.parameters(parameters)?;
+            let by = by.iter().map(|name| self.free(name));
+            let by: Vec<ParameterId> = by.collect::<Result<_, _>>()?;
+            run(&scenario, &parameters, &self.chosen(&columns), &by)
+        })
+        .map_err(|failure: Failure| failure.raise(py))
+    }
+
+    /// Runs variants of the mechanism; each swept parameter has one value per variant.
+    fn sweep(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        swept: Vec<(String, Vec<f64>)>,
+        variants: usize,
+        columns: Vec<usize>,
+    ) -> PyResult<Sweep> {
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let parameters = scenario.parameters(parameters)?;
+            let swept = swept.into_iter();
+            let swept = swept.map(|(name, values)| Ok((self.free(&name)?, values)));
+            let swept: Vec<_> = swept.collect::<Result<_, Failure>>()?;
+            let columns = self.chosen(&columns);
+            sweep(&scenario, &parameters, &swept, variants, &columns)
+        })
+        .map_err(|failure: Failure| failure.raise(py))
+    }
+
+    /// Finds the range of a driver from the start of a motion.
+    fn range<'py>(
+        &self,
+        py: Python<'py>,
+        driver: &str,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+    ) -> PyResult<RangeRow<'py>> {
+        let found = py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let id = self.model.driver_id(driver).ok_or_else(|| {
+                let names = self.model.drivers.iter().map(|d| d.name.as_str());
+                let names: Vec<&str> = names.collect();
+                Failure::Usage(cli::unknown_name("driver", driver, &names))
+            })?;
+            let mut runner = Runner::new(&scenario)?;
+            runner.start(&scenario.parameters(parameters)?)?;
+            Ok((id, runner.solver.range(id, &RangeSettings::default())))
+        });
+        let (id, range) = found.map_err(|failure: Failure| failure.raise(py))?;
+        let samples = || range.samples.iter();
+        let column = |values: Vec<f64>| values.into_pyarray(py);
+        let poses = 3 * self.model.bodies.len();
+        let crossings = range.crossings.iter();
+        Ok((
+            self.end(id, &range.lower),
+            self.end(id, &range.upper),
+            crossings.map(|c| (c.value, c.bodies.clone())).collect(),
+            column(samples().map(|s| s.driver).collect()),
+            column(
+                samples()
+                    .map(|s| s.transmission.unwrap_or(f64::NAN))
+                    .collect(),
+            ),
+            column(samples().map(|s| s.rcond).collect()),
+            column(
+                samples()
+                    .flat_map(|s| s.q[..poses].iter().copied())
+                    .collect(),
+            ),
+        ))
+    }
+
+    /// Finds the other assembly modes at the start of a motion.
+    fn modes(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+    ) -> PyResult<ModesRow> {
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let mut runner = Runner::new(&scenario)?;
+            runner.start(&scenario.parameters(parameters)?)?;
+            let modes = runner.solver.modes()?;
+            let count = 3 * self.model.bodies.len();
+            let others = modes.others.into_iter();
+            let others = others.map(|Mode { q, rcond, .. }| (q[..count].to_vec(), rcond));
+            Ok((others.collect(), modes.complete))
+        })
+        .map_err(|failure: Failure| failure.raise(py))
+    }
+
+    /// Draws the mechanism at the start of a motion, as SVG.
+    fn draw(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        traces: bool,
+        width: Option<u32>,
+        transparent: bool,
+    ) -> PyResult<String> {
+        py.detach(|| {
+            let scenario = self.scenario(motions)?;
+            let mut runner = Runner::new(&scenario)?;
+            runner.start(&scenario.parameters(parameters)?)?;
+            let scene = Scene::new(&mut runner.solver, traces);
+            let sheet = Sheet::new(&scene, &runner.solver.pose().q);
+            let width = width.unwrap_or(sheet.width());
+            Ok(svg::write(&sheet, width, transparent))
+        })
+        .map_err(|failure: Failure| failure.raise(py))
+    }
+
+    /// Returns the text of the file with these parameters, the start values of a motion, and its
+    /// pose there as estimates; with `estimates`, which are by body, the text with those alone.
+    fn edited(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        parameters: Vec<(String, Value)>,
+        estimates: Option<Vec<f64>>,
+    ) -> PyResult<String> {
+        py.detach(|| {
+            let names: Vec<String> = parameters.iter().map(|(name, _)| name.clone()).collect();
+            let scenario = self.scenario(motions)?;
+            let mut pose = scenario.home.0.clone();
+            match estimates {
+                Some(q) => pose.q[..q.len()].copy_from_slice(&q),
+                None => {
+                    let mut runner = Runner::new(&scenario)?;
+                    let values = scenario.parameters(parameters)?;
+                    runner.start(&values)?;
+                    pose = runner.solver.pose().clone();
+                }
+            }
+            edit(self.source.text(), &self.model, &names, &pose)
+        })
+        .map_err(|failure: Failure| failure.raise(py))
+    }
+
+    /// Returns the bytes of the FMU.
+    fn fmu(
+        &self,
+        py: Python<'_>,
+        fmi: &str,
+        runtime: Option<PathBuf>,
+        platforms: Vec<String>,
+    ) -> PyResult<Vec<u8>> {
+        let platforms: Vec<&str> = platforms.iter().map(String::as_str).collect();
+        py.detach(|| {
+            cli::archive(
+                &self.source,
+                &self.model,
+                fmi,
+                runtime.as_deref(),
+                &platforms,
+            )
+        })
+        .map_err(|message| Failure::File(message).raise(py))
+    }
+}
+
+impl Mechanism {
+    fn scenario(&self, (times, drives): Motions) -> Result<Scenario, Failure> {
+        Scenario::new(&self.model, &self.home()?, times, drives)
+    }
+
+    /// Returns the pose of the file's own values.
+    fn home(&self) -> Result<Arc<Home>, Failure> {
+        if let Some(home) = self.home.get() {
+            return Ok(Arc::clone(home));
+        }
+        let mut solver = Solver::new(self.model.clone())?;
+        solver.assemble(&Path::new(&self.model))?;
+        let mut carryover = Carryover::default();
+        solver.carry_over(&mut carryover);
+        let home = Arc::new((solver.pose().clone(), carryover));
+        Ok(Arc::clone(self.home.get_or_init(|| home)))
+    }
+
+    /// Returns a parameter that does not follow from others.
+    fn free(&self, name: &str) -> Result<ParameterId, Failure> {
+        let id = parameter(&self.model, name)?;
+        let default = self.model.parameters[id.index()].default;
+        cli::check_parameter(&self.model, id, default)
+            .map_err(|error| Failure::Usage(format!("parameters: {error}")))?;
+        Ok(id)
+    }
+
+    fn chosen(&self, indices: &[usize]) -> Vec<Column> {
+        let columns = columns(&self.model);
+        indices
+            .iter()
+            .map(|index| columns[*index].clone())
+            .collect()
+    }
+
+    fn end(&self, driver: DriverId, end: &End) -> EndRow {
+        let text = cli::describe_end(end, &self.model, driver);
+        match end {
+            End::Turns(turns) => ("turns", None, text, Some(*turns)),
+            End::Singular(point) => ("singular", Some(point.drivers[driver.index()]), text, None),
+            End::Blocked { value, .. } => ("blocked", Some(*value), text, None),
+            End::Bound { value } => ("bound", Some(*value), text, None),
+            End::NotFound { value } => ("not found", Some(*value), text, None),
+        }
+    }
+}
+
+/// Returns the columns of the motion. Forces are left out.
+fn columns(model: &Model) -> Vec<Column> {
+    let mut columns = Column::all(model);
+    columns.retain(|column| !column.is_force());
+    columns
+}
+
+fn source(name: &str, text: Option<String>, path: Option<PathBuf>) -> Result<Source, Failure> {
+    match (text, path) {
+        (Some(text), None) => Ok(Source::new(name, text)),
+        // The tables that the text names are beside the file.
+        (Some(text), Some(path)) => {
+            let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+            Ok(Source::new(name, text).in_folder(folder))
+        }
+        (None, Some(path)) => Source::open(name, &path)
+            .map_err(|error| Failure::File(format!("cannot read `{name}`: {error}"))),
+        (None, None) => Err(Failure::Usage("expected a text or a path".to_owned())),
+    }
+}
+
+fn problems(source: &Source, diagnostics: &[Diagnostic]) -> Vec<Problem> {
+    let place = |diagnostic: &Diagnostic| {
+        let position = source.position(diagnostic.labels.first()?.span.start);
+        Some((position.line, position.column))
+    };
+    diagnostics
+        .iter()
+        .map(|d| {
+            let severity = d.severity.as_str();
+            (
+                severity,
+                d.code,
+                d.message.clone(),
+                d.help.clone(),
+                place(d),
+            )
+        })
+        .collect()
+}

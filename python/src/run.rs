@@ -1,0 +1,117 @@
+//! One motion of a mechanism, with its gradients.
+
+use std::sync::Arc;
+
+use biela::fmi::Column;
+use biela::kinematics::Direction;
+use biela::mechanism::{Jet, Mechanism, ParameterId};
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+
+use crate::error::Failure;
+use crate::film::Film;
+use crate::runner::{Beginning, Runner};
+use crate::scenario::Scenario;
+
+/// The rows of a run.
+#[pyclass(frozen)]
+pub(crate) struct Run {
+    mechanism: Arc<Mechanism>,
+    /// Values by row, then by column.
+    values: Vec<f64>,
+    /// Derivatives by row, then by parameter, then by column.
+    gradient: Vec<f64>,
+    film: Film,
+    /// Number of rows that were reached.
+    #[pyo3(get)]
+    rows: usize,
+    /// Cause of a stop before the last row.
+    #[pyo3(get)]
+    stop: Option<String>,
+    /// Singular positions that were near or were passed, and a start in another assembly mode.
+    #[pyo3(get)]
+    notices: Vec<String>,
+}
+
+#[pymethods]
+impl Run {
+    /// Returns the values, by row, then by column.
+    fn values<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.values.clone().into_pyarray(py)
+    }
+
+    /// Returns the derivatives, by row, then by parameter, then by column.
+    fn gradient<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.gradient.clone().into_pyarray(py)
+    }
+
+    /// Returns the page on which the mechanism moves; `None` for a run without rows.
+    fn page(&self, py: Python<'_>) -> Option<String> {
+        py.detach(|| self.film.page(&self.mechanism))
+    }
+}
+
+/// Message for a start that is not on the continuous motion from the file's pose.
+const REASSEMBLED: &str = "no continuous motion leads from the file's own pose to these values: \
+                           assembled there from the estimates, possibly in another assembly mode";
+
+/// Runs a mechanism; records the columns, and their derivatives by the parameters.
+///
+/// # Errors
+///
+/// The mechanism does not assemble at the start.
+pub(crate) fn run(
+    scenario: &Scenario,
+    parameters: &[f64],
+    columns: &[Column],
+    by: &[ParameterId],
+) -> Result<Run, Failure> {
+    let mut runner = Runner::new(scenario)?;
+    let rows = scenario.times.len();
+    let began = runner.start(parameters)?;
+    let mut result = Run {
+        mechanism: scenario.driven.clone(),
+        values: Vec::with_capacity(rows * columns.len()),
+        gradient: Vec::with_capacity(rows * columns.len() * by.len()),
+        film: Film::new(&scenario.driven, rows, parameters),
+        rows: 0,
+        stop: None,
+        notices: Vec::new(),
+    };
+    if began == Beginning::Reassembled {
+        result.notices.push(REASSEMBLED.to_owned());
+    }
+    let mut direction = Direction {
+        drivers: vec![Jet::constant(0.0); scenario.own.drivers.len()],
+        parameters: vec![0.0; parameters.len()],
+        time: 0.0,
+    };
+    for row in 0..rows {
+        if row > 0 {
+            if let Err(stop) = runner.advance(row) {
+                result.stop = Some(stop);
+                break;
+            }
+            result.notices.extend(runner.notices());
+        }
+        let Runner {
+            solver,
+            rates,
+            driver_rates,
+            ..
+        } = &mut runner;
+        let values = columns.iter().map(|c| c.value(solver, rates, driver_rates));
+        result.values.extend(values);
+        for parameter in by {
+            direction.parameters[parameter.index()] = 1.0;
+            let change = solver.sensitivity(rates, driver_rates, &direction)?;
+            result
+                .gradient
+                .extend(columns.iter().map(|c| c.change(&scenario.own, &change)));
+            direction.parameters[parameter.index()] = 0.0;
+        }
+        result.film.add(row, &runner);
+        result.rows += 1;
+    }
+    Ok(result)
+}

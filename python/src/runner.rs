@@ -1,0 +1,156 @@
+//! A mechanism that moves along the samples and motions of its drivers.
+
+use biela::kinematics::{Carryover, Curve, Path, Rates, Solver, Start};
+use biela::mechanism::{DriverId, Jet, Motion, ParameterId};
+
+use crate::error::Failure;
+use crate::scenario::Scenario;
+
+/// A mechanism that moves from one time to the next.
+pub(crate) struct Runner<'a> {
+    scenario: &'a Scenario,
+    /// At the file's own values, from which each motion starts.
+    home: Solver,
+    pub(crate) solver: Solver,
+    pub(crate) rates: Rates,
+    /// Value, velocity and acceleration of each driver.
+    pub(crate) driver_rates: Vec<Jet>,
+    path: Path,
+    carryover: Carryover,
+    near_singular: bool,
+}
+
+/// The method that found the first pose of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Beginning {
+    /// Continuous motion from the file's own pose.
+    Continuous,
+    /// Assembly from the estimates, possibly in another assembly mode.
+    Reassembled,
+}
+
+impl<'a> Runner<'a> {
+    pub(crate) fn new(scenario: &'a Scenario) -> Result<Self, Failure> {
+        let home = Solver::new(scenario.own.clone())?;
+        let solver = Solver::new(scenario.driven.clone())?;
+        Ok(Self {
+            scenario,
+            home,
+            rates: Rates::new(scenario.home.0.q.len()),
+            driver_rates: vec![Jet::constant(0.0); scenario.own.drivers.len()],
+            path: Path::new(solver.mechanism()),
+            carryover: Carryover::default(),
+            solver,
+            near_singular: false,
+        })
+    }
+
+    /// Moves from the file's own pose to the first time, with these parameters. The result depends
+    /// on them alone, not on motions before.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism does not assemble there.
+    pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<Beginning, Failure> {
+        let Scenario {
+            own, driven, home, ..
+        } = self.scenario;
+        self.home.resume(&home.0, &home.1);
+        let home = &home.0;
+        let start = self.scenario.times[0];
+        let mut path = Path::new(own);
+        path.duration = start - home.time;
+        path.to.copy_from_slice(parameters);
+        for (index, (curve, driver)) in path.curves.iter_mut().zip(&driven.drivers).enumerate() {
+            let sample = self.sample(DriverId(index), 0).map(|sample| sample.value);
+            let value = sample.or_else(|| match (driver.motion(), own.drivers[index].motion()) {
+                // A motion of the file is followed as such.
+                (Some(Motion::Expression(motion)), own)
+                    if !matches!(own, Some(Motion::Expression(own)) if own == motion) =>
+                {
+                    Some(motion.evaluate(&|p: ParameterId| parameters[p.index()], start))
+                }
+                _ => None,
+            });
+            if let Some(value) = value {
+                *curve = Curve::held(value, home.drivers[index]);
+            }
+        }
+        let began = self.home.start(home, &path)?;
+        self.home.carry_over(&mut self.carryover);
+        self.solver.resume(self.home.pose(), &self.carryover);
+        self.path.from.copy_from_slice(parameters);
+        self.path.to.copy_from_slice(parameters);
+        self.near_singular = false;
+        self.solve_rates(0)?;
+        Ok(match began {
+            Start::Continuous(_) => Beginning::Continuous,
+            Start::Reassembled(_) => Beginning::Reassembled,
+        })
+    }
+
+    /// Moves on to a row's time.
+    ///
+    /// # Errors
+    ///
+    /// Cause of the mechanism's stop, and its place.
+    pub(crate) fn advance(&mut self, row: usize) -> Result<(), String> {
+        let time = self.scenario.times[row];
+        let pose = self.solver.pose();
+        self.path.start = pose.time;
+        self.path.duration = time - pose.time;
+        for (index, curve) in self.path.curves.iter_mut().enumerate() {
+            if *curve == Curve::Motion {
+                continue;
+            }
+            let now = pose.drivers[index];
+            let driver = DriverId(index);
+            let samples = self.scenario.samples.iter().find(|s| s.driver == driver);
+            let value = samples.map_or(now, |samples| samples.at(row).value);
+            *curve = Curve::held(value, now);
+        }
+        if let Err(blocked) = self.solver.track(&self.path) {
+            let mechanism = self.solver.mechanism();
+            return Err(blocked.describe(mechanism, self.solver.pose(), |driver| {
+                mechanism.drivers[driver.index()].motion().is_some()
+                    || self.sample(driver, row).is_some()
+            }));
+        }
+        self.solve_rates(row)
+            .map_err(|error| format!("at t = {time} s: {error}"))
+    }
+
+    /// Returns what is worth knowing of the last [`advance`](Self::advance): singular positions
+    /// that are near or were passed.
+    pub(crate) fn notices(&mut self) -> Vec<String> {
+        let time = self.solver.pose().time;
+        let approach = self.solver.approach(&mut self.near_singular);
+        let crossed = self.solver.crossed().iter();
+        let crossed = crossed.map(|crossing| self.solver.describe_crossing(crossing));
+        let texts = approach.map(|approach| approach.to_string()).into_iter();
+        texts
+            .chain(crossed)
+            .map(|text| format!("t = {time} s: {text}"))
+            .collect()
+    }
+
+    fn sample(&self, driver: DriverId, row: usize) -> Option<Jet> {
+        let samples = self.scenario.samples.iter().find(|s| s.driver == driver)?;
+        Some(samples.at(row))
+    }
+
+    fn solve_rates(&mut self, row: usize) -> Result<(), biela::kinematics::Error> {
+        let time = self.solver.pose().time;
+        for index in 0..self.driver_rates.len() {
+            let driver = DriverId(index);
+            if self.solver.mechanism().drivers[index].motion().is_some() {
+                self.driver_rates[index] = self.solver.motion(driver, time);
+            } else if let Some(sample) = self.sample(driver, row) {
+                self.driver_rates[index] = sample;
+            }
+        }
+        let driver_rates = &self.driver_rates;
+        self.solver
+            .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
+    }
+}

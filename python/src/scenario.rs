@@ -1,0 +1,179 @@
+//! Parameters and motions of drivers as a call sets them.
+
+use std::sync::Arc;
+
+use biela::cli::{check_parameter, parameter_value, unknown_name};
+use biela::kinematics::{Carryover, Pose};
+use biela::mechanism::{DriverId, DriverSource, Jet, Mechanism, Motion, ParameterId, Variable};
+use pyo3::prelude::*;
+
+use crate::error::Failure;
+
+/// A value of a parameter: a number in the SI unit, or an expression such as `120*mm`.
+#[derive(FromPyObject)]
+pub(crate) enum Value {
+    Number(f64),
+    Text(String),
+}
+
+/// A motion of a driver: an expression in t, or position, velocity and acceleration at each time.
+#[derive(FromPyObject)]
+pub(crate) enum Drive {
+    Text(String),
+    Samples([Vec<f64>; 3]),
+}
+
+/// Values of a driver at the times of a run.
+#[derive(Debug)]
+pub(crate) struct Samples {
+    pub(crate) driver: DriverId,
+    orders: [Vec<f64>; 3],
+}
+
+impl Samples {
+    /// Returns value, velocity and acceleration at a time, by its index.
+    pub(crate) fn at(&self, row: usize) -> Jet {
+        let [position, velocity, acceleration] = &self.orders;
+        Jet::new(position[row], [velocity[row], acceleration[row]])
+    }
+}
+
+/// The pose of the file's own values, with the solver's choices there.
+pub(crate) type Home = (Pose, Carryover);
+
+/// A mechanism with the motions of its drivers.
+#[derive(Debug)]
+pub(crate) struct Scenario {
+    /// The mechanism as its file has it.
+    pub(crate) own: Arc<Mechanism>,
+    /// The mechanism with the motions of the call; drivers that follow samples are inputs.
+    pub(crate) driven: Arc<Mechanism>,
+    pub(crate) home: Arc<Home>,
+    /// Times of the rows \[s\], ascending; at least one.
+    pub(crate) times: Vec<f64>,
+    pub(crate) samples: Vec<Samples>,
+}
+
+impl Scenario {
+    /// Applies motions to a mechanism.
+    ///
+    /// # Errors
+    ///
+    /// A driver or an expression is unknown, or an array does not fit the times.
+    pub(crate) fn new(
+        own: &Arc<Mechanism>,
+        home: &Arc<Home>,
+        times: Vec<f64>,
+        drives: Vec<(String, Drive)>,
+    ) -> Result<Self, Failure> {
+        check_times(&times)?;
+        let mut driven = Mechanism::clone(own);
+        let mut samples = Vec::new();
+        for (name, drive) in drives {
+            let Some(driver) = own.driver_id(&name) else {
+                let names: Vec<&str> = own.drivers.iter().map(|d| d.name.as_str()).collect();
+                return Err(Failure::Usage(format!(
+                    "drive: {}",
+                    unknown_name("driver", &name, &names)
+                )));
+            };
+            driven.drivers[driver.index()].source = match drive {
+                Drive::Text(text) => {
+                    let motion = own.parse_expression(&text, Some(Variable::Time));
+                    let motion = motion.map_err(|error| {
+                        Failure::Usage(format!("drive: {}\n  {text}", error.message))
+                    })?;
+                    DriverSource::Motion(Motion::Expression(motion))
+                }
+                Drive::Samples(orders) => {
+                    check_samples(&name, &orders, times.len())?;
+                    let start = orders[0][0];
+                    samples.push(Samples { driver, orders });
+                    DriverSource::Input { start }
+                }
+            };
+        }
+        Ok(Self {
+            own: Arc::clone(own),
+            driven: Arc::new(driven),
+            home: Arc::clone(home),
+            times,
+            samples,
+        })
+    }
+
+    /// Returns all parameters in force for values of some \[SI\].
+    ///
+    /// # Errors
+    ///
+    /// A parameter is unknown or derived, or its value is beyond its limits.
+    pub(crate) fn parameters(&self, set: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
+        let mut values = self.own.default_parameters();
+        for (name, value) in set {
+            let id = parameter(&self.own, &name)?;
+            let value = match value {
+                Value::Number(value) => check_parameter(&self.own, id, value).map(|()| value),
+                Value::Text(text) => parameter_value(&self.own, id, &text),
+            };
+            values[id.index()] =
+                value.map_err(|error| Failure::Usage(format!("parameters: {error}")))?;
+        }
+        self.own.derive_parameters(&mut values);
+        Ok(values)
+    }
+}
+
+/// Returns the parameter of a name.
+pub(crate) fn parameter(mechanism: &Mechanism, name: &str) -> Result<ParameterId, Failure> {
+    mechanism.parameter_id(name).ok_or_else(|| {
+        let names: Vec<&str> = mechanism
+            .parameters
+            .iter()
+            .map(|p| p.name.as_str())
+            .collect();
+        Failure::Usage(format!(
+            "parameters: {}",
+            unknown_name("parameter", name, &names)
+        ))
+    })
+}
+
+fn check_times(times: &[f64]) -> Result<(), Failure> {
+    let refuse = |message: String| Err(Failure::Usage(message));
+    if times.is_empty() {
+        return refuse("t: there are no times".to_owned());
+    }
+    if let Some(row) = times.iter().position(|time| !time.is_finite()) {
+        return refuse(format!(
+            "t[{row}] is {}; expected a finite number",
+            times[row]
+        ));
+    }
+    match times.windows(2).position(|pair| pair[1] < pair[0]) {
+        Some(row) => refuse(format!(
+            "t[{}] = {} is before t[{row}] = {}; expected times in ascending order",
+            row + 1,
+            times[row + 1],
+            times[row]
+        )),
+        None => Ok(()),
+    }
+}
+
+fn check_samples(name: &str, orders: &[Vec<f64>; 3], rows: usize) -> Result<(), Failure> {
+    for values in orders {
+        let count = values.len();
+        if count != rows {
+            return Err(Failure::Usage(format!(
+                "drive: `{name}` has {count} values for {rows} times"
+            )));
+        }
+        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+            return Err(Failure::Usage(format!(
+                "drive: `{name}` is {} at t[{row}]; expected a finite number",
+                values[row]
+            )));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,129 @@
+//! The same motion of many variants, on all cores.
+
+use biela::cli::check_parameter;
+use biela::fmi::Column;
+use biela::mechanism::ParameterId;
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::error::Failure;
+use crate::runner::{Beginning, Runner};
+use crate::scenario::Scenario;
+
+/// Number of variants that one solver takes in turn: far more work than making the solver.
+const TURN: usize = 32;
+
+/// The rows of many variants.
+#[pyclass]
+pub(crate) struct Sweep {
+    /// Values by variant, then by column, then by row; not a number where the variant stopped.
+    values: Vec<f64>,
+    /// Number of rows that each variant reached.
+    #[pyo3(get)]
+    rows: Vec<usize>,
+    /// Reasons of the variants that stopped, by their index.
+    #[pyo3(get)]
+    reasons: Vec<(usize, String)>,
+    /// Variants that were assembled from the estimates, possibly in another assembly mode.
+    #[pyo3(get)]
+    reassembled: Vec<usize>,
+}
+
+#[pymethods]
+impl Sweep {
+    /// Returns the values, by variant, then by column, then by row, and keeps none of them.
+    fn take_values<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        std::mem::take(&mut self.values).into_pyarray(py)
+    }
+}
+
+/// The outcome of one variant.
+struct Outcome {
+    rows: usize,
+    reason: Option<String>,
+    reassembled: bool,
+}
+
+/// Runs the variants, whose parameters \[SI\] are by parameter, then by variant. A variant that
+/// does not assemble or stops has a reason and no values from there on.
+///
+/// # Errors
+///
+/// The equations of the mechanism do not fit.
+pub(crate) fn sweep(
+    scenario: &Scenario,
+    parameters: &[f64],
+    swept: &[(ParameterId, Vec<f64>)],
+    variants: usize,
+    columns: &[Column],
+) -> Result<Sweep, Failure> {
+    // An error of the equations is the same for all variants.
+    Runner::new(scenario)?;
+    let rows = scenario.times.len();
+    let size = rows * columns.len();
+    let mut values = vec![f64::NAN; variants * size];
+    let run = |runner: &mut Runner<'_>, variant: usize, values: &mut [f64]| {
+        let mut outcome = Outcome {
+            rows: 0,
+            reason: None,
+            reassembled: false,
+        };
+        let mut own = parameters.to_vec();
+        for (parameter, series) in swept {
+            let value = series[variant];
+            if let Err(reason) = check_parameter(&scenario.own, *parameter, value) {
+                outcome.reason = Some(reason);
+                return outcome;
+            }
+            own[parameter.index()] = value;
+        }
+        scenario.own.derive_parameters(&mut own);
+        match runner.start(&own) {
+            Ok(began) => outcome.reassembled = began == Beginning::Reassembled,
+            Err(Failure::Assembly(reason) | Failure::Usage(reason) | Failure::File(reason)) => {
+                outcome.reason = Some(reason);
+                return outcome;
+            }
+        }
+        for row in 0..rows {
+            if row > 0
+                && let Err(reason) = runner.advance(row)
+            {
+                outcome.reason = Some(reason);
+                return outcome;
+            }
+            for (column, values) in columns.iter().zip(values.chunks_exact_mut(rows)) {
+                values[row] = column.value(&runner.solver, &runner.rates, &runner.driver_rates);
+            }
+            outcome.rows += 1;
+        }
+        outcome
+    };
+    let turns = values.par_chunks_mut((TURN * size).max(1)).enumerate();
+    let outcomes: Vec<Vec<Outcome>> = turns
+        .map(|(turn, values)| {
+            let mut runner = Runner::new(scenario)?;
+            let variants = values.chunks_exact_mut(size).enumerate();
+            Ok(variants
+                .map(|(index, values)| run(&mut runner, TURN * turn + index, values))
+                .collect())
+        })
+        .collect::<Result<_, Failure>>()?;
+    let mut result = Sweep {
+        values,
+        rows: Vec::with_capacity(variants),
+        reasons: Vec::new(),
+        reassembled: Vec::new(),
+    };
+    for (variant, outcome) in outcomes.into_iter().flatten().enumerate() {
+        result.rows.push(outcome.rows);
+        result
+            .reasons
+            .extend(outcome.reason.map(|reason| (variant, reason)));
+        if outcome.reassembled {
+            result.reassembled.push(variant);
+        }
+    }
+    Ok(result)
+}

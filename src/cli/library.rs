@@ -1,0 +1,100 @@
+//! Commands as functions, for programs without a command line. Their errors are the texts that the
+//! program shows.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::check::json::report_on;
+use super::conditions::{check_limits, check_settable};
+use super::export::{pack, platform, version};
+use super::input::Input;
+use super::{conditions, range, runtime};
+use crate::fmi::Platform;
+use crate::kinematics::End;
+use crate::mechanism::{DriverId, Mechanism, ParameterId, Source};
+
+/// Returns the report of `biela check --format json` on a mechanism.
+#[must_use]
+pub fn check(source: &Source, modes: bool) -> Value {
+    report_on(source, modes)
+}
+
+/// Returns the FMU that `biela export` writes, of the version `2` or `3` of FMI, for these platforms;
+/// for all without any. The libraries come from the folder `runtime`, or are those of this program.
+///
+/// # Errors
+///
+/// The mechanism does not assemble, there is no such version, or no library for a platform.
+pub fn archive(
+    source: &Source,
+    mechanism: &Arc<Mechanism>,
+    fmi: &str,
+    runtime: Option<&Path>,
+    platforms: &[&str],
+) -> Result<Vec<u8>, String> {
+    let platforms: Vec<Platform> = (platforms.iter().copied())
+        .map(platform)
+        .collect::<Result<_, _>>()?;
+    let version = version(fmi)?;
+    let input = Input {
+        source: source.clone(),
+        mechanism: Arc::clone(mechanism),
+    };
+    let pack = || {
+        let mut found = runtime::find(runtime)?;
+        if !platforms.is_empty() {
+            found = runtime::narrow(found, &platforms)?;
+        }
+        let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
+        pack(&input, &input.assemble()?, version, &libraries)
+    };
+    pack().map_err(|error: super::error::Error| error.to_string())
+}
+
+/// Returns the end of a driver's range as `biela range` describes it.
+#[must_use]
+pub fn describe_end(end: &End, mechanism: &Mechanism, driver: DriverId) -> String {
+    range::end_text(end, &mechanism.drivers[driver.index()], driver)
+}
+
+/// Returns the value of an expression for a parameter, such as `120*mm`, with the file's values of
+/// the others.
+///
+/// # Errors
+///
+/// The expression is wrong, the value is beyond the parameter's limits, or the parameter is
+/// derived.
+pub fn parameter_value(
+    mechanism: &Mechanism,
+    parameter: ParameterId,
+    text: &str,
+) -> Result<f64, String> {
+    let expression = mechanism.parse_expression(text, None);
+    let expression = expression.map_err(|error| error.message)?;
+    let value = expression.evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
+    check_parameter(mechanism, parameter, value)?;
+    Ok(value)
+}
+
+/// Checks a value for a parameter \[SI\].
+///
+/// # Errors
+///
+/// The value is beyond the parameter's limits, or the parameter is derived.
+pub fn check_parameter(
+    mechanism: &Mechanism,
+    parameter: ParameterId,
+    value: f64,
+) -> Result<(), String> {
+    let parameter = &mechanism.parameters[parameter.index()];
+    check_settable(parameter)?;
+    check_limits(parameter, value)
+}
+
+/// Says that a name is unknown, with the known name that may be meant.
+#[must_use]
+pub fn unknown_name(kind: &str, name: &str, names: &[&str]) -> String {
+    conditions::unknown_name(kind, name, names)
+}

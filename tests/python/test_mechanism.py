@@ -1,0 +1,156 @@
+"""Mechanisms: files, reports, ranges, modes, pictures, FMUs."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import pickle
+import subprocess
+import sys
+import xml.etree.ElementTree as xml
+
+import biela
+import fmpy
+import fmpy.validation
+import numpy as np
+import pytest
+from shipped import ROOT
+from numpy.testing import assert_allclose
+
+MODULES = ["biela", *(f"biela.{path.stem}" for path in (ROOT / "python/biela").glob("[!_]*.py"))]
+
+
+def test_errors_of_a_file_are_diagnostics(tmp_path):
+    file = tmp_path / "wrong.toml"
+    text = (ROOT / "mechanisms/four_bar.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace('"crank.A", "coupler.A"', '"cranck.A", "coupler.A"'), encoding="utf-8")
+    with pytest.raises(biela.MechanismError, match="did you mean `crank`") as raised:
+        biela.load(file)
+    (problem,) = raised.value.diagnostics
+    line = 1 + text[: text.index('"crank.A", "coupler.A"')].count("\n")
+    assert (problem.severity, problem.code, problem.line) == ("error", "unknown-body", line)
+    assert f"{file}:{line}:" in str(raised.value)
+    again = pickle.loads(pickle.dumps(raised.value))
+    assert again.diagnostics == raised.value.diagnostics and str(again) == str(raised.value)
+    assert biela.check(file).diagnostics == (problem,)
+
+
+def test_a_missing_file_is_told(tmp_path):
+    with pytest.raises(biela.FileError, match="cannot read"):
+        biela.load(tmp_path / "none.toml")
+
+
+def test_warnings_of_a_file_are_warnings():
+    text = (ROOT / "mechanisms/four_bar.toml").read_text(encoding="utf-8")
+    with pytest.warns(biela.MechanismWarning, match="unused"):
+        mechanism = biela.loads(text.replace("[parameters]", "[parameters]\nspare = 1"))
+    assert [problem.code for problem in mechanism.diagnostics] == ["unused-parameter"]
+
+
+def test_a_report_has_the_pose(four_bar):
+    report = four_bar.check(modes=True)
+    assert report.ok and report.error is None and report.degrees_of_freedom == 1
+    assert_allclose(np.degrees(report.poses["rocker"][2]), 122.824_780, atol=1e-6)
+    assert report.rcond > 0.01 and report.residual < 1e-12 and report.warnings == ()
+    assert report.data["assembled"]["modes"]["complete"]
+
+
+def test_attributes_tell_the_file(four_bar):
+    assert four_bar.name == "four_bar" and four_bar.bodies == ["crank", "coupler", "rocker"]
+    base = four_bar.parameters["base"]
+    assert (base.value, base.unit, base.min, base.derived) == (0.4, "m", 0.001, False)
+    assert_allclose(four_bar.drivers["crank_angle"].start, np.radians(60))
+    assert four_bar.variables["rocker.alpha"] == "rad/s2"
+
+
+def test_the_range_of_a_triangle_ends_at_dead_points(mechanism):
+    """A triangle with sides a, b closes for third sides from |a - b| to a + b."""
+    triangle = mechanism("tlv")
+    found = triangle.range("side_length")
+    values = {name: p.value for name, p in triangle.parameters.items()}
+    sides = sorted(values.values())[-2:]
+    assert found.lower.kind == found.upper.kind == "singular" and not found.turns
+    report = triangle.check()
+    assert found.lower.value < found.values[0] + 1e-6
+    assert found.poses[triangle.bodies[0]].shape == (len(found.values), 3)
+    assert report.ok and len(sides) == 2
+
+
+def test_a_crank_turns_fully(four_bar):
+    found = four_bar.range("crank_angle", drive={"crank_angle": 1.0})
+    assert found.turns and found.upper.turns == 1
+    with pytest.raises(biela.UsageError, match="did you mean `crank_angle`"):
+        four_bar.range("crank")
+
+
+def test_the_other_mode_of_a_four_bar_mirrors_the_dyad(four_bar):
+    modes = four_bar.modes()
+    (other,) = modes.others
+    own = four_bar.check().poses
+    assert modes.complete
+    joint = lambda poses: poses["rocker"][:2] + 0.3 * np.array(
+        [np.cos(poses["rocker"][2]), np.sin(poses["rocker"][2])]
+    )
+    for poses in (own, other.poses):
+        assert_allclose(np.hypot(*(joint(poses) - poses["coupler"][:2])), 0.25, rtol=1e-12)
+    assert abs(joint(own) - joint(other.poses)).max() > 0.1
+
+
+def test_pictures_are_shown_in_notebooks(four_bar):
+    drawing = four_bar.draw(drive={"crank_angle": 2.0}, width=300)
+    assert xml.fromstring(drawing).tag.endswith("svg") and drawing._repr_svg_() == drawing
+    assert four_bar._repr_svg_() != drawing
+    result = four_bar.run(t=[0, 0.1, 0.3], drive={"crank_angle": "1 + t"})
+    assert "four_bar" in result.to_html() and result._repr_html_().startswith("<iframe srcdoc=")
+    assert four_bar.run(drive={"crank_angle": [1.0, 1.1]}).to_html()
+
+
+def test_an_exported_fmu_has_the_motion_of_the_module(four_bar, tmp_path):
+    built = [ROOT / "target" / kind / "libbiela_runtime.so" for kind in ("release", "debug")]
+    built = [path for path in built if path.is_file()]
+    if sys.platform != "linux" or not built:
+        pytest.skip("no library was built for this platform")
+    folder = tmp_path / "runtime" / "linux64"
+    folder.mkdir(parents=True)
+    (folder / "biela.so").write_bytes(built[0].read_bytes())
+    path = four_bar.export(tmp_path / "four_bar.fmu", runtime=tmp_path / "runtime")
+    assert not fmpy.validation.validate_fmu(str(path))
+    t = np.linspace(0, 1, 11)
+    signal = np.array([(s, 1 + 2 * s) for s in t], dtype=[("time", float), ("crank_angle.position", float)])
+    simulated = fmpy.simulate_fmu(
+        str(path), stop_time=1, output_interval=0.1, step_size=0.1, input=signal,
+        output=["rocker.phi"], fmi_call_logger=None,
+    )
+    own = four_bar.run(t=t, drive={"crank_angle": 1 + 2 * t})
+    # Held inputs lag by one step.
+    assert_allclose(simulated["rocker.phi"][1:], own["rocker.phi"][:-1], rtol=1e-12)
+    with pytest.raises(biela.FileError, match="no runtime library"):
+        four_bar.export(tmp_path / "a.fmu", runtime=tmp_path)
+
+
+def test_mechanisms_travel_to_other_processes(mechanism):
+    for name in ("four_bar", "cam_points"):
+        own = mechanism(name)
+        again = pickle.loads(pickle.dumps(own))
+        assert again.text == own.text and again.variables == own.variables
+
+
+def test_the_program_is_the_module():
+    command = [sys.executable, "-c", "import sys; sys.path.insert(0, sys.argv.pop(1)); "
+               "import biela.__main__ as m; assert 'numpy' not in sys.modules; sys.exit(m.main())"]
+    run = lambda *arguments: subprocess.run(
+        [*command, ROOT / "python", *arguments], capture_output=True, text=True
+    )
+    assert run("--version").stdout.strip() == f"biela {biela.__version__}"
+    assert run("check", "none.toml").returncode == 2
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_of_docstrings_run(name, four_bar):
+    module = importlib.import_module(name)
+    names = {"np": np, "biela": biela, "four_bar": four_bar, "text": four_bar.text}
+    tests = doctest.DocTestFinder().find(module, extraglobs=names)
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    for test in tests:
+        runner.run(test, clear_globs=False)
+    assert runner.failures == 0

@@ -1,0 +1,166 @@
+"""Runs: closed forms, motions in all forms, and the same numbers as the program."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import subprocess
+import sys
+import threading
+import warnings
+
+import biela
+import numpy as np
+import pytest
+from shipped import ROOT
+from numpy.testing import assert_allclose, assert_array_equal
+
+AT_ROUNDING = 1e-13
+"""Relative error of some ten operations on numbers of order one, with the condition of the
+four-bar linkage, which is above 0.01."""
+
+
+def rocker(theta, crank=0.10, coupler=0.25, rocker=0.30, base=0.40):
+    """Returns the rocker's angle by the law of cosines."""
+    # From the rocker's pivot to the crank's pin, turned by half a turn: the angle stays off its cut.
+    x, y = base - crank * np.cos(theta), -crank * np.sin(theta)
+    diagonal = np.hypot(x, y)
+    inner = np.arccos((rocker**2 + diagonal**2 - coupler**2) / (2 * rocker * diagonal))
+    return np.pi + np.arctan2(y, x) - inner
+
+
+def test_a_four_bar_follows_the_law_of_cosines_over_a_turn(four_bar):
+    theta = np.radians(60) + np.linspace(0, 2 * np.pi, 361)
+    result = four_bar.run(drive={"crank_angle": theta})
+    assert_allclose(result["rocker.phi"], rocker(theta), rtol=AT_ROUNDING)
+    assert_array_equal(result["crank_angle.position"], theta)
+    assert result.stopped is None and len(result.t) == 361
+
+
+def test_parameters_are_numbers_or_expressions(four_bar):
+    theta = np.linspace(1.0, 2.0, 5)
+    for length in (0.31, "310*mm"):
+        result = four_bar.run(drive={"crank_angle": theta}, parameters={"rocker_length": length})
+        assert_allclose(result["rocker.phi"], rocker(theta, rocker=0.31), rtol=AT_ROUNDING)
+
+
+def test_expressions_and_exact_samples_give_the_same_motion(four_bar):
+    t = np.linspace(0, 1, 11)
+    angle = 1 + 2 * t + 3 * t**2
+    sampled = four_bar.run(t=t, drive={"crank_angle": (angle, 2 + 6 * t, 6.0)})
+    told = four_bar.run(t=t, drive={"crank_angle": "1 + 2*t + 3*t^2"})
+    for name in told:
+        # Accelerations grow with the square of the rates, which reach 8 rad/s.
+        assert_allclose(sampled[name], told[name], rtol=1e-11, atol=1e-11, err_msg=name)
+
+
+def test_samples_without_rates_are_differentiated(four_bar):
+    t = np.linspace(0, 1, 201)
+    exact = four_bar.run(t=t, drive={"crank_angle": "1 + sin(2*t)"})
+    sampled = four_bar.run(t=t, drive={"crank_angle": 1 + np.sin(2 * t)})
+    with_velocity = four_bar.run(
+        t=t, drive={"crank_angle": (1 + np.sin(2 * t), 2 * np.cos(2 * t))}
+    )
+    # h = 0.005: at the ends the errors are h^4/5 d5 and some h^3 d5, with d5 up to 32.
+    assert_allclose(sampled["rocker.omega"], exact["rocker.omega"], atol=1e-8)
+    assert_allclose(sampled["rocker.alpha"], exact["rocker.alpha"], atol=1e-5)
+    assert_allclose(with_velocity["rocker.omega"], exact["rocker.omega"], rtol=AT_ROUNDING, atol=1e-15)
+    assert_allclose(with_velocity["rocker.alpha"], exact["rocker.alpha"], atol=1e-7)
+
+
+def test_constant_rates_fit_arrays(four_bar):
+    theta = np.linspace(1.0, 2.0, 5)
+    result = four_bar.run(drive={"crank_angle": (theta, 1.0, 0.0)})
+    h = 1e-6
+    slope = (rocker(theta + h) - rocker(theta - h)) / (2 * h)
+    assert_allclose(result["rocker.omega"], slope, rtol=1e-8)
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank", "tlv", "cam_points", "andrews"])
+def test_a_run_has_the_numbers_of_the_program(mechanism, name):
+    own = mechanism(name)
+    file = ROOT / "mechanisms" / f"{name}.toml"
+    command = [sys.executable, "-m", "biela", "run", file, "--stop", "0.2", "--step", "0.02"]
+    motions = {}
+    for driver in own.drivers.values():
+        if driver.start is not None:
+            rate = 0.3 if driver.unit == "rad" else 0.1 * driver.start
+            motions[driver.name] = f"{driver.start!r} + {rate!r}*t"
+            command += ["--drive", f"{driver.name} = {motions[driver.name]}"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    rows = list(csv.reader(io.StringIO(ran.stdout)))
+    written = np.array(rows[1:], dtype=float)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", biela.MechanismWarning)
+        result = own.run(t=written[:, 0], drive=motions)
+    # The module has no forces, which the program writes behind the motion.
+    count = 1 + len(result)
+    assert rows[0][:count] == ["time", *result]
+    assert_array_equal(written[:, 1:count], result.to_numpy())
+
+
+def test_results_are_data_frames(four_bar):
+    result = four_bar.run(t=[0, 0.5], drive={"crank_angle": "1 + t"}, variables=["rocker", "transmission"])
+    frame = result.to_pandas()
+    assert list(frame.columns) == list(result) and frame.index.name == "time"
+    assert list(result)[0] == "rocker.x" and list(result)[-1] == "transmission.acceleration"
+    assert frame["rocker.phi"].iloc[1] == result["rocker.phi"][1]
+    assert result.units["rocker.alpha"] == "rad/s2"
+
+
+def test_a_dead_point_stops_a_run_with_the_rows_up_to_it(mechanism):
+    triangle = mechanism("tlv")
+    drive = {name: f"{d.start!r} + 0.5*t" for name, d in triangle.drivers.items()}
+    with pytest.raises(biela.StoppedError, match="the mechanism cannot go on") as stopped:
+        triangle.run(t=np.linspace(0, 10, 101), drive=drive)
+    kept = triangle.run(t=np.linspace(0, 10, 101), drive=drive, stop="keep")
+    assert 1 < len(kept.t) < 101 and kept.stopped in str(stopped.value)
+    assert_array_equal(stopped.value.result.to_numpy(), kept.to_numpy())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"drive": {"crank_angel": [1.0]}}, "did you mean `crank_angle`"),
+        ({"drive": {"crank_angle": [1.0, 2.0]}, "t": [0.0]}, "2 values for 1 times"),
+        ({"drive": {"crank_angle": [1.0, np.nan]}}, "expected a finite number"),
+        ({"drive": {"crank_angle": "1 +"}}, "drive: "),
+        ({"drive": {"crank_angle": (1.0, 2.0, 3.0, 4.0)}}, "expected .position, velocity, acceleration"),
+        ({"t": [1.0, 0.0]}, "ascending order"),
+        ({"t": []}, "no times"),
+        ({"parameters": {"crank": 0.1}}, "no parameter `crank`"),
+        ({"parameters": {"crank_length": -1}}, "at least 0.001"),
+        ({"parameters": {"crank_length": "1*furlong"}}, "furlong"),
+        ({"variables": ["rocker.psi"]}, "no variable `rocker.psi`"),
+        ({"gradient": ["bas"]}, "did you mean `base`"),
+        ({"stop": "never"}, "expected 'raise' or 'keep'"),
+    ],
+)
+def test_wrong_arguments_are_told(four_bar, arguments, message):
+    with pytest.raises(biela.UsageError, match=message) as raised:
+        four_bar.run(**arguments)
+    assert isinstance(raised.value, biela.Error) and isinstance(raised.value, ValueError)
+
+
+def test_a_mechanism_that_does_not_close_raises(four_bar):
+    with pytest.raises(biela.AssemblyError, match="the mechanism cannot close"):
+        four_bar.run(t=[0.0], parameters={"base": 5.0})
+
+
+def test_threads_run_at_the_same_time(four_bar):
+    """While a thread computes in Rust, others go on: the lock is released."""
+    ticks = 0
+    done = threading.Event()
+
+    def compute():
+        four_bar.run(t=np.linspace(0, 1, 20_000), drive={"crank_angle": "1 + 6*t"})
+        done.set()
+
+    thread = threading.Thread(target=compute)
+    thread.start()
+    while not done.wait(0.001):
+        ticks += 1
+    thread.join()
+    assert ticks >= 3
