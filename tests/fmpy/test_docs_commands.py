@@ -29,6 +29,7 @@ NOT_RUN = {
     "biela watch piston.toml": "runs until it is ended; tests/watch.rs has tests of its own",
     "env/bin/python parameter_sweep.py": "test_examples.py runs it",
     "env/bin/python dask_sweep.py": "test_examples.py runs it",
+    "env/bin/python dc_motor.py": "test_examples.py runs it",
     "env/bin/python step_errors.py": "docs/fmu.md runs it",
     "env/bin/python system/run.py": "it runs further below",
 }
