@@ -74,8 +74,8 @@ fn attempt(data: &mut Unstructured<'_>) -> arbitrary::Result<()> {
 /// Some way into its life.
 fn bring_on(instance: &mut Instance, how_far: u8) {
     let exchanges = instance.interface() == Interface::ModelExchange;
-    for step in 0..how_far {
-        let gone = match step {
+    for call in 0..how_far {
+        let gone = match call {
             0 => instance.enter_initialization_mode(),
             1 => instance.exit_initialization_mode(),
             _ if exchanges => instance
