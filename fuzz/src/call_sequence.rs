@@ -141,7 +141,7 @@ fn check(instance: &mut Instance, saved: &mut Vec<FmuState>, request: &Request) 
     let allowed = resumes || call.is_allowed_in(version, interface, state);
     let refused = match outcome {
         Err(Error::State { .. } | Error::Interface { .. }) => true,
-        // Where the host has not agreed on event mode, the table allows what the instance refuses.
+        // The table allows event mode also where the host has not agreed on it.
         Err(Error::NotProvided { .. }) => !(allowed && call == Call::EnterEventMode),
         _ => false,
     };

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use biela::fmi::{
-    Category, Causality, Instance, Interface, Kind, MechanismModel, Order, Quantity, Sink, Status,
+    Category, Causality, Instance, Interface, Kind, MechanismModel, Quantity, Sink, Status,
 };
 use biela::kinematics::ForceQuantity;
 use biela::mechanism::{DriverId, Indeterminate, Mechanism};
