@@ -16,7 +16,7 @@ use super::output::print;
 use super::suggested_estimates::as_estimates;
 use crate::kinematics::{self, Element, Mode, Modes, Path, Rates, Solver};
 use crate::mechanism::{
-    CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, Unit, shown,
+    CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, ParameterId, Unit, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.

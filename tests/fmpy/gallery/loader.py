@@ -1,4 +1,4 @@
-"""Loader: the law of cosines in the lift cylinder's triangle, then two circle intersections."""
+"""Loader: the law of cosines in each cylinder's triangle, then a circle intersection."""
 
 from __future__ import annotations
 
@@ -24,7 +24,9 @@ def geometry(lift, tilt):
     arm = np.angle(LIFT_FOOT / LIFT_LUG) + opening
     turn = Taylor.polar(1, arm)
     pivot, pin = turn * BELL, turn * ARM
-    bell = (apex(TILT_FOOT, pivot, tilt, TOP, +1) - pivot).angle()
+    foot = TILT_FOOT - pivot
+    at_pivot = (foot.length_squared() + TOP**2 - tilt.square()) / (2 * TOP * foot.length())
+    bell = foot.angle() - at_pivot.acos()
     bottom = pivot - Taylor.polar(BOTTOM, bell)
     ear = apex(bottom, pin, ROD, abs(EAR), +1)
     return arm, bell, ((ear - pin) / EAR).angle(), pivot, pin
@@ -73,7 +75,7 @@ def properties(motion):
 
 
 CASE = Case(
-    source="closed form: law of cosines, two circle intersections; virtual work",
+    source="closed form: law of cosines in each triangle, one dyad; virtual work",
     drivers=lambda time: {
         "lift": swing(1.20, 0.24)(time),
         "tilt": swing(1.20, 0.14)(2 * time),
