@@ -105,15 +105,16 @@ impl Check {
                     .describe(mechanism),
             )?;
         }
+        if !self.modes && mechanism.bodies.len() <= MOST_BODIES_SEARCHED {
+            let modes = solver.modes().map_err(|error| input.error(error))?;
+            print(&mention_modes(&solver, &modes))?;
+        }
         if self.estimates {
             print(&estimates(&solver))?;
         }
         if self.modes {
             let modes = solver.modes().map_err(|error| input.error(error))?;
             print(&describe_modes(mechanism, &modes))?;
-        } else if mechanism.bodies.len() <= MOST_BODIES_SEARCHED {
-            let modes = solver.modes().map_err(|error| input.error(error))?;
-            print(&mention_modes(&solver, &modes))?;
         }
         Ok(())
     }
@@ -321,7 +322,7 @@ fn mention_modes(solver: &Solver, modes: &Modes) -> String {
             |k: usize| body.estimate[k].evaluate(&|p: ParameterId| parameters[p.index()], 0.0);
         let phi = part(2);
         // Zeros are what a body without an estimate has.
-        let is_estimated = [0, 1, 2].map(part) != [0.0; 3];
+        let is_estimated = (0..3).any(|k| part(k) != 0.0);
         let is_nearer = |mode: &Mode| (mode.q[3 * index + 2] - phi).abs() + FAR < moved.angle;
         if is_estimated && modes.others.iter().any(is_nearer) {
             let angle = shown(moved.angle.to_degrees());

@@ -11,7 +11,7 @@ fn run_plots_what_is_asked_for() {
         arguments.extend([
             path.to_str().unwrap(),
             "--drive",
-            "crank_angle = 60*deg + 5*t + t^2",
+            "crank_angle = 60*deg + 5*t + t^3",
         ]);
         arguments.extend(more);
         let assert = biela(&arguments).success();

@@ -238,7 +238,7 @@ fn plain_angles_of_more_than_a_turn_are_warned_of() {
     );
     // The author of these has thought of the unit.
     for drive in [
-        "crank_angle = 600*deg",
+        "crank_angle = 600*deg + t",
         "crank_angle = 3*pi + t",
         "crank_angle = 6 + 10*t",
     ] {

@@ -12,7 +12,7 @@ use crate::drawing::symbol::{Pen, Symbol};
 /// Poses that decide how much room the motion needs.
 const SAMPLES: usize = 120;
 /// Poses that decide where the labels are.
-const LABEL_SAMPLES: usize = 16;
+const LABEL_SAMPLES: usize = 12;
 /// Room around the mechanism for its symbols and names.
 const AROUND: f64 = 46.0;
 /// Most points with arrows for their rates: more arrows would hide each other.
@@ -227,10 +227,12 @@ mod tests {
         labels.collect()
     }
 
+    /// Largest part of the motion during which a label may be hidden because another one is there.
+    const MOST: f64 = 0.05;
+
     #[test]
     fn labels_keep_apart_over_the_motion_of_every_mechanism() {
         let folder = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("mechanisms");
-        let mut worst = 0.0_f64;
         for entry in std::fs::read_dir(folder).expect("it is there") {
             let file = entry.expect("it can be read").path();
             if file.extension().is_none_or(|extension| extension != "toml") {
@@ -241,7 +243,7 @@ mod tests {
             let q = &animation.moments[0].q;
             let home = stage.placements(q);
             let (mut covered, mut all) = (0, 0);
-            for moment in animation.moments.iter().step_by(7) {
+            for moment in animation.moments.iter().step_by(12) {
                 let boxes = boxes(&stage, &home, &moment.q);
                 for (index, label) in boxes.iter().enumerate() {
                     let is_covered = boxes[..index].iter().any(|b| b.overlap(label) > 0.0);
@@ -250,14 +252,7 @@ mod tests {
                 }
             }
             let share = covered as f64 / f64::from(all.max(1) as u32);
-            eprintln!(
-                "{:?} {} labels, covered {:.3}",
-                file.file_stem(),
-                stage.labels.len(),
-                share
-            );
-            worst = worst.max(share);
+            assert!(share < MOST, "{}: {share}", file.display());
         }
-        assert!(worst < 0.05, "{worst}");
     }
 }
