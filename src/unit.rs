@@ -46,13 +46,13 @@ const ANGULAR_ACCELERATION: Dimension = dimension(0, 0, -2, 1);
 const MASS: Dimension = dimension(1, 0, 0, 0);
 
 impl Dimension {
-    /// That of a plain number.
+    /// Dimension of a plain number.
     pub const ONE: Self = dimension(0, 0, 0, 0);
-    /// That of a length.
+    /// Dimension of a length.
     pub const LENGTH: Self = dimension(0, 1, 0, 0);
-    /// That of an angle.
+    /// Dimension of an angle.
     pub const ANGLE: Self = dimension(0, 0, 0, 1);
-    /// That of an angular velocity.
+    /// Dimension of an angular velocity.
     pub const ANGULAR_VELOCITY: Self = dimension(0, 0, -1, 1);
 
     fn exponents(self) -> [i8; 4] {
