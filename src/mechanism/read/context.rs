@@ -11,13 +11,19 @@ use crate::mechanism::{
     BodyId, Diagnostic, Dimension, MarkerId, ParameterId, Severity, Source, Span, TableFile,
 };
 
-use super::plausible::Length;
-
 /// Most problems that are shown; the others are counted. A file of garbage would make a million.
 const MAX_PROBLEMS: usize = 100;
 
 /// Name of the body that never moves.
 pub(super) const GROUND: &str = "ground";
+
+/// Length of the file, for the comparison with all others.
+pub(super) struct Length {
+    /// Magnitude \[m\], positive.
+    pub(super) size: f64,
+    /// Place, `None` if an expression makes it.
+    pub(super) bare: Option<Span>,
+}
 
 /// State of reading one file.
 pub(super) struct Context<'a> {

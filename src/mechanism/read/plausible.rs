@@ -6,16 +6,8 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::wording::{quoted, shown};
 use crate::mechanism::{Dimension, DisplayUnit, Span, Unit};
 
-use super::context::Context;
+use super::context::{Context, Length};
 use super::number::Quantity;
-
-/// Length of the file, for the comparison with all others.
-pub(super) struct Length {
-    /// Magnitude \[m\], positive.
-    size: f64,
-    /// Place, `None` if an expression makes it.
-    bare: Option<Span>,
-}
 
 /// Least length \[m\] that may have been meant in millimetres: few mechanisms are larger.
 const LARGE: f64 = 10.0;
