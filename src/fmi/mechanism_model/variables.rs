@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
 use crate::kinematics::{
-    Dependencies, Element, ForceQuantity, Path, Rates, Reported, Solver, Structure, System,
+    Dependencies, Element, ForceQuantity, Path, Reported, Solver, Structure, System,
 };
 use crate::mechanism::{
-    COMPONENTS, Coordinate, CoordinateKind, DriverId, DriverSource, Indeterminate, Jet, Load,
-    Mechanism, ParameterId, SUFFIXES, Unit,
+    COMPONENTS, Coordinate, CoordinateKind, DriverId, DriverSource, Indeterminate, Load, Mechanism,
+    ParameterId, SUFFIXES, Unit,
 };
 pub use crate::mechanism::{Order, Signal};
 
@@ -51,39 +51,6 @@ pub enum Quantity {
     /// Time.
     Time,
 }
-
-impl Signal {
-    /// Returns value, velocity and acceleration at the solver's pose. Velocity and acceleration
-    /// have a meaning only if `rates` and `driver_rates` belong to that pose. Allocates nothing.
-    #[inline]
-    #[must_use]
-    pub fn jet(self, solver: &Solver, rates: &Rates, driver_rates: &[Jet]) -> Jet {
-        match self {
-            Self::Body(body, component) => {
-                let column = 3 * body.index() + component;
-                let derivatives = [rates.velocity()[column], rates.acceleration()[column]];
-                Jet::new(solver.pose().q[column], derivatives)
-            }
-            Self::Marker(marker, component) => solver.marker(marker, rates)[component],
-            Self::Measure(measure) => solver.measure(measure, rates),
-            Self::Motion(driver) => Jet {
-                value: solver.pose().drivers[driver.index()],
-                ..driver_rates[driver.index()]
-            },
-        }
-    }
-}
-
-const LENGTHS: [Unit; 3] = [
-    Unit::METRE,
-    Unit::METRE_PER_SECOND,
-    Unit::METRE_PER_SECOND_SQUARED,
-];
-const ANGLES: [Unit; 3] = [
-    Unit::RADIAN,
-    Unit::RADIAN_PER_SECOND,
-    Unit::RADIAN_PER_SECOND_SQUARED,
-];
 
 /// Choices of the source of the drivers' rates.
 pub static RATE_SOURCES: Enumeration = Enumeration {
@@ -192,7 +159,7 @@ impl Table {
                 continue;
             };
             let description = describe(mechanism, &driver.description, &driver.coordinate);
-            let units = units(&driver.coordinate);
+            let units = driver.coordinate.kind.units();
             for order in Order::ALL {
                 let [start, min, max] = match order {
                     Order::Position => [Some(start), driver.min, driver.max],
@@ -290,9 +257,9 @@ impl Table {
                 units,
             };
             let entries = [
-                entry(0, x, LENGTHS, "x of the origin"),
-                entry(1, y, LENGTHS, "y of the origin"),
-                entry(2, phi, ANGLES, "the angle"),
+                entry(0, x, CoordinateKind::LENGTHS, "x of the origin"),
+                entry(1, y, CoordinateKind::LENGTHS, "y of the origin"),
+                entry(2, phi, CoordinateKind::ANGLES, "the angle"),
             ];
             self.add_signals(body, &entries);
         }
@@ -304,7 +271,7 @@ impl Table {
                     signal,
                     names,
                     description: format!("{} of marker `{marker}`", names[0]),
-                    units: LENGTHS,
+                    units: CoordinateKind::LENGTHS,
                 }
             });
             self.add_signals(&marker, &entries.collect::<Vec<_>>());
@@ -314,7 +281,7 @@ impl Table {
                 signal,
                 names: SUFFIXES,
                 description: describe(mechanism, description, coordinate),
-                units: units(coordinate),
+                units: coordinate.kind.units(),
             };
             self.add_signals(name, &[entry]);
         };
@@ -648,15 +615,7 @@ fn derived_from_tunable(mechanism: &Mechanism, parameter: ParameterId) -> bool {
 
 /// Returns whether a coordinate is an angle.
 pub(super) fn is_angle(coordinate: &Coordinate) -> bool {
-    units(coordinate)[0].dimension == Unit::RADIAN.dimension
-}
-
-/// Returns the units of a coordinate by order.
-pub(super) fn units(coordinate: &Coordinate) -> [Unit; 3] {
-    match coordinate.kind {
-        CoordinateKind::Angle => ANGLES,
-        CoordinateKind::X | CoordinateKind::Y | CoordinateKind::Distance => LENGTHS,
-    }
+    coordinate.kind.is_angle()
 }
 
 /// Returns the file's own description of a coordinate, or else what it measures.
