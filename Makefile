@@ -125,7 +125,7 @@ wheel: setup ## build Python wheels with the program and all runtime libraries, 
 test-install: ## install with pip and with cargo in empty environments, after `make wheel`
 	@bash scripts/test_install.sh
 
-licences: ## renew runtime/licenses.txt, the licences inside the library
+licences: ## renew the licences of what is inside the library and inside pages
 	python3 scripts/licences.py
 
 setup: ## get what building and testing need, into this folder only

@@ -13,6 +13,9 @@ use crate::drawing::svg::escape;
 use crate::mechanism::{Mechanism, Source};
 
 const MAIN: &str = include_str!("live/live.html");
+/// The licences of what is inside the solver.
+const LICENCES: &str = include_str!("../../page/licenses.txt");
+const SHARED: &str = include_str!("live/shared.js");
 /// Style of the part.
 pub(super) const STYLE: &str = include_str!("live/live.css");
 /// The scripts; each uses only those before it.
@@ -69,19 +72,22 @@ pub(super) fn solver_in(script: &str) -> String {
 
 /// Returns the script that gives the packed solver to a page.
 pub(super) fn shared_solver(wasm: &[u8]) -> String {
-    let packed = packed(wasm);
-    format!("document.getElementById(\"live-solver\").textContent =\n  \"{packed}\";\n")
+    fill(SHARED, &[("solver", &packed(wasm))])
 }
 
-fn packed(wasm: &[u8]) -> String {
+fn packed(bytes: &[u8]) -> String {
     let mut packer = GzBuilder::new().write(Vec::new(), Compression::best());
-    let packed = (packer.write_all(wasm)).and_then(|()| packer.finish());
+    let packed = (packer.write_all(bytes)).and_then(|()| packer.finish());
     STANDARD.encode(packed.expect("memory takes all bytes"))
 }
 
-/// Returns the element with the scripts, as one module: imports and exports between them fall away.
+/// Returns the elements with the licences, packed, and with the scripts, as one module: imports and
+/// exports between them fall away.
 pub(super) fn script() -> String {
-    let mut script = String::from("<script type=\"module\">\n");
+    let mut script = format!(
+        "<script type=\"text/plain\" id=\"live-licences\">{}</script>\n<script type=\"module\">\n",
+        packed(LICENCES.as_bytes())
+    );
     for line in SCRIPTS.iter().flat_map(|file| file.lines()) {
         if !line.starts_with("import ") {
             let _ = writeln!(script, "{}", line.strip_prefix("export ").unwrap_or(line));

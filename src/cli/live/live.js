@@ -264,6 +264,9 @@ class Live {
       show();
     }
     find(".chart-part").addEventListener("toggle", () => this.chart.draw());
+    find(".licences").addEventListener("toggle", async () => {
+      find(".licences pre").textContent = await unpack("live-licences").text();
+    });
     connectSaving(root, this);
     giveHand(find(".paper"), this);
     const toggle = (value) => () => switches.find((box) => box.value === value).click();
@@ -351,8 +354,7 @@ class Live {
 }
 
 async function start() {
-  const packed = document.getElementById("live-solver").textContent.trim();
-  const module = await unpack(packed);
+  const module = await WebAssembly.compile(await unpack("live-solver").arrayBuffer());
   for (const root of document.querySelectorAll(".live")) {
     const file = JSON.parse(root.querySelector(".live-file").textContent);
     root.live = new Live(root, module, file);

@@ -3,11 +3,11 @@
 /** The solver has ended by a defect of its own; its instance is not to be used any more. */
 export class Broken extends Error {}
 
-/** Unpacks and compiles a solver given as base64 of gzip. */
-export async function unpack(base64) {
+/** Unpacks what an element of the page holds as base64 of gzip. */
+export function unpack(id) {
+  const base64 = document.getElementById(id).textContent.trim();
   const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-  const unpacked = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(unpacked).arrayBuffer());
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")));
 }
 
 export class Solver {
