@@ -100,16 +100,13 @@ impl Quantity {
         } = *moment;
         match self.source {
             Source::Signal(_, order) if order != Order::Position && !has_rates => f64::NAN,
-            Source::Signal(signal, order) => order.of(signal.jet(solver, rates, driver_rates)),
+            Source::Signal(signal, order) => order.of(solver.signal(signal, rates, driver_rates)),
             Source::Derived(index) => {
                 let derived = &solver.mechanism().derived[index];
                 if derived.order() != Order::Position && !has_rates {
                     return f64::NAN;
                 }
-                derived.evaluate(
-                    &|p: crate::mechanism::ParameterId| solver.pose().parameters[p.index()],
-                    &|signal, order| order.of(signal.jet(solver, rates, driver_rates)),
-                )
+                solver.derived(index, rates, driver_rates)
             }
             Source::Force(force) => forces.map_or(f64::NAN, |forces| forces.value(force)),
         }

@@ -422,13 +422,17 @@ impl Session {
 
     // -- pictures and files ------------------------------------------------------------------
 
-    /// Draws the moving picture and finds the ranges of the drivers anew, as changed parameters
-    /// demand; with `keep` at the same scale.
+    /// Draws the moving picture anew, as changed parameters demand: with `keep` at the same scale,
+    /// otherwise with the ranges of the drivers, which are found anew, and at the scale that fits.
     pub fn redraw(&mut self, keep: bool) {
-        let (ranges, reached) = ranges(&mut self.solver);
-        self.ranges = ranges;
-        let scale = keep.then(|| self.picture.scale());
-        self.picture = MovingPicture::new(&mut self.solver, &reached, scale);
+        self.picture = if keep {
+            let scale = self.picture.scale();
+            MovingPicture::new(&mut self.solver, &[], Some(scale))
+        } else {
+            let (ranges, reached) = ranges(&mut self.solver);
+            self.ranges = ranges;
+            MovingPicture::new(&mut self.solver, &reached, None)
+        };
         self.refresh();
     }
 
