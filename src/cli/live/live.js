@@ -137,7 +137,7 @@ class Live {
 
   makeRows() {
     const { page } = this;
-    const drivers = this.find(".drivers");
+    const drivers = this.find(".driver-rows");
     drivers.replaceChildren();
     this.drivers = page.drivers.map((driver, index) => {
       const range = page.ranges[index];
@@ -147,7 +147,7 @@ class Live {
       }
       return new Row(drivers, driver, range, (value, done) => this.slide({ do: "drive", driver: index, value }, done));
     });
-    const parameters = this.find(".parameters");
+    const parameters = this.find(".parameter-rows");
     parameters.replaceChildren();
     this.parameters = page.parameters.map((parameter, index) => {
       const [low, high] = parameter.slider;
