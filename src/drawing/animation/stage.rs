@@ -51,9 +51,8 @@ impl Stage {
             fitting(room, extent)
         });
 
-        let labelled = moments.len().div_ceil(LABEL_SAMPLES).max(1);
-        let further = moments.iter().step_by(labelled).skip(1);
-        let further: Vec<&[f64]> = further.map(|moment| moment.q.as_slice()).collect();
+        let labelled = poses.len().div_ceil(LABEL_SAMPLES).max(1);
+        let further: Vec<&[f64]> = poses.iter().step_by(labelled).skip(1).copied().collect();
         let (mut marks, labels) =
             Pen::draw(&scene.symbols, &scene.bodies, q, scale, Some(&further));
         marks.sort_by_key(|mark| mark.layer);
@@ -186,14 +185,12 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::drawing::animation::{Clock, Moment};
-    use crate::drawing::scene::Scene;
     use crate::drawing::sweep::sweep;
     use crate::kinematics::{Path, Solver};
     use crate::mechanism::{Mechanism, Source};
 
-    /// Returns the motion of a shipped mechanism that its drawing shows as paths.
-    fn animation(file: &FilePath) -> Animation {
+    /// Returns the scene of a shipped mechanism and the motion that its drawing shows as paths.
+    fn shipped(file: &FilePath) -> (Scene, Vec<Vec<f64>>) {
         let source = Source::open("test".to_owned(), file).expect("it is shipped");
         let (mechanism, _) = Mechanism::parse(&source).expect("it is right");
         let mechanism = Arc::new(mechanism);
@@ -202,21 +199,7 @@ mod tests {
         let motion = sweep(&mut solver);
         let (q, parameters) = (&solver.pose().q, &solver.pose().parameters);
         let scene = Scene::along(&mechanism, parameters, q, &motion, true);
-        let moments = motion.into_iter().map(|q| Moment {
-            q,
-            rates: Default::default(),
-            readings: Vec::new(),
-        });
-        Animation {
-            scene,
-            clock: Clock {
-                start: 0.0,
-                step: 0.01,
-                stop: 1.0,
-            },
-            readings: Vec::new(),
-            moments: moments.collect(),
-        }
+        (scene, motion)
     }
 
     /// Returns the boxes of all labels at a pose.
@@ -241,13 +224,13 @@ mod tests {
             if file.extension().is_none_or(|extension| extension != "toml") {
                 continue;
             }
-            let animation = animation(&file);
-            let stage = Stage::new(&animation);
-            let q = &animation.moments[0].q;
-            let home = stage.placements(q);
+            let (scene, motion) = shipped(&file);
+            let poses: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
+            let stage = Stage::new(&scene, &poses, None);
+            let home = stage.placements(poses[0]);
             let (mut covered, mut all) = (0, 0);
-            for moment in animation.moments.iter().step_by(12) {
-                let boxes = boxes(&stage, &home, &moment.q);
+            for moment in poses.iter().step_by(12) {
+                let boxes = boxes(&stage, &home, moment);
                 for (index, label) in boxes.iter().enumerate() {
                     let is_covered = boxes[..index].iter().any(|b| b.overlap(label) > 0.0);
                     covered += usize::from(is_covered);
