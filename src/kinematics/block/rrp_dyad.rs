@@ -44,7 +44,7 @@ pub(in crate::kinematics) struct RrpDyad {
     g: Vector2<f64>,
     slope: f64,
     still: Vector2<f64>,
-    /// |w| |g|, or the mechanism's size if that is larger: the scale of the slope.
+    /// |w| |g|, or the size of the part of the mechanism if that is larger: the scale of the slope.
     scale: f64,
     parts: Box<Parts>,
 }
@@ -129,6 +129,11 @@ pub(super) struct SecondParts {
 }
 
 impl RrpDyad {
+    /// Returns the size of the block's part of the mechanism \[m\].
+    fn size(&self, state: &BlockState<'_>) -> f64 {
+        state.system.equations()[self.parts.row].size(state.at)
+    }
+
     pub(super) fn new(mechanism: &Mechanism, parts: Parts) -> Self {
         let zero = Vector2::zeros();
         let body_of = |marker: MarkerId| {
@@ -202,7 +207,7 @@ impl RrpDyad {
                 self.put(state.at.frames_mut(), &known, frame);
                 // Next to the pin |w| |g| goes to zero: a line through the pin turns freely.
                 (self.g, self.slope, self.still) = (g, slope, known.still);
-                self.scale = scale.max(state.at.size());
+                self.scale = scale.max(self.size(state));
                 return Ok(Found {
                     known,
                     correction,
@@ -297,7 +302,7 @@ impl SolveBlock for RrpDyad {
         self.g = state.at.frames()[self.body as usize].rotate(known.g);
         self.slope = known.w.dot(&perp(self.g));
         self.still = known.still;
-        self.scale = (known.w.norm() * known.g.norm()).max(state.at.size());
+        self.scale = (known.w.norm() * known.g.norm()).max(self.size(state));
         if self.slope == 0.0 || !self.slope.is_finite() {
             return Err(Rejected);
         }
