@@ -575,23 +575,24 @@ fn segment_bounds(
     let width = knots[segment + 1] - knots[segment];
     let stroke = radii[segment + 1] - radii[segment];
     let mut bounds: Option<Jet3<Interval>> = None;
-    let mut begin = from;
-    for part in Law::JOINTS.into_iter().chain([1.0]) {
-        let end = (knots[segment] + part * width).min(to);
-        if end > begin || (part == 1.0 && bounds.is_none()) {
-            let end = if part == 1.0 { to } else { end };
-            let tau = Interval::new(
-                ((begin - knots[segment]) / width).clamp(0.0, part),
-                ((end - knots[segment]) / width).clamp(0.0, part),
-            );
-            let third = law.stroke(Jet3::variable(tau)).third()
-                * Interval::point(stroke / (width * width * width));
-            let piece = around_middle(spline, interpolation, segment, [begin, end], third);
-            bounds = Some(bounds.map_or(piece, |bounds| bounds.hull(piece)));
-            begin = end;
+    for (piece, part) in Law::PIECES.windows(2).enumerate() {
+        let [first, last] = [piece == 0, piece + 2 == Law::PIECES.len()];
+        let [begin, end] = [part[0], part[1]].map(|part| knots[segment] + part * width);
+        // The first and the last piece take what rounding leaves.
+        let begin = if first { from } else { begin.max(from) };
+        let end = if last { to } else { end.min(to) };
+        if begin > end {
+            continue;
         }
+        let tau = [begin, end].map(|x| ((x - knots[segment]) / width).clamp(part[0], part[1]));
+        let third = law
+            .stroke(Jet3::variable(Interval::new(tau[0], tau[1])))
+            .third();
+        let third = third * Interval::point(stroke / (width * width * width));
+        let piece = around_middle(spline, interpolation, segment, [begin, end], third);
+        bounds = Some(bounds.map_or(piece, |bounds| bounds.hull(piece)));
     }
-    bounds.expect("the last piece ends the segment")
+    bounds.expect("the pieces cover the segment")
 }
 
 /// Returns bounds on a part of one segment with this bound of the third derivative: each derivative

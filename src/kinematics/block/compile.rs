@@ -401,6 +401,7 @@ impl Search<'_> {
                 second,
                 row,
                 projection,
+                part: self.system.equations()[row].part(),
             }),
             blocks,
         })

@@ -25,8 +25,18 @@ pub enum Law {
 }
 
 impl Law {
-    /// The places at which pieces of some law meet, as parts of its time.
-    pub const JOINTS: [f64; 7] = [0.125, 1.0 / 3.0, 0.375, 0.5, 0.625, 2.0 / 3.0, 0.875];
+    /// The ends of the pieces of all laws, as parts of their time.
+    pub const PIECES: [f64; 9] = [
+        0.0,
+        0.125,
+        1.0 / 3.0,
+        0.375,
+        0.5,
+        0.625,
+        2.0 / 3.0,
+        0.875,
+        1.0,
+    ];
 
     /// Returns whether its acceleration jumps, at its ends or in between.
     #[must_use]
