@@ -27,6 +27,7 @@ mod interpolated;
 mod jacobian;
 mod pinned;
 mod reach;
+mod revolute;
 mod revolute_graph;
 mod rrp_dyad;
 mod rrr_dyad;
