@@ -39,11 +39,56 @@ const fn dimension(kg: i8, m: i8, s: i8, rad: i8) -> Dimension {
     Dimension { kg, m, s, rad }
 }
 
-const LENGTH: Dimension = dimension(0, 1, 0, 0);
-const ANGLE: Dimension = dimension(0, 0, 0, 1);
-const ANGULAR_VELOCITY: Dimension = dimension(0, 0, -1, 1);
+const LENGTH: Dimension = Dimension::LENGTH;
+const ANGLE: Dimension = Dimension::ANGLE;
+const ANGULAR_VELOCITY: Dimension = Dimension::ANGULAR_VELOCITY;
 const ANGULAR_ACCELERATION: Dimension = dimension(0, 0, -2, 1);
 const MASS: Dimension = dimension(1, 0, 0, 0);
+
+impl Dimension {
+    /// Dimension of a plain number.
+    pub const ONE: Self = dimension(0, 0, 0, 0);
+    /// Dimension of a length.
+    pub const LENGTH: Self = dimension(0, 1, 0, 0);
+    /// Dimension of an angle.
+    pub const ANGLE: Self = dimension(0, 0, 0, 1);
+    /// Dimension of an angular velocity.
+    pub const ANGULAR_VELOCITY: Self = dimension(0, 0, -1, 1);
+
+    fn exponents(self) -> [i8; 4] {
+        [self.kg, self.m, self.s, self.rad]
+    }
+
+    fn of(exponents: [Option<i8>; 4]) -> Option<Self> {
+        let [kg, m, s, rad] = exponents;
+        Some(dimension(kg?, m?, s?, rad?))
+    }
+
+    /// Returns the dimension of a product; `None` if an exponent is too large.
+    #[must_use]
+    pub fn times(self, other: Self) -> Option<Self> {
+        let (a, b) = (self.exponents(), other.exponents());
+        Self::of([0, 1, 2, 3].map(|k| a[k].checked_add(b[k])))
+    }
+
+    /// Returns the dimension of a power; `None` if an exponent is too large or no whole number.
+    #[must_use]
+    pub fn to_power(self, power: f64) -> Option<Self> {
+        Self::of(self.exponents().map(|exponent| {
+            let scaled = f64::from(exponent) * power;
+            let is_whole = scaled.fract() == 0.0 && scaled.abs() <= f64::from(i8::MAX);
+            is_whole.then_some(scaled as i8)
+        }))
+    }
+
+    /// Whether quantities of two dimensions can be added. An arc, radius times angle, is a length:
+    /// radians count only where nothing else does.
+    #[must_use]
+    pub fn agrees_with(self, other: Self) -> bool {
+        let is_same = [self.kg, self.m, self.s] == [other.kg, other.m, other.s];
+        is_same || self == Self::ONE || other == Self::ONE
+    }
+}
 
 impl Unit {
     /// `1`: a plain number.

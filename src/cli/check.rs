@@ -3,6 +3,7 @@
 mod forces;
 pub(super) mod json;
 
+use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -13,16 +14,17 @@ use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::output::print;
 use super::suggested_estimates::as_estimates;
-use crate::kinematics::{self, Element, Modes, Path, Rates, Solver};
+use crate::kinematics::{self, Element, Mode, Modes, Path, Rates, Solver};
 use crate::mechanism::{
-    CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, Unit, shown,
+    CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, ParameterId, Unit, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
 ///
 /// Prints the bodies, joints and drivers with their equations, the degrees of freedom, the
 /// assembled pose at the drivers' start values, how far each body is from its estimate, and the
-/// reciprocal condition of the pose (1 is best, 0 a singular position). With masses or forces it
+/// reciprocal condition of the pose (1 is best, 0 a singular position). If it can close in other
+/// ways too, and has at most 40 bodies, a line says so. With masses or forces it
 /// prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. If the mechanism does not
 /// close, it says whether that is proved, which joints stay open and by how much, and prints the
 /// nearest pose.
@@ -50,6 +52,13 @@ enum Format {
 
 /// Reciprocal condition below which a pose is called nearly singular.
 const NEARLY_SINGULAR: f64 = 1e-6;
+
+/// Most bodies of a mechanism whose other ways to close are looked for unasked: that takes a tenth
+/// of a second.
+const MOST_BODIES_SEARCHED: usize = 40;
+/// Angle by which a body is nearer its estimate in another way to close, from which that one may
+/// be meant \[rad\].
+const FAR: f64 = FRAC_PI_2;
 
 impl Check {
     pub(super) fn run(self) -> Result<(), Error> {
@@ -95,6 +104,10 @@ impl Check {
                     .map_err(|error| input.error(error))?
                     .describe(mechanism),
             )?;
+        }
+        if !self.modes && mechanism.bodies.len() <= MOST_BODIES_SEARCHED {
+            let modes = solver.modes().map_err(|error| input.error(error))?;
+            print(&mention_modes(&solver, &modes))?;
         }
         if self.estimates {
             print(&estimates(&solver))?;
@@ -291,12 +304,48 @@ fn estimates(solver: &Solver) -> String {
     format!("\nestimates of this pose, to paste into the tables of the bodies\n\n{lines}")
 }
 
-fn describe_modes(mechanism: &Mechanism, modes: &Modes) -> String {
-    let count = match modes.others.len() {
+/// Says that there are other ways to close, and which bodies have turned far from their estimates.
+fn mention_modes(solver: &Solver, modes: &Modes) -> String {
+    if modes.others.is_empty() {
+        return String::new();
+    }
+    let least = if modes.complete { "" } else { "at least " };
+    let mut out = format!(
+        "\n{least}{} to close at these values: `--modes`\n",
+        other_ways(modes)
+    );
+    let parameters = &solver.pose().parameters;
+    let bodies = solver.mechanism().bodies.iter();
+    // An estimate without a value was refused before.
+    for (index, (body, moved)) in bodies.zip(solver.moves().unwrap_or_default()).enumerate() {
+        let part =
+            |k: usize| body.estimate[k].evaluate(&|p: ParameterId| parameters[p.index()], 0.0);
+        let phi = part(2);
+        // Zeros are what a body without an estimate has.
+        let is_estimated = (0..3).any(|k| part(k) != 0.0);
+        let is_nearer = |mode: &Mode| (mode.q[3 * index + 2] - phi).abs() + FAR < moved.angle;
+        if is_estimated && modes.others.iter().any(is_nearer) {
+            let angle = shown(moved.angle.to_degrees());
+            let _ = writeln!(
+                out,
+                "`{}` has turned {angle} deg from its estimate: is this the way that is meant?",
+                body.name
+            );
+        }
+    }
+    out
+}
+
+fn other_ways(modes: &Modes) -> String {
+    match modes.others.len() {
         0 => "no other way".to_owned(),
         1 => "1 other way".to_owned(),
         count => format!("{count} other ways"),
-    };
+    }
+}
+
+fn describe_modes(mechanism: &Mechanism, modes: &Modes) -> String {
+    let count = other_ways(modes);
     let certainty = match (modes.complete, modes.starts) {
         (true, _) => "these are all".to_owned(),
         (false, 0) => "there are more".to_owned(),

@@ -1,11 +1,12 @@
 //! Choices among the columns of a run.
 
+use super::conditions::unknown;
 use super::error::Error;
 use super::motion::Motion;
 use crate::fmi::Signal;
 pub(super) use crate::fmi::{Column, ColumnSource as Source};
 use crate::kinematics::ForceQuantity;
-use crate::mechanism::{BodyId, MarkerId, Mechanism, help};
+use crate::mechanism::{BodyId, MarkerId, Mechanism, Order, help};
 
 impl Column {
     /// Returns the columns of these names: of a variable, or of a body, marker, driver or measure
@@ -28,6 +29,22 @@ impl Column {
         }
         let is_named = |c: &&Self| names.iter().any(|name| belongs_to(&c.name, name));
         Ok(columns.iter().filter(is_named).cloned().collect())
+    }
+
+    /// Returns the column for the x-axis of a plot: a variable, or the position of a driver or
+    /// measure of this name.
+    pub(super) fn over(columns: &[Self], name: &str) -> Result<Self, Error> {
+        let name = name.trim();
+        let position = format!("{name}.{}", Order::Position.suffix());
+        let mut columns_so_called = columns
+            .iter()
+            .filter(|c| c.name == name || c.name == position);
+        columns_so_called.next().cloned().ok_or_else(|| {
+            let names = columns
+                .iter()
+                .map(|column| column.name.trim_end_matches(".position"));
+            unknown("--over", "variable", name, &names.collect::<Vec<_>>())
+        })
     }
 
     /// Returns the columns that a plot shows by default: the drivers with their efforts, and of

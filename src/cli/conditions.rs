@@ -1,5 +1,6 @@
 //! Parameters and motions of drivers as the command line sets them.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -71,6 +72,12 @@ impl Conditions {
                 continue;
             }
             let motion = motion(mechanism, text, &parameters, start)?;
+            if mechanism.drivers[index].coordinate.kind.is_angle()
+                && let Motion::Expression(expression) = &motion
+            {
+                let at_start = expression.evaluate(&|p: ParameterId| parameters[p.index()], start);
+                warn_of_degrees(DRIVE.option, text, at_start);
+            }
             driven.drivers[index].source = DriverSource::Motion(motion);
             driven_by_option.push(DriverId(index));
         }
@@ -132,11 +139,29 @@ impl Conditions {
                 .parse_expression(text, None)
                 .map_err(|error| SET.refuse(text, &error))?
                 .evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
+            if parameter.unit.map(|unit| unit.dimension) == Some(Unit::RADIAN.dimension) {
+                warn_of_degrees(SET.option, text, values[index]);
+            }
             check_limits(parameter, values[index])
                 .map_err(|message| Error::Usage(format!("--set: {message}")))?;
         }
         mechanism.derive_parameters(&mut values);
         Ok(values)
+    }
+}
+
+/// Warns of an angle of more than a turn that is made of plain numbers: it looks like degrees.
+pub(super) fn warn_of_degrees(option: &str, text: &str, value: f64) {
+    let mut words = text.split(|c: char| !(c.is_ascii_alphanumeric() || "_.".contains(c)));
+    let is_plain = |word: &str| {
+        word.is_empty() || word == "t" || word.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+    };
+    if value.abs() > TAU && words.all(is_plain) {
+        let (number, degrees) = (shown(value), value.to_degrees());
+        let warning = format!(
+            "{option}: an angle of {number} rad is {degrees:.1} deg; degrees are written `{number}*deg`"
+        );
+        Message::Warning(warning).show();
     }
 }
 

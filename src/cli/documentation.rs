@@ -375,6 +375,8 @@ fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
     table(&["Parameter", "Value", "Unit", "Limits", "Meaning"], rows)
 }
 
+/// Returns the tables of inputs and outputs, one for what each belongs to: a body, a driver, a
+/// joint. Those of drivers, which a host connects, are open.
 fn outputs(variables: &[Variable<Quantity>]) -> String {
     let told = variables.iter().filter(|variable| {
         matches!(
@@ -382,25 +384,50 @@ fn outputs(variables: &[Variable<Quantity>]) -> String {
             Causality::Input | Causality::Output | Causality::Local
         )
     });
-    let rows = told.map(|variable: &Variable<Quantity>| {
-        let unit = match variable.kind {
-            Kind::Real { unit, .. } => name_of(unit),
-            _ => String::new(),
-        };
-        let causality = match variable.causality {
-            Causality::Input => "input",
-            Causality::Output => "output",
-            _ => "local",
-        };
-        let description = variable.description.replace('`', "");
-        [
-            variable.name.clone(),
-            causality.to_owned(),
-            unit,
-            description,
-        ]
-    });
-    table(&["Variable", "Causality", "Unit", "Meaning"], rows)
+    let mut owners: Vec<(&str, Vec<&Variable<Quantity>>)> = Vec::new();
+    for variable in told {
+        let name = variable.name.as_str();
+        let owner = name.split_once('.').map_or(name, |(owner, _)| owner);
+        match owners.iter_mut().find(|(known, _)| *known == owner) {
+            Some((_, members)) => members.push(variable),
+            None => owners.push((owner, vec![variable])),
+        }
+    }
+    let mut html = String::new();
+    for (owner, members) in owners {
+        let is_input = members.iter().any(|v| v.causality == Causality::Input);
+        let open = if is_input { " open" } else { "" };
+        let parts = members.iter().map(|v| v.name.strip_prefix(owner));
+        let parts: Vec<&str> = parts.filter_map(|part| part?.strip_prefix('.')).collect();
+        let rows = members.iter().map(|variable| row(variable));
+        let table = table(&["Variable", "Causality", "Unit", "Meaning"], rows);
+        let _ = write!(
+            html,
+            "<details{open}><summary><b>{}</b> {}</summary>\n{table}</details>\n",
+            escape(owner),
+            escape(&parts.join(", "))
+        );
+    }
+    html
+}
+
+/// Returns name, causality, unit and meaning of a variable.
+fn row(variable: &Variable<Quantity>) -> [String; 4] {
+    let unit = match variable.kind {
+        Kind::Real { unit, .. } => name_of(unit),
+        _ => String::new(),
+    };
+    let causality = match variable.causality {
+        Causality::Input => "input",
+        Causality::Output => "output",
+        _ => "local",
+    };
+    [
+        variable.name.clone(),
+        causality.to_owned(),
+        unit,
+        variable.description.replace('`', ""),
+    ]
 }
 
 /// Rounds to twelve digits.

@@ -19,7 +19,7 @@ use crate::drawing::{Scene, Sheet};
 /// (`[outputs] markers`) with their paths. The paths cover the prescribed motions until the file's
 /// stop time. If no motion is prescribed, they cover the turns, at most eight, after which the
 /// first driver that is an angle brings the mechanism back, or the part of one turn both ways that
-/// it can reach.
+/// it can reach and its `min` and `max` permit.
 ///
 /// The same file gives the same picture.
 #[derive(Args, Debug)]

@@ -46,11 +46,14 @@ macro_rules! template {
 }
 
 /// The mechanisms that come with biela.
-static TEMPLATES: [Template; 39] = [
+static TEMPLATES: [Template; 45] = [
     template!("andrews"),
+    template!("bicycle_suspension"),
+    template!("bonnet_hinge"),
     template!("cam_flat"),
     template!("cam_flat_arm"),
     template!("cam_knife"),
+    template!("cam_knife_arm"),
     template!("cam_points", "cam_points.csv"),
     template!("cam_roller"),
     template!("cam_roller_arm"),
@@ -66,6 +69,7 @@ static TEMPLATES: [Template; 39] = [
     template!("hart_inversor"),
     template!("hatch"),
     template!("jansen_leg"),
+    template!("loader"),
     template!("pantograph"),
     template!("parallelogram"),
     template!("peaucellier"),
@@ -76,6 +80,7 @@ static TEMPLATES: [Template; 39] = [
     template!("rack_drive"),
     template!("rolling_wheel"),
     template!("scotch_yoke"),
+    template!("sewing_machine"),
     template!("slider_crank"),
     template!("slotted_lever"),
     template!("stephenson_six_bar"),
@@ -86,6 +91,7 @@ static TEMPLATES: [Template; 39] = [
     template!("valve_train"),
     template!("watt_six_bar"),
     template!("whitworth"),
+    template!("wiper"),
 ];
 
 impl New {

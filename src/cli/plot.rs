@@ -8,7 +8,7 @@ use super::message::Message;
 use super::motion::Motion;
 use super::picture::Format;
 use super::recorder::Recorder;
-use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
+use crate::drawing::{Axis, COLOURS, Chart, Line, Panel, Sheet};
 use crate::fmi::{Order, Signal};
 use crate::mechanism::{BodyId, Mechanism, Unit};
 
@@ -22,8 +22,16 @@ pub(super) struct Plot {
     columns: Vec<Column>,
     /// Whether a note says which bodies are left out: the user has named none.
     notes_omission: bool,
+    /// The quantity on the x-axis, `None` for time.
+    over: Option<Over>,
     times: Vec<f64>,
     values: Vec<Vec<f64>>,
+}
+
+/// A quantity on the x-axis.
+struct Over {
+    column: Column,
+    values: Vec<f64>,
 }
 
 impl Plot {
@@ -32,11 +40,16 @@ impl Plot {
         format: Format,
         columns: Vec<Column>,
         notes_omission: bool,
+        over: Option<Column>,
     ) -> Self {
         Self {
             path,
             format,
             notes_omission,
+            over: over.map(|column| Over {
+                column,
+                values: Vec::new(),
+            }),
             times: Vec::new(),
             values: vec![Vec::new(); columns.len()],
             columns,
@@ -72,54 +85,126 @@ impl Plot {
         (shown.len() < bodies.len()).then_some([shown.len(), bodies.len()])
     }
 
-    /// Returns the chart: one panel per unit, positions first and forces last; angles in degrees.
+    /// Removes all that stays constant, and what the x-axis shows, unless nothing else is there.
+    fn leave_out_constants(&mut self) {
+        let over = self.over.as_ref().map(|over| over.column.source);
+        let is_kept =
+            |column: &Column, values: &[f64]| varies(values) && Some(column.source) != over;
+        let mut all = self.columns.iter().zip(&self.values);
+        if !all.any(|(column, values)| is_kept(column, values)) {
+            return;
+        }
+        let columns = std::mem::take(&mut self.columns).into_iter();
+        let all = columns.zip(std::mem::take(&mut self.values));
+        let kept = all.filter(|(column, values)| is_kept(column, values));
+        (self.columns, self.values) = kept.unzip();
+    }
+
+    /// Returns the chart: one panel per unit, that of the drivers by itself, positions first and
+    /// forces last; angles in degrees.
     fn chart(self, mechanism: &Mechanism) -> Chart {
-        let mut sources: Vec<Source> = Vec::new();
-        let mut panels: Vec<(Unit, Panel)> = Vec::new();
-        for (column, mut values) in self.columns.into_iter().zip(self.values) {
-            let look = sources
-                .iter()
-                .position(|known| known.is_akin(column.source));
-            let look = look.unwrap_or_else(|| {
-                sources.push(column.source);
-                sources.len() - 1
-            });
-            if let Some(display) = column.unit.display {
-                values.iter_mut().for_each(|value| *value *= display.factor);
-            }
-            let panel = panels.iter().position(|(unit, _)| *unit == column.unit);
+        let looks = looks(&self.columns, mechanism);
+        let mut panels: Vec<(PanelKey, Panel)> = Vec::new();
+        let lines = self.columns.into_iter().zip(self.values).zip(looks);
+        for ((column, values), look) in lines {
+            let is_driver = matches!(column.source, Source::Signal(Signal::Motion(_), _));
+            let key = PanelKey {
+                unit: column.unit,
+                is_driver,
+            };
+            let panel = panels.iter().position(|(known, _)| *known == key);
             let panel = panel.unwrap_or_else(|| {
                 let (y, lines) = (axis(column.unit), Vec::new());
-                panels.push((column.unit, Panel { y, lines }));
+                panels.push((key, Panel { y, lines }));
                 panels.len() - 1
             });
             panels[panel].1.lines.push(Line {
                 name: column.name,
                 look,
-                values,
+                values: displayed(values, column.unit),
                 marks: Vec::new(),
             });
         }
-        panels.sort_by_key(|(unit, _)| {
-            let dimension = unit.dimension;
-            (dimension.kg, -dimension.s, dimension.rad)
+        panels.sort_by_key(|(key, _)| {
+            let dimension = key.unit.dimension;
+            (dimension.kg, -dimension.s, dimension.rad, !key.is_driver)
         });
+        let (x, at) = match self.over {
+            Some(Over { column, values }) => {
+                let Axis { unit, .. } = axis(column.unit);
+                let label = column.name.trim_end_matches(".position").to_owned();
+                (Axis { label, unit }, displayed(values, column.unit))
+            }
+            None => {
+                let [label, unit] = ["time", "s"].map(str::to_owned);
+                (Axis { label, unit }, self.times)
+            }
+        };
         Chart {
             title: mechanism.name.clone(),
             description: mechanism.description.clone(),
-            x: Axis {
-                label: "time".to_owned(),
-                unit: "s".to_owned(),
-            },
-            at: self.times,
+            x,
+            at,
             panels: panels.into_iter().map(|(_, panel)| panel).collect(),
         }
     }
 }
 
+/// The lines that share a panel: drivers are inputs and have panels of their own, where their ramps
+/// leave the results their scale.
+#[derive(Clone, Copy, PartialEq)]
+struct PanelKey {
+    unit: Unit,
+    is_driver: bool,
+}
+
+/// Returns values in the unit for display.
+fn displayed(values: Vec<f64>, unit: Unit) -> Vec<f64> {
+    let factor = unit.display.map_or(1.0, |display| display.factor);
+    values.into_iter().map(|value| factor * value).collect()
+}
+
+/// Returns the look of each column. What belongs to a body has its colour in the drawing; several
+/// such signals of one kind differ in their dashes. Others have the colours that are left.
+fn looks(columns: &[Column], mechanism: &Mechanism) -> Vec<usize> {
+    let body = |column: &Column| match column.source {
+        Source::Signal(Signal::Body(body, _), _) => Some(body),
+        Source::Signal(Signal::Marker(marker, _), _) => mechanism.markers[marker.index()].body,
+        _ => None,
+    };
+    let mut known: Vec<(&Column, usize)> = Vec::new();
+    let (of_bodies, others): (Vec<&Column>, Vec<&Column>) =
+        columns.iter().partition(|column| body(column).is_some());
+    for column in of_bodies.into_iter().chain(others) {
+        let akin = known
+            .iter()
+            .find(|(other, _)| other.source.is_akin(column.source));
+        let look = akin.map(|(_, look)| *look);
+        // Looks are apart within a panel.
+        let is_free = |look: &usize| {
+            let same =
+                |(other, taken): &(&Column, usize)| taken == look && other.unit == column.unit;
+            !known.iter().any(same)
+        };
+        let look = look.or_else(|| match body(column) {
+            Some(body) => (body.index()..).step_by(COLOURS).find(is_free),
+            None => (0..).find(is_free),
+        });
+        known.push((column, look.unwrap_or(0)));
+    }
+    let look = |column: &Column| {
+        let same = known.iter().find(|(other, _)| std::ptr::eq(*other, column));
+        same.map_or(0, |(_, look)| *look)
+    };
+    columns.iter().map(look).collect()
+}
+
 impl Recorder for Plot {
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
         self.times.push(motion.solver.pose().time);
+        if let Some(Over { column, values }) = &mut self.over {
+            values.push(column.read(motion));
+        }
         for (values, column) in self.values.iter_mut().zip(&self.columns) {
             values.push(column.read(motion));
         }
@@ -127,13 +212,14 @@ impl Recorder for Plot {
     }
 
     fn finish(mut self: Box<Self>, motion: &Motion) -> Result<(), Error> {
-        if self.notes_omission
-            && let Some([shown, moving]) = self.leave_out()
-        {
-            let note = format!(
-                "the plot shows {shown} of {moving} bodies that move; --variables names others"
-            );
-            Message::Note(note).show();
+        if self.notes_omission {
+            if let Some([shown, moving]) = self.leave_out() {
+                let note = format!(
+                    "the plot shows {shown} of {moving} bodies that move; --variables names others"
+                );
+                Message::Note(note).show();
+            }
+            self.leave_out_constants();
         }
         let (path, format) = (self.path.clone(), self.format);
         let sheet = Sheet::chart(&self.chart(motion.solver.mechanism()));

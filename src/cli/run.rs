@@ -60,10 +60,14 @@ pub(super) struct Run {
     /// --animate].
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
-    /// Plot positions, velocities and accelerations over time; the picture's extension, .svg or
-    /// .png, decides, and `-` is SVG to stdout.
+    /// Plot positions, velocities and accelerations over time, drivers in panels of their own;
+    /// the picture's extension, .svg or .png, decides, and `-` is SVG to stdout. Without
+    /// --variables, what stays constant is left out.
     #[arg(short, long, value_name = "PICTURE")]
     plot: Option<PathBuf>,
+    /// Plot over a variable such as a driver instead of time.
+    #[arg(long, value_name = "NAME", requires = "plot")]
+    over: Option<String>,
     /// Write a page, .html or .htm or `-` for stdout, on which the mechanism moves; it works
     /// offline. Of more than 10,000 rows it shows every second, third and so on.
     #[arg(short, long, value_name = "PAGE")]
@@ -96,6 +100,8 @@ impl Run {
         let scenario =
             (self.conditions).scenario(&input.mechanism, times.start, self.input.as_deref())?;
         let all = Column::all(&scenario.mechanism);
+        let over = self.over.as_deref().map(|name| Column::over(&all, name));
+        let over = over.transpose()?;
         let is_choice = !self.variables.is_empty();
         let [written, plotted, told] = if is_choice {
             let named = Column::named(&all, &self.variables, &scenario.mechanism)?;
@@ -111,7 +117,8 @@ impl Run {
                 self.plot.is_some(),
                 self.animate.is_some(),
             ])
-            .any(|(columns, asked)| asked && columns.iter().any(Column::is_force));
+            .any(|(columns, asked)| asked && columns.iter().any(Column::is_force))
+            || over.as_ref().is_some_and(Column::is_force);
         let home_solver = input.assemble()?;
         let notes = [
             note_of_rest(&input.mechanism, &scenario),
@@ -123,7 +130,7 @@ impl Run {
             recorders.push(Box::new(Csv::create(path.clone(), written)?));
         }
         if let (Some(path), Some(format)) = (self.plot.clone(), format) {
-            recorders.push(Box::new(Plot::new(path, format, plotted, !is_choice)));
+            recorders.push(Box::new(Plot::new(path, format, plotted, !is_choice, over)));
         }
         if let Some(path) = self.animate.clone() {
             let film = Film::new(told, times.steps, [times.start, times.step]);

@@ -44,13 +44,17 @@ pub struct Panel {
 pub struct Line {
     /// Its name in the legend.
     pub name: String,
-    /// Lines of the same number look alike in all panels.
+    /// Lines of the same number look alike in all panels: the colour is that of the body of this
+    /// index, and of each [`COLOURS`]th after it, which are dashed.
     pub look: usize,
     /// One value for each point of the x-axis; where one is not finite the line has a gap.
     pub values: Vec<f64>,
     /// Points to be marked: x, value and a text, such as an extreme value.
     pub marks: Vec<(f64, f64, String)>,
 }
+
+/// Number of colours that tell lines apart.
+pub const COLOURS: usize = 7;
 
 /// Margins of the chart.
 const MARGIN: f64 = 14.0;
@@ -72,8 +76,6 @@ const DIAMOND: f64 = 3.2;
 const CURVE: f64 = 1.5;
 const FRAME: f64 = 0.9;
 const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[2.0, 2.5], &[8.0, 2.5, 2.0, 2.5]];
-/// Colours that tell lines apart; then lines are dashed.
-const COLOURS: usize = 7;
 
 impl Sheet {
     /// Draws a chart.
@@ -354,9 +356,9 @@ fn look(number: usize) -> Stroke {
 }
 
 /// Returns the first, lowest, highest and last point within each small step of x: the picture
-/// stays the same.
+/// stays the same. A line that goes back is not thinned.
 fn thinned(points: &[Point]) -> Vec<Point> {
-    if points.len() <= THINNED {
+    if points.len() <= THINNED || !points.is_sorted_by(|a, b| a.x <= b.x) {
         return points.to_vec();
     }
     let step = |p: &Point| (p.x * STEPS).floor();

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::attachment::Attachment;
+use super::attachment::{Attachment, Placement};
 use super::lettering;
 use super::outline::{Point, contains, direction};
 use super::palette::Colour;
@@ -104,6 +104,15 @@ impl Candidate {
         }
     }
 
+    /// Returns the place after its frame has moved from one placement to another.
+    pub(super) fn moved(&self, [from, to]: [Placement; 2]) -> Self {
+        Self {
+            anchor: to.outside(from.inside(self.anchor)),
+            side: self.side.map(|side| to.turned(from.turned_back(side))),
+            ..*self
+        }
+    }
+
     /// Returns the middle of a label of this size.
     pub(super) fn center(&self, size: Point) -> Point {
         self.side.map_or(self.anchor, |side| {
@@ -114,33 +123,61 @@ impl Candidate {
     }
 }
 
-/// Gives each label in turn its best place. Optional labels without a place clear of the labels
-/// before them are left out.
-pub(super) fn place<'a>(labels: Vec<Label>, marks: impl Iterator<Item = &'a Mark>) -> Vec<Placed> {
-    let obstacles: Vec<Obstacle> = marks.map(Obstacle::new).collect();
-    let mut taken: Vec<Bounds> = Vec::new();
+/// Gives each label in turn its best place: at the pose `home`, at which the marks are drawn, and
+/// on average over the poses of a motion, during which a label keeps its place in its frame.
+/// Optional labels without a place clear of the labels before them at `home` are left out.
+pub(super) fn place(
+    labels: Vec<Label>,
+    marks: &[Mark],
+    home: &[f64],
+    motion: &[&[f64]],
+    scale: f64,
+) -> Vec<Placed> {
+    let mut views = vec![View::new(marks.iter().map(Obstacle::new), None)];
+    views.extend(motion.iter().map(|q| {
+        let moved = marks.iter().map(|mark| mark.moved(home, q, scale));
+        View::new(moved.map(|mark| Obstacle::new(&mark)), Some(q))
+    }));
+    let share = 1.0 / views.len() as f64;
     let mut placed = Vec::new();
     for label in labels {
         let size = Point::new(lettering::width(&label.content, CAPITALS), CAPITALS);
         let padded = size + Point::repeat(2.0 * PAD);
         let mut best: Option<(f64, Candidate)> = None;
+        let frames: Vec<[Placement; 2]> = (views.iter())
+            .map(|view| {
+                [home, view.q.unwrap_or(home)].map(|q| label.attachment.placement(q, scale))
+            })
+            .collect();
+        // At home the place is the candidate itself, without rounding.
+        let center_in = |candidate: &Candidate, view: usize| match views[view].q {
+            None => candidate.center(size),
+            Some(_) => candidate.moved(frames[view]).center(size),
+        };
         let clear = |candidate: &&Candidate| {
             let bounds = Bounds::about(candidate.center(size), size);
+            let taken = &views[0].taken;
             !label.optional || taken.iter().all(|other| bounds.overlap(other) <= 0.0)
         };
         for candidate in label.candidates.iter().filter(clear) {
-            let center = candidate.center(size);
-            let bounds = Bounds::about(center, padded);
-            let on_labels: f64 = taken.iter().map(|other| bounds.overlap(other)).sum();
-            let on_marks: f64 = obstacles.iter().map(|o| o.cost(&bounds, center)).sum();
-            let cost = candidate.cost + ON_LABEL * on_labels + on_marks;
+            let mut cost = candidate.cost;
+            for (index, view) in views.iter().enumerate() {
+                let center = center_in(candidate, index);
+                cost += share * view.cost(&Bounds::about(center, padded), center);
+                if best.is_some_and(|(least, _)| cost >= least - BETTER) {
+                    break;
+                }
+            }
             if best.is_none_or(|(least, _)| cost < least - BETTER) {
                 best = Some((cost, *candidate));
             }
         }
         if let Some((_, place)) = best {
             let center = place.center(size);
-            taken.push(Bounds::about(center, padded));
+            let centers: Vec<Point> = (0..views.len()).map(|k| center_in(&place, k)).collect();
+            for (view, center) in views.iter_mut().zip(centers) {
+                view.taken.push(Bounds::about(center, padded));
+            }
             placed.push(Placed {
                 text: Text {
                     content: label.content,
@@ -153,6 +190,32 @@ pub(super) fn place<'a>(labels: Vec<Label>, marks: impl Iterator<Item = &'a Mark
         }
     }
     placed
+}
+
+/// A pose as labels see it.
+struct View<'a> {
+    /// The pose, `None` for the one at which the marks are drawn.
+    q: Option<&'a [f64]>,
+    obstacles: Vec<Obstacle>,
+    /// The labels placed so far.
+    taken: Vec<Bounds>,
+}
+
+impl<'a> View<'a> {
+    fn new(obstacles: impl Iterator<Item = Obstacle>, q: Option<&'a [f64]>) -> Self {
+        Self {
+            q,
+            obstacles: obstacles.collect(),
+            taken: Vec::new(),
+        }
+    }
+
+    /// Returns the cost of a label with its middle at `center`.
+    fn cost(&self, label: &Bounds, center: Point) -> f64 {
+        let on_labels: f64 = self.taken.iter().map(|other| label.overlap(other)).sum();
+        let on_marks: f64 = self.obstacles.iter().map(|o| o.cost(label, center)).sum();
+        ON_LABEL * on_labels + on_marks
+    }
 }
 
 /// A mark that labels keep clear of.

@@ -96,7 +96,7 @@ struct Draft {
 impl Draft {
     fn new(scene: &Scene, q: &[f64], scale: f64) -> Self {
         let (mut marks, labels) =
-            Pen::draw(scene.symbols.as_slice(), &scene.bodies, q, scale, false);
+            Pen::draw(scene.symbols.as_slice(), &scene.bodies, q, scale, None);
         marks.sort_by_key(|mark| mark.layer);
         let texts = labels.into_iter().map(|label| label.text).collect();
         let mut draft = Self {

@@ -49,7 +49,7 @@ pub mod symbol;
 mod ticks;
 
 pub use anchor::{Anchor, Frame};
-pub use chart::{Axis, Chart, Line, Panel};
+pub use chart::{Axis, COLOURS, Chart, Line, Panel};
 pub use palette::Colour;
 pub use scene::Scene;
 pub use sheet::Sheet;

@@ -132,6 +132,24 @@ impl Mark {
     }
 }
 
+impl Mark {
+    /// Returns a mark that is drawn at the pose `home`, at another pose.
+    pub(super) fn moved(&self, home: &[f64], q: &[f64], scale: f64) -> Self {
+        let [from, to] = [home, q].map(|q| self.attachment.placement(q, scale));
+        let outline = match &self.elastic {
+            Some(elastic) => {
+                let outline = elastic.outline(elastic.measure.value(q, scale));
+                outline.map(|point| to.outside(point))
+            }
+            None => (self.outline.clone()).map(|point| to.outside(from.inside(point))),
+        };
+        Self {
+            outline,
+            ..self.clone()
+        }
+    }
+}
+
 impl Elastic {
     /// Returns the line at a length, in the frame of its attachment.
     pub(super) fn outline(&self, length: f64) -> Outline {

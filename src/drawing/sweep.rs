@@ -55,7 +55,14 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
         let mut turn = |solver: &mut Solver, by: f64, poses: &mut Vec<Vec<f64>>| {
             turn(solver, &mut path, crank, [by, steps as f64], poses)
         };
-        if turn(solver, TAU, &mut poses) {
+        let driver = &mechanism.drivers[crank];
+        let start = home.drivers[crank];
+        // A start beyond a limit leaves no way to that side.
+        let room = |limit: f64, sign: f64| (sign * (limit - start)).clamp(0.0, TAU);
+        let up = driver.max.map_or(TAU, |max| room(max, 1.0));
+        let down = driver.min.map_or(TAU, |min| room(min, -1.0));
+        let is_limited = driver.min.is_some() || driver.max.is_some();
+        if turn(solver, up, &mut poses) && !is_limited {
             for _ in 1..most_turns {
                 if is_back(&poses) || !turn(solver, TAU, &mut poses) {
                     break;
@@ -69,7 +76,7 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
         }
         solver.restore(&home);
         let mut back = Vec::new();
-        turn(solver, -TAU, &mut back);
+        turn(solver, -down, &mut back);
         back.reverse();
         back.append(&mut poses);
         poses = back;

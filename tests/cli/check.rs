@@ -33,6 +33,41 @@ fn check_describes_a_mechanism() {
     );
 }
 
+/// Unasked, other ways to close are mentioned, with the bodies that another way would leave nearer
+/// to their estimates.
+#[test]
+fn other_ways_to_close_are_mentioned() {
+    let text = stdout(&biela(&["check", "mechanisms/four_bar.toml"]).success());
+    assert_eq!(
+        behind(&text, "  residual"),
+        "\n1 other way to close at these values: `--modes`\n"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    // The rocker's estimate decides, the coupler's is right for the other way.
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[
+            ("\"20*deg\"]", "\"60*deg\"]"),
+            ("[\"base\", 0, \"110*deg\"]", "[\"base\", 0, \"-80*deg\"]"),
+        ],
+    );
+    let text = stdout(&biela(&["check", &file]).success());
+    assert_eq!(
+        behind(&text, "  residual"),
+        "\n1 other way to close at these values: `--modes`\n`coupler` has turned 129.247 deg \
+         from its estimate: is this the way that is meant?\n"
+    );
+    let text = stdout(&biela(&["check", "mechanisms/pendulum.toml"]).success());
+    assert_eq!(behind(&text, "  residual"), "");
+}
+
+#[test]
+fn efforts_have_six_digits() {
+    let text = stdout(&biela(&["check", "mechanisms/loader.toml"]).success());
+    assert!(text.contains("  lift.effort = 49026.7 N\n"), "{text}");
+}
+
 /// Returns the text behind the line that starts with `heading`.
 fn behind<'a>(text: &'a str, heading: &str) -> &'a str {
     let (_, behind) = text.split_once(heading).expect("it is there");

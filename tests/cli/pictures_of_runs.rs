@@ -11,7 +11,7 @@ fn run_plots_what_is_asked_for() {
         arguments.extend([
             path.to_str().unwrap(),
             "--drive",
-            "crank_angle = 60*deg + 5*t",
+            "crank_angle = 60*deg + 5*t + t^3",
         ]);
         arguments.extend(more);
         let assert = biela(&arguments).success();
@@ -33,6 +33,11 @@ fn run_plots_what_is_asked_for() {
     let picture = String::from_utf8(picture).unwrap();
     assert!(picture.contains(">coupler.P.x<") && !picture.contains("transmission"));
     assert!(plot("c.png", &[]).1.starts_with(b"\x89PNG"));
+    // Over a driver, which is then no line of its own.
+    let (_, picture) = plot("e.svg", &["--over", "crank_angle"]);
+    let picture = String::from_utf8(picture).unwrap();
+    assert!(picture.contains(">crank_angle [deg]<"));
+    assert!(!picture.contains(">crank_angle.position<") && !picture.contains(">time [s]<"));
     // A run that is cut short is drawn up to there.
     let path = folder.path().join("d.svg");
     let path = path.to_str().unwrap();
@@ -51,6 +56,33 @@ fn run_plots_what_is_asked_for() {
     let picture = std::fs::read_to_string(path).unwrap();
     assert!(picture.contains(">side_length.position<"));
     assert!(picture.contains(">2.5<") && !picture.contains(">3.5<"));
+}
+
+/// The driver has a panel of its own, what is constant has none, and lines of a body have the
+/// body's colour.
+#[test]
+fn plots_show_what_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = |file: &str, drive: &str| {
+        let path = folder.path().join("plot.svg");
+        let path = path.to_str().unwrap();
+        biela(&["run", file, "--drive", drive, "--plot", path]).success();
+        std::fs::read_to_string(path).unwrap()
+    };
+    let picture = plot("mechanisms/four_bar.toml", "crank_angle = 60*deg + 5*t");
+    assert_eq!(picture.matches(">angle [deg]<").count(), 2);
+    assert!(picture.contains(">crank_angle.position<"));
+    assert!(!picture.contains(">crank_angle.velocity<"));
+    assert!(!picture.contains(">crank_angle.acceleration<"));
+    let message = |over: &str| {
+        let file = "mechanisms/four_bar.toml";
+        let all = ["run", file, "--plot", "-", "--over", over];
+        stderr(&biela(&all).code(2))
+    };
+    assert_eq!(
+        message("crank_angel"),
+        "error: --over: no variable `crank_angel`; did you mean `crank_angle`?\n"
+    );
 }
 
 #[test]

@@ -215,3 +215,33 @@ fn run_tells_how_large_a_file_becomes() {
         assert!(message.contains("error: "), "{message}");
     }
 }
+
+#[test]
+fn plain_angles_of_more_than_a_turn_are_warned_of() {
+    let run = |option: &str, value: &str| {
+        let file = "mechanisms/four_bar.toml";
+        let all = [
+            "run",
+            file,
+            option,
+            value,
+            "--stop",
+            "0",
+            "--variables",
+            "crank.phi",
+        ];
+        stderr(&biela(&all[..4]).success())
+    };
+    assert_eq!(
+        run("--drive", "crank_angle = 60 + 10*t"),
+        "warning: --drive: an angle of 60 rad is 3437.7 deg; degrees are written `60*deg`\n"
+    );
+    // The author of these has thought of the unit.
+    for drive in [
+        "crank_angle = 600*deg + t",
+        "crank_angle = 3*pi + t",
+        "crank_angle = 6 + 10*t",
+    ] {
+        assert_eq!(run("--drive", drive), "", "{drive}");
+    }
+}

@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use super::scientific;
 use crate::fmi::{Kind, Quantity, variables};
 use crate::kinematics::{Error, ForceParts, ForceQuantity, KnownMotion, Rates, Solver};
 use crate::mechanism::{Expression, Indeterminate, Jet, Mechanism, shown};
@@ -80,7 +79,7 @@ impl Forces {
             let _ = writeln!(out, "  {body}: mass {mass} kg, inertia {inertia} kg.m2");
         }
         for (name, value, unit) in &self.values {
-            let _ = writeln!(out, "  {name} = {} {unit}", scientific(*value, 6));
+            let _ = writeln!(out, "  {name} = {} {unit}", shown(*value));
         }
         if !self.indeterminate.is_empty() {
             let treatment = match mechanism.outputs.indeterminate {

@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use super::with_unit;
-use crate::cli::check::scientific;
 use crate::kinematics::{
     Element, ForceParts, ForceQuantity, KnownMotion, Range, Rates, Reported, Solver,
 };
@@ -74,12 +73,12 @@ pub(super) fn describe_largest(
         format!("at {} {unit}", shown(speed))
     };
     if let Some((effort, at)) = effort {
-        let (effort, unit) = (scientific(effort, 3), kind.effort_unit().name);
+        let (effort, unit) = (shown(effort), kind.effort_unit().name);
         let at = with_unit(kind, at);
         let _ = writeln!(text, "  {moving}, largest effort {effort} {unit}, at {at}");
     }
     if let Some((force, at, joint)) = reaction {
-        let (force, at) = (scientific(force, 3), with_unit(kind, at));
+        let (force, at) = (shown(force), with_unit(kind, at));
         let joint = &mechanism.joints[joint].name;
         let _ = writeln!(
             text,

@@ -115,6 +115,15 @@
         names[index].setAttribute("y", fix(y + 0.5 * height));
         return { x, y, width, height };
       });
+      // A name that would be over an earlier one is hidden until there is room.
+      const seen = [];
+      boxes.forEach((box, index) => {
+        const fits = seen.every((other) => apart(box, other));
+        names[index].classList.toggle("covered", !fits);
+        if (fits) {
+          seen.push(box);
+        }
+      });
       film.points.forEach((point, index) => {
         const from = outside(point.attachment, point.at);
         arrows.forEach((paths, kind) => {
@@ -214,20 +223,10 @@
     function fit() {
       const group = find(".names");
       larger = parseFloat(getComputedStyle(group).fontSize) / Number(group.getAttribute("font-size"));
-      names.forEach((name) => (name.style.display = ""));
+      // Hidden texts have no width.
+      names.forEach((name) => name.classList.remove("covered"));
       widths = names.map((name) => name.getComputedTextLength());
       draw();
-      // Where they have grown, one that would be over another is left out.
-      const apart = (a, b) =>
-        2 * Math.abs(a.x - b.x) >= a.width + b.width || 2 * Math.abs(a.y - b.y) >= LINE * (a.height + b.height);
-      const seen = [];
-      names.forEach((name, index) => {
-        const fits = larger === 1 || seen.every((box) => apart(box, boxes[index]));
-        name.style.display = fits ? "" : "none";
-        if (fits) {
-          seen.push(boxes[index]);
-        }
-      });
     }
     addEventListener("resize", fit);
     fit();
@@ -255,6 +254,11 @@
   // The middle of what reaches so far to both sides, moved so that all of it is within.
   function within(middle, half, start, length) {
     return Math.max(start + half, Math.min(start + length - half, middle));
+  }
+
+  // Whether two names can be told apart.
+  function apart(a, b) {
+    return 2 * Math.abs(a.x - b.x) >= a.width + b.width || 2 * Math.abs(a.y - b.y) >= LINE * (a.height + b.height);
   }
 
   // An arrow whose length is a part of the longest.

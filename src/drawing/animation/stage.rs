@@ -11,6 +11,8 @@ use crate::drawing::symbol::{Pen, Symbol};
 
 /// Poses that decide how much room the motion needs.
 const SAMPLES: usize = 120;
+/// Poses that decide where the labels are.
+const LABEL_SAMPLES: usize = 12;
 /// Room around the mechanism for its symbols and names.
 const AROUND: f64 = 46.0;
 /// Most points with arrows for their rates: more arrows would hide each other.
@@ -49,7 +51,11 @@ impl Stage {
             fitting(room, extent)
         });
 
-        let (mut marks, labels) = Pen::draw(&scene.symbols, &scene.bodies, q, scale, true);
+        let labelled = moments.len().div_ceil(LABEL_SAMPLES).max(1);
+        let further = moments.iter().step_by(labelled).skip(1);
+        let further: Vec<&[f64]> = further.map(|moment| moment.q.as_slice()).collect();
+        let (mut marks, labels) =
+            Pen::draw(&scene.symbols, &scene.bodies, q, scale, Some(&further));
         marks.sort_by_key(|mark| mark.layer);
         let mut attachments = vec![Attachment::Ground];
         let mut lengths = Vec::new();
@@ -111,10 +117,7 @@ impl Stage {
                 }
             }
             for (attachment, label) in &self.labels {
-                let (home, now) = (&homes[*attachment], &placements[*attachment]);
-                let mut place = label.place;
-                place.anchor = now.outside(home.inside(place.anchor));
-                place.side = place.side.map(|side| now.turned(home.turned_back(side)));
+                let place = (label.place).moved([homes[*attachment], placements[*attachment]]);
                 let size = Point::new(label.text.width(), CAPITALS);
                 bounds.join(&Bounds::about(place.center(size), size));
             }
@@ -175,4 +178,84 @@ fn points(
         }
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path as FilePath;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::drawing::animation::{Clock, Moment};
+    use crate::drawing::scene::Scene;
+    use crate::drawing::sweep::sweep;
+    use crate::kinematics::{Path, Solver};
+    use crate::mechanism::{Mechanism, Source};
+
+    /// Returns the motion of a shipped mechanism that its drawing shows as paths.
+    fn animation(file: &FilePath) -> Animation {
+        let source = Source::open("test".to_owned(), file).expect("it is shipped");
+        let (mechanism, _) = Mechanism::parse(&source).expect("it is right");
+        let mechanism = Arc::new(mechanism);
+        let mut solver = Solver::new(Arc::clone(&mechanism)).expect("it is determined");
+        solver.assemble(&Path::new(&mechanism)).expect("it closes");
+        let motion = sweep(&mut solver);
+        let (q, parameters) = (&solver.pose().q, &solver.pose().parameters);
+        let scene = Scene::along(&mechanism, parameters, q, &motion, true);
+        let moments = motion.into_iter().map(|q| Moment {
+            q,
+            rates: Default::default(),
+            readings: Vec::new(),
+        });
+        Animation {
+            scene,
+            clock: Clock {
+                start: 0.0,
+                step: 0.01,
+                stop: 1.0,
+            },
+            readings: Vec::new(),
+            moments: moments.collect(),
+        }
+    }
+
+    /// Returns the boxes of all labels at a pose.
+    fn boxes(stage: &Stage, home: &[Placement], q: &[f64]) -> Vec<Bounds> {
+        let placements = stage.placements(q);
+        let labels = stage.labels.iter().map(|(attachment, label)| {
+            let place = (label.place).moved([home[*attachment], placements[*attachment]]);
+            let size = Point::new(label.text.width(), CAPITALS);
+            Bounds::about(place.center(size), size)
+        });
+        labels.collect()
+    }
+
+    /// Largest part of the motion during which a label may be hidden because another one is there.
+    const MOST: f64 = 0.05;
+
+    #[test]
+    fn labels_keep_apart_over_the_motion_of_every_mechanism() {
+        let folder = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("mechanisms");
+        for entry in std::fs::read_dir(folder).expect("it is there") {
+            let file = entry.expect("it can be read").path();
+            if file.extension().is_none_or(|extension| extension != "toml") {
+                continue;
+            }
+            let animation = animation(&file);
+            let stage = Stage::new(&animation);
+            let q = &animation.moments[0].q;
+            let home = stage.placements(q);
+            let (mut covered, mut all) = (0, 0);
+            for moment in animation.moments.iter().step_by(12) {
+                let boxes = boxes(&stage, &home, &moment.q);
+                for (index, label) in boxes.iter().enumerate() {
+                    let is_covered = boxes[..index].iter().any(|b| b.overlap(label) > 0.0);
+                    covered += usize::from(is_covered);
+                    all += 1;
+                }
+            }
+            let share = covered as f64 / f64::from(all.max(1) as u32);
+            assert!(share < MOST, "{}: {share}", file.display());
+        }
+    }
 }

@@ -41,7 +41,7 @@ pub(in crate::drawing) fn compose(
     fixture::compose(&mut composer);
     let frame = trace::frame(&composer);
     for marker in &mechanism.outputs.markers {
-        let name = mechanism.markers[marker.index()].name.clone();
+        let name = point_name(mechanism, *marker);
         let at = composer.anchor(*marker);
         composer.symbols.push(InterestPoint { name, at }.into());
         if traces {
@@ -49,6 +49,19 @@ pub(in crate::drawing) fn compose(
         }
     }
     composer.symbols
+}
+
+/// Returns the name of a point of interest, with its body where another one has the same name.
+fn point_name(mechanism: &Mechanism, id: MarkerId) -> String {
+    let marker = &mechanism.markers[id.index()];
+    let is_alike = |other: &&MarkerId| mechanism.markers[other.index()].name == marker.name;
+    let body = marker.body.map(|body| &mechanism.bodies[body.index()].name);
+    match body {
+        Some(body) if mechanism.outputs.markers.iter().filter(is_alike).count() > 1 => {
+            format!("{body}.{}", marker.name)
+        }
+        _ => marker.name.clone(),
+    }
 }
 
 /// The symbols so far, and the mechanism that they stand for.

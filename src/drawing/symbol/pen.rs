@@ -38,6 +38,8 @@ pub(in crate::drawing) struct Pen<'a> {
     middle: Point,
     /// Whether the mechanism starts to move: marks then keep their shape in their frames.
     pub(super) moving: bool,
+    /// Poses of the motion, over which labels keep their places.
+    motion: &'a [&'a [f64]],
     /// The frame that the next marks and labels move with.
     attachment: Attachment,
     marks: Vec<Mark>,
@@ -48,14 +50,14 @@ pub(in crate::drawing) struct Pen<'a> {
 }
 
 impl<'a> Pen<'a> {
-    /// Draws symbols at the pose q; `moving` if the mechanism starts to move there. Returns the
-    /// marks, and the labels at their places.
+    /// Draws symbols at the pose q, from which the mechanism moves along further poses if there is
+    /// a motion. Returns the marks, and the labels at their places.
     pub(in crate::drawing) fn draw(
         symbols: &'a [Symbol],
         bodies: &[String],
         q: &'a [f64],
         scale: f64,
-        moving: bool,
+        motion: Option<&'a [&'a [f64]]>,
     ) -> (Vec<Mark>, Vec<Placed>) {
         let shown = symbols.iter().map(Symbol::shape);
         let points: Vec<Point> = shown
@@ -69,7 +71,8 @@ impl<'a> Pen<'a> {
             q,
             scale,
             middle: on_sheet(middle, scale),
-            moving,
+            moving: motion.is_some(),
+            motion: motion.unwrap_or_default(),
             attachment: Attachment::Ground,
             marks: Vec::new(),
             driver_labels: Vec::new(),
@@ -98,7 +101,7 @@ impl<'a> Pen<'a> {
                 candidates,
             }));
         }
-        let placed = label::place(labels, self.marks.iter());
+        let placed = label::place(labels, &self.marks, self.q, self.motion, self.scale);
         (self.marks, placed)
     }
 

@@ -7,6 +7,7 @@
 //! force, signals such as `crank.omega` in a measure. Powers bind tighter than a sign and
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
+mod dimension;
 mod display;
 mod error;
 mod function;
@@ -21,7 +22,7 @@ mod tests;
 pub use error::ExpressionError;
 use function::Binary;
 pub(super) use function::{CONSTANTS, function_names};
-pub(super) use parse::Scope;
+pub(super) use parse::{Parsed, Scope};
 
 use super::number::{self, Interval, Jet3, Number, Unary};
 use super::{Order, ParameterId, Signal};

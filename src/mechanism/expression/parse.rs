@@ -1,12 +1,13 @@
 //! Parser of expressions (Pratt), which gives the place of an error.
 
+use super::dimension::{Clash, Dimensions};
 use super::error::ExpressionError;
 use super::function::{CONSTANTS, FUNCTIONS, Function};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::{self, NameTable};
 use crate::mechanism::wording::quoted;
-use crate::mechanism::{ParameterId, Span};
+use crate::mechanism::{Dimension, ParameterId, Span};
 
 /// Largest depth of the parser's recursion: nested parentheses, signs, powers and operators.
 const MAX_DEPTH: usize = 128;
@@ -22,6 +23,15 @@ pub(in crate::mechanism) struct Scope<'a> {
     pub(in crate::mechanism) signals: Option<&'a NameTable<'a, Variable>>,
 }
 
+/// An expression with its dimension.
+pub(in crate::mechanism) struct Parsed {
+    pub(in crate::mechanism) expression: Expression,
+    /// `None` if it is not known.
+    pub(in crate::mechanism) dimension: Option<Dimension>,
+    /// First operation on operands that cannot be added.
+    pub(in crate::mechanism) clash: Option<Clash>,
+}
+
 impl Expression {
     /// Parses `text` with the names in `scope`.
     ///
@@ -33,7 +43,20 @@ impl Expression {
         text: &str,
         scope: Scope<'_>,
     ) -> Result<Self, ExpressionError> {
-        let mut parser = Parser::new(text, scope)?;
+        Self::parse_with_dimension(text, scope, &[]).map(|parsed| parsed.expression)
+    }
+
+    /// Parses `text` and tells its dimension; `dimensions` are those of the parameters.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`parse`](Self::parse).
+    pub(in crate::mechanism) fn parse_with_dimension(
+        text: &str,
+        scope: Scope<'_>,
+        dimensions: &[Option<Dimension>],
+    ) -> Result<Parsed, ExpressionError> {
+        let mut parser = Parser::new(text, scope, dimensions)?;
         if parser.token.kind == TokenKind::End {
             return Err(
                 ExpressionError::new(0..text.len(), "the expression is empty")
@@ -42,7 +65,11 @@ impl Expression {
         }
         parser.parse_operators(0)?;
         parser.expect_end()?;
-        Ok(Self::new(parser.program))
+        Ok(Parsed {
+            expression: Self::new(parser.program),
+            dimension: parser.dimensions.result(),
+            clash: parser.dimensions.clash,
+        })
     }
 }
 
@@ -84,19 +111,25 @@ struct Parser<'a> {
     /// Last token taken.
     previous: Option<Token<'a>>,
     program: Vec<Operation>,
+    dimensions: Dimensions<'a>,
     /// Number of operands that wait at the end of the program.
     height: usize,
     depth: usize,
 }
 
 impl<'a> Parser<'a> {
-    fn new(text: &'a str, scope: Scope<'a>) -> Result<Self, ExpressionError> {
+    fn new(
+        text: &'a str,
+        scope: Scope<'a>,
+        dimensions: &'a [Option<Dimension>],
+    ) -> Result<Self, ExpressionError> {
         Ok(Self {
             text,
             scope,
             token: scan(text, 0)?,
             previous: None,
             program: Vec::new(),
+            dimensions: Dimensions::new(dimensions),
             height: 0,
             depth: 0,
         })
@@ -189,6 +222,9 @@ impl<'a> Parser<'a> {
             );
         }
         self.emit(operation, &span)?;
+        if constant.is_some() {
+            self.dimensions.set_constant(name);
+        }
         Ok(span)
     }
 
@@ -244,6 +280,11 @@ impl<'a> Parser<'a> {
         let constant = self.program[operands..]
             .iter()
             .all(|operand| matches!(operand, Operation::Number(_)));
+        let exponent = match self.program.last() {
+            Some(Operation::Number(exponent)) => Some(*exponent),
+            _ => None,
+        };
+        self.dimensions.apply(operation, span, exponent);
         self.program.push(operation);
         self.height = self.height - arity + 1;
         if self.height > MAX_STACK {

@@ -8,7 +8,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::NameTable;
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::{
-    BodyId, Diagnostic, MarkerId, ParameterId, Severity, Source, Span, TableFile,
+    BodyId, Diagnostic, Dimension, MarkerId, ParameterId, Severity, Source, Span, TableFile,
 };
 
 /// Most problems that are shown; the others are counted. A file of garbage would make a million.
@@ -16,6 +16,14 @@ const MAX_PROBLEMS: usize = 100;
 
 /// Name of the body that never moves.
 pub(super) const GROUND: &str = "ground";
+
+/// Length of the file, for the comparison with all others.
+pub(super) struct Length {
+    /// Magnitude \[m\], positive.
+    pub(super) size: f64,
+    /// Place, `None` if an expression makes it.
+    pub(super) bare: Option<Span>,
+}
 
 /// State of reading one file.
 pub(super) struct Context<'a> {
@@ -28,6 +36,10 @@ pub(super) struct Context<'a> {
     pub(super) parameters: NameTable<'a, ParameterId>,
     /// The file's value of each parameter, `None` before it is computed and if it is wrong.
     pub(super) parameter_values: Vec<Option<f64>>,
+    /// Dimension of each parameter with a unit.
+    pub(super) parameter_dimensions: Vec<Option<Dimension>>,
+    /// Lengths read so far, but for zeros.
+    pub(super) lengths: Vec<Length>,
     /// Whether anything uses each parameter.
     pub(super) parameters_used: Vec<bool>,
     /// Moving bodies.
@@ -58,6 +70,8 @@ impl<'a> Context<'a> {
             failed: false,
             parameters: NameTable::new(),
             parameter_values: Vec::new(),
+            parameter_dimensions: Vec::new(),
+            lengths: Vec::new(),
             parameters_used: Vec::new(),
             bodies: NameTable::new(),
             body_names: Vec::new(),

@@ -97,19 +97,17 @@ impl<'a> Context<'a> {
         })
     }
 
-    /// Reports a distance that is not positive, and warns of an angle that looks like degrees.
+    /// Reports a distance that is not positive, and warns of a value that looks like one in
+    /// another unit.
     pub(super) fn check_coordinate_value(
         &mut self,
         kind: CoordinateKind,
         value: &Quantity,
         subject: &str,
     ) {
-        match kind {
-            CoordinateKind::Angle => self.warn_of_degrees(value),
-            CoordinateKind::Distance => {
-                self.check_limit(Limit::Positive, value, subject);
-            }
-            CoordinateKind::X | CoordinateKind::Y => {}
+        self.warn_of_unit(value, kind.unit());
+        if kind == CoordinateKind::Distance {
+            self.check_limit(Limit::Positive, value, subject);
         }
     }
 }

@@ -1,9 +1,7 @@
 //! Forces: along a coordinate, or at a marker.
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::{
-    CoordinateKind, Expression, Force, ForceLaw, Load, MarkerId, Spring, Variable,
-};
+use crate::mechanism::{Expression, Force, ForceLaw, Load, MarkerId, Spring, Variable};
 
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
@@ -60,11 +58,7 @@ impl<'a> Kind<'a> for Formula {
     type Value = Quantity;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Quantity> {
-        Some(Quantity {
-            expression: context.expression(item.value, self.variables)?,
-            value: None,
-            span: item.span(),
-        })
+        context.formula_over(item.value, self.variables)
     }
 
     schema! { NUMBER.schema() }
@@ -126,10 +120,8 @@ impl<'a> Context<'a> {
             }
             _ => {}
         }
-        if let (Some(coordinate), Some(free)) = (coordinate, &keys.free.value)
-            && coordinate.kind == CoordinateKind::Angle
-        {
-            self.warn_of_degrees(free);
+        if let (Some(coordinate), Some(free)) = (coordinate, &keys.free.value) {
+            self.warn_of_unit(free, coordinate.kind.unit());
         }
         if let Some(value) = &keys.value.value {
             self.check_force(value, start_time)?;

@@ -27,6 +27,7 @@ mod motion;
 mod names;
 mod number;
 mod parameter;
+mod plausible;
 mod points;
 mod reference;
 mod root;
@@ -145,6 +146,7 @@ impl<'a> Context<'a> {
         };
         mechanism.derived = self.derived(root.measures.items(), &mechanism);
         if !self.failed {
+            self.warn_of_large_lengths();
             self.warn_of_unused(&mechanism, root.parameters.items(), root.bodies.items());
         }
         Some(mechanism)

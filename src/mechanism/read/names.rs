@@ -6,7 +6,7 @@ use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::is_legal;
 use crate::mechanism::reserved::is_taken;
 use crate::mechanism::wording::quoted;
-use crate::mechanism::{BodyId, Diagnostic, ParameterId, Span};
+use crate::mechanism::{BodyId, Diagnostic, Dimension, ParameterId, Span, Unit};
 
 use super::context::Context;
 use super::kind::Entry;
@@ -19,6 +19,7 @@ impl<'a> Context<'a> {
         let parameters = root.parameters.items().iter().map(Entry::name);
         self.parameters = parameters.zip((0..).map(ParameterId)).collect();
         self.parameter_values = vec![None; root.parameters.items().len()];
+        self.parameter_dimensions = root.parameters.items().iter().map(declared).collect();
         self.parameters_used = vec![false; root.parameters.items().len()];
         self.body_names = root.bodies.items().iter().map(Entry::name).collect();
         let bodies = self.body_names.iter().copied();
@@ -85,4 +86,11 @@ impl<'a> Context<'a> {
         }
         legal
     }
+}
+
+/// Returns the dimension of a parameter's `unit`, before the parameters are read.
+fn declared(entry: &Entry<'_>) -> Option<Dimension> {
+    let unit = entry.value.get_ref().as_table()?.get("unit")?;
+    let unit = Unit::by_name(unit.get_ref().as_str()?)?;
+    Some(unit.dimension)
 }

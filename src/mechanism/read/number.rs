@@ -1,15 +1,13 @@
 //! Numbers: a TOML number or an expression string, in the SI unit that its key has.
 
-use std::f64::consts::TAU;
-
 use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::expression::Scope;
+use crate::mechanism::expression::{Parsed, Scope};
 use crate::mechanism::names::NameTable;
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::{quoted, shown};
-use crate::mechanism::{Expression, Jet, Span, Unit, Variable};
+use crate::mechanism::{Dimension, Expression, Jet, Span, Unit, Variable};
 
 use super::context::Context;
 use super::kind::{Array, Item, Kind, schema};
@@ -19,6 +17,8 @@ pub(super) struct Quantity {
     pub(super) expression: Expression,
     /// Finite; `None` if it uses a parameter that has no value, or is not computed yet.
     pub(super) value: Option<f64>,
+    /// `None` if it is not known.
+    pub(super) dimension: Option<Dimension>,
     pub(super) span: Span,
 }
 
@@ -78,8 +78,8 @@ impl<'a> Kind<'a> for Number {
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Quantity> {
         let mut quantity = context.formula(item.value)?;
         context.evaluate(&mut quantity)?;
-        if self.unit == Some(Unit::RADIAN) {
-            context.warn_of_degrees(&quantity);
+        if let Some(unit) = self.unit {
+            context.warn_of_unit(&quantity, unit);
         }
         let subject = format!("`{}`", item.key.get_ref());
         context.check_limit(self.limit, &quantity, &subject);
@@ -116,9 +116,24 @@ impl<'a> Kind<'a> for Formula {
 impl<'a> Context<'a> {
     /// Reads a number or an expression over the parameters.
     pub(super) fn formula(&mut self, value: &'a Value<'a>) -> Option<Quantity> {
+        self.formula_over(value, &[])
+    }
+
+    /// Reads a number or an expression over the parameters and `variables`.
+    pub(super) fn formula_over(
+        &mut self,
+        value: &'a Value<'a>,
+        variables: &[Variable],
+    ) -> Option<Quantity> {
+        let Parsed {
+            expression,
+            dimension,
+            ..
+        } = self.parsed(value, variables, None)?;
         Some(Quantity {
-            expression: self.expression(value, &[])?,
+            expression,
             value: None,
+            dimension,
             span: value.span(),
         })
     }
@@ -165,9 +180,24 @@ impl<'a> Context<'a> {
         variables: &[Variable],
         signals: Option<&NameTable<'_, Variable>>,
     ) -> Option<Expression> {
+        let parsed = self.parsed(value, variables, signals)?;
+        Some(parsed.expression)
+    }
+
+    /// Reads a number or an expression; warns if it adds quantities of different dimensions.
+    fn parsed(
+        &mut self,
+        value: &'a Value<'a>,
+        variables: &[Variable],
+        signals: Option<&NameTable<'_, Variable>>,
+    ) -> Option<Parsed> {
         if let Some(number) = syntax::number(value.get_ref()) {
             if number.is_finite() {
-                return Some(Expression::constant(number));
+                return Some(Parsed {
+                    expression: Expression::constant(number),
+                    dimension: Some(Dimension::ONE),
+                    clash: None,
+                });
             }
             self.error(code::NOT_FINITE, value.span(), "the number is not finite");
             return None;
@@ -181,12 +211,18 @@ impl<'a> Context<'a> {
             variables,
             signals,
         };
-        match Expression::parse(text, scope) {
-            Ok(expression) => {
-                for id in expression.parameters() {
+        match Expression::parse_with_dimension(text, scope, &self.parameter_dimensions) {
+            Ok(parsed) => {
+                for id in parsed.expression.parameters() {
                     self.parameters_used[id.index()] = true;
                 }
-                Some(expression)
+                if let Some(clash) = &parsed.clash {
+                    let span = clash.span.clone();
+                    let part = text.get(span.clone()).map_or_else(|| quoted(text), quoted);
+                    let span = syntax::part_span(self.source, value.span(), text, span);
+                    self.warn_of_clash(span, &part, clash.dimensions);
+                }
+                Some(parsed)
             }
             Err(error) => {
                 let span = syntax::part_span(self.source, value.span(), text, error.span);
@@ -212,18 +248,5 @@ impl<'a> Context<'a> {
         let message = format!("{subject} must {demand}, is {}", shown(value));
         self.error(code::ILLEGAL_VALUE, quantity.span.clone(), message);
         None
-    }
-
-    /// Warns of an angle that is a bare number of more than a turn: it looks like degrees.
-    pub(super) fn warn_of_degrees(&mut self, angle: &Quantity) {
-        let text = self.source.text().get(angle.span.clone());
-        // The author of an expression has thought of the unit.
-        let bare = text.filter(|text| !text.starts_with(['"', '\'']));
-        if let Some((text, value)) = bare.zip(angle.value).filter(|(_, value)| value.abs() > TAU) {
-            let (number, degrees) = (shown(value), value.to_degrees());
-            let message = format!("an angle of {number} rad is {degrees:.1} deg");
-            self.warn(code::LARGE_ANGLE, angle.span.clone(), message)
-                .suggest(format!("degrees are written `\"{text}*deg\"`"));
-        }
     }
 }

@@ -234,6 +234,9 @@ impl<'a> Context<'a> {
             parameter.tunable = self.tunable(&keys.tunable, &parameter);
             parameter.tolerance = self.tolerance(keys.tolerance, &parameter);
             parameter.unit = self.unit(keys.unit, keys.display, &keys.owner.subject);
+            if let (Some(value), Some(unit)) = (value, parameter.unit) {
+                self.warn_of_parameter(value, unit);
+            }
             let name = quoted(&parameter.name);
             [parameter.min, parameter.max] =
                 self.limits([keys.min, keys.max], (&name, value), parameter.unit);

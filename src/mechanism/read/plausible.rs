@@ -1,0 +1,161 @@
+//! Warnings of values that are legal but probably in another unit than meant.
+
+use std::f64::consts::TAU;
+
+use crate::mechanism::diagnostic::code;
+use crate::mechanism::wording::{quoted, shown};
+use crate::mechanism::{Dimension, DisplayUnit, Span, Unit};
+
+use super::context::{Context, Length};
+use super::number::Quantity;
+
+/// Least length \[m\] that may have been meant in millimetres: few mechanisms are larger.
+const LARGE: f64 = 10.0;
+/// Ratio of two neighbouring lengths from which they are likely to be in different units: between
+/// the parts of one mechanism it is a few tens.
+const GAP: f64 = 200.0;
+
+impl<'a> Context<'a> {
+    /// Warns of a quantity in place of one in `unit` that has another dimension, or that looks
+    /// like degrees.
+    pub(super) fn warn_of_unit(&mut self, quantity: &Quantity, unit: Unit) {
+        self.warn_of_dimension(quantity, unit.dimension);
+        if unit.dimension == Dimension::ANGLE {
+            self.warn_of_degrees(quantity);
+        }
+        if let (Dimension::LENGTH, Some(value)) = (unit.dimension, quantity.value)
+            && value != 0.0
+        {
+            let bare = self.bare_text(quantity).is_some();
+            self.lengths.push(Length {
+                size: value.abs(),
+                bare: bare.then(|| quantity.span.clone()),
+            });
+        }
+    }
+
+    /// Warns of a parameter's value that has another dimension than its unit, or looks like one in
+    /// its display unit.
+    pub(super) fn warn_of_parameter(&mut self, value: &Quantity, unit: Unit) {
+        match unit.display {
+            Some(display) if self.warn_of_display(value, display) => {}
+            _ => self.warn_of_unit(value, unit),
+        }
+    }
+
+    /// Warns of a length or angle whose value has another dimension.
+    fn warn_of_dimension(&mut self, quantity: &Quantity, expected: Dimension) {
+        let Some(dimension) = quantity.dimension else {
+            return;
+        };
+        let is_checked = [Dimension::LENGTH, Dimension::ANGLE].contains(&expected);
+        if !is_checked || dimension.agrees_with(expected) {
+            return;
+        }
+        let file = self.source.text();
+        let text = file.get(quantity.span.clone()).unwrap_or_default();
+        let text = quoted(text.trim_matches(['"', '\'']));
+        let before = file.get(..quantity.span.start).unwrap_or_default();
+        let is_component = before.trim_end().ends_with(['[', ',']);
+        let (found, expected) = (describe(dimension), describe(expected));
+        let message = format!("{text} is {found}, in place of {expected}");
+        let problem = self.warn(code::WRONG_DIMENSION, quantity.span.clone(), message);
+        if is_component && dimension == Dimension::ANGLE {
+            problem.suggest("a marker in polar form is `{ r = 0.1, angle = \"10*deg\" }`");
+        }
+    }
+
+    /// Warns of a sum, a difference or a comparison of quantities of different dimensions.
+    pub(super) fn warn_of_clash(&mut self, span: Span, part: &str, dimensions: [Dimension; 2]) {
+        let [a, b] = dimensions.map(describe);
+        let message = format!("{part} combines {a} with {b}");
+        self.warn(code::WRONG_DIMENSION, span, message);
+    }
+
+    /// Warns of an angle that is a bare number of more than a turn: it looks like degrees.
+    pub(super) fn warn_of_degrees(&mut self, angle: &Quantity) {
+        // The author of an expression has thought of the unit.
+        let Some((text, value)) = self.bare_text(angle).zip(angle.value) else {
+            return;
+        };
+        if value.abs() > TAU {
+            let (number, degrees) = (shown(value), value.to_degrees());
+            let message = format!("an angle of {number} rad is {degrees:.1} deg");
+            self.warn(code::LARGE_ANGLE, angle.span.clone(), message)
+                .suggest(format!("degrees are written `\"{text}*deg\"`"));
+        }
+    }
+
+    /// Warns of a bare number that is large in its display unit: it looks like one in that unit.
+    /// Returns whether it does.
+    fn warn_of_display(&mut self, quantity: &Quantity, display: DisplayUnit) -> bool {
+        let is_decimal = [DisplayUnit::MILLIMETRE, DisplayUnit::CENTIMETRE].contains(&display);
+        let Some((text, value)) = self.bare_text(quantity).zip(quantity.value) else {
+            return false;
+        };
+        let is_suspect = is_decimal && value.abs() >= LARGE;
+        if is_suspect {
+            let (number, shown, name) = (shown(value), shown(value * display.factor), display.name);
+            let message = format!("a length of {number} m is {shown} {name}");
+            self.warn(code::LARGE_LENGTH, quantity.span.clone(), message)
+                .suggest(format!("values are SI: `value = \"{text}*{name}\"`"));
+        }
+        is_suspect
+    }
+
+    /// Warns of bare lengths that are far larger than all others: they look like millimetres.
+    pub(super) fn warn_of_large_lengths(&mut self) {
+        let mut lengths = std::mem::take(&mut self.lengths);
+        lengths.sort_by(|a, b| a.size.total_cmp(&b.size));
+        let gap = |k: &usize| lengths[k - 1].size * GAP <= lengths[*k].size;
+        let Some(first) = (1..lengths.len()).find(gap) else {
+            return;
+        };
+        let (usual, large) = lengths.split_at(first);
+        let most = shown(usual[first - 1].size);
+        for Length { size, bare } in large {
+            if let Some(span) = bare
+                && *size >= LARGE
+            {
+                let text = self.source.text().get(span.clone()).unwrap_or_default();
+                let message = format!(
+                    "a length of {} m beside others of up to {most} m",
+                    shown(*size)
+                );
+                self.warn(code::LARGE_LENGTH, span.clone(), message)
+                    .suggest(format!("millimetres are written `\"{text}*mm\"`"));
+            }
+        }
+    }
+
+    /// Returns the text of a quantity that is a bare number.
+    fn bare_text(&self, quantity: &Quantity) -> Option<&'a str> {
+        let text = self.source.text().get(quantity.span.clone())?;
+        (!text.starts_with(['"', '\''])).then_some(text)
+    }
+}
+
+/// Returns a dimension in words.
+fn describe(dimension: Dimension) -> String {
+    let words = [
+        (Dimension::LENGTH, "a length"),
+        (Dimension::ANGLE, "an angle"),
+        (Unit::SECOND.dimension, "a time"),
+        (Unit::KILOGRAM.dimension, "a mass"),
+        (Unit::NEWTON.dimension, "a force"),
+    ];
+    if let Some((_, word)) = words.iter().find(|(known, _)| *known == dimension) {
+        return (*word).to_owned();
+    }
+    if let Some(unit) = Unit::ALL.iter().find(|unit| unit.dimension == dimension) {
+        return format!("a quantity in {}", unit.name);
+    }
+    let Dimension { kg, m, s, rad } = dimension;
+    let powers = [("kg", kg), ("m", m), ("s", s), ("rad", rad)];
+    let powers = powers.iter().filter(|(_, power)| *power != 0);
+    let powers = powers.map(|(name, power)| match power {
+        1 => (*name).to_owned(),
+        _ => format!("{name}{power}"),
+    });
+    format!("a quantity in {}", powers.collect::<Vec<_>>().join("."))
+}
