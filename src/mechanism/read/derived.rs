@@ -5,6 +5,7 @@ use crate::mechanism::syntax::Value;
 use crate::mechanism::{DerivedMeasure, Mechanism, Unit, Variable};
 
 use super::context::Context;
+#[cfg(feature = "cli")]
 use super::coordinate::{CoordinateKeys, MeasureKeys};
 use super::kind::{Described, Entry, Item, Kind, Text, schema};
 #[cfg(feature = "cli")]
