@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import shutil
 import subprocess
 import urllib.parse
@@ -163,9 +164,9 @@ class System:
                 if fields[0] == "answer" and len(fields) > 10:
                     texts.append(fields[:2])
                     tables.setdefault(len(fields), []).append([float(value) for value in fields[2:]])
-                elif fields[4:5] != ["logSolver"]:
+                else:
                     # The solver's details tell residuals, which are rounding.
-                    texts.append(fields)
+                    texts.append([re.sub(r"residual \S+", "residual", field) for field in fields])
             results[fmu.name] = texts, tables
         return results
 
