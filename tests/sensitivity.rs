@@ -1,56 +1,25 @@
 //! Directional derivatives of every shipped mechanism against differences.
 
 mod common;
+#[path = "common/differences.rs"]
+mod differences;
 
-use biela::fmi::{Causality, Interface, Kind, Order, Quantity, Variable};
+use biela::fmi::{Causality, Interface, Quantity, Variable};
 use common::{Instance, instance_of, shipped, stems};
-
-/// A quarter of the way over which differences of fourth order are taken, in units of the known.
-/// It is a thousandth of lengths of a centimetre; the truncation is the fourth power of that, and
-/// the rounding 1e-16 / 1e-5 times the condition.
-const STEP: f64 = 1e-5;
-/// Error of a derivative by these differences, relative to the largest of the same order of time
-/// that any output has; accelerations near singular positions have the largest third derivatives.
-const DIFFERENCE: f64 = 1e-6;
-
-fn references(instance: &Instance, which: impl Fn(&Variable<Quantity>) -> bool) -> Vec<u32> {
-    (0..)
-        .zip(instance.variables())
-        .filter(|(_, variable)| which(variable))
-        .map(|(reference, _)| reference)
-        .collect()
-}
+use differences::{DIFFERENCE, differences, move_inputs, references};
 
 fn is_parameter(variable: &Variable<Quantity>) -> bool {
     variable.causality == Causality::Parameter && variable.kind.is_real()
 }
 
-/// In initialization mode, inputs moved on and all rates there.
 fn moving(name: &str) -> Instance {
     let mut instance = instance_of(shipped(name), Interface::CoSimulation);
-    // Between the points of every table.
-    instance.setup_experiment(0.317, None).expect("legal");
-    for (reference, variable) in (0..).zip(instance.variables().to_vec()) {
-        match (variable.quantity, variable.kind) {
-            (Quantity::Input(_, order), Kind::Real { start, .. }) => {
-                let start = start.expect("inputs have one");
-                let value = match order {
-                    // Some lengths do not go further than a few centimetres.
-                    Order::Position => start + 0.003,
-                    Order::Velocity => 0.7 + 0.1 * f64::from(reference),
-                    Order::Acceleration => -0.4 + 0.1 * f64::from(reference),
-                };
-                instance.set_real(&[reference], &[value]).expect("legal");
-            }
-            // As the inputs say.
-            (Quantity::RateSource, _) => instance.set_integer(&[reference], &[2]).expect("legal"),
-            _ => {}
-        }
-    }
-    instance.enter_initialization_mode().expect("legal");
+    move_inputs(&mut instance);
     instance
 }
 
+/// Errors are relative to the largest derivative of the same order of time that any output has:
+/// accelerations near singular positions have the largest third derivatives.
 #[test]
 fn every_derivative_agrees_with_differences() {
     for name in stems("mechanisms", "toml") {
@@ -68,18 +37,7 @@ fn every_derivative_agrees_with_differences() {
             let exact = instance
                 .directional_derivative(&unknowns, &[known], &[1.0])
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
-            let mut value = [0.0];
-            instance.get_real(&[known], &mut value).expect("it is set");
-            let mut moved = |by: f64| -> Vec<f64> {
-                instance
-                    .set_real(&[known], &[value[0] + by])
-                    .expect("legal");
-                instance.reals(&unknowns).expect("it closes").collect()
-            };
-            let [far_before, before, after, far_after] =
-                [-2.0, -1.0, 1.0, 2.0].map(|k| moved(k * STEP));
-            moved(0.0);
-            let way = (value[0] + STEP) - (value[0] - STEP);
+            let differences = differences(&mut instance, &unknowns, known);
             let mut largest = [1.0_f64; 3];
             let order = |place: usize| {
                 let variable = &instance.variables()[unknowns[place] as usize];
@@ -91,12 +49,7 @@ fn every_derivative_agrees_with_differences() {
             for (place, exact) in exact.iter().enumerate() {
                 largest[order(place)] = largest[order(place)].max(exact.abs());
             }
-            for (place, exact) in exact.iter().enumerate() {
-                let (near, far) = (
-                    after[place] - before[place],
-                    far_after[place] - far_before[place],
-                );
-                let difference = (8.0 * near - far) / (6.0 * way);
+            for (place, (exact, difference)) in exact.iter().zip(differences).enumerate() {
                 assert!(
                     (exact - difference).abs() <= DIFFERENCE * largest[order(place)],
                     "{name}: `{}` by `{}`: {exact} and {difference}",

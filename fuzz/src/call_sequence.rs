@@ -1,19 +1,22 @@
 //! Any calls in any order: the state table decides, and what is refused leaves no trace.
 
 use arbitrary::{Arbitrary, Unstructured};
-use biela::fmi::{Call, Error, Failure, Interface, State, Status, Version};
+use biela::fmi::{
+    Call, Causality, CoSimulation, Error, Failure, Interface, State, Status, StepProgress, Version,
+};
 
 use crate::{FmuState, Instance, instance, reals, shipped};
 
 /// Calls that follow one another at the most.
 const MOST_CALLS: usize = 60;
 
-/// A call with its arguments. Which variable or saved state is meant, an index says, counted
-/// round; one beyond the last variable is unknown.
+/// A call of either version with its arguments. Which variable or saved state is meant, an index
+/// says, counted round; one beyond the last variable is unknown.
 #[derive(Arbitrary, Clone, Debug)]
 enum Request {
     SetupExperiment(Value, Option<Value>),
-    EnterInitializationMode,
+    /// Start and stop time, of which FMI 3.0 is told here.
+    EnterInitializationMode(Value, Option<Value>),
     ExitInitializationMode,
     Terminate,
     Reset,
@@ -22,6 +25,10 @@ enum Request {
     SetRealInputDerivatives(u8, i8, Value),
     /// Whether the communication point is the right one, else which; and the size.
     DoStep(Option<Value>, Value),
+    /// The way on from intermediate update, and an early return.
+    ResumeStep(Option<Value>),
+    EnterStepMode,
+    EvaluateDiscreteStates,
     EnterEventMode,
     NewDiscreteStates,
     EnterContinuousTimeMode,
@@ -29,8 +36,11 @@ enum Request {
     SetTime(Value),
     GetContinuousStates(u8),
     GetAll,
+    GetSome(Vec<u8>),
     GetRealOutputDerivatives(u8, i8),
     GetDirectionalDerivative(Vec<u8>, Vec<(u8, Value)>),
+    GetAdjointDerivative(Vec<(u8, Value)>, Vec<u8>),
+    GetDependencies(u8),
     GetFmuState,
     SetFmuState(u8),
     Serialize(u8),
@@ -81,7 +91,12 @@ pub fn run(data: &[u8]) {
 fn attempt(data: &mut Unstructured<'_>) -> arbitrary::Result<()> {
     let mechanism = shipped(data.arbitrary()?);
     let interface = *data.choose(&Interface::ALL)?;
-    let mut instance = instance(&mechanism, interface).expect("it is shipped");
+    let version = *data.choose(&Version::ALL)?;
+    let mut instance = instance(&mechanism, version, interface).expect("it is shipped");
+    if version == Version::Fmi3 && interface == Interface::CoSimulation {
+        let agreements = agreements(&instance, data)?;
+        instance.agree(agreements).expect("they cross");
+    }
     let mut saved = vec![instance.fmu_state().expect("allowed")];
     for _ in 0..MOST_CALLS {
         if data.is_empty() {
@@ -93,20 +108,57 @@ fn attempt(data: &mut Unstructured<'_>) -> arbitrary::Result<()> {
     Ok(())
 }
 
+/// Chooses what an FMI 3.0 host and the instance agree on.
+fn agreements(instance: &Instance, data: &mut Unstructured<'_>) -> arbitrary::Result<CoSimulation> {
+    let crossing: Vec<u32> = (0..)
+        .zip(instance.variables())
+        .filter(|(_, variable)| {
+            let crosses = matches!(variable.causality, Causality::Input | Causality::Output);
+            crosses && variable.kind.is_real()
+        })
+        .map(|(reference, _)| reference)
+        .collect();
+    let mut required_intermediate_variables = Vec::new();
+    for _ in 0..data.int_in_range(0..=4)? {
+        required_intermediate_variables.push(*data.choose(&crossing)?);
+    }
+    Ok(CoSimulation {
+        event_mode_used: data.arbitrary()?,
+        early_return_allowed: data.arbitrary()?,
+        intermediate_update: data.arbitrary()?,
+        required_intermediate_variables,
+    })
+}
+
 /// Makes a call, and compares with the state table.
 fn check(instance: &mut Instance, saved: &mut Vec<FmuState>, request: &Request) {
-    let (state, interface) = (instance.state(), instance.interface());
+    let (state, interface, version) = (instance.state(), instance.interface(), instance.version());
     let before = instance.fmu_state();
-    let (call, outcome) = make(instance, saved, request);
-    let allowed = call.is_allowed_in(Version::Fmi2, interface, state);
-    let refused = matches!(outcome, Err(Error::State { .. } | Error::Interface { .. }));
+    let Some((call, outcome)) = make(instance, saved, request) else {
+        return;
+    };
+    let resumes = matches!(request, Request::ResumeStep(_));
+    let allowed = resumes || call.is_allowed_in(version, interface, state);
+    let refused = match outcome {
+        Err(Error::State { .. } | Error::Interface { .. }) => true,
+        // The table allows event mode also where the host has not agreed on it.
+        Err(Error::NotProvided { .. }) => !(allowed && call == Call::EnterEventMode),
+        _ => false,
+    };
     assert_eq!(!allowed, refused, "{request:?} in {state}: {outcome:?}");
     let Err(error) = outcome else { return };
     match (call, &error) {
+        // The instance is as it was before the step.
+        (Call::DoStep, _) if version == Version::Fmi3 && allowed => {
+            assert_eq!(instance.state(), State::StepMode, "{request:?}: {error}");
+            if state == State::StepMode {
+                assert_eq!(text(&instance.fmu_state()), text(&before), "{request:?}");
+            }
+        }
         (Call::DoStep, Error::Model(Failure::Discarded(_))) => {
             assert_eq!(instance.state(), State::StepFailed);
         }
-        (Call::ExitInitializationMode, _) if allowed => {
+        (Call::ExitInitializationMode, _) if allowed && version == Version::Fmi2 => {
             assert_eq!(instance.state(), State::Error);
         }
         // Finding no pose takes the rates of the drivers along, which nobody can see.
@@ -122,6 +174,10 @@ fn check(instance: &mut Instance, saved: &mut Vec<FmuState>, request: &Request) 
             assert_eq!(text(&instance.fmu_state()), text(&before), "{request:?}");
         }
     }
+    let status = instance.report(call.name(version), &error);
+    if version == Version::Fmi3 && status == Status::Error {
+        assert_eq!(instance.state(), State::Terminated, "{request:?}: {error}");
+    }
 }
 
 /// All of a state, for comparisons: what is not a number would differ from itself.
@@ -129,23 +185,29 @@ fn text(state: &Result<FmuState, Error>) -> String {
     format!("{state:?}")
 }
 
-/// Makes the call; gives its place in the state table with its outcome.
+/// Makes the call; gives its place in the state table with its outcome. Nothing if there is no step
+/// to resume.
 fn make(
     instance: &mut Instance,
     saved: &mut Vec<FmuState>,
     request: &Request,
-) -> (Call, Result<(), Error>) {
+) -> Option<(Call, Result<(), Error>)> {
+    let is_fmi3 = instance.version() == Version::Fmi3;
     let count = instance.variables().len();
     let reference = |index: u8| (usize::from(index) % (count + 1)) as u32;
     let chosen = |saved: &[FmuState], index: u8| saved[usize::from(index) % saved.len()].clone();
-    match request {
+    let made = match request {
         Request::SetupExperiment(start, stop) => (
             Call::SetupExperiment,
             instance.setup_experiment(start.get(), stop.map(Value::get)),
         ),
-        Request::EnterInitializationMode => (
+        Request::EnterInitializationMode(start, stop) => (
             Call::EnterInitializationMode,
-            instance.enter_initialization_mode(),
+            if is_fmi3 {
+                instance.enter_initialization_mode_at(start.get(), stop.map(Value::get))
+            } else {
+                instance.enter_initialization_mode()
+            },
         ),
         Request::ExitInitializationMode => (
             Call::ExitInitializationMode,
@@ -177,8 +239,25 @@ fn make(
         ),
         Request::DoStep(point, size) => {
             let point = point.map_or(instance.last_successful_time(), Value::get);
-            (Call::DoStep, instance.do_step(point, size.get()))
+            let stepped = if is_fmi3 {
+                instance.begin_step(point, size.get()).map(check_progress)
+            } else {
+                instance.do_step(point, size.get())
+            };
+            (Call::DoStep, stepped)
         }
+        Request::ResumeStep(early_return) => {
+            if instance.state() != State::IntermediateUpdateMode {
+                return None;
+            }
+            let resumed = instance.resume_step(early_return.map(Value::get));
+            (Call::DoStep, resumed.map(check_progress))
+        }
+        Request::EnterStepMode => (Call::EnterStepMode, instance.enter_step_mode()),
+        Request::EvaluateDiscreteStates => (
+            Call::EvaluateDiscreteStates,
+            instance.evaluate_discrete_states(),
+        ),
         Request::EnterEventMode => (Call::EnterEventMode, instance.enter_event_mode()),
         Request::NewDiscreteStates => (
             Call::NewDiscreteStates,
@@ -205,6 +284,14 @@ fn make(
                 read.map(|values| assert_finite(&values.collect::<Vec<_>>())),
             )
         }
+        Request::GetSome(variables) => {
+            let variables: Vec<_> = variables.iter().map(|&v| reference(v)).collect();
+            let read = instance.reals(&variables);
+            (
+                Call::GetReal,
+                read.map(|values| assert_finite(&values.collect::<Vec<_>>())),
+            )
+        }
         Request::GetRealOutputDerivatives(variable, order) => {
             let (variable, order) = ([reference(*variable)], [i32::from(*order)]);
             let read = instance.output_derivatives(&variable, &order);
@@ -226,6 +313,26 @@ fn make(
                     .map(drop),
             )
         }
+        Request::GetAdjointDerivative(unknowns, knowns) => {
+            let knowns: Vec<_> = knowns.iter().map(|&v| reference(v)).collect();
+            let (unknowns, weights): (Vec<_>, Vec<_>) = unknowns
+                .iter()
+                .map(|(v, weight)| (reference(*v), weight.get()))
+                .unzip();
+            (
+                Call::GetAdjointDerivative,
+                instance
+                    .adjoint_derivative(&unknowns, &knowns, &weights)
+                    .map(drop),
+            )
+        }
+        Request::GetDependencies(variable) => {
+            let call = Call::GetVariableDependencies;
+            (
+                call,
+                instance.dependencies(call, reference(*variable)).map(drop),
+            )
+        }
         Request::GetFmuState => (
             Call::GetFMUstate,
             instance.fmu_state().map(|state| saved.push(state)),
@@ -233,8 +340,10 @@ fn make(
         Request::SetFmuState(index) => {
             let state = chosen(saved, *index);
             let outcome = instance.set_fmu_state(&state);
-            assert_eq!(outcome, Ok(()), "no call leads to a defect");
-            assert_eq!(text(&instance.fmu_state()), text(&Ok(state)));
+            if instance.state() != State::IntermediateUpdateMode {
+                assert_eq!(outcome, Ok(()), "no call leads to a defect");
+                assert_eq!(text(&instance.fmu_state()), text(&Ok(state)));
+            }
             (Call::SetFMUstate, outcome)
         }
         Request::Serialize(index) => {
@@ -245,6 +354,16 @@ fn make(
             let outcome = read.map(|read| assert_eq!(text(&Ok(read)), text(&Ok(state))));
             (Call::DeSerializeFMUstate, outcome)
         }
+    };
+    Some(made)
+}
+
+/// Checks what a step tells of itself.
+fn check_progress(progress: StepProgress) {
+    if let StepProgress::Done(outcome) = progress {
+        assert!(outcome.last_successful_time.is_finite(), "{outcome:?}");
+        let needs = outcome.event_handling_needed || outcome.terminate_simulation;
+        assert!(outcome.early_return || !needs, "{outcome:?}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Serialized FMU states: bytes are a state of the FMU, or refused; a state can be gone on from.
 
 use arbitrary::Unstructured;
-use biela::fmi::{Error, Interface, State, StateError};
+use biela::fmi::{Error, Interface, State, StateError, Version};
 
 use crate::{Instance, instance, reals, shipped};
 
@@ -19,7 +19,8 @@ pub fn run(data: &[u8]) {
 fn attempt(data: &mut Unstructured<'_>) -> arbitrary::Result<()> {
     let mechanism = shipped(data.arbitrary()?);
     let interface = *data.choose(&Interface::ALL)?;
-    let mut instance = instance(&mechanism, interface).expect("it is shipped");
+    let version = *data.choose(&Version::ALL)?;
+    let mut instance = instance(&mechanism, version, interface).expect("it is shipped");
     bring_on(&mut instance, data.int_in_range(0..=3)?);
     let state = instance.fmu_state().expect("allowed");
     let original = instance.serialize_fmu_state(&state).expect("it is its own");
@@ -73,16 +74,25 @@ fn attempt(data: &mut Unstructured<'_>) -> arbitrary::Result<()> {
 /// Some way into its life.
 fn bring_on(instance: &mut Instance, how_far: u8) {
     let exchanges = instance.interface() == Interface::ModelExchange;
-    for step in 0..how_far {
-        let gone = match step {
+    for call in 0..how_far {
+        let gone = match call {
             0 => instance.enter_initialization_mode(),
             1 => instance.exit_initialization_mode(),
             _ if exchanges => instance
                 .enter_continuous_time_mode()
                 .and_then(|()| instance.set_time(0.1)),
-            _ => instance.do_step(0.0, 0.1),
+            _ => step(instance),
         };
         gone.expect("the start values are those of the file");
+    }
+}
+
+/// Takes a step from where the last one ended.
+fn step(instance: &mut Instance) -> Result<(), Error> {
+    let time = instance.last_successful_time();
+    match instance.version() {
+        Version::Fmi2 => instance.do_step(time, 0.1),
+        Version::Fmi3 => instance.begin_step(time, 0.1).map(drop),
     }
 }
 
@@ -93,10 +103,7 @@ fn go_on(instance: &mut Instance) {
     let _ = match instance.state() {
         State::Instantiated => instance.enter_initialization_mode(),
         State::InitializationMode => instance.exit_initialization_mode(),
-        State::StepComplete => {
-            let time = instance.last_successful_time();
-            instance.do_step(time, 0.1)
-        }
+        State::StepComplete | State::StepMode => step(instance),
         State::ContinuousTimeMode => instance.completed_integrator_step().map(drop),
         _ => Ok(()),
     };

@@ -10,7 +10,7 @@ pub mod mutation;
 
 use std::sync::Arc;
 
-use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Sink, Status};
+use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Sink, Status, Version};
 use biela::kinematics::Error;
 use biela::mechanism::{Mechanism, Source};
 
@@ -26,13 +26,18 @@ impl Sink for Silent {
 }
 
 /// A new instance.
-fn instance(mechanism: &Arc<Mechanism>, interface: Interface) -> Result<Instance, Error> {
+fn instance(
+    mechanism: &Arc<Mechanism>,
+    version: Version,
+    interface: Interface,
+) -> Result<Instance, Error> {
     let model = MechanismModel::new(Arc::clone(mechanism), interface)?;
-    Ok(biela::fmi::Instance::new(model, Box::new(Silent), true))
+    let sink = Box::new(Silent);
+    Ok(Instance::of_version(version, model, sink, true))
 }
 
 /// Some shipped mechanisms: one input, several, prescribed motions of tables and tunable
-/// parameters, a joint's own unknowns, gears.
+/// parameters, a joint's own unknowns, gears, forces.
 fn shipped(index: u8) -> Arc<Mechanism> {
     let texts = [
         include_str!("../../mechanisms/tlv.toml"),
@@ -41,6 +46,7 @@ fn shipped(index: u8) -> Arc<Mechanism> {
         include_str!("../../mechanisms/pick_and_place.toml"),
         include_str!("../../mechanisms/cam_roller_arm.toml"),
         include_str!("../../mechanisms/rack_drive.toml"),
+        include_str!("../../mechanisms/engine.toml"),
     ];
     let text = texts[usize::from(index) % texts.len()];
     let (mechanism, _) =

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use biela::fmi::{Causality, Interface, Order, Quantity};
+use biela::fmi::{Causality, Interface, Order, Quantity, Version};
 use biela::mechanism::{Mechanism, Source};
 
 use crate::{instance, reals};
@@ -40,7 +40,7 @@ pub fn run(data: &[u8]) {
 }
 
 fn run_instance(mechanism: &Arc<Mechanism>, interface: Interface) {
-    let Ok(mut instance) = instance(mechanism, interface) else {
+    let Ok(mut instance) = instance(mechanism, Version::Fmi2, interface) else {
         return;
     };
     let reals = reals(&instance);

@@ -15,8 +15,7 @@ use super::output::print;
 use super::suggested_estimates::as_estimates;
 use crate::kinematics::{self, Element, Modes, Path, Rates, Solver};
 use crate::mechanism::{
-    CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, ParameterId, Signal, Unit,
-    shown,
+    CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, Unit, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
@@ -253,12 +252,10 @@ fn describe_pose(solver: &mut Solver) -> String {
 fn derived_at_rest(solver: &Solver) -> Vec<(&DerivedMeasure, f64)> {
     let still = Rates::new(solver.pose().q.len());
     let drivers = vec![Jet::constant(0.0); solver.pose().drivers.len()];
-    let parameter = |id: ParameterId| solver.pose().parameters[id.index()];
-    let signal = |signal: Signal, order: Order| order.of(signal.jet(solver, &still, &drivers));
-    let derived = solver.mechanism().derived.iter();
-    let positions = derived.filter(|measure| measure.order() == Order::Position);
+    let derived = solver.mechanism().derived.iter().enumerate();
+    let positions = derived.filter(|(_, measure)| measure.order() == Order::Position);
     positions
-        .map(|measure| (measure, measure.evaluate(&parameter, &signal)))
+        .map(|(index, measure)| (measure, solver.derived(index, &still, &drivers)))
         .collect()
 }
 

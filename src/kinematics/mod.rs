@@ -45,6 +45,7 @@
 //! | `analysis` | sensitivity, range, modes, checks of the geometry |
 //! | `forces` | efforts of drivers, reactions of joints, energies |
 //! | `solver` | the facade |
+//! | `signals` | its values of signals and of measures computed from them |
 
 mod analysis;
 mod assembly;
@@ -64,6 +65,7 @@ mod path;
 mod redundancy;
 #[cfg(test)]
 mod reference;
+mod signals;
 mod singular;
 mod solver;
 mod state;

@@ -11,22 +11,29 @@ except ModuleNotFoundError:  # Python 3.10: pytest itself brings the same reader
     import tomli as tomllib
 
 
-@pytest.fixture(scope="session")
-def fmu(tmp_path_factory):
-    """`fmu(name)`: the FMU of a shipped mechanism, or of one in `tests/fmpy/mechanisms`.
-
-    Each is exported and unpacked once per session; tests that alter one work on a copy.
-    """
-    folder = tmp_path_factory.mktemp("fmus")
+def exporter(folder, version: int):
+    """Exports and unpacks each mechanism once; tests that alter an FMU work on a copy."""
     exported: dict[str, Fmu] = {}
 
     def get(name: str) -> Fmu:
         if name not in exported:
-            path = export(mechanism_file(name), folder / f"{name}.fmu")
+            path = export(mechanism_file(name), folder / f"{name}.fmu", version=version)
             exported[name] = Fmu.unpack(path, folder / name)
         return exported[name]
 
     return get
+
+
+@pytest.fixture(scope="session")
+def fmu(tmp_path_factory):
+    """`fmu(name)`: the FMU of a shipped mechanism, or of one in `tests/fmpy/mechanisms`."""
+    return exporter(tmp_path_factory.mktemp("fmus"), 2)
+
+
+@pytest.fixture(scope="session")
+def fmu3(tmp_path_factory):
+    """`fmu3(name)`: the same for FMI 3.0."""
+    return exporter(tmp_path_factory.mktemp("fmus3"), 3)
 
 
 @pytest.fixture(scope="session")

@@ -10,26 +10,11 @@ import numpy as np
 import pytest
 from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
-from harness import SHIPPED, Fmu, export, mechanism_file, simulate
+from harness import SHIPPED, Fmu, simulate
 from lxml import etree
 
 STEPS = 40
 """Communication steps of each run."""
-
-
-@pytest.fixture(scope="module")
-def fmu3(tmp_path_factory):
-    """`fmu3(name)`: the FMI 3.0 FMU of a shipped mechanism."""
-    folder = tmp_path_factory.mktemp("fmi3")
-    exported: dict[str, Fmu] = {}
-
-    def get(name: str) -> Fmu:
-        if name not in exported:
-            path = export(mechanism_file(name), folder / f"{name}.fmu", version=3)
-            exported[name] = Fmu.unpack(path, folder / name)
-        return exported[name]
-
-    return get
 
 
 def run(fmu: Fmu, interface: str, **options) -> np.ndarray:

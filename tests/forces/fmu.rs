@@ -1,67 +1,37 @@
 //! Forces as variables of an FMU.
 
 use std::collections::BTreeMap;
-
 use std::sync::{Arc, Mutex};
 
 use biela::fmi::{
-    Category, Causality, Instance, Interface, Kind, MechanismModel, Order, Quantity, Sink, Status,
+    Category, Causality, Instance, Interface, Kind, MechanismModel, Quantity, Sink, Status,
 };
 use biela::kinematics::ForceQuantity;
 use biela::mechanism::{DriverId, Indeterminate, Mechanism};
 
 use crate::common::{self, instance_of, parse, shipped, stems};
+use crate::differences::{DIFFERENCE, differences, move_inputs, references};
 use crate::loaded::loaded;
-
-/// A quarter of the way of a difference, in units of the known; see `tests/sensitivity.rs`.
-const STEP: f64 = 1e-5;
-/// Error of a derivative by differences of fourth order, relative to the largest derivative or
-/// value of its unit: rounding 1e-16 / 1e-5 times the condition of poses near singular positions.
-const DIFFERENCE: f64 = 1e-6;
-
-fn references(instance: &common::Instance, which: impl Fn(Quantity) -> bool) -> Vec<u32> {
-    let variables = (0..).zip(instance.variables());
-    let found = variables.filter(|(_, variable)| which(variable.quantity));
-    found.map(|(reference, _)| reference).collect()
-}
 
 /// Returns an instance in initialization mode, with all inputs moved on.
 fn moving(mechanism: Mechanism) -> common::Instance {
     let mut instance = instance_of(Arc::new(mechanism), Interface::CoSimulation);
-    instance.setup_experiment(0.317, None).expect("legal");
-    for (reference, variable) in (0..).zip(instance.variables().to_vec()) {
-        let more = 0.1 * f64::from(reference);
-        let value = match (variable.quantity, variable.kind) {
-            (Quantity::Input(_, order), Kind::Real { start, .. }) => match order {
-                Order::Position => start.expect("inputs have one") + 0.003,
-                Order::Velocity => 0.7 + more,
-                Order::Acceleration => -0.4 + more,
-            },
-            (Quantity::ForceInput(_), _) => 2.0 + more,
-            (Quantity::RateSource, _) => {
-                instance.set_integer(&[reference], &[2]).expect("legal");
-                continue;
-            }
-            _ => continue,
-        };
-        instance.set_real(&[reference], &[value]).expect("legal");
-    }
-    instance.enter_initialization_mode().expect("legal");
+    move_inputs(&mut instance);
     instance
 }
 
+/// Errors are relative to the largest derivative or value of the same unit.
 #[test]
 fn every_derivative_of_a_force_agrees_with_differences() {
     for name in stems("mechanisms", "toml") {
         let mut mechanism = loaded(&name);
         mechanism.outputs.indeterminate = Indeterminate::MinimumNorm;
         let mut instance = moving(mechanism);
-        let unknowns = references(&instance, |q| matches!(q, Quantity::Force(_)));
-        let knowns = (0..).zip(instance.variables()).filter(|(_, variable)| {
+        let unknowns = references(&instance, |v| matches!(v.quantity, Quantity::Force(_)));
+        let knowns = references(&instance, |variable| {
             variable.causality == Causality::Input
                 || variable.causality == Causality::Parameter && variable.kind.is_real()
         });
-        let knowns: Vec<u32> = knowns.map(|(reference, _)| reference).collect();
         let values: Vec<f64> = instance.reals(&unknowns).expect("it closes").collect();
         let unit = |instance: &common::Instance, place: usize| match instance.variables()
             [unknowns[place] as usize]
@@ -74,27 +44,13 @@ fn every_derivative_of_a_force_agrees_with_differences() {
             let exact = instance
                 .directional_derivative(&unknowns, &[known], &[1.0])
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
-            let mut value = [0.0];
-            instance.get_real(&[known], &mut value).expect("it is set");
-            let mut moved = |by: f64| -> Vec<f64> {
-                instance
-                    .set_real(&[known], &[value[0] + by])
-                    .expect("legal");
-                instance.reals(&unknowns).expect("it closes").collect()
-            };
-            let [far_before, before, after, far_after] =
-                [-2.0, -1.0, 1.0, 2.0].map(|k| moved(k * STEP));
-            moved(0.0);
-            let way = (value[0] + STEP) - (value[0] - STEP);
+            let differences = differences(&mut instance, &unknowns, known);
             let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
             for (place, exact) in exact.iter().enumerate() {
                 let largest = largest.entry(unit(&instance, place)).or_insert(1.0);
                 *largest = largest.max(exact.abs()).max(values[place].abs());
             }
-            for (place, exact) in exact.iter().enumerate() {
-                let near = after[place] - before[place];
-                let far = far_after[place] - far_before[place];
-                let difference = (8.0 * near - far) / (6.0 * way);
+            for (place, (exact, difference)) in exact.iter().zip(differences).enumerate() {
                 assert!(
                     (exact - difference).abs() <= DIFFERENCE * largest[unit(&instance, place)],
                     "{name}: `{}` by `{}`: {exact} and {difference}",
@@ -161,7 +117,7 @@ const HOIST: &str = r#"
 "#;
 
 fn value(instance: &mut common::Instance, quantity: Quantity) -> f64 {
-    let [reference] = references(instance, |q| q == quantity)[..] else {
+    let [reference] = references(instance, |v| v.quantity == quantity)[..] else {
         panic!("{quantity:?} is a variable");
     };
     instance
@@ -234,7 +190,7 @@ fn inputs_of_forces_are_held_saved_and_extrapolated() {
     assert!(near(value(&mut instance, effort), base - 7.0));
     let by = instance
         .directional_derivative(
-            &references(&instance, |quantity| quantity == effort),
+            &references(&instance, |v| v.quantity == effort),
             &[2, 4],
             &[1.0, 0.0],
         )

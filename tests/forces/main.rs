@@ -3,6 +3,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/differences.rs"]
+mod differences;
 
 mod balance;
 mod cases;

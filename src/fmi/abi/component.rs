@@ -162,6 +162,11 @@ pub(super) unsafe fn with_instance(
     status_code(status)
 }
 
+/// Gives a closure the type of a call, so that its argument's type need not be written.
+pub(super) fn as_call<F: FnOnce(&mut Instance) -> Result<(), Error>>(call: F) -> F {
+    call
+}
+
 fn serve(
     instance: &mut Instance,
     call: &str,

@@ -3,6 +3,7 @@
 //! | file | subject |
 //! |---|---|
 //! | `fmi2`, `fmi3` | the functions of one version, by subject |
+//! | `calls` | functions that differ in name and call alone |
 //! | `component` | instances as the host sees them |
 //! | `arguments` | arrays and strings of the host |
 //! | `intermediate` | the host's part in a step of FMI 3.0 |
@@ -39,6 +40,8 @@
 )]
 
 mod arguments;
+#[macro_use]
+mod calls;
 mod component;
 mod floating_point;
 mod fmi2;

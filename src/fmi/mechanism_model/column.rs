@@ -3,7 +3,7 @@
 use super::variables::{Order, Quantity, Signal, variables};
 use crate::fmi::variable::Kind;
 use crate::kinematics::{ForceQuantity, Rates, Sensitivity, Solver};
-use crate::mechanism::{Jet, Mechanism, ParameterId, Unit};
+use crate::mechanism::{Jet, Mechanism, Unit};
 
 /// One quantity of a run.
 #[derive(Clone, Debug)]
@@ -73,18 +73,15 @@ impl Column {
     }
 
     /// Returns the value at the solver's pose \[SI\], not a number for a force. See
-    /// [`Signal::jet`].
+    /// [`Solver::signal`].
     #[inline]
     #[must_use]
     pub fn value(&self, solver: &Solver, rates: &Rates, driver_rates: &[Jet]) -> f64 {
         match self.source {
             ColumnSource::Signal(signal, order) => {
-                order.of(signal.jet(solver, rates, driver_rates))
+                order.of(solver.signal(signal, rates, driver_rates))
             }
-            ColumnSource::Derived(index) => solver.mechanism().derived[index].evaluate(
-                &|p: ParameterId| solver.pose().parameters[p.index()],
-                &|signal, order| order.of(signal.jet(solver, rates, driver_rates)),
-            ),
+            ColumnSource::Derived(index) => solver.derived(index, rates, driver_rates),
             ColumnSource::Force(_) => f64::NAN,
         }
     }
@@ -94,7 +91,7 @@ impl Column {
     #[must_use]
     pub fn change(&self, mechanism: &Mechanism, sensitivity: &Sensitivity<'_>) -> f64 {
         match self.source {
-            ColumnSource::Signal(signal, order) => order.of(signal.change(sensitivity)),
+            ColumnSource::Signal(signal, order) => order.of(sensitivity.signal(signal)),
             ColumnSource::Derived(index) => sensitivity.derived(&mechanism.derived[index]),
             ColumnSource::Force(_) => f64::NAN,
         }

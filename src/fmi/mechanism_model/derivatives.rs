@@ -2,11 +2,11 @@
 
 use super::rule::RateSource;
 use super::variables::Order;
-use super::{MechanismModel, Quantity, Signal, failed};
+use super::{MechanismModel, Quantity, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
-use crate::kinematics::{Direction, Sensitivity};
+use crate::kinematics::Direction;
 use crate::mechanism::{DriverId, Jet};
 
 impl MechanismModel {
@@ -65,7 +65,7 @@ impl MechanismModel {
             .sensitivity(&self.rates, &self.driver_rates, &direction)
             .map_err(failed)?;
         let change = |&unknown: &Quantity| match unknown {
-            Quantity::Output(signal, order) => order.of(signal.change(&sensitivity)),
+            Quantity::Output(signal, order) => order.of(sensitivity.signal(signal)),
             Quantity::Parameter(parameter) => sensitivity.parameter(parameter),
             Quantity::Derived(index, _) => sensitivity.derived(&self.mechanism.derived[index]),
             Quantity::Force(force) => of_forces.as_ref().map_or(0.0, |f| f.change(force)),
@@ -88,19 +88,6 @@ impl MechanismModel {
             input.change_by_step(rates, self.monitors[driver.index()].sources(), order)
         } else {
             input.change_by_value(rates, self.time, order)
-        }
-    }
-}
-
-impl Signal {
-    /// Returns the changes of value, velocity and acceleration.
-    #[must_use]
-    pub fn change(self, sensitivity: &Sensitivity<'_>) -> Jet {
-        match self {
-            Self::Body(body, component) => sensitivity.coordinate(3 * body.index() + component),
-            Self::Marker(marker, component) => sensitivity.marker(marker)[component],
-            Self::Measure(measure) => sensitivity.measure(measure),
-            Self::Motion(driver) => sensitivity.driver(driver),
         }
     }
 }

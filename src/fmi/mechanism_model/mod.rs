@@ -14,10 +14,11 @@
 //! | `pose` | initialization, steps, and the pose and rates of the values set |
 //! | `messages` | messages about poses and steps |
 //! | `outputs` | values by value reference |
-//! | `derivatives` | directional derivatives |
+//! | `dependencies`, `derivatives` | what a variable depends on, and directional derivatives |
 //! | `state` | the saved state |
 
 mod column;
+mod dependencies;
 mod derivatives;
 mod description;
 mod force_input;

@@ -238,7 +238,7 @@ impl MechanismModel {
         for SignalPlace { signal, references } in signals.iter() {
             let [pose, rates] = [signal.group(), signal.group() << 1].map(|g| groups & g != 0);
             if pose || rates {
-                let jet = signal.jet(&self.solver, &self.rates, &self.driver_rates);
+                let jet = self.solver.signal(*signal, &self.rates, &self.driver_rates);
                 if pose {
                     values[references[0] as usize] = jet.value;
                 }
@@ -249,13 +249,10 @@ impl MechanismModel {
             }
         }
         if groups & (DERIVED | DERIVED << 1) != 0 {
-            let signal = |signal: Signal, order: Order| {
-                order.of(signal.jet(&self.solver, &self.rates, &self.driver_rates))
-            };
-            let parameters = &self.solver.pose().parameters;
-            for (&(vr, group), measure) in derived.iter().zip(&self.mechanism.derived) {
+            for (index, &(vr, group)) in derived.iter().enumerate() {
                 if groups & group != 0 {
-                    values[vr as usize] = measure.evaluate(&|p| parameters[p.index()], &signal);
+                    values[vr as usize] =
+                        self.solver.derived(index, &self.rates, &self.driver_rates);
                 }
             }
         }

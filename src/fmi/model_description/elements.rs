@@ -5,11 +5,54 @@ use std::io;
 
 use quick_xml::writer::ElementWriter;
 
-use super::xml::{WithOptional, Xml, number};
-use super::{DependencyKind, Experiment};
+use super::xml::{WithOptional, Xml, non_empty, number};
+use super::{DependencyKind, Experiment, ModelDescription};
 use crate::fmi::log::Category;
 use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
 use crate::unit::Unit;
+
+/// Attributes of the root element that only one version has, or names in its own way.
+pub(super) struct Root {
+    /// Version of the standard.
+    pub(super) version: &'static str,
+    /// Name of the attribute for the GUID.
+    pub(super) guid: &'static str,
+    /// Count of event indicators, where the version has it here.
+    pub(super) event_indicators: Option<&'static str>,
+}
+
+/// Writes the root element around its content; `generated` is the attribute
+/// `generationDateAndTime`.
+pub(super) fn write_root<Q>(
+    xml: &mut Xml,
+    description: &ModelDescription<'_, Q>,
+    generated: Option<&str>,
+    root: &Root,
+    content: impl FnOnce(&mut Xml) -> io::Result<()>,
+) -> io::Result<()> {
+    xml.create_element("fmiModelDescription")
+        .with_attributes([
+            ("fmiVersion", root.version),
+            ("modelName", description.name),
+            (root.guid, &description.guid),
+            (
+                "generationTool",
+                concat!("biela ", env!("CARGO_PKG_VERSION")),
+            ),
+            ("variableNamingConvention", "structured"),
+        ])
+        .with_optional(&[
+            ("numberOfEventIndicators", root.event_indicators),
+            ("description", non_empty(description.description)),
+            ("author", description.author),
+            ("version", description.version),
+            ("copyright", description.copyright),
+            ("license", description.license),
+            ("generationDateAndTime", generated),
+        ])
+        .write_inner_content(content)?;
+    Ok(())
+}
 
 fn real_unit<Q>(variable: &Variable<Q>) -> Option<Unit> {
     match variable.kind {
@@ -71,7 +114,7 @@ pub(super) fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Re
 }
 
 /// Returns the simple type of variables with this unit.
-pub(super) fn type_of(unit: Unit) -> Option<&'static str> {
+fn type_of(unit: Unit) -> Option<&'static str> {
     // No variable has such a name (2.2.3): a name of two parts ends with a lower-case word.
     let types = [
         (Unit::METRE, "biela.Length"),
@@ -132,6 +175,43 @@ pub(super) fn write_real_type(
         .with_optional(&[("displayUnit", display)])
         .write_empty()?;
     Ok(())
+}
+
+/// Appends the attributes of the variable's values; `derivative_of` identifies the variable whose
+/// derivative it is.
+pub(super) fn with_values<'a, Q>(
+    element: ElementWriter<'a, Vec<u8>>,
+    variable: &Variable<Q>,
+    derivative_of: Option<usize>,
+) -> ElementWriter<'a, Vec<u8>> {
+    match variable.kind {
+        Kind::Real {
+            unit,
+            start,
+            min,
+            max,
+            nominal,
+        } => {
+            let display = unit.and_then(|unit| unit.display);
+            let [min, max, nominal, start] =
+                [min, max, nominal, start].map(|value| value.map(number));
+            let derivative = derivative_of.map(|of| of.to_string());
+            element.with_optional(&[
+                ("declaredType", unit.and_then(type_of)),
+                ("unit", unit.map(|unit| unit.name)),
+                ("displayUnit", display.map(|display| display.name)),
+                ("min", min.as_deref()),
+                ("max", max.as_deref()),
+                ("nominal", nominal.as_deref()),
+                ("start", start.as_deref()),
+                ("derivative", derivative.as_deref()),
+            ])
+        }
+        Kind::Integer => element,
+        Kind::Enumeration(enumeration) => {
+            element.with_attributes([("declaredType", enumeration.name), ("start", "1")])
+        }
+    }
 }
 
 /// Writes the items of an enumeration into an element.

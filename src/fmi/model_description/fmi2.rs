@@ -3,10 +3,10 @@
 use std::io;
 
 use super::elements::{
-    Type, causality_name, initial_name, lists, type_of, types, variability_name, write_experiment,
-    write_items, write_log_categories, write_real_type, write_units,
+    Root, Type, causality_name, initial_name, lists, types, variability_name, with_values,
+    write_experiment, write_items, write_log_categories, write_real_type, write_root, write_units,
 };
-use super::xml::{WithOptional, Xml, boolean, non_empty, number};
+use super::xml::{WithOptional, Xml, boolean, non_empty};
 use super::{Capabilities, ModelDescription, Unknown};
 use crate::fmi::variable::{Kind, Variable};
 
@@ -16,43 +16,26 @@ pub(super) fn write<Q>(
     description: &ModelDescription<'_, Q>,
     generated: Option<&str>,
 ) -> io::Result<()> {
-    let optional = [
-        ("description", non_empty(description.description)),
-        ("author", description.author),
-        ("version", description.version),
-        ("copyright", description.copyright),
-        ("license", description.license),
-        ("generationDateAndTime", generated),
-    ];
-    xml.create_element("fmiModelDescription")
-        .with_attributes([
-            ("fmiVersion", "2.0"),
-            ("modelName", description.name),
-            ("guid", &description.guid),
-            (
-                "generationTool",
-                concat!("biela ", env!("CARGO_PKG_VERSION")),
-            ),
-            ("variableNamingConvention", "structured"),
-            ("numberOfEventIndicators", "0"),
-        ])
-        .with_optional(&optional)
-        .write_inner_content(|xml| {
-            let variables = &description.variables;
-            write_model_exchange(xml, description)?;
-            write_co_simulation(xml, description)?;
-            write_units(xml, variables)?;
-            write_types(xml, variables)?;
-            write_log_categories(xml, "; always logged")?;
-            write_experiment(xml, description.experiment)?;
-            xml.create_element("ModelVariables")
-                .write_inner_content(|xml| {
-                    (variables.iter().enumerate())
-                        .try_for_each(|(index, variable)| write_variable(xml, index, variable))
-                })?;
-            write_structure(xml, description)
-        })?;
-    Ok(())
+    let root = Root {
+        version: "2.0",
+        guid: "guid",
+        event_indicators: Some("0"),
+    };
+    write_root(xml, description, generated, &root, |xml| {
+        let variables = &description.variables;
+        write_model_exchange(xml, description)?;
+        write_co_simulation(xml, description)?;
+        write_units(xml, variables)?;
+        write_types(xml, variables)?;
+        write_log_categories(xml, "; always logged")?;
+        write_experiment(xml, description.experiment)?;
+        xml.create_element("ModelVariables")
+            .write_inner_content(|xml| {
+                (variables.iter().enumerate())
+                    .try_for_each(|(index, variable)| write_variable(xml, index, variable))
+            })?;
+        write_structure(xml, description)
+    })
 }
 
 fn write_model_exchange<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
@@ -139,45 +122,16 @@ fn write_variable<Q>(xml: &mut Xml, index: usize, variable: &Variable<Q>) -> io:
         .with_optional(&[("description", non_empty(&variable.description))])
         .with_attributes([("causality", causality), ("variability", variability)])
         .with_optional(&[("initial", initial)])
-        .write_inner_content(|xml| write_variable_type(xml, variable))?;
-    Ok(())
-}
-
-fn write_variable_type<Q>(xml: &mut Xml, variable: &Variable<Q>) -> io::Result<()> {
-    match variable.kind {
-        Kind::Real {
-            unit,
-            start,
-            min,
-            max,
-            nominal,
-        } => {
-            let display = unit.and_then(|unit| unit.display);
-            let [min, max, nominal, start] =
-                [min, max, nominal, start].map(|value| value.map(number));
-            let derivative = variable.derivative_of.map(|of| (of + 1).to_string());
-            xml.create_element("Real")
-                .with_optional(&[
-                    ("declaredType", unit.and_then(type_of)),
-                    ("unit", unit.map(|unit| unit.name)),
-                    ("displayUnit", display.map(|display| display.name)),
-                    ("min", min.as_deref()),
-                    ("max", max.as_deref()),
-                    ("nominal", nominal.as_deref()),
-                    ("start", start.as_deref()),
-                    ("derivative", derivative.as_deref()),
-                ])
-                .write_empty()?;
-        }
-        Kind::Integer => {
-            xml.create_element("Integer").write_empty()?;
-        }
-        Kind::Enumeration(enumeration) => {
-            xml.create_element("Enumeration")
-                .with_attributes([("declaredType", enumeration.name), ("start", "1")])
-                .write_empty()?;
-        }
-    }
+        .write_inner_content(|xml| {
+            let element = match variable.kind {
+                Kind::Real { .. } => "Real",
+                Kind::Integer => "Integer",
+                Kind::Enumeration(_) => "Enumeration",
+            };
+            let derivative_of = variable.derivative_of.map(|of| of as usize + 1);
+            with_values(xml.create_element(element), variable, derivative_of).write_empty()?;
+            Ok(())
+        })?;
     Ok(())
 }
 

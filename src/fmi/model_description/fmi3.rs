@@ -6,10 +6,10 @@
 use std::io;
 
 use super::elements::{
-    Type, causality_name, initial_name, lists, type_of, types, variability_name, write_experiment,
-    write_items, write_log_categories, write_real_type, write_units,
+    Root, Type, causality_name, initial_name, lists, types, variability_name, with_values,
+    write_experiment, write_items, write_log_categories, write_real_type, write_root, write_units,
 };
-use super::xml::{WithOptional, Xml, boolean, non_empty, number};
+use super::xml::{WithOptional, Xml, boolean, non_empty};
 use super::{ModelDescription, Unknown};
 use crate::fmi::variable::{Causality, Kind, Variable};
 
@@ -19,41 +19,25 @@ pub(super) fn write<Q>(
     description: &ModelDescription<'_, Q>,
     generated: Option<&str>,
 ) -> io::Result<()> {
-    let optional = [
-        ("description", non_empty(description.description)),
-        ("author", description.author),
-        ("version", description.version),
-        ("copyright", description.copyright),
-        ("license", description.license),
-        ("generationDateAndTime", generated),
-    ];
-    xml.create_element("fmiModelDescription")
-        .with_attributes([
-            ("fmiVersion", "3.0"),
-            ("modelName", description.name),
-            ("instantiationToken", &description.guid),
-            (
-                "generationTool",
-                concat!("biela ", env!("CARGO_PKG_VERSION")),
-            ),
-            ("variableNamingConvention", "structured"),
-        ])
-        .with_optional(&optional)
-        .write_inner_content(|xml| {
-            let variables = &description.variables;
-            write_interfaces(xml, description)?;
-            write_units(xml, variables)?;
-            write_types(xml, variables)?;
-            write_log_categories(xml, "")?;
-            write_experiment(xml, description.experiment)?;
-            xml.create_element("ModelVariables")
-                .write_inner_content(|xml| {
-                    (variables.iter().enumerate())
-                        .try_for_each(|(index, variable)| write_variable(xml, index, variable))
-                })?;
-            write_structure(xml, description)
-        })?;
-    Ok(())
+    let root = Root {
+        version: "3.0",
+        guid: "instantiationToken",
+        event_indicators: None,
+    };
+    write_root(xml, description, generated, &root, |xml| {
+        let variables = &description.variables;
+        write_interfaces(xml, description)?;
+        write_units(xml, variables)?;
+        write_types(xml, variables)?;
+        write_log_categories(xml, "")?;
+        write_experiment(xml, description.experiment)?;
+        xml.create_element("ModelVariables")
+            .write_inner_content(|xml| {
+                (variables.iter().enumerate())
+                    .try_for_each(|(index, variable)| write_variable(xml, index, variable))
+            })?;
+        write_structure(xml, description)
+    })
 }
 
 fn write_interfaces<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
@@ -141,35 +125,8 @@ fn write_variable<Q>(xml: &mut Xml, index: usize, variable: &Variable<Q>) -> io:
             ("intermediateUpdate", intermediate),
             ("initial", initial_name(variable.causality)),
         ]);
-    let element = match variable.kind {
-        Kind::Real {
-            unit,
-            start,
-            min,
-            max,
-            nominal,
-        } => {
-            let display = unit.and_then(|unit| unit.display);
-            let [min, max, nominal, start] =
-                [min, max, nominal, start].map(|value| value.map(number));
-            let derivative = variable.derivative_of.map(|of| of.to_string());
-            element.with_optional(&[
-                ("declaredType", unit.and_then(type_of)),
-                ("unit", unit.map(|unit| unit.name)),
-                ("displayUnit", display.map(|display| display.name)),
-                ("min", min.as_deref()),
-                ("max", max.as_deref()),
-                ("nominal", nominal.as_deref()),
-                ("start", start.as_deref()),
-                ("derivative", derivative.as_deref()),
-            ])
-        }
-        Kind::Integer => element,
-        Kind::Enumeration(enumeration) => {
-            element.with_attributes([("declaredType", enumeration.name), ("start", "1")])
-        }
-    };
-    element.write_empty()?;
+    let derivative_of = variable.derivative_of.map(|of| of as usize);
+    with_values(element, variable, derivative_of).write_empty()?;
     Ok(())
 }
 

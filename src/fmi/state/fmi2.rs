@@ -6,12 +6,10 @@ table! {
     SetDebugLogging = fmi2SetDebugLogging:
         [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [
-            Instantiated InitializationMode StepComplete StepInProgress StepFailed
-            StepCanceled Terminated Error
+            Instantiated InitializationMode StepComplete StepInProgress StepFailed StepCanceled
+            Terminated Error
         ];
-    SetupExperiment = fmi2SetupExperiment:
-        [Instantiated]
-        [Instantiated];
+    SetupExperiment = fmi2SetupExperiment,
     EnterInitializationMode = fmi2EnterInitializationMode:
         [Instantiated]
         [Instantiated];
@@ -21,99 +19,44 @@ table! {
     Terminate = fmi2Terminate:
         [EventMode ContinuousTimeMode]
         [StepComplete StepFailed];
-    Reset = fmi2Reset:
+    Reset = fmi2Reset,
+    GetFMUstate = fmi2GetFMUstate,
+    SetFMUstate = fmi2SetFMUstate,
+    FreeFMUstate = fmi2FreeFMUstate,
+    SerializedFMUstateSize = fmi2SerializedFMUstateSize,
+    SerializeFMUstate = fmi2SerializeFMUstate,
+    DeSerializeFMUstate = fmi2DeSerializeFMUstate:
         [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [
-            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
-            Error
-        ];
-    GetReal = fmi2GetReal:
-        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    GetInteger = fmi2GetInteger:
-        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    GetBoolean = fmi2GetBoolean:
-        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    GetString = fmi2GetString:
+        [Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
+    GetReal = fmi2GetReal,
+    GetInteger = fmi2GetInteger,
+    GetBoolean = fmi2GetBoolean,
+    GetString = fmi2GetString,
+    GetDirectionalDerivative = fmi2GetDirectionalDerivative:
         [InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
     SetReal = fmi2SetReal:
         [Instantiated InitializationMode EventMode ContinuousTimeMode]
         [Instantiated InitializationMode StepComplete];
-    SetInteger = fmi2SetInteger:
-        [Instantiated InitializationMode EventMode]
-        [Instantiated InitializationMode StepComplete];
-    SetBoolean = fmi2SetBoolean:
-        [Instantiated InitializationMode EventMode]
-        [Instantiated InitializationMode StepComplete];
+    SetInteger = fmi2SetInteger,
+    SetBoolean = fmi2SetBoolean,
     SetString = fmi2SetString:
         [Instantiated InitializationMode EventMode]
         [Instantiated InitializationMode StepComplete];
-    GetFMUstate = fmi2GetFMUstate:
-        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [
-            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
-            Error
-        ];
-    SetFMUstate = fmi2SetFMUstate:
-        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [
-            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
-            Error
-        ];
-    FreeFMUstate = fmi2FreeFMUstate:
-        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [
-            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
-            Error
-        ];
-    SerializedFMUstateSize = fmi2SerializedFMUstateSize:
-        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [
-            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
-            Error
-        ];
-    SerializeFMUstate = fmi2SerializeFMUstate:
-        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [
-            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
-            Error
-        ];
-    DeSerializeFMUstate = fmi2DeSerializeFMUstate:
-        [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [
-            Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated
-            Error
-        ];
-    GetDirectionalDerivative = fmi2GetDirectionalDerivative:
-        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    EnterEventMode = fmi2EnterEventMode:
-        [EventMode ContinuousTimeMode]
-        [];
-    NewDiscreteStates = fmi2NewDiscreteStates:
-        [EventMode]
-        [];
-    EnterContinuousTimeMode = fmi2EnterContinuousTimeMode:
-        [EventMode]
-        [];
-    CompletedIntegratorStep = fmi2CompletedIntegratorStep:
-        [ContinuousTimeMode]
-        [];
+    EnterEventMode = fmi2EnterEventMode,
     SetTime = fmi2SetTime:
         [EventMode ContinuousTimeMode]
         [];
+    NewDiscreteStates = fmi2NewDiscreteStates,
+    EnterContinuousTimeMode = fmi2EnterContinuousTimeMode:
+        [EventMode]
+        [];
+    CompletedIntegratorStep = fmi2CompletedIntegratorStep,
     SetContinuousStates = fmi2SetContinuousStates:
         [ContinuousTimeMode]
         [];
-    GetDerivatives = fmi2GetDerivatives:
-        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [];
-    GetEventIndicators = fmi2GetEventIndicators:
-        [InitializationMode EventMode ContinuousTimeMode Terminated Error]
-        [];
+    GetDerivatives = fmi2GetDerivatives,
+    GetEventIndicators = fmi2GetEventIndicators,
     GetContinuousStates = fmi2GetContinuousStates:
         [InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
@@ -132,18 +75,10 @@ table! {
     CancelStep = fmi2CancelStep:
         []
         [StepInProgress];
-    GetStatus = fmi2GetStatus:
-        []
-        [StepComplete StepInProgress StepFailed Terminated];
-    GetRealStatus = fmi2GetRealStatus:
-        []
-        [StepComplete StepInProgress StepFailed Terminated];
-    GetIntegerStatus = fmi2GetIntegerStatus:
-        []
-        [StepComplete StepInProgress StepFailed Terminated];
-    GetBooleanStatus = fmi2GetBooleanStatus:
-        []
-        [StepComplete StepInProgress StepFailed Terminated];
+    GetStatus = fmi2GetStatus,
+    GetRealStatus = fmi2GetRealStatus,
+    GetIntegerStatus = fmi2GetIntegerStatus,
+    GetBooleanStatus = fmi2GetBooleanStatus,
     GetStringStatus = fmi2GetStringStatus:
         []
         [StepComplete StepInProgress StepFailed Terminated];

@@ -384,18 +384,21 @@ pub(super) fn is_allowed(allowed: &Allowed, call: Call, state: State) -> bool {
     allowed[call as usize] >> state as u16 & 1 != 0
 }
 
-/// Defines the table of one version: the states that allow each call, in model exchange and in
-/// co-simulation.
+/// Defines the table of one version: calls with the names of their C functions, and the states that
+/// allow them in model exchange and in co-simulation.
 macro_rules! table {
-    ($($call:ident = $name:ident: [$($me:ident)*] [$($cs:ident)*];)*) => {
+    ($($($call:ident = $name:ident),+: [$($me:ident)*] [$($cs:ident)*];)*) => {
         /// Sets of states by interface.
         pub(super) static ALLOWED: [Allowed; 2] = {
             let mut allowed = [[0; Call::ALL.len()]; 2];
             $(
-                allowed[Interface::ModelExchange as usize][Call::$call as usize] =
-                    0 $(| 1 << State::$me as u16)*;
-                allowed[Interface::CoSimulation as usize][Call::$call as usize] =
-                    0 $(| 1 << State::$cs as u16)*;
+                let exchange = 0 $(| 1 << State::$me as u16)*;
+                let co_simulation = 0 $(| 1 << State::$cs as u16)*;
+                $(
+                    allowed[Interface::ModelExchange as usize][Call::$call as usize] = exchange;
+                    allowed[Interface::CoSimulation as usize][Call::$call as usize] =
+                        co_simulation;
+                )+
             )*
             allowed
         };
@@ -403,7 +406,7 @@ macro_rules! table {
         /// Returns the name of the C function.
         pub(super) fn name(call: Call) -> Option<&'static str> {
             match call {
-                $(Call::$call => Some(stringify!($name)),)*
+                $($(Call::$call => Some(stringify!($name)),)+)*
                 _ => None,
             }
         }
@@ -412,8 +415,8 @@ macro_rules! table {
         pub(super) fn allowed_in(call: Call, interface: Interface) -> &'static [State] {
             match (call, interface) {
                 $(
-                    (Call::$call, Interface::ModelExchange) => &[$(State::$me),*],
-                    (Call::$call, Interface::CoSimulation) => &[$(State::$cs),*],
+                    ($(Call::$call)|+, Interface::ModelExchange) => &[$(State::$me),*],
+                    ($(Call::$call)|+, Interface::CoSimulation) => &[$(State::$cs),*],
                 )*
                 _ => &[],
             }

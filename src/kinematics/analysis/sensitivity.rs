@@ -19,9 +19,9 @@ use crate::kinematics::newton::Rejected;
 use crate::kinematics::path::Rates;
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::Target;
-use crate::kinematics::variation::{Varied, VariedConfiguration, VariedVector, evaluate};
+use crate::kinematics::variation::{Varied, VariedConfiguration, evaluate};
 use crate::mechanism::{
-    DerivedMeasure, DriverId, Dual, Jet, MarkerId, MotionInForce, Order, ParameterId, Signal,
+    DerivedMeasure, DriverId, Dual, Jet, MotionInForce, Order, ParameterId, Signal,
 };
 
 /// A direction in the space of drivers and parameters.
@@ -46,29 +46,14 @@ pub struct Sensitivity<'a> {
 }
 
 impl Sensitivity<'_> {
-    /// Returns the changes of q\[column\], of its rate and of its second derivative.
+    /// Returns the changes of a signal's value, velocity and acceleration.
     #[must_use]
-    pub fn coordinate(&self, column: usize) -> Jet {
-        along(self.at.coordinate(column))
-    }
-
-    /// Returns the changes of a marker's point, velocity and acceleration: x, then y.
-    #[must_use]
-    pub fn marker(&self, marker: MarkerId) -> [Jet; 2] {
-        let point: VariedVector = self.at.marker(marker).point;
-        point.map(along)
-    }
-
-    /// Returns the changes of a measure, of its rate and of its second derivative.
-    #[must_use]
-    pub fn measure(&self, index: usize) -> Jet {
-        along(self.measures[index].along(&self.at))
-    }
-
-    /// Returns the changes of a driver, of its velocity and of its acceleration.
-    #[must_use]
-    pub fn driver(&self, driver: DriverId) -> Jet {
-        along(self.drivers[driver.index()])
+    pub fn signal(&self, signal: Signal) -> Jet {
+        let varied = self.varied(signal);
+        Jet::new(
+            varied.value.first(),
+            varied.derivatives.map(|derivative| derivative.first()),
+        )
     }
 
     /// Returns the mechanism along the direction.
@@ -90,12 +75,7 @@ impl Sensitivity<'_> {
     #[must_use]
     pub fn derived(&self, measure: &DerivedMeasure) -> f64 {
         let signal = |signal: Signal, order: Order| {
-            let varied = match signal {
-                Signal::Body(body, component) => self.at.coordinate(3 * body.index() + component),
-                Signal::Marker(marker, component) => self.at.marker(marker).point[component],
-                Signal::Measure(index) => self.measures[index].along(&self.at),
-                Signal::Motion(driver) => self.drivers[driver.index()],
-            };
+            let varied = self.varied(signal);
             match order {
                 Order::Position => varied.value,
                 Order::Velocity => varied.derivatives[0],
@@ -111,13 +91,15 @@ impl Sensitivity<'_> {
     pub fn parameter(&self, parameter: ParameterId) -> f64 {
         self.parameters[parameter.index()].value.first()
     }
-}
 
-fn along(varied: Varied) -> Jet {
-    Jet::new(
-        varied.value.first(),
-        varied.derivatives.map(|derivative| derivative.first()),
-    )
+    fn varied(&self, signal: Signal) -> Varied {
+        match signal {
+            Signal::Body(body, component) => self.at.coordinate(3 * body.index() + component),
+            Signal::Marker(marker, component) => self.at.marker(marker).point[component],
+            Signal::Measure(index) => self.measures[index].along(&self.at),
+            Signal::Motion(driver) => self.driver_value(driver),
+        }
+    }
 }
 
 impl State {

@@ -6,19 +6,14 @@ use crate::fmi::Call;
 use crate::fmi::abi::arguments::Room;
 use crate::fmi::abi::component::with_instance;
 
-/// `fmi2EnterEventMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterEventMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2EnterEventMode", |instance| {
-            Ok(instance.enter_event_mode()?)
-        })
-    }
+instance_calls! {
+    fmi2Component => fmi2Status;
+    /// `fmi2EnterEventMode`.
+    fmi2EnterEventMode() = |instance| instance.enter_event_mode();
+    /// `fmi2EnterContinuousTimeMode`.
+    fmi2EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
+    /// `fmi2SetTime`.
+    fmi2SetTime(time: fmi2Real) = |instance| instance.set_time(time);
 }
 
 /// `fmi2NewDiscreteStates`: there are no discrete states. The simulation ends at an event for
@@ -51,21 +46,6 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(
     }
 }
 
-/// `fmi2EnterContinuousTimeMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterContinuousTimeMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2EnterContinuousTimeMode", |instance| {
-            Ok(instance.enter_continuous_time_mode()?)
-        })
-    }
-}
-
 /// `fmi2CompletedIntegratorStep`. Nothing is kept for going back, so that
 /// `no_set_fmu_state_prior_to_current_point` makes no difference.
 ///
@@ -93,45 +73,8 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
     }
 }
 
-/// `fmi2SetTime`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetTime(c: fmi2Component, time: fmi2Real) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe { with_instance(c, "fmi2SetTime", |instance| Ok(instance.set_time(time)?)) }
-}
-
-/// The functions whose arrays are as long as there are continuous states or event indicators:
-/// right for a length of zero only.
-macro_rules! of_none {
-    ($($(#[$doc:meta])* $function:ident($call:ident, $array:ty);)*) => {
-        $(
-            $(#[$doc])*
-            ///
-            /// # Safety
-            ///
-            /// The [host's promise](crate::fmi::abi#safety). The array is not touched.
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $function(
-                c: fmi2Component,
-                _array: $array,
-                count: usize,
-            ) -> fmi2Status {
-                // SAFETY: the host's promise.
-                unsafe {
-                    with_instance(c, stringify!($function), |instance| {
-                        Ok(instance.continuous(Call::$call, count)?)
-                    })
-                }
-            }
-        )*
-    };
-}
-
 of_none! {
+    fmi2Component => fmi2Status;
     /// `fmi2SetContinuousStates`: there are none.
     fmi2SetContinuousStates(SetContinuousStates, *const fmi2Real);
     /// `fmi2GetDerivatives`: there are no continuous states.

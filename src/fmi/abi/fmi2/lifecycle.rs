@@ -162,54 +162,14 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
     }
 }
 
-/// `fmi2EnterInitializationMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2EnterInitializationMode", |instance| {
-            Ok(instance.enter_initialization_mode()?)
-        })
-    }
-}
-
-/// `fmi2ExitInitializationMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2ExitInitializationMode", |instance| {
-            Ok(instance.exit_initialization_mode()?)
-        })
-    }
-}
-
-/// `fmi2Terminate`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe { with_instance(c, "fmi2Terminate", |instance| Ok(instance.terminate()?)) }
-}
-
-/// `fmi2Reset`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe { with_instance(c, "fmi2Reset", |instance| Ok(instance.reset()?)) }
+instance_calls! {
+    fmi2Component => fmi2Status;
+    /// `fmi2EnterInitializationMode`.
+    fmi2EnterInitializationMode() = |instance| instance.enter_initialization_mode();
+    /// `fmi2ExitInitializationMode`.
+    fmi2ExitInitializationMode() = |instance| instance.exit_initialization_mode();
+    /// `fmi2Terminate`.
+    fmi2Terminate() = |instance| instance.terminate();
+    /// `fmi2Reset`.
+    fmi2Reset() = |instance| instance.reset();
 }

@@ -5,49 +5,16 @@ use crate::fmi::Call;
 use crate::fmi::abi::arguments::{check_room, write};
 use crate::fmi::abi::component::with_instance;
 
-/// `fmi3EnterEventMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterEventMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3EnterEventMode", |instance| {
-            Ok(instance.enter_event_mode()?)
-        })
-    }
-}
-
-/// `fmi3EvaluateDiscreteStates`: there are none.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EvaluateDiscreteStates(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3EvaluateDiscreteStates", |instance| {
-            Ok(instance.evaluate_discrete_states()?)
-        })
-    }
-}
-
-/// `fmi3EnterContinuousTimeMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterContinuousTimeMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3EnterContinuousTimeMode", |instance| {
-            Ok(instance.enter_continuous_time_mode()?)
-        })
-    }
+instance_calls! {
+    fmi3Instance => fmi3Status;
+    /// `fmi3EnterEventMode`.
+    fmi3EnterEventMode() = |instance| instance.enter_event_mode();
+    /// `fmi3EvaluateDiscreteStates`: there are none.
+    fmi3EvaluateDiscreteStates() = |instance| instance.evaluate_discrete_states();
+    /// `fmi3EnterContinuousTimeMode`.
+    fmi3EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
+    /// `fmi3SetTime`.
+    fmi3SetTime(time: fmi3Float64) = |instance| instance.set_time(time);
 }
 
 /// `fmi3UpdateDiscreteStates`: there are no discrete states. The simulation ends at an event for
@@ -126,49 +93,8 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
     }
 }
 
-/// `fmi3SetTime`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetTime(instance: fmi3Instance, time: fmi3Float64) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3SetTime", |instance| {
-            Ok(instance.set_time(time)?)
-        })
-    }
-}
-
-/// The functions whose arrays are as long as there are continuous states or event indicators:
-/// right for a length of zero only.
-macro_rules! of_none {
-    ($($(#[$doc:meta])* $function:ident($call:ident, $array:ty);)*) => {
-        $(
-            $(#[$doc])*
-            ///
-            /// # Safety
-            ///
-            /// The [host's promise](crate::fmi::abi#safety). The array is not touched.
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $function(
-                instance: fmi3Instance,
-                _array: $array,
-                count: usize,
-            ) -> fmi3Status {
-                // SAFETY: the host's promise.
-                unsafe {
-                    with_instance(instance, stringify!($function), |instance| {
-                        Ok(instance.continuous(Call::$call, count)?)
-                    })
-                }
-            }
-        )*
-    };
-}
-
 of_none! {
+    fmi3Instance => fmi3Status;
     /// `fmi3SetContinuousStates`: there are none.
     fmi3SetContinuousStates(SetContinuousStates, *const fmi3Float64);
     /// `fmi3GetContinuousStateDerivatives`: there are no continuous states.

@@ -277,88 +277,18 @@ pub unsafe extern "C" fn fmi3EnterInitializationMode(
     }
 }
 
-/// `fmi3ExitInitializationMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3ExitInitializationMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3ExitInitializationMode", |instance| {
-            Ok(instance.exit_initialization_mode()?)
-        })
-    }
-}
-
-/// `fmi3EnterConfigurationMode`: always refused, since there are no structural parameters.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterConfigurationMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3EnterConfigurationMode", |instance| {
-            Ok(instance.allow(Call::EnterConfigurationMode)?)
-        })
-    }
-}
-
-/// `fmi3ExitConfigurationMode`: always refused, since there are no structural parameters.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3ExitConfigurationMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3ExitConfigurationMode", |instance| {
-            Ok(instance.allow(Call::ExitConfigurationMode)?)
-        })
-    }
-}
-
-/// `fmi3EnterStepMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterStepMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3EnterStepMode", |instance| {
-            Ok(instance.enter_step_mode()?)
-        })
-    }
-}
-
-/// `fmi3Terminate`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3Terminate(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3Terminate", |instance| {
-            Ok(instance.terminate()?)
-        })
-    }
-}
-
-/// `fmi3Reset`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3Reset(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe { with_instance(instance, "fmi3Reset", |instance| Ok(instance.reset()?)) }
+instance_calls! {
+    fmi3Instance => fmi3Status;
+    /// `fmi3ExitInitializationMode`.
+    fmi3ExitInitializationMode() = |instance| instance.exit_initialization_mode();
+    /// `fmi3EnterConfigurationMode`: always refused, since there are no structural parameters.
+    fmi3EnterConfigurationMode() = |instance| instance.allow(Call::EnterConfigurationMode);
+    /// `fmi3ExitConfigurationMode`: always refused, since there are no structural parameters.
+    fmi3ExitConfigurationMode() = |instance| instance.allow(Call::ExitConfigurationMode);
+    /// `fmi3EnterStepMode`.
+    fmi3EnterStepMode() = |instance| instance.enter_step_mode();
+    /// `fmi3Terminate`.
+    fmi3Terminate() = |instance| instance.terminate();
+    /// `fmi3Reset`.
+    fmi3Reset() = |instance| instance.reset();
 }
