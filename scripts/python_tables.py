@@ -4,8 +4,9 @@
     env/bin/python scripts/python_tables.py [speed] [gradients] [synthesis]
 
 The module must be a release build, such as that of the wheel. Without arguments all tables are
-written. A way whose package is missing has no row. Times are those of the machine that runs the
-script: compare rows of one table only. Errors and costs are the same everywhere.
+written. A way whose package is missing has no row. Times are those of all processors together, so
+that other work on the machine counts little: compare rows of one table only. Errors and costs are
+the same everywhere.
 """
 
 from __future__ import annotations
@@ -215,7 +216,7 @@ WAYS = [
 
 def speed() -> list[str]:
     """Returns the rows on sweeps of a four-bar linkage."""
-    rows = ["| way | cores | variants | seconds | per pose | ratio |", "|---|---|---|---|---|---|"]
+    rows = ["| way | cores | variants | CPU seconds | per pose | ratio |", "|---|---|---|---|---|---|"]
     ready = []
     for name, make, package, count, parallel in WAYS:
         if package is not None and importlib.util.find_spec(package) is None:
@@ -230,9 +231,9 @@ def speed() -> list[str]:
     best = [np.inf] * len(ready)
     for _ in range(ROUNDS):
         for place, (_, run, _, _) in enumerate(ready):
-            started = time.perf_counter()
+            started = time.process_time()
             run()
-            best[place] = min(best[place], time.perf_counter() - started)
+            best[place] = min(best[place], time.process_time() - started)
     each = [seconds / count / len(THETA) for seconds, (_, _, count, _) in zip(best, ready)]
     for (name, _, count, parallel), seconds, own in zip(ready, best, each):
         cores = os.cpu_count() if parallel else 1
@@ -378,16 +379,16 @@ def synthesis(starts: int = 40, samples: int = 20_000) -> list[str]:
     """Returns the rows on published cases."""
     generator = biela.load(PATH_GENERATOR)
     rows = [
-        "| case | best published | `fit` | crank turns | seconds | motions |",
+        "| case | best published | `fit` | crank turns | CPU seconds | motions |",
         "|---|---|---|---|---|---|",
     ]
     for (name, target, free, bounds, published), turns in itertools.product(cases(), (None, "theta")):
-        started = time.perf_counter()
+        started = time.process_time()
         found = biela.fit(
             generator, target, free, bounds, turns=turns, starts=starts, samples=samples,
             stop_at=1e-20,
         )  # fmt: skip
-        seconds = time.perf_counter() - started
+        seconds = time.process_time() - started
         fully = "asked for" if turns else "yes" if found.mechanism.range("theta").turns else "no"
         cells = name, published, f"{found.cost:.3g}", fully, f"{seconds:.1f}", f"{found.evaluations:,}"
         rows.append(f"| {' | '.join(cells)} |")
