@@ -40,7 +40,7 @@ MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
 .PHONY: help demo test bench fuzz lint build module setup install uninstall refresh lock clean \
-    runtimes licences advisories wheel test-platforms test-install
+    runtimes licences advisories wheel test-platforms test-install page test-page gallery
 .NOTPARALLEL:
 
 help: ## show this list
@@ -88,6 +88,7 @@ fuzz: setup ## try what may come from outside (FUZZ_TARGET, FUZZ_SECONDS; see fu
 lint: setup ## check formatting, lints, documentation and licences
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --locked --all-targets -- -D warnings
+	$(CARGO) clippy --package biela-page --locked -- -D warnings
 	RUSTDOCFLAGS=-Dwarnings $(CARGO) doc --no-deps --locked
 	$(PYTHON) scripts/licences.py --check
 	$(DENY) bans licenses sources
@@ -104,6 +105,17 @@ module: setup ## build the Python module, for use in this folder: PYTHONPATH=pyt
 runtimes: ## build the library that goes into an FMU for all platforms (ONLY='win64 darwin64': for these)
 	@bash scripts/runtimes.sh $(ONLY)
 
+page: ## build the solver that pages hold (WebAssembly), for `biela page`, `watch` and `export`
+	@bash scripts/page.sh
+
+# Beside the program the tests find what `make page` has built.
+test-page: export BIELA_BIN := $(CURDIR)/target/release/biela
+test-page: setup build page ## move mechanisms on pages in a headless browser (Chromium or Chrome)
+	$(PYTHON) -m pytest tests/page
+
+gallery: build page ## write pages of all mechanisms, to be moved by hand, into target/gallery
+	@python3 scripts/gallery.py
+
 test-platforms: setup build ## run FMUs under Wine and QEMU, after `make runtimes`; writes docs/platforms.md
 	@bash scripts/test_platforms.sh
 
@@ -113,7 +125,7 @@ wheel: setup ## build Python wheels with the program and all runtime libraries, 
 test-install: ## install with pip and with cargo in empty environments, after `make wheel`
 	@bash scripts/test_install.sh
 
-licences: ## renew runtime/licenses.txt, the licences inside the library
+licences: ## renew the licences of what is inside the library and inside pages
 	python3 scripts/licences.py
 
 setup: ## get what building and testing need, into this folder only
@@ -128,11 +140,18 @@ install: build ## install under PREFIX (default: ~/.local)
 	    install -d "$(LIB_DIR)/$${library%/*}"; \
 	    install -m 755 "target/runtimes/$$library" "$(LIB_DIR)/$$library"; \
 	done
+	@solver=$$(bash scripts/page.sh --current); if [ -n "$$solver" ]; then \
+	    echo 'installing page.wasm'; \
+	    install -m 644 "$$solver" "$(LIB_DIR)/page.wasm"; \
+	else \
+	    echo 'without `make page`, pages play motions computed beforehand'; \
+	fi
 	install -m 644 $(MECHANISMS) "$(SHARE_DIR)/mechanisms"
 
 uninstall: ## remove what `make install` put under PREFIX
 	rm -f "$(BIN_DIR)/biela"
 	for folder in $(PLATFORMS); do rm -f "$(LIB_DIR)/$$folder"/biela.*; done
+	rm -f "$(LIB_DIR)/page.wasm"
 	for file in $(MECHANISMS); do rm -f "$(SHARE_DIR)/$$file"; done
 	@rmdir $(foreach folder,$(PLATFORMS),"$(LIB_DIR)/$(folder)") "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
 

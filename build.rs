@@ -1,4 +1,5 @@
-//! Compiles the C hosts of the tests, and lists the runtime libraries that the program carries.
+//! Compiles the C hosts of the tests, and lists the runtime libraries and the solver for pages that
+//! the program carries.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -76,6 +77,7 @@ fn compile_host(headers: &Path, source: &str, name: &str) {
 /// its own platform, which is built here: `cargo install` installs nothing but the program.
 fn embed_libraries() {
     let out = PathBuf::from(variable("OUT_DIR"));
+    let mut page: Option<PathBuf> = None;
     let mut libraries: Vec<(&str, PathBuf)> = Vec::new();
     // Debug builds have the library beside them, and are not built again for an environment.
     if variable("PROFILE") == "release" {
@@ -91,6 +93,11 @@ fn embed_libraries() {
                         println!("cargo::rerun-if-changed={}", library.display());
                         libraries.push((platform, library));
                     }
+                }
+                let solver = Path::new(&folder).join("page.wasm");
+                if solver.is_file() {
+                    println!("cargo::rerun-if-changed={}", solver.display());
+                    page = Some(solver);
                 }
                 assert!(
                     !libraries.is_empty(),
@@ -110,6 +117,18 @@ fn embed_libraries() {
         writeln!(list, "    ({platform:?}, include_bytes!({path:?})),").expect("memory suffices");
     }
     list.push_str("];\n");
+    let page = page.map_or_else(
+        || "None".to_owned(),
+        |path| {
+            let path = fs::canonicalize(path).expect("the solver was found");
+            format!("Some(include_bytes!({path:?}))")
+        },
+    );
+    let page = format!(
+        "/// The solver for pages that the program carries.\n\
+         static EMBEDDED_SOLVER: Option<&[u8]> = {page};\n"
+    );
+    fs::write(out.join("embedded_solver.rs"), page).expect("OUT_DIR can be written");
     fs::write(out.join("embedded_libraries.rs"), list).expect("OUT_DIR can be written");
 }
 

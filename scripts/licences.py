@@ -1,9 +1,10 @@
-"""Write runtime/licenses.txt: the licences of what is inside the runtime libraries.
+"""Write runtime/licenses.txt and page/licenses.txt: the licences of what is inside the runtime
+libraries, and inside the solver for pages.
 
-    scripts/licences.py           writes the file
-    scripts/licences.py --check   fails if it is out of date
+    scripts/licences.py           writes the files
+    scripts/licences.py --check   fails if they are out of date
 
-The text goes into each FMU's documentation/licenses. Needs cargo and Python 3.10 or newer.
+The texts go into each FMU's documentation/licenses, and into each page. Needs cargo and Python 3.10 or newer.
 """
 
 import json
@@ -13,20 +14,35 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-NOTICES = ROOT / "runtime" / "licenses.txt"
-TARGETS = (
+RUNTIME_TARGETS = (
     "x86_64-unknown-linux-gnu",
     "x86_64-pc-windows-gnu",
     "x86_64-apple-darwin",
     "aarch64-unknown-linux-gnu",
     "aarch64-apple-darwin",
 )
+# Each file with its package, the targets of that, and the words about what holds it.
+NOTICES = {
+    ROOT / "runtime" / "licenses.txt": (
+        "biela-runtime",
+        RUNTIME_TARGETS,
+        "The library in binaries/ is biela",
+        "resources/",
+    ),
+    ROOT / "page" / "licenses.txt": (
+        "biela-page",
+        ("wasm32-unknown-unknown",),
+        "The solver in this page is biela",
+        "this page",
+    ),
+}
 # Licences in the order in which one is chosen where a crate leaves the choice, each with words of
 # its text and of the names of its files.
 CHOICE = (
     ("MIT", "Permission is hereby granted", ("MIT",)),
     ("Zlib", "This software is provided 'as-is'", ("ZLIB",)),
     ("BSD-3-Clause", "Redistribution and use in source and binary forms", ("BSD",)),
+    ("BSD-2-Clause", "Redistribution and use in source and binary forms", ("BSD",)),
     ("Apache-2.0", "Apache License", ("APACHE",)),
 )
 LINE = "-" * 80
@@ -75,12 +91,12 @@ def packages():
     return {(p["name"], p["version"]): p for p in metadata["packages"]}
 
 
-def inside(known):
-    """The crates that are linked into a runtime library, without biela's own."""
+def inside(known, package, targets):
+    """The crates that are linked into a package of ours, without biela's own."""
     found = set()
-    for target in TARGETS:
+    for target in targets:
         tree = cargo(
-            "tree", "--locked", "--package", "biela-runtime", "--no-default-features",
+            "tree", "--locked", "--package", package, "--no-default-features",
             "--edges", "normal,no-proc-macro", "--target", target, "--prefix", "none",
             "--format", "{p}",
         )  # fmt: skip
@@ -109,16 +125,16 @@ def text_of(package):
     return chosen, f"{chosen}, by {authors or 'the authors of ' + package['name']}"
 
 
-def notices(known):
+def notices(known, package, targets, what, place):
     texts = {}
-    for package in inside(known):
+    for package in inside(known, package, targets):
         licence, text = text_of(package)
         texts.setdefault((licence, text), []).append(f"{package['name']} {package['version']}")
     mit, apache = ((ROOT / f"LICENSE-{name}").read_text().strip() for name in ("MIT", "APACHE"))
     parts = [
-        "The library in binaries/ is biela, under the MIT licence or the Apache License 2.0, at your\n"
+        f"{what}, under the MIT licence or the Apache License 2.0, at your\n"
         "option. It contains Rust's standard library, under the same two licences, by the Rust project's\n"
-        "contributors, and the Rust crates listed below under their licences. The mechanism in resources/\n"
+        f"contributors, and the Rust crates listed below under their licences. The mechanism in {place}\n"
         "belongs to its author.",
         "biela, MIT:\n\n" + mit,
         "biela and Rust's standard library, Apache-2.0:\n\n" + apache,
@@ -131,13 +147,15 @@ def notices(known):
 
 
 def main():
-    text = notices(packages())
-    if sys.argv[1:] == ["--check"]:
-        if not NOTICES.exists() or NOTICES.read_text(encoding="utf-8") != text:
-            sys.exit("runtime/licenses.txt is out of date: run `make licences`")
-        return
-    NOTICES.write_text(text, encoding="utf-8")
-    print(f"wrote {NOTICES.relative_to(ROOT)}")
+    known = packages()
+    for path, about in NOTICES.items():
+        text, name = notices(known, *about), path.relative_to(ROOT)
+        if sys.argv[1:] == ["--check"]:
+            if not path.exists() or path.read_text(encoding="utf-8") != text:
+                sys.exit(f"{name} is out of date: run `make licences`")
+            continue
+        path.write_text(text, encoding="utf-8")
+        print(f"wrote {name}")
 
 
 main()

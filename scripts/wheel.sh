@@ -21,6 +21,7 @@ wheel() { # TARGET [ARGUMENT]...
 libraries=$(bash scripts/runtimes.sh --current | wc -l)
 [ "$libraries" -gt 0 ] || fail "there are no current libraries" "Run \`make runtimes\` first."
 say "packing the libraries of $libraries platforms"
+[ -n "$(bash scripts/page.sh --current)" ] || say "without the solver for pages: run \`make page\` first"
 cross_setup
 if [ $# -eq 0 ]; then
     set -- linux64 win64 darwin64 aarch64-linux

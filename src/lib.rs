@@ -27,11 +27,12 @@
 //! | [`mechanism`] | the file: bodies, markers, joints, drivers, expressions, and their diagnostics |
 //! | [`kinematics`] | the equations and their solution: assembly, position, velocity, acceleration |
 //! | `drawing` | pictures: a scene in the frames of the bodies, a sheet, its files |
-//! | [`fmi`] | FMI 2.0 and 3.0 for any model, and for mechanisms: instance, C interface, model description, archive |
+//! | `page` | a mechanism that is moved by hand, drawn and saved: what a page holds |
+//! | `fmi` | FMI 2.0 and 3.0 for any model, and for mechanisms: instance, C interface, model description, archive |
 //! | `cli` | the commands of the program `biela` |
 //!
-//! Each layer uses only layers above it in this table. `drawing` and `cli` are features of these
-//! names.
+//! Each layer uses only layers above it in this table. `drawing`, `page`, `fmi` and `cli` are
+//! features of these names.
 //!
 //! # Motion
 //!
@@ -81,7 +82,10 @@
 pub mod cli;
 #[cfg(feature = "drawing")]
 pub mod drawing;
+#[cfg(feature = "fmi")]
 pub mod fmi;
 pub mod kinematics;
 pub mod mechanism;
+#[cfg(feature = "page")]
+pub mod page;
 pub mod unit;

@@ -15,15 +15,16 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
 
 /// The layers, and those that each may use.
-const LAYERS: [(&str, &[&str]); 6] = [
+const LAYERS: [(&str, &[&str]); 7] = [
     ("unit", &[]),
     ("mechanism", &["unit"]),
     ("kinematics", &["unit", "mechanism"]),
     ("drawing", &["unit", "mechanism", "kinematics"]),
+    ("page", &["unit", "mechanism", "kinematics", "drawing"]),
     ("fmi", &["unit", "mechanism", "kinematics"]),
     (
         "cli",
-        &["unit", "mechanism", "kinematics", "drawing", "fmi"],
+        &["unit", "mechanism", "kinematics", "drawing", "page", "fmi"],
     ),
 ];
 

@@ -131,6 +131,19 @@ fn only_this_machine_is_answered_and_only_what_there_is() {
             "404",
         ),
         (format!("POST / HTTP/1.1\r\nHost: {host}\r\n\r\n"), "405"),
+        // Only its own page may write the file.
+        (
+            format!("PUT /file HTTP/1.1\r\nHost: {host}\r\nContent-Length: 1\r\n\r\nx"),
+            "403",
+        ),
+        (
+            format!("PUT /file HTTP/1.1\r\nHost: {host}\r\nX-Biela-Token: 0\r\n\r\n"),
+            "403",
+        ),
+        (
+            format!("PUT / HTTP/1.1\r\nHost: {host}\r\nContent-Length: 1\r\n\r\n\u{fffd}"),
+            "400",
+        ),
         (
             "GET / HTTP/1.1\r\nHost: elsewhere.example\r\n\r\n".to_owned(),
             "403",

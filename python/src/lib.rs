@@ -6,13 +6,11 @@
 //! | `scenario` | parameters, and motions of drivers as samples |
 //! | `runner` | a mechanism that moves along samples |
 //! | `run`, `film` | one motion with its gradients; its animation |
-//! | `edit` | the text of a mechanism file with other values |
 //! | `sweep` | the same motion of many variants, on all cores |
 //! | `mechanism` | the class `Mechanism` |
 //!
 //! Shapes, units and names of Python are the package's business; here arrays are flat.
 
-mod edit;
 mod error;
 mod film;
 mod mechanism;

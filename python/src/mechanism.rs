@@ -10,10 +10,10 @@ use biela::kinematics::{Carryover, End, Mode, Path, RangeSettings, Solver};
 use biela::mechanism::{
     Diagnostic, DriverId, DriverSource, Mechanism as Model, ParameterId, Source, Unit,
 };
+use biela::page::{Place, edit};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
-use crate::edit::edit;
 use crate::error::{Failure, exception};
 use crate::run::{Run, run};
 use crate::runner::Runner;
@@ -380,7 +380,8 @@ impl Mechanism {
                     pose = runner.solver.pose().clone();
                 }
             }
-            edit(self.source.text(), &self.model, &names, &pose)
+            edit(self.source.text(), &self.model, &names, &pose, Place::Whole)
+                .map_err(|error| Failure::File(error.to_string()))
         })
         .map_err(|failure: Failure| failure.raise(py))
     }

@@ -41,6 +41,11 @@ pub(super) struct Scenario {
 }
 
 impl Conditions {
+    /// Whether no option is given.
+    pub(super) fn is_empty(&self) -> bool {
+        self.drive.is_empty() && self.set.is_empty()
+    }
+
     /// Applies the options to a mechanism whose run starts at `start`; the CSV file `signals`
     /// moves further drivers.
     pub(super) fn scenario(

@@ -8,6 +8,7 @@ use super::column::Column;
 use super::error::Error;
 use super::film::Film;
 use super::input::Input;
+use super::live;
 use super::motion::Motion;
 use super::range::{end_text, with_unit};
 use super::signals::Signals;
@@ -58,11 +59,13 @@ pub(super) struct Shown {
 }
 
 /// Returns the picture and the page of a mechanism, and the licences, for an FMU of a version of the
-/// standard; `home` has the mechanism's own pose.
+/// standard; `home` has the mechanism's own pose. With the solver for pages there is a second page,
+/// on which the mechanism is moved by hand.
 pub(super) fn documents(
     input: &Input,
     home: &Solver,
     version: Version,
+    page_solver: Option<&[u8]>,
 ) -> Result<Vec<Document>, Error> {
     let refuse = |error| input.error(error);
     let mut solver = Solver::new(Arc::clone(&input.mechanism)).map_err(refuse)?;
@@ -72,7 +75,7 @@ pub(super) fn documents(
     let picture = png::write(&sheet, ICON_WIDTH, false)
         .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
     let shown = show(&mut solver).map_err(refuse)?;
-    Ok(vec![
+    let mut documents = vec![
         Document {
             path: "terminalsAndIcons/icon.png".to_owned(),
             content: picture.clone(),
@@ -93,6 +96,7 @@ pub(super) fn documents(
                 &sheet,
                 &shown,
                 version,
+                page_solver.is_some(),
             )
             .into_bytes(),
         },
@@ -100,7 +104,15 @@ pub(super) fn documents(
             path: "documentation/licenses/license.txt".to_owned(),
             content: LICENSES.to_vec(),
         },
-    ])
+    ];
+    if let Some(page_solver) = page_solver {
+        documents.push(Document {
+            path: "documentation/page.html".to_owned(),
+            content: live::page(&input.source, &input.mechanism, &live::solver(page_solver))
+                .into_bytes(),
+        });
+    }
+    Ok(documents)
 }
 
 /// Moves a mechanism along its prescribed motions, or over the range of its first driver that is
@@ -231,6 +243,7 @@ fn page(
     sheet: &Sheet,
     shown: &Shown,
     version: Version,
+    has_live_page: bool,
 ) -> String {
     let variables = variables(mechanism);
     let width = ENLARGED * f64::from(sheet.width());
@@ -238,13 +251,18 @@ fn page(
     let drawing = drawing
         .split_once("?>")
         .map_or(drawing.as_str(), |(_, svg)| svg);
+    let live_page = if has_live_page {
+        "<p><a href=\"page.html\">Move it by hand</a></p>"
+    } else {
+        ""
+    };
     let main = fill(
         MAIN,
         &[
             ("about", &about(mechanism)),
             ("drawing", drawing),
             ("moving", &escape(&shown.moving)),
-            ("player", &player(&shown.animation)),
+            ("player", &(player(&shown.animation) + live_page)),
             ("drivers", &drivers(mechanism, &shown.ranges)),
             ("parameters", &parameters(&variables, values)),
             ("outputs", &outputs(&variables)),

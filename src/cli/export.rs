@@ -12,6 +12,7 @@ use super::input::{Input, warn_of_misfits};
 use super::input_files::InputFiles;
 use super::message::tell;
 use super::output::write;
+use super::page_solver;
 use super::runtime;
 use super::stdout::is_stdout;
 use crate::fmi::{Platform, RuntimeLibrary, Version, describe, write_fmu};
@@ -25,7 +26,8 @@ use crate::kinematics::Solver;
 ///
 /// The FMU contains its picture (model.png; with --fmi 3 documentation/diagram.png), its terminals,
 /// and its documentation (documentation/index.html): the
-/// mechanism in motion, its variables and parameters, the limits of its drivers.
+/// mechanism in motion, its variables and parameters, the limits of its drivers. If the solver for
+/// pages is installed, documentation/page.html is the page of `biela page`.
 ///
 /// The FMU runs on the platforms that `biela platforms` lists with a library.
 ///
@@ -55,6 +57,9 @@ pub(super) struct Export {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = platform,
         conflicts_with = "model_description")]
     platforms: Vec<Platform>,
+    /// Leave out the page on which the mechanism is moved by hand.
+    #[arg(long, conflicts_with = "model_description")]
+    no_page: bool,
 }
 
 impl Export {
@@ -83,7 +88,14 @@ impl Export {
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
-        write(&path, &pack(&input, &solver, self.fmi, &libraries)?)?;
+        let page = match self.no_page {
+            true => None,
+            false => page_solver::find(None)?,
+        };
+        write(
+            &path,
+            &pack(&input, &solver, self.fmi, &libraries, page.as_deref())?,
+        )?;
         let platforms: Vec<_> = (libraries.iter())
             .map(|library| library.platform.folder(self.fmi))
             .collect();
@@ -97,14 +109,16 @@ impl Export {
     }
 }
 
-/// Returns the FMU of a mechanism, which `solver` has assembled.
+/// Returns the FMU of a mechanism, which `solver` has assembled; with a page if the solver for pages
+/// is given.
 pub(super) fn pack(
     input: &Input,
     solver: &Solver,
     version: Version,
     libraries: &[RuntimeLibrary],
+    page: Option<&[u8]>,
 ) -> Result<Vec<u8>, Error> {
-    let documents = documentation::documents(input, solver, version)?;
+    let documents = documentation::documents(input, solver, version, page)?;
     let mut archive = Cursor::new(Vec::new());
     write_fmu(
         &mut archive,

@@ -10,7 +10,7 @@ use super::check::json::report_on;
 use super::conditions::{check_limits, check_settable};
 use super::export::{pack, platform, version};
 use super::input::Input;
-use super::{conditions, range, runtime};
+use super::{conditions, page_solver, range, runtime};
 use crate::fmi::Platform;
 use crate::kinematics::End;
 use crate::mechanism::{DriverId, Mechanism, ParameterId, Source};
@@ -48,7 +48,14 @@ pub fn archive(
             found = runtime::narrow(found, &platforms)?;
         }
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
-        pack(&input, &input.assemble()?, version, &libraries)
+        let page = page_solver::find(None)?;
+        pack(
+            &input,
+            &input.assemble()?,
+            version,
+            &libraries,
+            page.as_deref(),
+        )
     };
     pack().map_err(|error: super::error::Error| error.to_string())
 }

@@ -17,10 +17,13 @@ mod film;
 mod input;
 mod input_files;
 mod library;
+mod live;
 mod message;
 mod motion;
 mod new;
 mod output;
+mod page;
+mod page_solver;
 mod picture;
 mod platforms;
 mod plot;
@@ -66,6 +69,7 @@ enum Command {
     Range(range::Range),
     Tolerance(tolerance::Tolerance),
     Draw(draw::Draw),
+    Page(page::Page),
     Watch(watch::Watch),
     Export(export::Export),
     Platforms(platforms::Platforms),
@@ -95,6 +99,7 @@ pub fn status(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Range(command) => command.run(),
         Command::Tolerance(command) => command.run(),
         Command::Draw(command) => command.run(),
+        Command::Page(command) => command.run(),
         Command::Watch(command) => command.run(),
         Command::Export(command) => command.run(),
         Command::Platforms(command) => command.run(),

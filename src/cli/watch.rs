@@ -2,7 +2,9 @@
 
 mod server;
 
+use std::borrow::Cow;
 use std::fmt::Display;
+use std::hash::{BuildHasher as _, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -14,21 +16,25 @@ use super::documentation::show;
 use super::error::Error;
 use super::input::{Input, misfits};
 use super::input_files::tables;
+use super::live;
 use super::message::{Message, tell};
 use super::output::print;
+use super::page_solver;
 use super::render::render;
 use crate::drawing::animation::{fill, page_with, player};
 use crate::drawing::svg::escape;
 use crate::mechanism::{Mechanism, Source};
-use server::{Answer, Server};
+use server::{Answer, Request, Server};
 
 const MAIN: &str = include_str!("watch/main.html");
 const STYLE: &str = include_str!("watch/watch.css");
 
 /// Show a mechanism moving in a browser, anew each time its file is saved.
 ///
-/// Only this machine can open the page. It shows the prescribed motions or, if there are none, the
-/// range of the first driver. While the file has an error, the page shows the error and the last
+/// Only this machine can open the page. It is the page of `biela page`, on which the mechanism is
+/// moved by hand, and a button writes its parameters into the file. Without the solver for pages,
+/// and with --set or --drive, it shows the prescribed motions or, if there are none, the range of
+/// the first driver. While the file has an error, the page shows the error and the last
 /// good picture. Ctrl-C ends the command.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela watch four_bar.toml")]
@@ -54,20 +60,26 @@ impl Watch {
             let start = input.mechanism.simulation.start;
             self.conditions.scenario(&input.mechanism, start, None)?;
         }
+        // Options move the mechanism from where the file has it, which a hand would not respect.
+        let solver = match self.conditions.is_empty() {
+            true => page_solver::find(None)?,
+            false => None,
+        };
         let server = Server::new(self.port)?;
         // With stdout closed the browser may have the address already.
         let _ = print(&format!("{}\n", server.address()));
-        let mut view = View::new(self);
+        let mut view = View::new(self, solver);
         view.refresh();
-        server.serve(|path| match path {
-            "/" => {
+        server.serve(|request| match (&*request.method, &*request.path) {
+            ("GET", "/") => {
                 view.refresh();
                 Answer::page(view.page())
             }
-            "/version" => {
+            ("GET", "/version") => {
                 view.refresh();
                 Answer::text(view.version.to_string())
             }
+            ("PUT", "/file") => view.write(request),
             _ => Answer::missing(),
         })
     }
@@ -88,11 +100,17 @@ struct View {
     /// Warnings on that picture, one per paragraph.
     warnings: Vec<String>,
     error: Option<String>,
+    /// The element with the solver for pages, if there is one: the mechanism is moved by hand then.
+    solver: Option<String>,
+    /// Known to the page alone: other sites cannot write the file.
+    token: String,
 }
 
 impl View {
-    fn new(watch: Watch) -> Self {
+    fn new(watch: Watch, solver: Option<Cow<'static, [u8]>>) -> Self {
         Self {
+            solver: solver.map(|solver| live::solver(&solver)),
+            token: token(),
             watch,
             version: 0,
             seen: Vec::new(),
@@ -140,6 +158,15 @@ impl View {
         let read = read(&self.watch.file).map_err(told)?;
         let (input, mut warnings) = read?;
         self.tables = tables(&self.watch.file, &input.mechanism).collect();
+        if self.solver.is_some() {
+            let solver = input.assemble().map_err(told)?;
+            warnings.extend(misfits(&solver).iter().map(ToString::to_string));
+            self.warnings = warnings;
+            self.name.clone_from(&input.mechanism.name);
+            self.description.clone_from(&input.mechanism.description);
+            self.player = live::main(&input.source, &input.mechanism, Some(&self.token));
+            return Ok(());
+        }
         let start = input.mechanism.simulation.start;
         let scenario = self
             .watch
@@ -192,7 +219,25 @@ impl View {
                 ("version", &self.version.to_string()),
             ],
         );
-        page_with(name, &self.description, &main, STYLE)
+        match &self.solver {
+            None => page_with(name, &self.description, &main, STYLE),
+            Some(solver) => {
+                let main = main + solver + &live::script();
+                let style = format!("{STYLE}{}", live::STYLE);
+                page_with(name, &self.description, &main, &style)
+            }
+        }
+    }
+
+    /// Writes the text that the page sends into the file.
+    fn write(&self, request: &Request) -> Answer {
+        if request.token.as_deref() != Some(&*self.token) {
+            return Answer::forbidden();
+        }
+        match std::fs::write(&self.watch.file, &request.body) {
+            Ok(()) => Answer::text(String::new()),
+            Err(error) => Answer::failure(error.to_string()),
+        }
     }
 }
 
@@ -213,6 +258,12 @@ fn read(path: &Path) -> Result<Result<(Input, Vec<String>), String>, Error> {
         }
         Err(diagnostics) => Err(render(&source, &diagnostics, false)),
     })
+}
+
+/// Returns a text that no other site can guess.
+fn token() -> String {
+    let part = || RandomState::new().hash_one(std::process::id());
+    format!("{:016x}{:016x}", part(), part())
 }
 
 /// Returns the message of an error.

@@ -175,6 +175,29 @@ pub enum CoordinateKind {
 }
 
 impl CoordinateKind {
+    /// Units of a length and of its first and second time derivatives.
+    pub const LENGTHS: [Unit; 3] = [
+        Unit::METRE,
+        Unit::METRE_PER_SECOND,
+        Unit::METRE_PER_SECOND_SQUARED,
+    ];
+    /// Units of an angle and of its first and second time derivatives.
+    pub const ANGLES: [Unit; 3] = [
+        Unit::RADIAN,
+        Unit::RADIAN_PER_SECOND,
+        Unit::RADIAN_PER_SECOND_SQUARED,
+    ];
+
+    /// Returns the units of its values and of their first and second time derivatives.
+    #[must_use]
+    pub fn units(self) -> [Unit; 3] {
+        if self.is_angle() {
+            Self::ANGLES
+        } else {
+            Self::LENGTHS
+        }
+    }
+
     /// Whether the coordinate is measured on the axes of a marker.
     #[must_use]
     pub fn has_axes(self) -> bool {
@@ -196,11 +219,7 @@ impl CoordinateKind {
     /// Returns the unit of its values.
     #[must_use]
     pub fn unit(self) -> Unit {
-        if self.is_angle() {
-            Unit::RADIAN
-        } else {
-            Unit::METRE
-        }
+        self.units()[0]
     }
 
     /// Returns the unit of a generalized force conjugate to it.

@@ -35,6 +35,8 @@ pub struct Source {
     fault: Option<NotUtf8>,
     /// Folder of the files that it names.
     folder: Option<PathBuf>,
+    /// Names and contents of the files that it names, where there are no folders.
+    files: Vec<(String, String)>,
     /// Byte offset at which each line starts.
     line_starts: Vec<usize>,
 }
@@ -52,6 +54,7 @@ impl Source {
             text,
             fault: None,
             folder: None,
+            files: Vec::new(),
             line_starts,
         }
     }
@@ -81,6 +84,13 @@ impl Source {
         }
     }
 
+    /// Returns the source with files that it may name, each with its content: what a program
+    /// without folders has in place of [`in_folder`](Self::in_folder).
+    #[must_use]
+    pub fn with_files(self, files: Vec<(String, String)>) -> Self {
+        Self { files, ..self }
+    }
+
     /// Returns the content of a file in the same folder.
     ///
     /// # Errors
@@ -90,6 +100,9 @@ impl Source {
         let refuse = |why| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
         if !is_portable(name) {
             return refuse("expected the plain name of a file beside the mechanism file");
+        }
+        if let Some((_, content)) = self.files.iter().find(|(file, _)| file == name) {
+            return Ok(content.clone());
         }
         let Some(folder) = &self.folder else {
             return refuse("the mechanism was not read from a file");

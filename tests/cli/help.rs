@@ -15,6 +15,7 @@ fn help_goes_to_stdout() {
         &["range", "--help"],
         &["tolerance", "--help"],
         &["watch", "--help"],
+        &["page", "--help"],
         &["schema", "--help"],
         &["completions", "-h"],
     ] {

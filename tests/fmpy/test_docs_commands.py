@@ -29,6 +29,7 @@ NOT_RUN = {
     "python3 -m venv env": "for packages to be downloaded into",
     "env/bin/pip install -r requirements.txt": "downloads packages; the tests have their own lock",
     "biela watch piston.toml": "runs until it is ended; tests/watch.rs has tests of its own",
+    "biela page piston.toml -o piston.html": "needs `make page`; tests/page has tests of its own",
     "env/bin/python parameter_sweep.py": "test_examples.py runs it",
     "env/bin/python dask_sweep.py": "test_examples.py runs it",
     "env/bin/python sweep_on_dask.py": "test_examples.py runs it",

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use crate::cli::error::Error;
 
-/// Largest size of a request.
-const MOST_BYTES: u64 = 16 * 1024;
+/// Largest size of the head of a request, and of its body: that of a mechanism file.
+const MOST_BYTES: [u64; 2] = [16 * 1024, 16 << 20];
 /// Time after which a silent connection is closed.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -15,6 +15,15 @@ const PATIENCE: Duration = Duration::from_secs(2);
 pub(super) struct Server {
     listener: TcpListener,
     port: u16,
+}
+
+/// A request.
+pub(super) struct Request {
+    pub(super) method: String,
+    pub(super) path: String,
+    /// The token that the page was served with.
+    pub(super) token: Option<String>,
+    pub(super) body: String,
 }
 
 /// The answer to a request.
@@ -45,6 +54,18 @@ impl Answer {
         Self::refusal("404 Not Found")
     }
 
+    /// Answers that a file was not written, and why.
+    pub(super) fn failure(why: String) -> Self {
+        Self {
+            body: why,
+            ..Self::refusal("500 Internal Server Error")
+        }
+    }
+
+    pub(super) fn forbidden() -> Self {
+        Self::refusal("403 Forbidden")
+    }
+
     fn refusal(status: &'static str) -> Self {
         Self {
             status,
@@ -68,8 +89,8 @@ impl Server {
         format!("http://127.0.0.1:{}/", self.port)
     }
 
-    /// Answers requests by their paths, one after the other, until accepting one fails.
-    pub(super) fn serve(&self, mut answer: impl FnMut(&str) -> Answer) -> Result<(), Error> {
+    /// Answers requests, one after the other, until accepting one fails.
+    pub(super) fn serve(&self, mut answer: impl FnMut(&Request) -> Answer) -> Result<(), Error> {
         loop {
             let (stream, _) = self.listener.accept().map_err(|source| Error::Listen {
                 port: self.port,
@@ -83,32 +104,56 @@ impl Server {
     fn talk(
         &self,
         mut stream: &TcpStream,
-        answer: &mut dyn FnMut(&str) -> Answer,
+        answer: &mut dyn FnMut(&Request) -> Answer,
     ) -> io::Result<()> {
         stream.set_read_timeout(Some(PATIENCE))?;
         stream.set_write_timeout(Some(PATIENCE))?;
-        let mut lines = BufReader::new(stream.take(MOST_BYTES)).lines();
-        let request = lines.next().transpose()?.unwrap_or_default();
+        let mut reader = BufReader::new(stream.take(MOST_BYTES[0]));
+        let mut next_line = || {
+            let mut line = String::new();
+            reader.read_line(&mut line)?;
+            io::Result::Ok(line.trim_end_matches(['\r', '\n']).to_owned())
+        };
+        let first = next_line()?;
+        let mut words = first.split(' ').map(str::to_owned);
+        let mut word = || words.next().unwrap_or_default();
+        let mut request = Request {
+            method: word(),
+            path: word(),
+            token: None,
+            body: String::new(),
+        };
         let mut host = None;
-        for line in lines {
-            let line = line?;
+        let mut length = 0;
+        loop {
+            let line = next_line()?;
             if line.is_empty() {
                 break;
             }
-            if let Some((name, value)) = line.split_once(':')
-                && name.eq_ignore_ascii_case("host")
-            {
-                host = Some(value.trim().to_owned());
+            let (name, value) = line.split_once(':').unwrap_or_default();
+            let value = value.trim();
+            match &*name.to_ascii_lowercase() {
+                "host" => host = Some(value.to_owned()),
+                "x-biela-token" => request.token = Some(value.to_owned()),
+                "content-length" => length = value.parse().unwrap_or(0).min(MOST_BYTES[1]),
+                _ => {}
             }
         }
-        let mut words = request.split(' ');
-        let (method, path) = (words.next(), words.next());
         // A request under another name may come from a page of another site.
         let own = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
         let known = host.is_some_and(|host| own.contains(&host));
-        let Answer { status, kind, body } = match (method, path) {
+        let Answer { status, kind, body } = match &*request.method {
             _ if !known => Answer::refusal("403 Forbidden"),
-            (Some("GET"), Some(path)) => answer(path),
+            "GET" => answer(&request),
+            "PUT" => {
+                let mut body = Vec::new();
+                reader.get_mut().set_limit(length);
+                reader.take(length).read_to_end(&mut body)?;
+                match String::from_utf8(body) {
+                    Ok(body) => answer(&Request { body, ..request }),
+                    Err(_) => Answer::refusal("400 Bad Request"),
+                }
+            }
             _ => Answer::refusal("405 Method Not Allowed"),
         };
         write!(

@@ -49,6 +49,31 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
     }
 
     let home = placements.first().map_or(&[][..], Vec::as_slice);
+    let clock = animation.clock;
+    let scales: Vec<[f64; 2]> = channels.iter().map(|c| c.range.map(significant)).collect();
+    let bytes: Vec<u8> = channels.iter().flat_map(Channel::bytes).collect();
+    json!({
+        "moments": moments.len(),
+        "start": clock.start,
+        "step": clock.step,
+        "stop": clock.stop,
+        "attachments": stage.attachments.len(),
+        "capitals": CAPITALS,
+        "labels": labels(stage, home),
+        "lengths": stage.lengths.len(),
+        "points": tracked(stage, points),
+        "most": most.map(significant),
+        "readings": animation.readings.iter().map(|r| json!({
+            "name": r.name,
+            "unit": r.unit,
+        })).collect::<Vec<_>>(),
+        "scales": scales,
+        "data": STANDARD.encode(bytes),
+    })
+}
+
+/// Returns the labels in the frames of their attachments, which are at `home`.
+pub(super) fn labels(stage: &Stage, home: &[Placement]) -> Vec<Value> {
     let labels = stage.labels.iter().map(|(attachment, label)| {
         let anchor = home[*attachment].inside(label.place.anchor);
         let side = label
@@ -62,30 +87,19 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
             "gap": short(label.place.gap),
         })
     });
-    let clock = animation.clock;
-    let scales: Vec<[f64; 2]> = channels.iter().map(|c| c.range.map(significant)).collect();
-    let bytes: Vec<u8> = channels.iter().flat_map(Channel::bytes).collect();
-    json!({
-        "moments": moments.len(),
-        "start": clock.start,
-        "step": clock.step,
-        "stop": clock.stop,
-        "attachments": stage.attachments.len(),
-        "capitals": CAPITALS,
-        "labels": labels.collect::<Vec<_>>(),
-        "lengths": stage.lengths.len(),
-        "points": points.iter().map(|(attachment, anchor)| json!({
+    labels.collect()
+}
+
+/// Returns the points with arrows in the frames of their attachments.
+pub(super) fn tracked(stage: &Stage, points: &[(usize, Anchor)]) -> Vec<Value> {
+    let places = points.iter().map(|(attachment, anchor)| {
+        let [x, y] = anchor.position;
+        json!({
             "attachment": attachment,
-            "at": [short(stage.scale * anchor.position[0]), short(-stage.scale * anchor.position[1])],
-        })).collect::<Vec<_>>(),
-        "most": most.map(significant),
-        "readings": animation.readings.iter().map(|r| json!({
-            "name": r.name,
-            "unit": r.unit,
-        })).collect::<Vec<_>>(),
-        "scales": scales,
-        "data": STANDARD.encode(bytes),
-    })
+            "at": [short(stage.scale * x), short(-stage.scale * y)],
+        })
+    });
+    places.collect()
 }
 
 /// Returns velocity and acceleration of points on the sheet, each as a part of the greatest of its
@@ -94,7 +108,9 @@ fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> (Vec<Channel>, [f64
     let mut all: [Vec<Vec<Vector2<f64>>>; 2] = Default::default();
     let mut most = [0.0_f64; 2];
     for (_, anchor) in points {
-        let rates = moments.iter().map(|moment| rates(*anchor, moment));
+        let rates = moments
+            .iter()
+            .map(|moment| rates(*anchor, &moment.q, [&moment.rates[0], &moment.rates[1]]));
         let (velocity, acceleration): (Vec<_>, Vec<_>) = rates.map(|[v, a]| (v, a)).unzip();
         for ((all, most), values) in all.iter_mut().zip(&mut most).zip([velocity, acceleration]) {
             let norms = values
@@ -123,14 +139,14 @@ fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> (Vec<Channel>, [f64
 }
 
 /// Returns velocity and acceleration of a point of a rigid body.
-fn rates(anchor: Anchor, moment: &Moment) -> [Vector2<f64>; 2] {
+pub(super) fn rates(anchor: Anchor, q: &[f64], rates: [&[f64]; 2]) -> [Vector2<f64>; 2] {
     let Some(body) = anchor.body else {
         return [Vector2::zeros(); 2];
     };
     let of_body = |values: &[f64]| [0, 1, 2].map(|k| values[3 * body.index() + k]);
-    let [_, _, phi] = of_body(&moment.q);
-    let [vx, vy, omega] = of_body(&moment.rates[0]);
-    let [ax, ay, alpha] = of_body(&moment.rates[1]);
+    let [_, _, phi] = of_body(q);
+    let [vx, vy, omega] = of_body(rates[0]);
+    let [ax, ay, alpha] = of_body(rates[1]);
     let arm = Rotation2::new(phi) * Vector2::from(anchor.position);
     [
         Vector2::new(vx, vy) + omega * across(arm),

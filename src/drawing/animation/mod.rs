@@ -4,10 +4,12 @@
 //! frames. The page is one file that needs no other.
 
 mod film;
+mod moving;
 mod page;
 mod picture;
 mod stage;
 
+pub use moving::MovingPicture;
 pub use page::{fill, page, page_with, player};
 
 use super::scene::Scene;

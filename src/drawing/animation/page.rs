@@ -43,13 +43,15 @@ pub fn page_with(title: &str, description: &str, main: &str, style: &str) -> Str
 /// players have in common.
 #[must_use]
 pub fn player(animation: &Animation) -> String {
-    let stage = Stage::new(animation);
+    let poses: Vec<&[f64]> = animation.moments.iter().map(|m| m.q.as_slice()).collect();
+    let stage = Stage::new(&animation.scene, &poses, None);
+    let q = poses.first().copied().unwrap_or_default();
     let film = film(animation, &stage).to_string();
     let last = animation.moments.len().saturating_sub(1).to_string();
     fill(
         PLAYER,
         &[
-            ("picture", &picture(animation, &stage)),
+            ("picture", &picture(&animation.scene, q, &stage)),
             ("last", &last),
             // A name in it may not end the script.
             ("film", &film.replace('<', "\\u003c")),

@@ -1,28 +1,27 @@
-//! The moving picture at its first moment, as SVG whose parts name their attachments.
+//! The moving picture at one pose, as SVG whose parts name their attachments.
 
-use super::Animation;
 use super::stage::Stage;
 use crate::drawing::attachment::Placement;
+use crate::drawing::scene::Scene;
 use crate::drawing::sheet::{CAPITALS, Layer, Mark, WIDTH};
 use crate::drawing::svg::{FONT_SIZE, FONTS, ROUND, escape, number, path, text_element};
 
 /// Widest picture that fits a small screen, in units of the sheet; wider ones scroll there.
 const USUAL: f64 = 1.2 * WIDTH;
 
-/// Returns the picture of the first moment. Groups that move have `data-attachment`, elastic
+/// Returns the picture at the pose q. Groups that move have `data-attachment`, elastic
 /// lines `data-length` and `data-points`: x and y of each point at length zero, and their changes
 /// per unit of length.
-pub(super) fn picture(animation: &Animation, stage: &Stage) -> String {
+pub(super) fn picture(scene: &Scene, q: &[f64], stage: &Stage) -> String {
     let [corner, size] = stage.view;
     let view = [corner.x, corner.y, size.x, size.y].map(number).join(" ");
-    let q = animation.moments.first().map_or(&[][..], |m| &m.q);
     let placements = stage.placements(q);
     let class = if size.x > USUAL {
         "stage wide"
     } else {
         "stage"
     };
-    let name = escape(&animation.scene.name);
+    let name = escape(&scene.name);
     let mut svg = format!(
         "<svg class=\"{class}\" viewBox=\"{view}\" role=\"img\" aria-label=\"{name}, moving\">"
     );

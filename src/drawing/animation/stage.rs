@@ -1,11 +1,11 @@
 //! The marks and labels of a moving picture, and the frames that they move with.
 
-use super::Animation;
 use crate::drawing::anchor::Anchor;
 use crate::drawing::attachment::{Attachment, Measure, Placement};
 use crate::drawing::label::Placed;
 use crate::drawing::layout::{extent, fitting, scale_bar, size};
 use crate::drawing::outline::{Point, convex_hull};
+use crate::drawing::scene::Scene;
 use crate::drawing::sheet::{Bounds, CAPITALS, MARGIN, Mark, Text, WIDTH};
 use crate::drawing::symbol::{Pen, Symbol};
 
@@ -37,15 +37,17 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    pub(super) fn new(animation: &Animation) -> Self {
-        let moments = &animation.moments;
-        let every = moments.len().div_ceil(SAMPLES).max(1);
-        let sampled = || moments.iter().step_by(every).map(|m| m.q.as_slice());
-        let scene = &animation.scene;
-        let q = moments.first().map_or(&[][..], |moment| &moment.q);
-        let extent = extent(scene, sampled());
-        let room = size(scene, q, extent, WIDTH) - Point::repeat(2.0 * (MARGIN + AROUND));
-        let scale = fitting(room, extent);
+    /// Returns the stage for a motion along poses, at whose first one the marks take their shape.
+    /// Its scale, in units of the sheet per metre, is the one given, or fits the motion.
+    pub(super) fn new(scene: &Scene, poses: &[&[f64]], scale: Option<f64>) -> Self {
+        let every = poses.len().div_ceil(SAMPLES).max(1);
+        let sampled = || poses.iter().step_by(every).copied();
+        let q = poses.first().map_or(&[][..], |q| *q);
+        let scale = scale.unwrap_or_else(|| {
+            let extent = extent(scene, sampled());
+            let room = size(scene, q, extent, WIDTH) - Point::repeat(2.0 * (MARGIN + AROUND));
+            fitting(room, extent)
+        });
 
         let (mut marks, labels) = Pen::draw(&scene.symbols, &scene.bodies, q, scale, true);
         marks.sort_by_key(|mark| mark.layer);
@@ -64,7 +66,7 @@ impl Stage {
         let labels = (labels.into_iter())
             .map(|label| (index_in(&mut attachments, label.attachment), label))
             .collect();
-        let points = points(&mut attachments, animation);
+        let points = points(&mut attachments, scene, poses);
         let mut stage = Self {
             scale,
             view: [Point::zeros(); 2],
@@ -146,17 +148,18 @@ fn index_in<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
 }
 
 /// Returns the points of interest and the moving joints, each place once.
-fn points(attachments: &mut Vec<Attachment>, animation: &Animation) -> Vec<(usize, Anchor)> {
-    let symbols = &animation.scene.symbols;
+fn points(
+    attachments: &mut Vec<Attachment>,
+    scene: &Scene,
+    poses: &[&[f64]],
+) -> Vec<(usize, Anchor)> {
+    let symbols = &scene.symbols;
     let is_named = |symbol: &&Symbol| matches!(symbol, Symbol::InterestPoint(_));
     let (named, others): (Vec<&Symbol>, Vec<&Symbol>) = symbols.iter().partition(is_named);
-    let (Some(first), Some(middle)) = (
-        animation.moments.first(),
-        animation.moments.get(animation.moments.len() / 3),
-    ) else {
+    let (Some(first), Some(middle)) = (poses.first(), poses.get(poses.len() / 3)) else {
         return Vec::new();
     };
-    let places = |anchor: &Anchor| [first, middle].map(|moment| anchor.placed(&moment.q).point);
+    let places = |anchor: &Anchor| [first, middle].map(|q| anchor.placed(q).point);
     let mut points: Vec<(usize, Anchor)> = Vec::new();
     let mut known: Vec<[Point; 2]> = Vec::new();
     let symbols = named.into_iter().chain(others);

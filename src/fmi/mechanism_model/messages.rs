@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::MechanismModel;
 use super::monitor::Contradiction;
 use super::rule::{Extrapolation, RateSource, Rule, Source};
-use super::variables::{Order, is_angle, units};
+use super::variables::{Order, is_angle};
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
@@ -226,7 +226,7 @@ fn describe_contradiction(
         actual,
     } = contradiction;
     let Driver { name, .. } = driver;
-    let unit = units(&driver.coordinate)[order as usize].name;
+    let unit = driver.coordinate.kind.units()[order as usize].name;
     // Four digits: differences of positions have rounding.
     let rounded = |rate: f64| format!("{rate:.3e}").parse().unwrap_or(rate);
     let [given, actual] = [given, actual].map(|rate| format!("{} {unit}", shown(rounded(rate))));

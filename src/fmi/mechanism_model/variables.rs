@@ -50,17 +50,6 @@ pub enum Quantity {
     Time,
 }
 
-const LENGTHS: [Unit; 3] = [
-    Unit::METRE,
-    Unit::METRE_PER_SECOND,
-    Unit::METRE_PER_SECOND_SQUARED,
-];
-const ANGLES: [Unit; 3] = [
-    Unit::RADIAN,
-    Unit::RADIAN_PER_SECOND,
-    Unit::RADIAN_PER_SECOND_SQUARED,
-];
-
 /// Choices of the source of the drivers' rates.
 pub static RATE_SOURCES: Enumeration = Enumeration {
     name: "biela.Rates",
@@ -168,7 +157,7 @@ impl Table {
                 continue;
             };
             let description = describe(mechanism, &driver.description, &driver.coordinate);
-            let units = units(&driver.coordinate);
+            let units = driver.coordinate.kind.units();
             for order in Order::ALL {
                 let [start, min, max] = match order {
                     Order::Position => [Some(start), driver.min, driver.max],
@@ -266,9 +255,9 @@ impl Table {
                 units,
             };
             let entries = [
-                entry(0, x, LENGTHS, "x of the origin"),
-                entry(1, y, LENGTHS, "y of the origin"),
-                entry(2, phi, ANGLES, "the angle"),
+                entry(0, x, CoordinateKind::LENGTHS, "x of the origin"),
+                entry(1, y, CoordinateKind::LENGTHS, "y of the origin"),
+                entry(2, phi, CoordinateKind::ANGLES, "the angle"),
             ];
             self.add_signals(body, &entries);
         }
@@ -280,7 +269,7 @@ impl Table {
                     signal,
                     names,
                     description: format!("{} of marker `{marker}`", names[0]),
-                    units: LENGTHS,
+                    units: CoordinateKind::LENGTHS,
                 }
             });
             self.add_signals(&marker, &entries.collect::<Vec<_>>());
@@ -290,7 +279,7 @@ impl Table {
                 signal,
                 names: SUFFIXES,
                 description: describe(mechanism, description, coordinate),
-                units: units(coordinate),
+                units: coordinate.kind.units(),
             };
             self.add_signals(name, &[entry]);
         };
@@ -531,15 +520,7 @@ fn derived_from_tunable(mechanism: &Mechanism, parameter: ParameterId) -> bool {
 
 /// Returns whether a coordinate is an angle.
 pub(super) fn is_angle(coordinate: &Coordinate) -> bool {
-    units(coordinate)[0].dimension == Unit::RADIAN.dimension
-}
-
-/// Returns the units of a coordinate by order.
-pub(super) fn units(coordinate: &Coordinate) -> [Unit; 3] {
-    match coordinate.kind {
-        CoordinateKind::Angle => ANGLES,
-        CoordinateKind::X | CoordinateKind::Y | CoordinateKind::Distance => LENGTHS,
-    }
+    coordinate.kind.is_angle()
 }
 
 /// Returns the file's own description of a coordinate, or else what it measures.

@@ -1,0 +1,141 @@
+//! The part of a page on which a mechanism is moved by hand: its solver, controls and scripts.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use flate2::{Compression, GzBuilder};
+use serde_json::json;
+
+use crate::drawing::animation::{fill, page_with};
+use crate::drawing::svg::escape;
+use crate::mechanism::{Mechanism, Source};
+
+const MAIN: &str = include_str!("live/live.html");
+/// The licences of what is inside the solver.
+const LICENCES: &str = include_str!("../../page/licenses.txt");
+const SHARED: &str = include_str!("live/shared.js");
+/// Style of the part.
+pub(super) const STYLE: &str = include_str!("live/live.css");
+/// The scripts; each uses only those before it.
+const SCRIPTS: [&str; 8] = [
+    include_str!("live/solver.js"),
+    include_str!("live/picture.js"),
+    include_str!("live/hand.js"),
+    include_str!("live/controls.js"),
+    include_str!("live/play.js"),
+    include_str!("live/chart.js"),
+    include_str!("live/files.js"),
+    include_str!("live/live.js"),
+];
+
+/// Returns a page for a mechanism: one HTML file, with this element for the solver; see [`solver`].
+pub(super) fn page(source: &Source, mechanism: &Mechanism, solver: &str) -> String {
+    let main = main(source, mechanism, None) + solver + &script();
+    page_with(&mechanism.name, &mechanism.description, &main, STYLE)
+}
+
+/// Returns the part of a page for a mechanism; the page has the [`solver`] and the [`script`], too.
+/// With a token the page may write the file of `biela watch`.
+pub(super) fn main(source: &Source, mechanism: &Mechanism, token: Option<&str>) -> String {
+    let files = mechanism.table_files.iter();
+    let files: Vec<[&str; 2]> = files.map(|file| [&*file.name, &*file.text]).collect();
+    let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
+    let file = json!({ "name": name, "text": source.text(), "files": files });
+    let token = token.map_or_else(String::new, |token| {
+        format!(" data-token=\"{}\"", escape(token))
+    });
+    fill(
+        MAIN,
+        &[
+            ("token", &token),
+            // A text in it may not end the script.
+            ("file", &file.to_string().replace('<', "\\u003c")),
+        ],
+    )
+}
+
+/// Returns the element with the packed solver. The same solver gives the same text.
+pub(super) fn solver(wasm: &[u8]) -> String {
+    let packed = packed(wasm);
+    format!("<script type=\"text/plain\" id=\"live-solver\">{packed}</script>")
+}
+
+/// Returns the element for a solver that stands in another file, the script of [`shared_solver`].
+pub(super) fn solver_in(script: &str) -> String {
+    let script = escape(script);
+    format!(
+        "<script type=\"text/plain\" id=\"live-solver\"></script><script src=\"{script}\"></script>"
+    )
+}
+
+/// Returns the script that gives the packed solver to a page.
+pub(super) fn shared_solver(wasm: &[u8]) -> String {
+    fill(SHARED, &[("solver", &packed(wasm))])
+}
+
+fn packed(bytes: &[u8]) -> String {
+    let mut packer = GzBuilder::new().write(Vec::new(), Compression::best());
+    let packed = (packer.write_all(bytes)).and_then(|()| packer.finish());
+    STANDARD.encode(packed.expect("memory takes all bytes"))
+}
+
+/// Returns the elements with the licences, packed, and with the scripts, as one module: imports and
+/// exports between them fall away.
+pub(super) fn script() -> String {
+    let mut script = format!(
+        "<script type=\"text/plain\" id=\"live-licences\">{}</script>\n<script type=\"module\">\n",
+        packed(LICENCES.as_bytes())
+    );
+    for line in SCRIPTS.iter().flat_map(|file| file.lines()) {
+        if !line.starts_with("import ") {
+            let _ = writeln!(script, "{}", line.strip_prefix("export ").unwrap_or(line));
+        }
+    }
+    script + "</script>"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scripts_become_one_without_imports_and_exports() {
+        let script = script();
+        let lines = || script.lines();
+        assert!(!lines().any(|line| line.starts_with("import ") || line.starts_with("export ")));
+        assert!(lines().any(|line| line.starts_with("class Solver")));
+    }
+
+    #[test]
+    fn scripts_do_not_declare_a_name_twice() {
+        let script = script();
+        let names = script.lines().flat_map(|line| {
+            let word = ["const ", "function ", "async function ", "class ", "let "]
+                .iter()
+                .find_map(|word| line.strip_prefix(word));
+            let list = word.unwrap_or_default().trim_start_matches('[');
+            let end = list.find(['=', '(', '{', ']']).unwrap_or(list.len());
+            let names = list[..end].split(',').map(|name| name.trim().to_owned());
+            names.filter(|name| !name.is_empty()).collect::<Vec<_>>()
+        });
+        let mut names: Vec<String> = names
+            .map(|name| name.replace(" extends Error", ""))
+            .collect();
+        assert!(names.len() > 20, "{names:?}");
+        names.sort();
+        for pair in names.windows(2) {
+            assert_ne!(pair[0], pair[1]);
+        }
+    }
+
+    #[test]
+    fn a_text_cannot_end_its_script() {
+        let text = include_str!("../../mechanisms/pendulum.toml");
+        let source = Source::new("a/b.toml", format!("# </script>\n{text}"));
+        let (mechanism, _) = Mechanism::parse(&source).expect("it is the example");
+        let main = main(&source, &mechanism, None);
+        assert!(!main.contains("# </script>") && main.contains("\"name\":\"b.toml\""));
+    }
+}

@@ -1,0 +1,69 @@
+// Sliders and number fields, in the units of display.
+
+/** Rounds to the digits that a reader sees. */
+export function shown(value, digits = 7) {
+  return Number.isFinite(value) ? Number(value.toPrecision(digits)) + 0 : null;
+}
+
+/** Adds an element with properties and children. */
+export function add(parent, name, properties = {}, ...children) {
+  const element = document.createElement(name);
+  Object.assign(element, properties);
+  element.append(...children);
+  return parent.appendChild(element);
+}
+
+/**
+ * A row with a slider and a field for one value. `item` has name, description, unit and factor;
+ * `low` and `high` bound the slider [SI]; `turns` lets it go round. `change(value, done)` is called
+ * while the value changes, and with `done` at the end.
+ */
+export class Row {
+  constructor(parent, item, { low, high, turns = false }, change) {
+    this.item = item;
+    this.turns = turns;
+    const row = add(parent, "div", { className: "row", title: item.description });
+    const unit = item.unit ? ` [${item.unit}]` : "";
+    const id = `live-${(Row.count = (Row.count ?? 0) + 1)}`;
+    add(row, "label", { htmlFor: id, textContent: `${item.name}${unit}` });
+    this.slider = add(row, "input", { type: "range", step: "any" });
+    this.slider.setAttribute("aria-label", `${item.name}, slider`);
+    this.field = add(row, "input", { type: "number", step: "any", id });
+    this.bound(low, high);
+    const slide = (done) => () => change(this.unwrapped(Number(this.slider.value)), done);
+    this.slider.addEventListener("input", slide(false));
+    this.slider.addEventListener("change", slide(true));
+    this.field.addEventListener("change", () => {
+      if (this.field.value !== "" && Number.isFinite(this.field.valueAsNumber)) {
+        change(this.field.valueAsNumber / item.factor, true);
+      } else {
+        this.set(this.value);
+      }
+    });
+  }
+
+  bound(low, high) {
+    [this.low, this.high] = [low, high];
+    this.slider.min = low;
+    this.slider.max = high;
+  }
+
+  // A crank that has turned further stays in its turn.
+  unwrapped(place) {
+    if (!this.turns) {
+      return place;
+    }
+    return place + (this.high - this.low) * Math.floor((this.value - this.low) / (this.high - this.low));
+  }
+
+  set(value) {
+    this.value = value;
+    const turn = this.high - this.low;
+    this.slider.value = this.turns ? value - turn * Math.floor((value - this.low) / turn) : value;
+    if (document.activeElement !== this.field || this.field.dataset.was !== this.field.value) {
+      this.field.value = shown(value * this.item.factor);
+      this.field.dataset.was = this.field.value;
+    }
+    this.slider.setAttribute("aria-valuetext", `${this.field.value} ${this.item.unit}`);
+  }
+}

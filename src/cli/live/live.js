@@ -1,0 +1,371 @@
+// A mechanism in a page: connects the solver with picture, controls, chart and files.
+
+import { Chart } from "./chart.js";
+import { Row, add, shown } from "./controls.js";
+import { connectSaving } from "./files.js";
+import { giveHand } from "./hand.js";
+import { Picture } from "./picture.js";
+import { Play } from "./play.js";
+import { Broken, Solver, unpack } from "./solver.js";
+
+class Live {
+  constructor(root, module, file) {
+    this.root = root;
+    this.module = module;
+    this.file = file;
+    this.find = (selector) => root.querySelector(selector);
+    this.solver = new Solver(module);
+    this.picture = new Picture(this.find(".paper"));
+    this.play = new Play(this, this.find);
+    this.chart = new Chart(this, this.find);
+    this.connect();
+    this.open(file);
+  }
+
+  // -- the solver ----------------------------------------------------------------------------
+
+  /** Asks the solver; undefined if it has failed, which the page then shows. */
+  ask(request) {
+    try {
+      const answer = this.solver.ask(request);
+      if (answer.error) {
+        this.tell(answer.error);
+      }
+      return answer;
+    } catch (error) {
+      this.recover(error);
+      return undefined;
+    }
+  }
+
+  /** Asks for a move, shows its outcome and draws; true if the mechanism is where it was to go. */
+  move(request) {
+    const answer = this.ask(request);
+    if (!answer) {
+      return false;
+    }
+    this.refused = answer.assembles ? request : null;
+    this.tellOutcome(answer);
+    this.draw();
+    return answer.outcome === "reached";
+  }
+
+  /** Moves a driver without words, as many times a second as there are pictures. */
+  drive(driver, value) {
+    try {
+      const reached = this.solver.drive(driver, value);
+      this.tellOutcome({ outcome: "reached" });
+      this.draw();
+      return reached;
+    } catch (error) {
+      this.recover(error);
+      return false;
+    }
+  }
+
+  /** Keeps the present state for undo. */
+  keep() {
+    this.ask({ do: "keep" });
+  }
+
+  open(file) {
+    const answer = this.ask({ do: "open", ...file });
+    if (answer?.problems) {
+      this.find(".problems").textContent = answer.problems.join("\n\n");
+      this.find(".problems").hidden = false;
+      return false;
+    }
+    if (!answer?.page) {
+      return false;
+    }
+    this.find(".problems").hidden = true;
+    this.file = file;
+    this.find(".text").value = file.text;
+    this.show(answer.page, this.ask({ do: "picture" }), false);
+    this.tellOutcome({ outcome: "reached" });
+    for (const warning of this.page.warnings) {
+      this.tell(warning);
+    }
+    return true;
+  }
+
+  // A defect of the solver: says so, and offers to go on with a new one.
+  recover(error) {
+    this.play.playing = false;
+    if (!(error instanceof Broken)) {
+      throw error;
+    }
+    this.find(".broken").hidden = false;
+    this.find(".broken p").textContent = `The solver has failed, which is a defect of biela: ${error.message}`;
+  }
+
+  restart() {
+    this.find(".broken").hidden = true;
+    this.solver = new Solver(this.module);
+    this.open(this.file);
+  }
+
+  // -- what is shown -------------------------------------------------------------------------
+
+  /** Shows a description and a picture. */
+  show(page, parts, keep) {
+    this.page = page;
+    this.places = page.places;
+    this.picture.show(parts, keep);
+    this.makeRows();
+    this.play.offer(page);
+    this.chart.offer(page);
+    this.draw();
+    this.chart.draw();
+  }
+
+  draw() {
+    this.frame = this.solver.frame.slice();
+    const { frame, places, page } = this;
+    this.picture.draw(frame, places);
+    this.drivers.forEach((row, index) => row?.set(frame[places.drivers + 3 * index]));
+    this.parameters.forEach((row, index) => row.set(frame[places.parameters + index]));
+    for (const [output, variable] of this.values) {
+      const { unit, factor } = page.variables[variable];
+      const value = shown(frame[places.variables + variable] * factor, 6);
+      output.textContent = `${value === null ? "–" : value} ${unit}`;
+    }
+    this.find(".clock").textContent = page.uses_time ? `${frame[0].toFixed(3)} s` : "";
+    this.find(".time").value = frame[0];
+    this.chart.move();
+  }
+
+  makeRows() {
+    const { page } = this;
+    const drivers = this.find(".driver-rows");
+    drivers.replaceChildren();
+    this.drivers = page.drivers.map((driver, index) => {
+      const range = page.ranges[index];
+      if (!range) {
+        add(drivers, "p", { className: "prescribed", textContent: `${driver.name}: prescribed motion` });
+        return null;
+      }
+      return new Row(drivers, driver, range, (value, done) => this.slide({ do: "drive", driver: index, value }, done));
+    });
+    const parameters = this.find(".parameter-rows");
+    parameters.replaceChildren();
+    this.parameters = page.parameters.map((parameter, index) => {
+      const [low, high] = parameter.slider;
+      const row = new Row(parameters, parameter, { low, high }, (value, done) =>
+        this.slide({ do: "set", parameter: index, value }, done),
+      );
+      row.slider.disabled = row.field.disabled = parameter.is_derived;
+      return row;
+    });
+    this.find(".parameter-part").hidden = page.parameters.length === 0;
+    this.find(".time-part").hidden = !page.uses_time;
+    Object.assign(this.find(".time"), { min: page.start, max: page.stop });
+    this.find('.show[value="force"]').parentElement.hidden = !page.has_forces;
+    const readings = this.find(".readings");
+    readings.replaceChildren();
+    this.values = page.variables.flatMap((variable, index) => {
+      if (!variable.is_told) {
+        return [];
+      }
+      const row = add(readings, "div");
+      add(row, "dt", { textContent: variable.name });
+      return [[add(row, "dd"), index]];
+    });
+    this.find(".modes").replaceChildren();
+    this.find(".modes-text").textContent = "";
+  }
+
+  /** A slider moves: solves at once, and draws anew what parameters change. */
+  slide(request, done) {
+    if (!this.sliding) {
+      this.play.stop();
+      this.keep();
+      this.sliding = true;
+    }
+    const reached = this.move(request);
+    if (request.do === "set" && reached) {
+      this.redraw(!done);
+    }
+    if (done) {
+      this.sliding = false;
+      this.settle();
+    }
+  }
+
+  /** Draws the picture anew; `keep` leaves its scale. */
+  redraw(keep) {
+    const answer = this.ask({ do: "redraw", keep });
+    if (answer?.page) {
+      this.page = answer.page;
+      this.places = answer.page.places;
+      this.picture.show(answer.picture, keep);
+      this.drivers.forEach((row, index) => row?.bound(this.page.ranges[index].low, this.page.ranges[index].high));
+      this.draw();
+    }
+  }
+
+  /** After a move: what has left the picture, and charts, are drawn anew. */
+  settle() {
+    if (this.picture.leaves) {
+      this.redraw(false);
+    }
+    this.chart.draw();
+  }
+
+  tellOutcome({ outcome, message, at, assembles }) {
+    this.picture.mark(at ?? null);
+    const line = this.find(".message");
+    if (outcome !== "reached" || line.textContent !== "") {
+      line.textContent = message ?? "";
+      this.root.classList.toggle("stopped", outcome !== "reached");
+    }
+    this.find(".anew").hidden = !assembles;
+  }
+
+  tell(text) {
+    this.find(".message").textContent = text;
+  }
+
+  // -- controls ------------------------------------------------------------------------------
+
+  connect() {
+    const { find, root } = this;
+    const click = (selector, act) => find(selector).addEventListener("click", act);
+    const step = (word) => () => {
+      this.play.stop();
+      if (this.ask({ do: word })?.done) {
+        this.redraw(false);
+        this.tellOutcome({ outcome: "reached" });
+        this.chart.draw();
+      }
+    };
+    const steps = { undo: step("undo"), redo: step("redo"), reset: step("reset") };
+    for (const [name, act] of Object.entries(steps)) {
+      click(`.${name}`, act);
+    }
+    click(".restart", () => this.restart());
+    click(".find-modes", () => this.findModes());
+    click(".apply", () => this.open({ ...this.file, text: find(".text").value }));
+    click(".anew", () => {
+      const request = this.refused;
+      if (request && this.move({ ...request, anew: true })) {
+        this.redraw(false);
+        this.chart.draw();
+      }
+    });
+    find(".time").addEventListener("input", () => {
+      this.play.stop();
+      this.move({ do: "time", value: Number(find(".time").value) });
+    });
+    const switches = [...root.querySelectorAll(".show")];
+    for (const box of switches) {
+      const show = () => root.classList.toggle(`show-${box.value}`, box.checked);
+      box.addEventListener("change", show);
+      show();
+    }
+    find(".chart-part").addEventListener("toggle", () => this.chart.draw());
+    find(".licences").addEventListener("toggle", async () => {
+      find(".licences pre").textContent = await unpack("live-licences").text();
+    });
+    connectSaving(root, this);
+    giveHand(find(".paper"), this);
+    const toggle = (value) => () => switches.find((box) => box.value === value).click();
+    const keys = {
+      " ": () => this.play.toggle(),
+      ArrowLeft: () => this.nudge(-1),
+      ArrowRight: () => this.nudge(1),
+      v: toggle("velocity"),
+      a: toggle("acceleration"),
+      f: toggle("force"),
+      n: toggle("names"),
+    };
+    document.addEventListener("keydown", (event) => {
+      const { target, key } = event;
+      const inside = root.contains(target);
+      if (!inside && (target !== document.body || document.querySelector("main h2"))) {
+        return;
+      }
+      if ((event.ctrlKey || event.metaKey) && key.toLowerCase() === "z" && !target.matches("input, textarea")) {
+        event.preventDefault();
+        steps[event.shiftKey ? "redo" : "undo"]();
+        return;
+      }
+      const own = target.matches("input, select, textarea, summary") || (target.matches("button") && key === " ");
+      if (keys[key] && !own && !event.ctrlKey && !event.metaKey && !event.altKey) {
+        event.preventDefault();
+        keys[key]();
+      }
+    });
+    this.connectFile();
+  }
+
+  /** Moves what plays by a small step. */
+  nudge(direction) {
+    this.play.stop();
+    const before = this.play.direction;
+    this.play.direction = direction;
+    this.play.advance(1 / 60);
+    this.play.direction = before;
+  }
+
+  findModes() {
+    const answer = this.ask({ do: "assemblies" });
+    const place = this.find(".modes");
+    place.replaceChildren();
+    if (!answer?.pictures) {
+      return;
+    }
+    const count = answer.pictures.length;
+    const others = count === 0 ? "no other position" : `${count} other position${count === 1 ? "" : "s"}`;
+    this.find(".modes-text").textContent =
+      `With these values the mechanism closes in ${others}${answer.complete ? "" : " that the search has found"}.`;
+    answer.pictures.forEach((picture, index) => {
+      const button = add(place, "button", { type: "button" });
+      button.setAttribute("aria-label", `Position ${index + 1}`);
+      button.innerHTML = picture.replace(/^<\?xml[^>]*>/, "");
+      button.addEventListener("click", () => {
+        this.play.stop();
+        if (this.move({ do: "choose", index })) {
+          this.redraw(false);
+          this.findModes();
+          this.chart.draw();
+        }
+      });
+    });
+  }
+
+  /** Where `biela watch` serves the page, parameters can be written into the file. */
+  connectFile() {
+    const button = this.find(".write");
+    const { token } = this.root.dataset;
+    button.hidden = !token;
+    button.addEventListener("click", async () => {
+      const answer = this.ask({ do: "text", parameters: true });
+      if (answer?.text) {
+        const sent = await fetch("/file", {
+          method: "PUT",
+          headers: { "X-Biela-Token": token },
+          body: answer.text,
+        });
+        this.tell(sent.ok ? "The file has these parameters now." : `The file was not written: ${await sent.text()}`);
+      }
+    });
+  }
+}
+
+async function start() {
+  const module = await WebAssembly.compile(await unpack("live-solver").arrayBuffer());
+  for (const root of document.querySelectorAll(".live")) {
+    const file = JSON.parse(root.querySelector(".live-file").textContent);
+    root.live = new Live(root, module, file);
+    root.classList.add("ready");
+  }
+}
+
+start().catch((error) => {
+  for (const place of document.querySelectorAll(".live .problems")) {
+    place.hidden = false;
+    place.textContent = `This browser cannot run the solver: ${error.message}`;
+  }
+  throw error;
+});

@@ -1,0 +1,109 @@
+// Motion by itself: time where motions are prescribed, otherwise a driver.
+
+export class Play {
+  /** `live` solves and draws; `find` returns an element of the page. */
+  constructor(live, find) {
+    this.live = live;
+    this.button = find(".play");
+    this.speed = find(".speed");
+    this.swing = find(".swing");
+    this.what = find(".moved");
+    this.playing = false;
+    this.direction = 1;
+    this.button.addEventListener("click", () => this.toggle());
+  }
+
+  /** Offers what can move: time, and the drivers that are inputs. */
+  offer(page) {
+    const before = this.what.value;
+    this.what.replaceChildren();
+    if (page.uses_time) {
+      this.what.add(new Option("time", "time"));
+    }
+    page.drivers.forEach((driver, index) => {
+      if (driver.is_input) {
+        this.what.add(new Option(driver.name, index));
+      }
+    });
+    if ([...this.what.options].some((option) => option.value === before)) {
+      this.what.value = before;
+    }
+    this.button.disabled = this.what.options.length === 0;
+  }
+
+  toggle() {
+    this.set(!this.playing);
+  }
+
+  stop() {
+    this.set(false);
+  }
+
+  set(playing) {
+    this.playing = playing && !this.button.disabled;
+    this.before = null;
+    this.live.root.classList.toggle("playing", this.playing);
+    this.button.setAttribute("aria-label", this.playing ? "Pause" : "Play");
+    if (this.playing) {
+      this.live.keep();
+      requestAnimationFrame((now) => this.tick(now));
+    }
+  }
+
+  tick(now) {
+    if (!this.playing) {
+      return;
+    }
+    if (this.before !== null) {
+      // A page in the background gets no pictures for a while.
+      this.advance(Math.min(0.1, (now - this.before) / 1000) * Number(this.speed.value));
+    }
+    this.before = now;
+    requestAnimationFrame((next) => this.tick(next));
+  }
+
+  /** Moves on by a time [s]. */
+  advance(seconds) {
+    const { live } = this;
+    if (this.what.value === "time") {
+      const { start, stop } = live.page;
+      let time = live.frame[0] + this.direction * seconds;
+      if (time > stop || time < start) {
+        if (this.swing.checked) {
+          this.direction = -this.direction;
+          time = Math.min(stop, Math.max(start, time));
+        } else {
+          time = time > stop ? start : stop;
+        }
+      }
+      if (!live.move({ do: "time", value: time })) {
+        this.turnOrStop();
+      }
+      return;
+    }
+    const driver = Number(this.what.value);
+    const at = live.places.drivers + 3 * driver;
+    const [value, velocity] = live.frame.slice(at, at + 2);
+    const range = live.page.ranges[driver];
+    const next = value + this.direction * velocity * seconds;
+    const [low, high] = [Math.min(range.low, value), Math.max(range.high, value)];
+    // Where there is an end, the driver turns back shortly before it.
+    const margin = 1e-3 * (range.high - range.low);
+    const ends = !range.turns || this.swing.checked;
+    if (ends && (next < low + margin || next > high - margin) && (next - value) * (next - 0.5 * (low + high)) > 0) {
+      this.direction = -this.direction;
+      return;
+    }
+    if (!live.drive(driver, next)) {
+      this.direction = -this.direction;
+    }
+  }
+
+  turnOrStop() {
+    if (this.swing.checked) {
+      this.direction = -this.direction;
+    } else {
+      this.stop();
+    }
+  }
+}

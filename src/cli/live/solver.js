@@ -1,0 +1,56 @@
+// The solver, compiled to WebAssembly: requests and answers in JSON, numbers without copying.
+
+/** The solver has ended by a defect of its own; its instance is not to be used any more. */
+export class Broken extends Error {}
+
+/** Unpacks what an element of the page holds as base64 of gzip. */
+export function unpack(id) {
+  const base64 = document.getElementById(id).textContent.trim();
+  const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")));
+}
+
+export class Solver {
+  constructor(module) {
+    this.exports = new WebAssembly.Instance(module).exports;
+  }
+
+  /** Sends a request and returns its answer. */
+  ask(request) {
+    const bytes = new TextEncoder().encode(JSON.stringify(request));
+    return this.guard(() => {
+      const at = this.exports.biela_input(bytes.length);
+      // Made after the call, which may move the memory.
+      new Uint8Array(this.exports.memory.buffer, at, bytes.length).set(bytes);
+      return JSON.parse(this.text(this.exports.biela_answer()));
+    });
+  }
+
+  /** Moves a driver; false if the mechanism stops before the value. */
+  drive(driver, value) {
+    return this.guard(() => this.exports.biela_drive(driver, value) === 1);
+  }
+
+  /** The numbers of the picture, until the next call. */
+  get frame() {
+    const { biela_frame, biela_frame_length, memory } = this.exports;
+    return new Float64Array(memory.buffer, biela_frame(), biela_frame_length());
+  }
+
+  text(length) {
+    const bytes = new Uint8Array(this.exports.memory.buffer, this.exports.biela_output(), length);
+    return new TextDecoder().decode(bytes);
+  }
+
+  guard(call) {
+    try {
+      return call();
+    } catch (error) {
+      if (error instanceof WebAssembly.RuntimeError) {
+        const message = this.text(this.exports.biela_output_length());
+        throw new Broken(message || String(error));
+      }
+      throw error;
+    }
+  }
+}

@@ -1,0 +1,77 @@
+//! `biela page`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::error::Error;
+use super::input::{Input, warn_of_misfits};
+use super::input_files::InputFiles;
+use super::live;
+use super::output::{tell_written, write};
+use super::page_solver;
+use super::stdout::is_stdout;
+
+/// Write a page on which a mechanism is moved by hand.
+///
+/// The page holds the solver itself and runs in any browser, without a network: one HTML file that
+/// can be sent to anyone. Bodies are pulled with the mouse or a finger; drivers and parameters have
+/// sliders and fields. A dead point stops the hand, a geometry that does not close names the open
+/// joint. The page shows traces, velocities, accelerations, forces and charts, finds the other
+/// positions in which the mechanism closes, and saves the changed file, pictures and values.
+///
+/// The same file gives the same page.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: biela page four_bar.toml -o four_bar.html")]
+pub(super) struct Page {
+    /// The mechanism file.
+    file: PathBuf,
+    /// The page to write, `-` for stdout [default: the mechanism's name with .html in the current
+    /// folder].
+    #[arg(short, long, value_name = "PAGE")]
+    output: Option<PathBuf>,
+    /// The solver for pages, compiled to WebAssembly [default: the one installed with this
+    /// program].
+    #[arg(long, value_name = "WASM")]
+    solver: Option<PathBuf>,
+    /// Name of a script, beside the page, that takes the solver: several pages can share it.
+    #[arg(long, value_name = "SCRIPT")]
+    share: Option<String>,
+}
+
+impl Page {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let input = Input::read(&self.file)?;
+        let path = self
+            .output
+            .unwrap_or_else(|| PathBuf::from(format!("{}.html", input.mechanism.name)));
+        let script = self.share.as_deref().map(|script| beside(&path, script));
+        let script = script.transpose()?;
+        let files = InputFiles::new(&self.file, &input.mechanism);
+        files.refuse_as_outputs(&[Some(&path), script.as_deref()])?;
+        let wasm = page_solver::demand(self.solver.as_deref())?;
+        warn_of_misfits(&input.assemble()?);
+        let solver = match &self.share {
+            None => live::solver(&wasm),
+            Some(script) => live::solver_in(script),
+        };
+        let page = live::page(&input.source, &input.mechanism, &solver);
+        write(&path, page.as_bytes())?;
+        if let Some(script) = script {
+            write(&script, live::shared_solver(&wasm).as_bytes())?;
+        }
+        tell_written(&path);
+        Ok(())
+    }
+}
+
+/// Returns the path of a file beside a page.
+fn beside(page: &Path, name: &str) -> Result<PathBuf, Error> {
+    let plain = Path::new(name).file_name().is_some_and(|file| file == name);
+    if !plain || is_stdout(page) {
+        return Err(Error::Usage(format!(
+            "--share: `{name}` must be the plain name of a file, beside a page that is a file"
+        )));
+    }
+    Ok(page.parent().unwrap_or(Path::new("")).join(name))
+}

@@ -1,0 +1,117 @@
+//! Variables over time or over a driver.
+
+use serde_json::{Value, json};
+
+use super::outcome::Outcome;
+use super::session::Session;
+use crate::kinematics::Curve;
+use crate::mechanism::DriverId;
+
+/// The variable along the horizontal axis of a chart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// Time, from the simulation's start to its end.
+    Time,
+    /// The range of a driver that is an input.
+    Driver(DriverId),
+}
+
+impl Session {
+    /// Returns values of variables, by their places in the description, at `samples` points along
+    /// time or a driver: `x`, and a list `y` per variable, with `null` where there is no value. The
+    /// pose is unchanged.
+    pub fn chart(&mut self, over: Over, variables: &[usize], samples: usize) -> Value {
+        let here = self.pose().clone();
+        let ends = match over {
+            Over::Time => {
+                let simulation = &self.mechanism().simulation;
+                Some([simulation.start, simulation.stop])
+            }
+            Over::Driver(driver) => {
+                let range = self.ranges.get(driver.index()).cloned().flatten();
+                range.map(|range| {
+                    let [low, high] = range.ends;
+                    // A crank may have turned away from its first turn.
+                    let turns = ((here.drivers[driver.index()] - low) / (high - low)).floor();
+                    let shift = if range.turns {
+                        turns * (high - low)
+                    } else {
+                        0.0
+                    };
+                    [low + shift, high + shift]
+                })
+            }
+        };
+        let Some([low, high]) = ends else {
+            return json!({ "x": [], "y": [] });
+        };
+        let last = samples.clamp(2, 10_000) - 1;
+        let point = |k: usize| low + (high - low) * (k as f64 / last as f64);
+        let mut rows: Vec<(f64, Vec<f64>)> = Vec::new();
+        match over {
+            Over::Time => {
+                if self.pose().time > low && self.return_to_start().is_err() {
+                    return json!({ "x": [], "y": [] });
+                }
+                for k in 0..=last {
+                    if !self.sample(over, point(k), variables, &mut rows) {
+                        break;
+                    }
+                }
+            }
+            Over::Driver(driver) => {
+                let value = here.drivers[driver.index()];
+                let below: Vec<f64> = (0..=last).map(point).filter(|x| *x < value).collect();
+                for x in below.into_iter().rev() {
+                    if !self.sample(over, x, variables, &mut rows) {
+                        break;
+                    }
+                }
+                rows.reverse();
+                self.solver.restore(&here);
+                for x in (0..=last).map(point).filter(|x| *x >= value) {
+                    if !self.sample(over, x, variables, &mut rows) {
+                        break;
+                    }
+                }
+            }
+        }
+        self.solver.restore(&here);
+        self.refresh();
+        let x: Vec<f64> = rows.iter().map(|(x, _)| *x).collect();
+        let y = (0..variables.len()).map(|k| rows.iter().map(|(_, y)| y[k]).collect::<Vec<f64>>());
+        json!({ "x": x, "y": y.collect::<Vec<_>>() })
+    }
+
+    /// Moves on to a point and adds a row there, or where the mechanism stops; false if it does.
+    fn sample(
+        &mut self,
+        over: Over,
+        x: f64,
+        variables: &[usize],
+        rows: &mut Vec<(f64, Vec<f64>)>,
+    ) -> bool {
+        let path = self.path_here();
+        match over {
+            Over::Time => path.duration = x - path.start,
+            Over::Driver(driver) => {
+                if let Curve::Input { position, .. } = path.curves[driver.index()] {
+                    path.curves[driver.index()] = Curve::held(x, position);
+                }
+            }
+        }
+        let reached = self.follow(|_| true) == Outcome::Reached;
+        self.refresh();
+        let x = match over {
+            Over::Time => self.pose().time,
+            Over::Driver(driver) => self.pose().drivers[driver.index()],
+        };
+        let moment = self.moment();
+        let known = |&index: &usize| self.quantities.get(index);
+        let values = variables
+            .iter()
+            .map(|index| known(index).map_or(f64::NAN, |q| q.value(&moment)));
+        rows.push((x, values.collect()));
+        reached
+    }
+}

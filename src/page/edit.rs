@@ -1,0 +1,89 @@
+//! The text of a mechanism file with other values. Comments and layout stay.
+
+use toml_edit::{Array, DocumentMut, Item, TableLike, TomlError, Value};
+
+use crate::kinematics::Pose;
+use crate::mechanism::{DriverSource, Mechanism};
+
+/// A text that is no mechanism file.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum EditError {
+    /// It is no TOML.
+    #[error("{0}")]
+    Toml(#[from] TomlError),
+    /// A table of the mechanism is missing.
+    #[error("the text is no mechanism file")]
+    Table,
+}
+
+/// The part of a pose that goes into the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Nothing: the file keeps its start values and estimates.
+    Keep,
+    /// The start values of the drivers that are inputs.
+    Starts,
+    /// Start values, and the estimates of all bodies: the file assembles at the pose.
+    Whole,
+}
+
+/// Returns the text with the parameters of these names, and with `place` of the pose.
+///
+/// # Errors
+///
+/// The text is not that of the mechanism.
+pub fn edit(
+    text: &str,
+    mechanism: &Mechanism,
+    names: &[String],
+    pose: &Pose,
+    place: Place,
+) -> Result<String, EditError> {
+    let mut document: DocumentMut = text.parse()?;
+    let root = document.as_table_mut();
+    for (parameter, value) in mechanism.parameters.iter().zip(&pose.parameters) {
+        if names.contains(&parameter.name) {
+            let parameters = table(root.get_mut("parameters"))?;
+            match parameters.get_mut(&parameter.name) {
+                Some(item) if item.is_table_like() => {
+                    set(table(Some(item))?, "value", (*value).into());
+                }
+                _ => set(parameters, &parameter.name, (*value).into()),
+            }
+        }
+    }
+    if place != Place::Keep {
+        for (driver, value) in mechanism.drivers.iter().zip(&pose.drivers) {
+            if let DriverSource::Input { .. } = driver.source {
+                let drivers = table(root.get_mut("drivers"))?;
+                let driver = table(drivers.get_mut(&driver.name))?;
+                set(driver, "start", (*value).into());
+            }
+        }
+    }
+    if place == Place::Whole {
+        for (body, q) in mechanism.bodies.iter().zip(pose.q.chunks_exact(3)) {
+            let bodies = table(root.get_mut("bodies"))?;
+            let body = table(bodies.get_mut(&body.name))?;
+            let estimate = q.iter().copied().collect::<Array>();
+            set(body, "estimate", Value::Array(estimate));
+        }
+    }
+    Ok(document.to_string())
+}
+
+/// Returns the table that an item of a mechanism file is.
+fn table(item: Option<&mut Item>) -> Result<&mut dyn TableLike, EditError> {
+    item.and_then(Item::as_table_like_mut)
+        .ok_or(EditError::Table)
+}
+
+/// Sets a value of a table; a comment behind the old one stays.
+fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
+    if let Some(Item::Value(old)) = table.get_mut(key) {
+        *value.decor_mut() = old.decor().clone();
+        *old = value;
+    } else {
+        table.insert(key, Item::Value(value));
+    }
+}

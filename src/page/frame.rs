@@ -1,0 +1,85 @@
+//! The numbers of one picture, in one list that a script reads without copying.
+
+use serde_json::{Value, json};
+
+use super::session::Session;
+use crate::kinematics::Rates;
+
+/// Number of values before the drivers: time, residual, reciprocal condition, whether rates exist.
+const HEAD: usize = 4;
+
+impl Session {
+    /// Returns the places in the list of numbers: `drivers` (value, velocity and acceleration
+    /// each), `parameters`, `variables`, `joints` (point and force of each joint, in the picture
+    /// and in newtons, y down), then `attachments` (x, y and angle each), `lengths` and `points`
+    /// (velocity and acceleration each) of the picture.
+    #[must_use]
+    pub fn layout(&self) -> Value {
+        let mechanism = self.mechanism();
+        let drivers = HEAD;
+        let parameters = drivers + 3 * mechanism.drivers.len();
+        let variables = parameters + mechanism.parameters.len();
+        let joints = variables + self.quantities.len();
+        let attachments = joints + 4 * self.reactions();
+        let [frames, lengths] = self.picture.parts();
+        json!({
+            "time": 0,
+            "residual": 1,
+            "rcond": 2,
+            "has_rates": 3,
+            "drivers": drivers,
+            "parameters": parameters,
+            "variables": variables,
+            "joints": joints,
+            "joint_count": self.reactions(),
+            "attachments": attachments,
+            "lengths": attachments + 3 * frames,
+            "points": attachments + 3 * frames + lengths,
+        })
+    }
+
+    /// Returns the number of joints whose reactions are known.
+    fn reactions(&self) -> usize {
+        match self.forces {
+            Some(_) => self.mechanism().outputs.joints.len(),
+            None => 0,
+        }
+    }
+
+    /// Writes the numbers of the present pose.
+    pub fn write_frame(&mut self, out: &mut Vec<f64>) {
+        out.clear();
+        let rcond = self.solver.rcond();
+        let pose = self.solver.pose();
+        out.extend([pose.time, self.solver.residual(), rcond]);
+        out.push(f64::from(u8::from(self.has_rates)));
+        for (value, rates) in pose.drivers.iter().zip(&self.driver_rates) {
+            out.extend([*value, rates.first(), rates.second()]);
+        }
+        out.extend_from_slice(&pose.parameters);
+        let moment = self.moment();
+        out.extend(
+            self.quantities
+                .iter()
+                .map(|quantity| quantity.value(&moment)),
+        );
+        if let Some(forces) = self.forces.as_deref() {
+            use crate::kinematics::ForceQuantity::Reaction;
+            let none = Rates::new(pose.q.len());
+            for &joint in &self.mechanism().outputs.joints {
+                let at = self.solver.marker(self.mechanism().joints[joint].to, &none);
+                out.extend(self.picture.place(at.map(|jet| jet.value)));
+                let force = [0, 1].map(|component| forces.value(Reaction(joint, component)));
+                let known = |value: f64| if self.has_rates { value } else { f64::NAN };
+                out.extend([known(force[0]), -known(force[1])]);
+            }
+        }
+        self.picture.add_places(&pose.q, out);
+        let rates = [self.rates.velocity(), self.rates.acceleration()];
+        let first = out.len();
+        self.picture.add_rates(&pose.q, rates, out);
+        if !self.has_rates {
+            out[first..].fill(f64::NAN);
+        }
+    }
+}

@@ -1,0 +1,320 @@
+"""Mechanisms moved by hand on pages, in a real browser."""
+
+import math
+import subprocess
+
+import pytest
+from browsing import visit
+from harness import ROOT, SHIPPED, program
+
+READY = """
+await until(() => find(".live.ready") || !find(".live .problems")?.hidden);
+const live = find(".live").live;
+const frame = () => { live.draw(); return live.frame; };
+const number = (name) => live.frame[live.places.variables + live.page.variables.findIndex((v) => v.name === name)];
+const message = () => find(".message").textContent;
+const point = (x, y) => {
+  const at = new DOMPoint(x * live.picture.parts.scale, -y * live.picture.parts.scale)
+    .matrixTransform(live.picture.svg.getScreenCTM());
+  return [at.x, at.y];
+};
+// The pointer of a person, in steps from one global point to the others.
+const drag = async (...points) => {
+  const paper = find(".paper");
+  paper.setPointerCapture = () => {};
+  const send = (kind, [x, y]) => {
+    const [clientX, clientY] = point(x, y);
+    paper.dispatchEvent(new PointerEvent(kind, { clientX, clientY, pointerId: 1, button: 0, bubbles: true, cancelable: true }));
+  };
+  send("pointerdown", points[0]);
+  for (const at of points.slice(1)) {
+    send("pointermove", at);
+    await pause(60);
+  }
+  send("pointerup", points[points.length - 1]);
+  await pause(50);
+};
+"""
+
+
+def look(tmp_path, page, script):
+    return visit(tmp_path, page, READY + script)
+
+
+# The four-bar of the mechanisms folder, by its lengths [m].
+CRANK, COUPLER, ROCKER, BASE = 0.10, 0.25, 0.30, 0.40
+
+
+def rocker_angle(crank):
+    """Angle of the rocker for an angle of the crank: the circles about A and O4 meet in B."""
+    ax, ay = CRANK * math.cos(crank), CRANK * math.sin(crank)
+    dx, dy = BASE - ax, -ay
+    apart = math.hypot(dx, dy)
+    along = (COUPLER**2 - ROCKER**2 + apart**2) / (2 * apart)
+    aside = math.sqrt(COUPLER**2 - along**2)
+    bx = ax + (along * dx - aside * dy) / apart
+    by = ay + (along * dy + aside * dx) / apart
+    return math.atan2(by, bx - BASE)
+
+
+def test_dragging_the_crank_follows_the_closed_form(page_of, tmp_path):
+    # The pointer is off the crank's circle: the crank points at it, seen from its pivot.
+    ends = [math.radians(angle) for angle in (100, 170, 260, 20)]
+    start = [CRANK * math.cos(math.pi / 3), CRANK * math.sin(math.pi / 3)]
+    for end in ends:
+        path = [start]
+        for k in range(1, 13):
+            angle = math.pi / 3 + (end - math.pi / 3) * k / 12
+            path.append([1.2 * CRANK * math.cos(angle), 1.2 * CRANK * math.sin(angle)])
+        crank, rocker = look(
+            tmp_path,
+            page_of("four_bar"),
+            f"""
+            const path = {path};
+            await drag(...path);
+            return [number("crank_angle.position"), number("rocker.phi")];
+            """,
+        )
+        # The grip is at A to within a pixel; the crank turns by the angle of the pointer but for
+        # the angle of the grip, which a pixel bounds, and the loop closes to rounding.
+        assert abs(math.remainder(crank - end, math.tau)) < 0.05
+        assert abs(math.remainder(rocker - rocker_angle(crank), math.tau)) < 1e-9
+
+
+def test_the_hand_is_as_near_as_the_mechanism_can_come(page_of, tmp_path):
+    target = [0.17, 0.11]
+    q = look(
+        tmp_path,
+        page_of("four_bar"),
+        f"""
+        const body = 0;
+        const grip = [{CRANK}, 0];
+        const scale = live.picture.parts.scale;
+        live.move({{ do: "drag", body, grip, at: [{target[0]} * scale, -{target[1]} * scale] }});
+        return number("crank_angle.position");
+        """,
+    )
+    assert abs(q - math.atan2(target[1], target[0])) < 1e-9
+
+
+def test_a_dead_point_stops_the_hand(page_of, tmp_path):
+    # The rocker drives: its ends are where crank and coupler are in line.
+    text = (ROOT / "mechanisms" / "four_bar.toml").read_text(encoding="utf-8")
+    start = rocker_angle(math.pi / 3)
+    driver = 'crank_angle = { coordinate = "angle", markers = ["ground.O2", "crank.O"], start = "60*deg" }'
+    assert driver in text
+    file = tmp_path / "rocker_drives.toml"
+    file.write_text(
+        text.replace(
+            driver,
+            f'rocker_angle = {{ coordinate = "angle", markers = ["ground.O4", "rocker.O"], start = {start} }}',
+        ).replace('name = "four_bar"', 'name = "rocker_drives"'),
+        encoding="utf-8",
+    )
+    # Crank and coupler in line: a triangle of their sum or difference, the base and the rocker.
+    reach = CRANK + COUPLER
+    inner = math.acos((BASE**2 + ROCKER**2 - reach**2) / (2 * BASE * ROCKER))
+    limit = math.pi - inner
+    value, text, marked, back = look(
+        tmp_path,
+        page_of(file),
+        """
+        live.move({ do: "drive", driver: 0, value: 0.5 });
+        const stopped = [number("rocker_angle.position"), message(), live.picture.marker.style.display === ""];
+        live.move({ do: "drive", driver: 0, value: stopped[0] + 0.1 });
+        return [...stopped, number("rocker_angle.position") - stopped[0]];
+        """,
+    )
+    assert abs(value - limit) < 1e-9
+    assert "dead point" in text and "`rocker_angle`" in text
+    assert marked
+    assert abs(back - 0.1) < 1e-9
+
+
+def test_a_geometry_that_does_not_close_is_refused(page_of, tmp_path):
+    text, before, after, crank = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const before = places();
+        const index = live.page.parameters.findIndex((p) => p.name === "coupler_length");
+        live.move({ do: "set", parameter: index, value: 0.9 });
+        return [message(), before, places(), live.frame[live.places.parameters + index]];
+        """,
+    )
+    assert "cannot close" in text and "stays open by" in text
+    assert before == after
+    assert crank == COUPLER
+
+
+def test_a_parameter_by_its_field(page_of, tmp_path):
+    base, phi, undone = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const row = live.parameters[live.page.parameters.findIndex((p) => p.name === "base")];
+        row.field.value = "380";
+        row.field.dispatchEvent(new Event("change"));
+        const seen = [row.value, number("rocker.phi")];
+        find(".undo").click();
+        return [...seen, row.value];
+        """,
+    )
+    assert base == pytest.approx(0.38, abs=1e-15)
+    ax, ay = CRANK * 0.5, CRANK * math.sin(math.pi / 3)
+    bx, by = 0.38 + ROCKER * math.cos(phi), ROCKER * math.sin(phi)
+    assert abs(math.hypot(bx - ax, by - ay) - COUPLER) < 1e-12
+    assert undone == BASE
+
+
+def test_other_positions(page_of, tmp_path):
+    count, phi = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        find(".find-modes").click();
+        const buttons = all(".modes button");
+        buttons[0].click();
+        return [buttons.length, number("rocker.phi")];
+        """,
+    )
+    assert count == 1
+    # The mirror image about the line from A to O4.
+    ax, ay = CRANK * 0.5, CRANK * math.sin(math.pi / 3)
+    line = math.atan2(-ay, BASE - ax) + math.pi
+    assert abs(math.remainder(phi - (2 * line - rocker_angle(math.pi / 3)), math.tau)) < 1e-9
+
+
+def test_saving_and_reading_again(page_of, tmp_path):
+    text, poses = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const index = live.page.parameters.findIndex((p) => p.name === "base");
+        live.move({ do: "set", parameter: index, value: 0.38 });
+        live.drive(0, 2.5);
+        const pose = () => [...frame()].slice(live.places.variables, live.places.joints);
+        const before = pose();
+        const { text } = live.ask({ do: "text" });
+        find(".text").value = text;
+        find(".apply").click();
+        return [text, [before, pose()]];
+        """,
+    )
+    assert "# Four-bar linkage" in text and "base           = { value = 0.38," in text
+    positions = [(a, b) for a, b in zip(*poses, strict=True) if a is not None and b is not None]
+    assert all(abs(a - b) < 1e-9 * (1 + abs(a)) for a, b in positions)
+    saved = tmp_path / "saved.toml"
+    saved.write_text(text, encoding="utf-8")
+    subprocess.run([program(), "check", saved], check=True, capture_output=True)
+
+
+def test_a_wrong_file_tells_its_problem_and_the_mechanism_stays(page_of, tmp_path):
+    text, count, hidden = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const good = find(".text").value;
+        find(".text").value = good.replace('"crank.O"', '"cranck.O"');
+        find(".apply").click();
+        const told = find(".problems").textContent;
+        live.drive(0, 1.5);
+        find(".text").value = good;
+        find(".apply").click();
+        return [told, places().length, find(".problems").hidden];
+        """,
+    )
+    assert "no body `cranck`; did you mean `crank`?" in text
+    assert count > 5 and hidden
+
+
+def test_playing_and_keys(page_of, tmp_path):
+    before, after, still = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const value = () => frame()[live.places.drivers];
+        const before = value();
+        press(" ");
+        await pause(600);
+        press(" ");
+        const after = value();
+        await pause(200);
+        press("ArrowRight");
+        return [before, after, value() - after];
+        """,
+    )
+    assert after > before + 0.1
+    assert 0 < still < 0.1
+
+
+def test_a_failure_of_the_solver_is_told_and_survived(page_of, tmp_path):
+    text, hidden, count = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const answer = live.solver.exports.biela_answer;
+        live.solver.exports = { ...live.solver.exports, biela_answer: () => { throw new WebAssembly.RuntimeError("unreachable"); } };
+        live.move({ do: "drive", driver: 0, value: 1 });
+        const told = find(".broken p").textContent;
+        find(".restart").click();
+        live.drive(0, 1);
+        return [told, find(".broken").hidden, places().length];
+        """,
+    )
+    assert "defect of biela" in text
+    assert hidden and count > 5
+
+
+def test_memory_is_steady(page_of, tmp_path):
+    # An hour of pictures, sixty a second.
+    first, last, angle = look(
+        tmp_path,
+        page_of("jansen_leg"),
+        """
+        const driver = live.page.drivers.findIndex((d) => d.is_input);
+        const size = () => live.solver.exports.memory.buffer.byteLength;
+        const turn = (from, count) => {
+          for (let k = 0; k < count; k += 1) live.solver.drive(driver, from + k * 0.01);
+        };
+        const start = frame()[live.places.drivers + 3 * driver];
+        turn(start, 1000);
+        const first = size();
+        turn(start + 10, 216000);
+        return [first, size(), frame()[live.places.drivers + 3 * driver] - start];
+        """,
+    )
+    assert last == first
+    assert abs(angle - (10 + 2159.99)) < 1e-9
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_mechanism_opens_and_agrees(name, page_of, tmp_path):
+    """The numbers of the page against those of the program, at the file's own pose."""
+    page = page_of(name)
+    values, problems, size = look(
+        tmp_path,
+        page,
+        """
+        const values = Object.fromEntries(live.page?.variables.map((v, k) =>
+          [v.name, live.frame[live.places.variables + k]]) ?? []);
+        return [values, find(".problems").textContent, document.documentElement.scrollWidth - innerWidth];
+        """,
+    )
+    assert problems == ""
+    assert size <= 0
+    assert len(page.read_bytes()) < 1_500_000
+    csv = tmp_path / "run.csv"
+    subprocess.run(
+        [program(), "run", ROOT / "mechanisms" / f"{name}.toml", "-o", csv],
+        check=False,
+        capture_output=True,
+    )
+    rows = csv.read_text(encoding="utf-8").splitlines()
+    native = dict(zip(rows[0].split(","), map(float, rows[1].split(",")), strict=True))
+    positions = [v for v in values if v.rsplit(".", 1)[-1] in ("x", "y", "phi", "position")]
+    compared = [v for v in positions if v in native]
+    assert compared
+    for variable in compared:
+        a, b = values[variable], native[variable]
+        assert abs(a - b) < 1e-12 * (1 + abs(b)), variable
