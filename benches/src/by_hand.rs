@@ -10,6 +10,9 @@ use crate::motion::{Stepper, by_order};
 
 /// Outputs of three bodies: x y phi vx vy omega ax ay alpha of each.
 pub const OUTPUTS: usize = 27;
+/// Forces of the four-bar: effort, power, inertia and bias of its driver, x and y of the forces of
+/// its joints in the file's order, kinetic and potential energy.
+pub const FORCES: usize = 14;
 /// Outputs of two bodies, then of the contact: angle, velocity, acceleration.
 const CONTACT_OUTPUTS: usize = 21;
 
@@ -17,6 +20,7 @@ const CONTACT_OUTPUTS: usize = 21;
 // array. The functions read and write the arrays that they are given, and keep none.
 unsafe extern "C" {
     safe static FOUR_BAR: [f64; 4];
+    safe static FOUR_BAR_MASSES: [[f64; 4]; 3];
     safe static SLIDER_CRANK: [f64; 3];
     safe static CAM_ROLLER: [f64; 8];
     safe static CAM_FLAT: [f64; 8];
@@ -27,6 +31,15 @@ unsafe extern "C" {
         velocity: f64,
         acceleration: f64,
         out: &mut [f64; OUTPUTS],
+    );
+    safe fn four_bar_forces(
+        lengths: &[f64; 4],
+        masses: &[[f64; 4]; 3],
+        angle: f64,
+        velocity: f64,
+        acceleration: f64,
+        out: &mut [f64; OUTPUTS],
+        forces: &mut [f64; FORCES],
     );
     safe fn slider_crank_solve(
         lengths: &[f64; 3],
@@ -99,6 +112,56 @@ pub fn four_bar() -> ByHand<4, OUTPUTS> {
     ByHand::new(FOUR_BAR, |lengths, crank, out| {
         four_bar_solve(lengths, crank.value, crank.first(), crank.second(), out);
     })
+}
+
+/// The four-bar of [`with_masses`](crate::motion::with_masses), and its forces.
+#[derive(Clone, Debug)]
+pub struct FourBarForces {
+    out: [f64; OUTPUTS],
+    /// Forces of the last step.
+    pub forces: [f64; FORCES],
+}
+
+impl FourBarForces {
+    /// Makes room for the results.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            out: [0.0; OUTPUTS],
+            forces: [0.0; FORCES],
+        }
+    }
+}
+
+impl Default for FourBarForces {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Stepper for FourBarForces {
+    fn step(&mut self, drivers: &[Jet]) {
+        let crank = drivers[0];
+        four_bar_forces(
+            &FOUR_BAR,
+            &FOUR_BAR_MASSES,
+            crank.value,
+            crank.first(),
+            crank.second(),
+            &mut self.out,
+            &mut self.forces,
+        );
+    }
+
+    fn state(&self) -> [Vec<f64>; 3] {
+        by_order(&self.out)
+    }
+}
+
+/// Mass, inertia and centre of crank, coupler and rocker of [`FourBarForces`].
+#[must_use]
+pub fn four_bar_masses() -> [[f64; 4]; 3] {
+    FOUR_BAR_MASSES
 }
 
 /// The slider–crank of `mechanisms/slider_crank.toml`.

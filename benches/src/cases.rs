@@ -2,12 +2,14 @@
 
 use std::time::Duration;
 
-use crate::by_hand::{cam_flat, cam_knife, cam_roller, four_bar, slider_crank};
+use crate::by_hand::{
+    FourBarForces, cam_flat, cam_knife, cam_roller, four_bar, four_bar_masses, slider_crank,
+};
 use crate::chain::{Chain, Kind};
 use crate::clock::timed;
 use crate::cycle::{Cycle, Order};
 use crate::generated::{Ground, chain, scissor_lift};
-use crate::motion::{Moving, Stepper, Sweep, set_up};
+use crate::motion::{Loaded, Moving, Stepper, Sweep, set_up, with_masses};
 use crate::shipped;
 
 /// A program that does a number of steps and returns the time that they take.
@@ -75,6 +77,10 @@ impl Case {
         }
         Ok(match name {
             "four_bar" => repeat(Moving::new(shipped!("four_bar")), turn),
+            "four_bar_forces" => {
+                let text = with_masses(shipped!("four_bar"), &four_bar_masses());
+                repeat(Loaded::new(&text), turn)
+            }
             "slider_crank" => repeat(Moving::new(shipped!("slider_crank")), turn),
             "cam_roller" => repeat(Moving::new(shipped!("cam_roller")), turn),
             "cam_flat" => repeat(Moving::new(shipped!("cam_flat")), turn),
@@ -97,6 +103,7 @@ impl Case {
             "set_up_chain" => set_ups(chain(size, ground)),
             "set_up_lift" => set_ups(scissor_lift(size)),
             "c_four_bar" => repeat(four_bar(), turn),
+            "c_four_bar_forces" => repeat(FourBarForces::new(), turn),
             "c_slider_crank" => repeat(slider_crank(), turn),
             "c_cam_roller" => repeat(cam_roller(), turn),
             "c_cam_flat" => repeat(cam_flat(), turn),

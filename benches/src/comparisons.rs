@@ -18,7 +18,7 @@ pub struct Comparison {
 
 /// Label, case, yardstick and marks at each of [`sizes::SWEEPS`]. Newton takes two corrections in
 /// coarse steps and a closed form none, so that there only fine steps have a mark.
-const MECHANISMS: [(&str, &str, &str, [&str; 3]); 6] = [
+const MECHANISMS: [(&str, &str, &str, [&str; 3]); 8] = [
     ("four-bar", "four_bar", "c_four_bar", ["3", "", ""]),
     (
         "slider–crank",
@@ -39,6 +39,18 @@ const MECHANISMS: [(&str, &str, &str, [&str; 3]); 6] = [
         "parallelogram",
         "four_bar",
         ["2"; 3],
+    ),
+    (
+        "four-bar with all forces",
+        "four_bar_forces",
+        "c_four_bar_forces",
+        ["3", "", ""],
+    ),
+    (
+        "four-bar with / without forces of biela",
+        "four_bar_forces",
+        "four_bar",
+        ["1.6"; 3],
     ),
 ];
 

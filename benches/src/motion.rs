@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_3, TAU};
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, Path, Rates, Solver};
+use biela::kinematics::{Curve, ForceParts, Forces, KnownMotion, Path, Rates, Solver};
 use biela::mechanism::{Jet, Mechanism, Source};
 
 use crate::generated::{BAR, BAR_ANGLE};
@@ -164,5 +164,67 @@ impl Stepper for Moving {
             self.rates.acceleration(),
         ]
         .map(<[f64]>::to_vec)
+    }
+}
+
+/// Returns the text of a mechanism whose bodies, in the file's order, have masses: mass, inertia and
+/// centre of each.
+///
+/// # Panics
+///
+/// If the text has another number of bodies.
+#[must_use]
+pub fn with_masses(text: &str, masses: &[[f64; 4]]) -> String {
+    let mut masses = masses.iter();
+    let mut loaded = String::new();
+    for line in text.lines() {
+        loaded += line;
+        loaded.push('\n');
+        if line.starts_with("[bodies.") {
+            let [mass, inertia, x, y] = masses.next().expect("a mass for each body");
+            loaded += &format!("mass = {mass}\ninertia = {inertia}\ncenter = [{x}, {y}]\n");
+        }
+    }
+    assert!(masses.next().is_none(), "a body for each mass");
+    loaded
+}
+
+/// A mechanism that biela moves and of which it solves all forces.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The mechanism.
+    pub moving: Moving,
+    /// Forces of the last step.
+    pub forces: Forces,
+}
+
+impl Loaded {
+    /// Assembles it.
+    #[must_use]
+    pub fn new(text: &str) -> Self {
+        let moving = Moving::new(text);
+        Self {
+            forces: moving.solver.forces(),
+            moving,
+        }
+    }
+}
+
+impl Stepper for Loaded {
+    fn step(&mut self, drivers: &[Jet]) {
+        self.moving.step(drivers);
+        let Moving { solver, rates, .. } = &mut self.moving;
+        let motion = KnownMotion {
+            rates,
+            driver_rates: drivers,
+            inputs: &[],
+        };
+        solver
+            .solve_forces(motion, ForceParts::ALL, &mut self.forces)
+            .expect("the pose is regular");
+    }
+
+    fn state(&self) -> [Vec<f64>; 3] {
+        self.moving.state()
     }
 }

@@ -19,6 +19,23 @@ extern const struct four_bar FOUR_BAR;
 void four_bar_solve(const struct four_bar *lengths, double angle, double velocity,
                     double acceleration, double out[OUTPUTS]);
 
+/* Mass [kg], inertia about the centre of mass [kg m2], and the centre on the body's own axes [m]. */
+struct masses {
+    double mass, inertia, x, y;
+};
+
+/* Masses of crank, coupler and rocker. */
+extern const struct masses FOUR_BAR_MASSES[BODIES];
+
+/* Effort, power, inertia and bias of the crank's driver; the forces of the pins O2 on the crank, A
+ * on the coupler, B and O4 on the rocker, x and y of each; kinetic and potential energy. */
+enum { FORCES = 14 };
+
+/* Computes the motion as four_bar_solve does, and the forces under gravity along -y. */
+void four_bar_forces(const struct four_bar *lengths, const struct masses masses[BODIES],
+                     double angle, double velocity, double acceleration, double out[OUTPUTS],
+                     double forces[FORCES]);
+
 /* Lengths of a slider-crank [m]: crank and rod between the pins, and the height of the slider's
  * pin above the crank's pivot. */
 struct slider_crank {

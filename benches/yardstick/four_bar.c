@@ -6,8 +6,21 @@
 
 const struct four_bar FOUR_BAR = {.crank = 0.10, .coupler = 0.25, .rocker = 0.30, .base = 0.40};
 
-void four_bar_solve(const struct four_bar *lengths, double angle, double velocity,
-                    double acceleration, double out[OUTPUTS])
+const struct masses FOUR_BAR_MASSES[BODIES] = {
+    {.mass = 0.4, .inertia = 0.0006, .x = 0.03, .y = 0.0},
+    {.mass = 0.9, .inertia = 0.0070, .x = 0.12, .y = 0.02},
+    {.mass = 1.1, .inertia = 0.0090, .x = 0.14, .y = -0.01},
+};
+
+/* What the forces use of the motion besides its outputs. */
+struct motion {
+    double sine, cosine;   /* of the crank's angle */
+    double bx, by, cx, cy; /* coupler and rocker, from A and from the pivot to B */
+    double cross;          /* 1 / (c x b) */
+};
+
+static struct motion move(const struct four_bar *lengths, double angle, double velocity,
+                          double acceleration, double out[OUTPUTS])
 {
     const double b = lengths->coupler, c = lengths->rocker;
     double sine, cosine;
@@ -48,4 +61,75 @@ void four_bar_solve(const struct four_bar *lengths, double angle, double velocit
     out[18] = lengths->base, out[19] = 0.0, out[20] = atan2(cy, cx);
     out[21] = 0.0, out[22] = 0.0, out[23] = w2;
     out[24] = 0.0, out[25] = 0.0, out[26] = (rx * bx + ry * by) * cross;
+    return (struct motion){
+        .sine = sine, .cosine = cosine, .bx = bx, .by = by, .cx = cx, .cy = cy, .cross = cross,
+    };
+}
+
+void four_bar_solve(const struct four_bar *lengths, double angle, double velocity,
+                    double acceleration, double out[OUTPUTS])
+{
+    move(lengths, angle, velocity, acceleration, out);
+}
+
+/* A body's centre of mass from its origin, and the force and the moment about the origin that its
+ * acceleration and its weight demand. */
+struct demand {
+    double x, y, fx, fy, moment;
+};
+
+static struct demand demand(const struct masses *body, double cosine, double sine,
+                            const double motion[PER_BODY])
+{
+    const double gravity = 9.81;
+    const double x = cosine * body->x - sine * body->y, y = sine * body->x + cosine * body->y;
+    const double omega = motion[5], alpha = motion[8];
+    const double ax = motion[6] - alpha * y - omega * omega * x;
+    const double ay = motion[7] + alpha * x - omega * omega * y;
+    const double fx = body->mass * ax, fy = body->mass * (ay + gravity);
+    return (struct demand){
+        .x = x,
+        .y = y,
+        .fx = fx,
+        .fy = fy,
+        .moment = body->inertia * alpha + x * fy - y * fx,
+    };
+}
+
+void four_bar_forces(const struct four_bar *lengths, const struct masses masses[BODIES],
+                     double angle, double velocity, double acceleration, double out[OUTPUTS],
+                     double forces[FORCES])
+{
+    const struct motion at = move(lengths, angle, velocity, acceleration, out);
+    const double *crank = out, *coupler = out + PER_BODY, *rocker = out + 2 * PER_BODY;
+    const double ax = coupler[0], ay = coupler[1];
+    const double b = 1.0 / lengths->coupler, c = 1.0 / lengths->rocker;
+    const struct demand d0 = demand(&masses[0], at.cosine, at.sine, crank);
+    const struct demand d1 = demand(&masses[1], at.bx * b, at.by * b, coupler);
+    const struct demand d2 = demand(&masses[2], at.cx * c, at.cy * c, rocker);
+
+    /* Moments of the coupler about A and of the rocker about its pivot: -b x F = M1, c x F = M2. */
+    const double fx = (at.cx * d1.moment + at.bx * d2.moment) * at.cross;
+    const double fy = (at.cy * d1.moment + at.by * d2.moment) * at.cross;
+    const double pin_x = d1.fx + fx, pin_y = d1.fy + fy;
+    const double effort = d0.moment + ax * pin_y - ay * pin_x;
+
+    /* Rates of coupler and rocker per rate of the crank; twice the kinetic energy at unit rate. */
+    const double k1 = (ax * at.cy - ay * at.cx) * at.cross;
+    const double k2 = (ax * at.by - ay * at.bx) * at.cross;
+    const double vx = -ay - k1 * d1.y, vy = ax + k1 * d1.x;
+    const double inertia =
+        masses[0].inertia + masses[0].mass * (d0.x * d0.x + d0.y * d0.y) +
+        masses[1].inertia * k1 * k1 + masses[1].mass * (vx * vx + vy * vy) +
+        (masses[2].inertia + masses[2].mass * (d2.x * d2.x + d2.y * d2.y)) * k2 * k2;
+
+    forces[0] = effort, forces[1] = effort * velocity;
+    forces[2] = inertia, forces[3] = effort - inertia * acceleration;
+    forces[4] = d0.fx + pin_x, forces[5] = d0.fy + pin_y;
+    forces[6] = pin_x, forces[7] = pin_y;
+    forces[8] = fx, forces[9] = fy;
+    forces[10] = d2.fx - fx, forces[11] = d2.fy - fy;
+    forces[12] = 0.5 * inertia * velocity * velocity;
+    forces[13] = 9.81 * (masses[0].mass * d0.y + masses[1].mass * (ay + d1.y) +
+                         masses[2].mass * d2.y);
 }

@@ -4,6 +4,8 @@ export const SVG = "http://www.w3.org/2000/svg";
 // Length of the longest arrow and of its tip, in units of the picture.
 const LONGEST = 90;
 const TIP = 7;
+// Height of a line of letters over that of capitals.
+const LINE = 1.4;
 // Distance from the pointer within which a body is found [pixels].
 const NEAR = [0, 6, 12, 20, 28];
 
@@ -38,6 +40,9 @@ export class Picture {
       points: path.dataset.points.split(" ").map(Number),
     }));
     this.names = all(".names text");
+    // On small screens letters are larger, and names that would cover others are left out.
+    const group = this.svg.querySelector(".names");
+    this.larger = group ? parseFloat(getComputedStyle(group).fontSize) / Number(group.getAttribute("font-size")) : 1;
     this.widths = this.names.map((name) => name.getComputedTextLength());
     this.arrows = {};
     for (const kind of ["force", "acceleration", "velocity"]) {
@@ -86,19 +91,27 @@ export class Picture {
       }
       path.setAttribute("d", line);
     }
+    const seen = [];
     this.parts.labels.forEach((label, index) => {
       let [x, y] = outside(label.attachment, label.at);
-      const height = this.parts.capitals;
+      const [width, height] = [this.widths[index], this.larger * this.parts.capitals];
       if (label.side) {
         const { cos, sin } = place(label.attachment);
         const [u, v] = label.side.map((part) => part / 100);
         const side = [cos * u - sin * v, sin * u + cos * v];
-        const reach = 0.5 * (this.widths[index] * Math.abs(side[0]) + height * Math.abs(side[1]));
+        const reach = 0.5 * (width * Math.abs(side[0]) + height * Math.abs(side[1]));
         x += (label.gap + reach) * side[0];
         y += (label.gap + reach) * side[1];
       }
       this.names[index].setAttribute("x", fix(x));
       this.names[index].setAttribute("y", fix(y + 0.5 * height));
+      const covers = (other) =>
+        2 * Math.abs(x - other.x) < width + other.width && 2 * Math.abs(y - other.y) < LINE * (height + other.height);
+      const fits = !(this.larger > 1.01) || !seen.some(covers);
+      this.names[index].style.visibility = fits ? "" : "hidden";
+      if (fits) {
+        seen.push({ x, y, width, height });
+      }
     });
     const points = this.parts.points.map(({ attachment, at }) => outside(attachment, at));
     const rates = (shift) =>

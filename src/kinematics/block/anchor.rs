@@ -160,6 +160,19 @@ impl Anchor {
         }
     }
 
+    /// Adds a force at P, and its moment, to those on its body. Ground bears any.
+    #[inline(always)]
+    pub(super) fn load(self, frames: &[BodyPose], force: Vector2<f64>, side: &mut [f64]) {
+        if self.body == GROUND {
+            return;
+        }
+        let body = self.body as usize;
+        let own = &mut side[3 * body..3 * body + 3];
+        own[0] += force.x;
+        own[1] += force.y;
+        own[2] += frames[body].rotate(self.s).perp(&force);
+    }
+
     /// Returns Ṗ and P̈.
     #[inline(always)]
     pub(super) fn rates(

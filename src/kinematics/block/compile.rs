@@ -9,6 +9,7 @@ use petgraph::graph::{DiGraph, NodeIndex};
 use super::coupled::{CoupledBlock, column_owners};
 use super::elimination::EliminationOrder;
 use super::pinned::{self, PinnedBody};
+use super::revolute::Revolute;
 use super::rrp_dyad::{self, RrpDyad, SecondParts};
 use super::rrr_dyad::{self, RrrDyad, SideParts};
 use super::{BlockPlan, BlockSolver};
@@ -31,14 +32,6 @@ enum Recipe {
     RrrDyad(rrr_dyad::Parts),
     RrpDyad(rrp_dyad::Parts),
     CoupledBlock,
-}
-
-/// The two rows of a revolute: its points coincide.
-#[derive(Clone, Copy)]
-struct Revolute {
-    rows: [usize; 2],
-    from: MarkerId,
-    to: MarkerId,
 }
 
 /// The search for groups of blocks that a special solver knows.
@@ -234,6 +227,7 @@ impl Search<'_> {
                 angle: angle_marker,
                 reference,
                 sense,
+                pin_sense: revolute.sense_to(pin),
             }),
         })
     }
@@ -269,7 +263,7 @@ impl Search<'_> {
                 .find(|r| joins(r, body) && !joins(r, other))?;
             let (own, anchor) = self.own_first(*outer, body)?;
             Some((
-                outer.rows,
+                *outer,
                 SideParts {
                     body,
                     outer: own,
@@ -278,10 +272,15 @@ impl Search<'_> {
                 },
             ))
         };
-        let (rows_a, side_a) = side(a, b, inner_a)?;
-        let (rows_b, side_b) = side(b, a, inner_b)?;
-        let [r0, r1] = rows_a;
-        let [r2, r3] = rows_b;
+        let (outer_a, side_a) = side(a, b, inner_a)?;
+        let (outer_b, side_b) = side(b, a, inner_b)?;
+        let senses = [
+            outer_a.sense_to(side_a.outer),
+            outer_b.sense_to(side_b.outer),
+            inner.sense_to(inner_a),
+        ];
+        let [r0, r1] = outer_a.rows;
+        let [r2, r3] = outer_b.rows;
         let [r4, r5] = inner.rows;
         Some(Group {
             blocks,
@@ -289,6 +288,7 @@ impl Search<'_> {
                 rows: [r0, r1, r2, r3, r4, r5],
                 columns: [3 * a, 3 * a + 1, 3 * a + 2, 3 * b, 3 * b + 1, 3 * b + 2],
                 sides: [side_a, side_b],
+                senses,
             }),
         })
     }
@@ -379,6 +379,7 @@ impl Search<'_> {
                     carried,
                     pin,
                     partner,
+                    revolute: *other,
                     row,
                     angle: marker,
                     reference,
@@ -397,6 +398,7 @@ impl Search<'_> {
                 body: a,
                 pin,
                 anchor,
+                outer: *outer,
                 second,
                 row,
                 projection,

@@ -1,6 +1,9 @@
 //! The factorised Jacobian, for any right-hand side, plain and transposed.
 
+use std::collections::BTreeSet;
+
 use super::elimination::EliminationOrder;
+use super::{BlockPlan, BlockSolver};
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::Gradient;
 use crate::kinematics::linear::{Factors, Lu, PivotOrder};
@@ -14,6 +17,8 @@ use crate::kinematics::system::System;
 #[derive(Debug)]
 pub(in crate::kinematics) struct JacobianFactors {
     blocks: Vec<BlockFactors>,
+    /// For each block solver of the plan its blocks, last first.
+    of_solvers: Vec<Vec<usize>>,
     /// The block that finds each unknown, and the index of the unknown there.
     owners: Vec<(usize, usize)>,
     gradients: Vec<Gradient>,
@@ -35,7 +40,11 @@ struct BlockFactors {
 
 impl JacobianFactors {
     /// Makes the storage.
-    pub(in crate::kinematics) fn new(system: &System, structure: &Structure) -> Self {
+    pub(in crate::kinematics) fn new(
+        system: &System,
+        structure: &Structure,
+        plan: &BlockPlan,
+    ) -> Self {
         let mut owners = vec![(usize::MAX, 0); system.unknowns()];
         let blocks = structure.blocks().iter().enumerate().map(|(index, block)| {
             let order = EliminationOrder::new(system, block);
@@ -55,8 +64,14 @@ impl JacobianFactors {
             }
         });
         let blocks = blocks.collect();
+        let of_solver = |solver: &BlockSolver| {
+            let columns = solver.columns().iter();
+            let own: BTreeSet<usize> = columns.map(|&column| structure.block_of(column)).collect();
+            own.into_iter().rev().collect()
+        };
         let mut factors = Self {
             blocks,
+            of_solvers: plan.blocks.iter().map(of_solver).collect(),
             owners,
             gradients: vec![Gradient::new(); system.equations().len()],
         };
@@ -92,35 +107,38 @@ impl JacobianFactors {
         system: &System,
         at: &Configuration,
     ) -> Result<(), Rejected> {
-        let Self {
-            blocks,
-            owners,
-            gradients,
-        } = self;
-        for (gradient, equation) in gradients.iter_mut().zip(system.equations()) {
+        for (gradient, equation) in self.gradients.iter_mut().zip(system.equations()) {
             gradient.clear();
             equation.constraint.gradient(at, gradient);
         }
+        (0..self.blocks.len()).try_for_each(|index| self.factorise_block(index, system, at))
+    }
+
+    /// Factorises a block, whose rows have their gradients.
+    fn factorise_block(
+        &mut self,
+        index: usize,
+        system: &System,
+        at: &Configuration,
+    ) -> Result<(), Rejected> {
         let size = at.size();
-        for (index, block) in blocks.iter_mut().enumerate() {
-            block.lu.clear();
-            block.upstream.clear();
-            for (local, &row) in block.rows.iter().enumerate() {
-                let row_scale = system.equations()[row].row_scale(at);
-                for (column, partial) in gradients[row].entries() {
-                    let value = partial * row_scale * system.column_scale(column, size);
-                    match owners[column] {
-                        (owner, own) if owner == index => block.lu.add(local, own, value),
-                        _ if value != 0.0 => block.upstream.push((local, column, value)),
-                        _ => {}
-                    }
+        let block = &mut self.blocks[index];
+        block.lu.clear();
+        block.upstream.clear();
+        for (local, &row) in block.rows.iter().enumerate() {
+            let row_scale = system.equations()[row].row_scale(at);
+            for (column, partial) in self.gradients[row].entries() {
+                let value = partial * row_scale * system.column_scale(column, size);
+                match self.owners[column] {
+                    (owner, own) if owner == index => block.lu.add(local, own, value),
+                    _ if value != 0.0 => block.upstream.push((local, column, value)),
+                    _ => {}
                 }
             }
-            let fits = block.lu.use_pivots(&block.first_pivots);
-            debug_assert!(fits, "they were chosen for this matrix");
-            block.lu.factorise(0.0).map_err(|_| Rejected)?;
         }
-        Ok(())
+        let fits = block.lu.use_pivots(&block.first_pivots);
+        debug_assert!(fits, "they were chosen for this matrix");
+        block.lu.factorise(0.0).map_err(|_| Rejected)
     }
 
     /// Returns the gradient of a row at the configuration of the factorisation.
@@ -161,19 +179,65 @@ impl JacobianFactors {
         side: &mut [f64],
         multipliers: &mut [f64],
     ) {
-        let size = at.size();
         multipliers.fill(0.0);
-        for block in self.blocks.iter_mut().rev() {
-            for (work, &column) in block.work.iter_mut().zip(&block.columns) {
-                *work = side[column] * system.column_scale(column, size);
+        for index in (0..self.blocks.len()).rev() {
+            self.solve_block_transposed(index, system, at, side, multipliers);
+        }
+    }
+
+    /// Solves Phi_qᵀ λ = `side` as [`solve_transposed`](Self::solve_transposed) does, by the closed
+    /// forms of the plan where there are some; factorises the other blocks. The factors are then
+    /// those of several configurations.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] where one of these is singular to the last bit.
+    pub(in crate::kinematics) fn solve_transposed_at(
+        &mut self,
+        plan: &BlockPlan,
+        system: &System,
+        at: &Configuration,
+        side: &mut [f64],
+        multipliers: &mut [f64],
+    ) -> Result<(), Rejected> {
+        multipliers.fill(0.0);
+        for (place, solver) in plan.blocks.iter().enumerate().rev() {
+            if solver.solve_transposed(system, at, side, multipliers) {
+                continue;
             }
-            block.lu.solve_transposed(&mut block.work);
-            for &(local, column, value) in &block.upstream {
-                side[column] -= value * block.work[local] / system.column_scale(column, size);
+            for own in 0..self.of_solvers[place].len() {
+                let index = self.of_solvers[place][own];
+                for &row in &self.blocks[index].rows {
+                    let gradient = &mut self.gradients[row];
+                    gradient.clear();
+                    system.equations()[row].constraint.gradient(at, gradient);
+                }
+                self.factorise_block(index, system, at)?;
+                self.solve_block_transposed(index, system, at, side, multipliers);
             }
-            for (&row, scaled) in block.rows.iter().zip(&block.work) {
-                multipliers[row] = scaled * system.equations()[row].row_scale(at);
-            }
+        }
+        Ok(())
+    }
+
+    fn solve_block_transposed(
+        &mut self,
+        index: usize,
+        system: &System,
+        at: &Configuration,
+        side: &mut [f64],
+        multipliers: &mut [f64],
+    ) {
+        let size = at.size();
+        let block = &mut self.blocks[index];
+        for (work, &column) in block.work.iter_mut().zip(&block.columns) {
+            *work = side[column] * system.column_scale(column, size);
+        }
+        block.lu.solve_transposed(&mut block.work);
+        for &(local, column, value) in &block.upstream {
+            side[column] -= value * block.work[local] / system.column_scale(column, size);
+        }
+        for (&row, scaled) in block.rows.iter().zip(&block.work) {
+            multipliers[row] = scaled * system.equations()[row].row_scale(at);
         }
     }
 }

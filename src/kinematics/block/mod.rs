@@ -26,6 +26,7 @@ mod interpolated;
 mod jacobian;
 mod pinned;
 mod reach;
+mod revolute;
 mod rrp_dyad;
 mod rrr_dyad;
 mod solve;

@@ -8,7 +8,7 @@ use super::step::{BlockState, Step};
 use crate::kinematics::certificate::{ChordBound, Pivots};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::newton::{Correction, Rejected};
-use crate::kinematics::system::{Target, Targets};
+use crate::kinematics::system::{System, Target, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
 /// x, y and phi of one body: phi from an angle to a body found before, x and y from a point that
@@ -40,6 +40,8 @@ pub(super) struct Parts {
     pub(super) angle: MarkerId,
     pub(super) reference: MarkerId,
     pub(super) sense: f64,
+    /// +1 where the revolute counts from the anchor to the pin, otherwise −1.
+    pub(super) pin_sense: f64,
 }
 
 impl PinnedBody {
@@ -165,5 +167,29 @@ impl SolveBlock for PinnedBody {
         let column = self.columns[0];
         velocity[column..column + 3].copy_from_slice(&[v.x, v.y, omega]);
         acceleration[column..column + 3].copy_from_slice(&[a.x, a.y, alpha]);
+    }
+
+    /// The pin bears the force and the angle's row the moment about the pin.
+    fn solve_transposed(
+        &self,
+        _system: &System,
+        at: &Configuration,
+        side: &mut [f64],
+        multipliers: &mut [f64],
+    ) -> bool {
+        let frames = at.frames();
+        let parts = &self.parts;
+        let [fx, fy, moment] = self.columns.map(|column| side[column]);
+        let force = Vector2::new(fx, fy);
+        let torque = moment - frames[parts.body].rotate(self.s).perp(&force);
+        let [x, y, angle] = parts.rows;
+        multipliers[x] = parts.pin_sense * fx;
+        multipliers[y] = parts.pin_sense * fy;
+        multipliers[angle] = parts.sense * torque;
+        self.anchor.load(frames, force, side);
+        if let Some(body) = self.reference {
+            side[3 * body + 2] += torque;
+        }
+        true
     }
 }

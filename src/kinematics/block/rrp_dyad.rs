@@ -4,6 +4,7 @@
 mod branches;
 mod certify;
 mod equation;
+mod forces;
 mod parameters;
 mod rates;
 
@@ -13,6 +14,7 @@ use certify::Before;
 use equation::Known;
 
 use super::anchor::{Anchor, compact};
+use super::revolute::Revolute;
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
@@ -20,7 +22,7 @@ use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::constraint::Projection;
 use crate::kinematics::error::Proof;
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
-use crate::kinematics::system::Targets;
+use crate::kinematics::system::{System, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
 /// x, y and phi of body a, and of body b if there is one. All follow from the angle of a, for
@@ -105,6 +107,7 @@ pub(super) struct Parts {
     pub(super) body: usize,
     pub(super) pin: MarkerId,
     pub(super) anchor: MarkerId,
+    pub(super) outer: Revolute,
     pub(super) second: Option<SecondParts>,
     /// The row of the projection, and its relation.
     pub(super) row: usize,
@@ -120,6 +123,7 @@ pub(super) struct SecondParts {
     /// Its point in that revolute, and the partner of that point.
     pub(super) pin: MarkerId,
     pub(super) partner: MarkerId,
+    pub(super) revolute: Revolute,
     /// The row of the angle, its marker on body b, its other marker, and +1 where the angle counts
     /// from the other marker to b, otherwise −1.
     pub(super) row: usize,
@@ -302,6 +306,17 @@ impl SolveBlock for RrpDyad {
             return Err(Rejected);
         }
         Ok(())
+    }
+
+    fn solve_transposed(
+        &self,
+        system: &System,
+        at: &Configuration,
+        side: &mut [f64],
+        multipliers: &mut [f64],
+    ) -> bool {
+        forces::solve_transposed(self, system, at, side, multipliers);
+        true
     }
 
     fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]) {

@@ -14,7 +14,7 @@ use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
 use crate::kinematics::error::Proof;
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
-use crate::kinematics::system::Targets;
+use crate::kinematics::system::{System, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
 /// x, y and phi of two bodies: P_a + A_a l_a = P_b + A_b l_b, both P found before. Newton–Raphson
@@ -54,6 +54,9 @@ pub(super) struct Parts {
     pub(super) rows: [usize; 6],
     pub(super) columns: [usize; 6],
     pub(super) sides: [SideParts; 2],
+    /// For each pair of rows, +1 where it counts from the anchor to the side or from the second side
+    /// to the first, otherwise −1.
+    pub(super) senses: [f64; 3],
 }
 
 /// The body and markers of one side of a dyad.
@@ -480,6 +483,39 @@ impl SolveBlock for RrrDyad {
             return Err(Rejected);
         }
         Ok(())
+    }
+
+    /// The moments of each side about its outer point give the force in the inner revolute; the
+    /// outer ones bear the rest.
+    fn solve_transposed(
+        &self,
+        _system: &System,
+        at: &Configuration,
+        side: &mut [f64],
+        multipliers: &mut [f64],
+    ) -> bool {
+        let frames = at.frames();
+        let [a, b] = &self.sides;
+        let links = [a, b].map(|side| frames[side.body as usize].rotate(side.l));
+        let loads = [a, b].map(|own| {
+            let column = 3 * own.body as usize;
+            let force = Vector2::new(side[column], side[column + 1]);
+            let arm = frames[own.body as usize].rotate(own.s);
+            (force, side[column + 2] - arm.perp(&force))
+        });
+        let [(force_a, moment_a), (force_b, moment_b)] = loads;
+        // F on the first side: d_a × F is the one moment, d_b × F the negative of the other.
+        let inner = (links[1] * moment_a + links[0] * moment_b) / links[0].perp(&links[1]);
+        let outer = [force_a - inner, force_b + inner];
+        let Parts { rows, senses, .. } = &*self.parts;
+        let forces = [outer[0], outer[1], inner];
+        for ((rows, sense), force) in rows.chunks_exact(2).zip(senses).zip(forces) {
+            multipliers[rows[0]] = sense * force.x;
+            multipliers[rows[1]] = sense * force.y;
+        }
+        a.anchor.load(frames, outer[0], side);
+        b.anchor.load(frames, outer[1], side);
+        true
     }
 
     /// Solves Ṗ_a + omega_a perp(d_a) = Ṗ_b + omega_b perp(d_b) and its derivative in time.

@@ -7,7 +7,7 @@ use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::error::Proof;
 use crate::kinematics::newton::{Correction, Rejected};
-use crate::kinematics::system::Targets;
+use crate::kinematics::system::{System, Targets};
 use crate::mechanism::Jet;
 
 /// The branches of a block behind the blocks before it.
@@ -116,6 +116,20 @@ pub(in crate::kinematics) trait SolveBlock:
     /// Writes the rates of its unknowns for these rates of the drivers (`first` and `second` of
     /// each), by Eq. 3.6.10 and 3.6.11, at the pose at which it is factorised.
     fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]);
+
+    /// Solves its columns of Phi_qᵀ λ = `side` for λ of its rows, the blocks after it being solved,
+    /// and moves what the bodies before it bear to the other side. Returns false, with nothing done,
+    /// if it has no closed form for that. Allocates nothing.
+    fn solve_transposed(
+        &self,
+        system: &System,
+        at: &Configuration,
+        side: &mut [f64],
+        multipliers: &mut [f64],
+    ) -> bool {
+        let _ = (system, at, side, multipliers);
+        false
+    }
 
     /// Returns the scaled reciprocal condition of its Jacobian: 1 is best, 0 singular.
     fn rcond(&mut self) -> f64 {

@@ -25,7 +25,6 @@ impl SelfStresses {
         redundant: &[usize],
         multipliers: &mut [f64],
     ) {
-        let mechanism = system.mechanism();
         let reactions = rows.reported_len();
         self.side.resize(system.unknowns(), 0.0);
         self.reactions.resize(reactions, 0.0);
@@ -40,7 +39,7 @@ impl SelfStresses {
             }
             factors.solve_transposed(system, at, &mut self.side, stress);
             stress[row] = 1.0;
-            rows.report(mechanism, factors, at, stress, made);
+            rows.report(system, at, stress, made);
             // Twice, which leaves rounding only.
             for _ in 0..2 {
                 for (other, others_made) in before.iter() {
@@ -54,7 +53,7 @@ impl SelfStresses {
                 *entry /= norm;
             }
         }
-        rows.report(mechanism, factors, at, multipliers, &mut self.reactions);
+        rows.report(system, at, multipliers, &mut self.reactions);
         for (stress, made) in &self.stresses {
             let part = dot(&self.reactions, made);
             subtract(part, stress, multipliers);

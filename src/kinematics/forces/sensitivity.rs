@@ -15,6 +15,7 @@ use crate::kinematics::analysis::Sensitivity;
 use crate::kinematics::constraint::{Constraint, Gradient};
 use crate::kinematics::error::Error;
 use crate::kinematics::model::Model;
+use crate::kinematics::newton::Rejected;
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
 use crate::kinematics::variation::{Varied, VariedConfiguration};
@@ -119,6 +120,9 @@ impl Forces {
         let rows: Vec<Entries> = equations
             .map(|equation| probe.entries(&*equation.constraint, state))
             .collect();
+        self.factors
+            .factorise(system, &state.at)
+            .map_err(|Rejected| SINGULAR_HERE)?;
         let multipliers = self.varied_multipliers(system, state, at, &rows, &demand)?;
         let drivers = self.varied_drivers(system, state, sensitivity, &masses, &rows, &multipliers);
         let joints = 0..mechanism.joints.len();

@@ -124,7 +124,7 @@ impl Forces {
             }),
             applied: AppliedForces::new(&mechanism, &places),
             inputs,
-            factors: JacobianFactors::new(system, &model.structure),
+            factors: JacobianFactors::new(system, &model.structure, &model.plan),
             set_aside: model.redundant.now.clone(),
             contacts: Contact::all(&mechanism, &rows),
             rows,
@@ -383,34 +383,35 @@ impl Forces {
     ) -> Result<(), Error> {
         let system = &model.system;
         if self.set_aside != model.redundant.now {
-            self.factors = JacobianFactors::new(system, &model.structure);
+            self.factors = JacobianFactors::new(system, &model.structure, &model.plan);
             self.set_aside.clone_from(&model.redundant.now);
         }
-        self.factors
-            .factorise(system, &state.at)
-            .map_err(|Rejected| SINGULAR_HERE)?;
         self.demand(state, motion.rates.velocity(), motion.rates.acceleration());
-        let multipliers = &mut self.results.multipliers;
-        self.factors
-            .solve_transposed(system, &state.at, &mut self.work.demand, multipliers);
-        if self.is_of_least_norm() {
+        let is_of_least_norm = self.is_of_least_norm();
+        let (demand, multipliers) = (&mut self.work.demand, &mut self.results.multipliers);
+        if is_of_least_norm {
+            self.factors
+                .factorise(system, &state.at)
+                .map_err(|Rejected| SINGULAR_HERE)?;
+            self.factors
+                .solve_transposed(system, &state.at, demand, multipliers);
             self.self_stresses.minimise_norm(
                 system,
                 (&self.rows, &mut self.factors),
                 &state.at,
                 &self.set_aside,
-                &mut self.results.multipliers,
+                multipliers,
             );
+        } else {
+            self.factors
+                .solve_transposed_at(&model.plan, system, &state.at, demand, multipliers)
+                .map_err(|Rejected| SINGULAR_HERE)?;
         }
         let mut sum = 0.0;
         for (joint, reaction) in self.results.reactions.iter_mut().enumerate() {
-            *reaction = self.rows.reaction(
-                &self.mechanism,
-                &self.factors,
-                &state.at,
-                joint,
-                &self.results.multipliers,
-            );
+            *reaction = self
+                .rows
+                .reaction(system, &state.at, joint, &self.results.multipliers);
             sum += reaction.iter().sum::<f64>();
         }
         if sum.is_finite() && self.results.multipliers.iter().all(|l| l.is_finite()) {

@@ -1,7 +1,7 @@
 //! Force and torque that a joint exerts on the body of its second marker.
 
-use crate::kinematics::block::JacobianFactors;
 use crate::kinematics::configuration::{Configuration, perp};
+use crate::kinematics::constraint::Gradient;
 use crate::kinematics::element::Element;
 use crate::kinematics::system::System;
 use crate::mechanism::{BodyId, CamFollower, Joint, JointKind, Mechanism, Number};
@@ -145,23 +145,32 @@ impl ReactionRows {
     /// Returns the force and the torque that a joint exerts on its second body for these λ.
     pub(super) fn reaction(
         &self,
-        mechanism: &Mechanism,
-        factors: &JacobianFactors,
+        system: &System,
         at: &Configuration,
         joint: usize,
         multipliers: &[f64],
     ) -> [f64; 3] {
+        let mechanism = system.mechanism();
         let Joint { kind, to, .. } = &mechanism.joints[joint];
         let rows = &self.joints[joint];
-        if Reported::of(kind) == Reported::Torque {
+        match (kind, &rows[..]) {
+            // The rows have the entry one at the point of the second marker.
+            (JointKind::Revolute, &[x, y]) => return [multipliers[x], multipliers[y], 0.0],
             // The row has the entry one at the second wheel.
-            return [0.0, 0.0, multipliers[rows[0]]];
+            (JointKind::Gear { .. } | JointKind::Belt { .. }, &[row]) => {
+                return [0.0, 0.0, multipliers[row]];
+            }
+            _ => {}
         }
         let to = at.marker(*to);
         let mut wrench = Wrench::new(to.body);
         let origin = |body: usize| at.frames()[body].origin.into();
+        let mut gradient = Gradient::new();
         for &row in rows {
-            for (column, partial) in factors.gradient(row).entries() {
+            gradient.clear();
+            let constraint = &system.equations()[row].constraint;
+            constraint.gradient(at, &mut gradient);
+            for (column, partial) in gradient.entries() {
                 let force = multipliers[row] * partial;
                 wrench.add(column, force, mechanism.bodies.len(), origin);
             }
@@ -173,16 +182,15 @@ impl ReactionRows {
     /// joint does not exert are zero.
     pub(super) fn report(
         &self,
-        mechanism: &Mechanism,
-        factors: &JacobianFactors,
+        system: &System,
         at: &Configuration,
         multipliers: &[f64],
         to: &mut [f64],
     ) {
         let (of_joints, of_constraints) = to.split_at_mut(3 * self.joints.len());
         for (joint, to) in of_joints.chunks_exact_mut(3).enumerate() {
-            let reported = Reported::of(&mechanism.joints[joint].kind);
-            let reaction = self.reaction(mechanism, factors, at, joint, multipliers);
+            let reported = Reported::of(&system.mechanism().joints[joint].kind);
+            let reaction = self.reaction(system, at, joint, multipliers);
             for (component, value) in reaction.into_iter().enumerate() {
                 to[component] = if reported.has(component) { value } else { 0.0 };
             }
