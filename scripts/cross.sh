@@ -47,6 +47,8 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
     local builder=$1 target=$2 flags='' folder
     shift 2
     unset RUSTFLAGS CARGO_ENCODED_RUSTFLAGS
+    # Only tests need the standard's headers.
+    export BIELA_FMI_HEADERS=
     local rustc=rustc sources='' build_std=() directory
     directory=$(cross_folder "$target")
     if ! has_target "$target"; then

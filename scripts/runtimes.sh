@@ -18,8 +18,8 @@ LIMIT=2666666
 
 # Builds the library for a target and prints its path.
 library() { # TARGET FILE
-    cross_build 'cargo zigbuild' "$1" --package biela-runtime >&2
-    cross_built "$1" "$2"
+    # A failure counts here: `set -e` does not hold in the substitution that calls this.
+    cross_build 'cargo zigbuild' "$1" --package biela-runtime >&2 && cross_built "$1" "$2"
 }
 
 # Prints a digest of all that a library is built from.
@@ -65,10 +65,22 @@ build() { # PLATFORM
     # Before the build: the sources may change meanwhile.
     BUILT_FROM=$(sources)
     case $1 in
-    linux64) path=$(library x86_64-unknown-linux-gnu libbiela_runtime.so) && put linux64/biela.so "$path" ;;
-    aarch64-linux) path=$(library aarch64-unknown-linux-gnu libbiela_runtime.so) && put aarch64-linux/biela.so "$path" ;;
-    win64) path=$(library x86_64-pc-windows-gnu biela_runtime.dll) && put win64/biela.dll "$path" ;;
-    aarch64-darwin) path=$(library aarch64-apple-darwin libbiela_runtime.dylib) && put aarch64-darwin/biela.dylib "$path" ;;
+    linux64)
+        path=$(library x86_64-unknown-linux-gnu libbiela_runtime.so)
+        put linux64/biela.so "$path"
+        ;;
+    aarch64-linux)
+        path=$(library aarch64-unknown-linux-gnu libbiela_runtime.so)
+        put aarch64-linux/biela.so "$path"
+        ;;
+    win64)
+        path=$(library x86_64-pc-windows-gnu biela_runtime.dll)
+        put win64/biela.dll "$path"
+        ;;
+    aarch64-darwin)
+        path=$(library aarch64-apple-darwin libbiela_runtime.dylib)
+        put aarch64-darwin/biela.dylib "$path"
+        ;;
     darwin64)
         path=$(library aarch64-apple-darwin libbiela_runtime.dylib)
         other=$(library x86_64-apple-darwin libbiela_runtime.dylib)

@@ -26,11 +26,10 @@ pub(crate) struct Film {
 }
 
 impl Film {
-    /// Returns an empty film of a run of so many rows.
-    pub(crate) fn new(mechanism: &Mechanism, rows: usize, parameters: &[f64]) -> Self {
-        let columns = Column::all(mechanism).into_iter();
+    /// Returns an empty film of a run of so many rows, which tells the columns in numbers.
+    pub(crate) fn new(columns: Vec<Column>, rows: usize, parameters: &[f64]) -> Self {
         Self {
-            columns: columns.filter(Column::is_told).collect(),
+            columns,
             parameters: parameters.to_vec(),
             stride: rows.div_ceil(MOST_MOMENTS).max(1),
             times: Vec::new(),

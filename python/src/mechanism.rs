@@ -83,6 +83,8 @@ pub(crate) struct Mechanism {
     warnings: Vec<Diagnostic>,
     /// The pose of the file's own values, once it was asked for.
     home: OnceLock<Arc<Home>>,
+    /// The columns of a run, once they were asked for.
+    columns: OnceLock<Vec<Column>>,
 }
 
 #[pymethods]
@@ -103,6 +105,7 @@ impl Mechanism {
                 model: Arc::new(model),
                 warnings,
                 home: OnceLock::new(),
+                columns: OnceLock::new(),
             }),
             Err(errors) => {
                 let text = cli::render::render(&source, &errors, false);
@@ -213,10 +216,10 @@ impl Mechanism {
 
     /// Returns the names and units of the columns of a run.
     #[getter]
-    fn columns(&self) -> Vec<(String, &'static str)> {
-        let columns = columns(&self.model).into_iter();
+    fn columns(&self, py: Python<'_>) -> Vec<(String, &'static str)> {
+        let columns = py.detach(|| self.all_columns()).iter();
         columns
-            .map(|column| (column.name, column.unit.name))
+            .map(|column| (column.name.clone(), column.unit.name))
             .collect()
     }
 
@@ -241,7 +244,9 @@ impl Mechanism {
             let parameters = scenario.parameters(parameters)?;
             let by = by.iter().map(|name| self.free(name));
             let by: Vec<ParameterId> = by.collect::<Result<_, _>>()?;
-            run(&scenario, &parameters, &self.chosen(&columns), &by)
+            let told = self.all_columns().iter().filter(|column| column.is_told());
+            let told = told.cloned().collect();
+            run(&scenario, &parameters, &self.chosen(&columns), &by, told)
         })
         .map_err(|failure: Failure| failure.raise(py))
     }
@@ -283,7 +288,7 @@ impl Mechanism {
                 let names: Vec<&str> = names.collect();
                 Failure::Usage(cli::unknown_name("driver", driver, &names))
             })?;
-            let mut runner = Runner::new(&scenario)?;
+            let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&scenario.parameters(parameters)?)?;
             Ok((id, runner.solver.range(id, &RangeSettings::default())))
         });
@@ -320,7 +325,7 @@ impl Mechanism {
     ) -> PyResult<ModesRow> {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
-            let mut runner = Runner::new(&scenario)?;
+            let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&scenario.parameters(parameters)?)?;
             let modes = runner.solver.modes()?;
             let count = 3 * self.model.bodies.len();
@@ -343,7 +348,7 @@ impl Mechanism {
     ) -> PyResult<String> {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
-            let mut runner = Runner::new(&scenario)?;
+            let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&scenario.parameters(parameters)?)?;
             let scene = Scene::new(&mut runner.solver, traces);
             let sheet = Sheet::new(&scene, &runner.solver.pose().q);
@@ -369,7 +374,7 @@ impl Mechanism {
             match estimates {
                 Some(q) => pose.q[..q.len()].copy_from_slice(&q),
                 None => {
-                    let mut runner = Runner::new(&scenario)?;
+                    let mut runner = Runner::new(&scenario, &[])?;
                     let values = scenario.parameters(parameters)?;
                     runner.start(&values)?;
                     pose = runner.solver.pose().clone();
@@ -430,8 +435,13 @@ impl Mechanism {
         Ok(id)
     }
 
+    /// Returns the columns of a run; reactions that are indeterminate take an assembly to find.
+    fn all_columns(&self) -> &[Column] {
+        self.columns.get_or_init(|| Column::all(&self.model))
+    }
+
     fn chosen(&self, indices: &[usize]) -> Vec<Column> {
-        let columns = columns(&self.model);
+        let columns = self.all_columns();
         indices
             .iter()
             .map(|index| columns[*index].clone())
@@ -448,13 +458,6 @@ impl Mechanism {
             End::NotFound { value } => ("not found", Some(*value), text, None),
         }
     }
-}
-
-/// Returns the columns of the motion. Forces are left out.
-fn columns(model: &Model) -> Vec<Column> {
-    let mut columns = Column::all(model);
-    columns.retain(|column| !column.is_force());
-    columns
 }
 
 fn source(name: &str, text: Option<String>, path: Option<PathBuf>) -> Result<Source, Failure> {

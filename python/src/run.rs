@@ -55,7 +55,8 @@ impl Run {
 const REASSEMBLED: &str = "no continuous motion leads from the file's own pose to these values: \
                            assembled there from the estimates, possibly in another assembly mode";
 
-/// Runs a mechanism; records the columns, and their derivatives by the parameters.
+/// Runs a mechanism; records the columns, and their derivatives by the parameters. The film tells
+/// the columns `told`.
 ///
 /// # Errors
 ///
@@ -65,15 +66,16 @@ pub(crate) fn run(
     parameters: &[f64],
     columns: &[Column],
     by: &[ParameterId],
+    told: Vec<Column>,
 ) -> Result<Run, Failure> {
-    let mut runner = Runner::new(scenario)?;
+    let mut runner = Runner::new(scenario, columns)?;
     let rows = scenario.times.len();
     let began = runner.start(parameters)?;
     let mut result = Run {
         mechanism: scenario.driven.clone(),
         values: Vec::with_capacity(rows * columns.len()),
         gradient: Vec::with_capacity(rows * columns.len() * by.len()),
-        film: Film::new(&scenario.driven, rows, parameters),
+        film: Film::new(told, rows, parameters),
         rows: 0,
         stop: None,
         notices: Vec::new(),
@@ -94,20 +96,12 @@ pub(crate) fn run(
             }
             result.notices.extend(runner.notices());
         }
-        let Runner {
-            solver,
-            rates,
-            driver_rates,
-            ..
-        } = &mut runner;
-        let values = columns.iter().map(|c| c.value(solver, rates, driver_rates));
+        result.notices.extend(runner.lift_offs());
+        let values = columns.iter().map(|column| runner.value(column));
         result.values.extend(values);
         for parameter in by {
             direction.parameters[parameter.index()] = 1.0;
-            let change = solver.sensitivity(rates, driver_rates, &direction)?;
-            result
-                .gradient
-                .extend(columns.iter().map(|c| c.change(&scenario.own, &change)));
+            runner.differentiate(columns, &direction, &mut result.gradient)?;
             direction.parameters[parameter.index()] = 0.0;
         }
         result.film.add(row, &runner);

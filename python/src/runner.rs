@@ -1,6 +1,10 @@
 //! A mechanism that moves along the samples and motions of its drivers.
 
-use biela::kinematics::{Carryover, Curve, Path, Rates, Solver, Start};
+use biela::fmi::{Column, ColumnSource};
+use biela::kinematics::{
+    Carryover, Curve, Direction, Error, ForceParts, ForceQuantity, ForceSensitivity, Forces,
+    KnownMotion, Path, Rates, Solver, Start,
+};
 use biela::mechanism::{DriverId, Jet, Motion, ParameterId};
 
 use crate::error::Failure;
@@ -15,9 +19,18 @@ pub(crate) struct Runner<'a> {
     pub(crate) rates: Rates,
     /// Value, velocity and acceleration of each driver.
     pub(crate) driver_rates: Vec<Jet>,
+    forces: Option<ActingForces>,
     path: Path,
     carryover: Carryover,
     near_singular: bool,
+}
+
+/// Forces of a motion. Those that are inputs of the FMU are zero.
+struct ActingForces {
+    forces: Forces,
+    inputs: Vec<f64>,
+    /// Whether each contact pulls.
+    lifted: Vec<bool>,
 }
 
 /// The method that found the first pose of a motion.
@@ -30,10 +43,20 @@ pub(crate) enum Beginning {
 }
 
 impl<'a> Runner<'a> {
-    pub(crate) fn new(scenario: &'a Scenario) -> Result<Self, Failure> {
+    /// Makes a runner; with a column of forces it solves them too.
+    pub(crate) fn new(scenario: &'a Scenario, columns: &[Column]) -> Result<Self, Failure> {
         let home = Solver::new(scenario.own.clone())?;
         let solver = Solver::new(scenario.driven.clone())?;
+        let forces = columns.iter().any(Column::is_force).then(|| {
+            let forces = solver.forces();
+            ActingForces {
+                inputs: vec![0.0; forces.inputs()],
+                lifted: vec![false; forces.contacts()],
+                forces,
+            }
+        });
         Ok(Self {
+            forces,
             scenario,
             home,
             rates: Rates::new(scenario.home.0.q.len()),
@@ -82,7 +105,7 @@ impl<'a> Runner<'a> {
         self.path.from.copy_from_slice(parameters);
         self.path.to.copy_from_slice(parameters);
         self.near_singular = false;
-        self.solve_rates(0)?;
+        self.solve(0)?;
         Ok(match began {
             Start::Continuous(_) => Beginning::Continuous,
             Start::Reassembled(_) => Beginning::Reassembled,
@@ -116,7 +139,7 @@ impl<'a> Runner<'a> {
                     || self.sample(driver, row).is_some()
             }));
         }
-        self.solve_rates(row)
+        self.solve(row)
             .map_err(|error| format!("at t = {time} s: {error}"))
     }
 
@@ -134,12 +157,92 @@ impl<'a> Runner<'a> {
             .collect()
     }
 
+    /// Returns what is worth knowing of the forces at the pose: contacts that begin to pull.
+    pub(crate) fn lift_offs(&mut self) -> Vec<String> {
+        let Some(ActingForces { forces, lifted, .. }) = &mut self.forces else {
+            return Vec::new();
+        };
+        let lift_offs = self.solver.lift_offs(forces, lifted);
+        lift_offs.map(|lift_off| lift_off.to_string()).collect()
+    }
+
     fn sample(&self, driver: DriverId, row: usize) -> Option<Jet> {
         let samples = self.scenario.samples.iter().find(|s| s.driver == driver)?;
         Some(samples.at(row))
     }
 
-    fn solve_rates(&mut self, row: usize) -> Result<(), biela::kinematics::Error> {
+    /// Returns the value of a column \[SI\]. Inertia and bias of a driver are no numbers if its
+    /// motion is an expression, whose acceleration is not free.
+    pub(crate) fn value(&self, column: &Column) -> f64 {
+        match (column.source, &self.forces) {
+            (ColumnSource::Force(quantity), Some(acting)) if self.exists(quantity) => {
+                acting.forces.value(quantity)
+            }
+            _ => column.value(&self.solver, &self.rates, &self.driver_rates),
+        }
+    }
+
+    fn exists(&self, quantity: ForceQuantity) -> bool {
+        match quantity {
+            ForceQuantity::Inertia(driver) | ForceQuantity::Bias(driver) => {
+                let drivers = &self.solver.mechanism().drivers;
+                drivers[driver.index()].motion().is_none()
+            }
+            _ => true,
+        }
+    }
+
+    /// Adds the derivatives of columns along a direction.
+    ///
+    /// # Errors
+    ///
+    /// They do not exist at a singular position.
+    pub(crate) fn differentiate(
+        &mut self,
+        columns: &[Column],
+        direction: &Direction,
+        derivatives: &mut Vec<f64>,
+    ) -> Result<(), Error> {
+        let exists: Vec<bool> = columns
+            .iter()
+            .map(|column| match column.source {
+                ColumnSource::Force(quantity) => self.exists(quantity),
+                _ => true,
+            })
+            .collect();
+        let Self {
+            scenario,
+            solver,
+            rates,
+            driver_rates,
+            forces,
+            ..
+        } = self;
+        let along: Option<ForceSensitivity> = match forces {
+            Some(ActingForces { forces, inputs, .. }) => {
+                let motion = KnownMotion {
+                    rates,
+                    driver_rates,
+                    inputs,
+                };
+                // The inputs stay.
+                Some(solver.force_sensitivity(motion, direction, inputs, forces)?)
+            }
+            None => None,
+        };
+        let change = solver.sensitivity(rates, driver_rates, direction)?;
+        let columns = columns.iter().zip(exists);
+        derivatives.extend(
+            columns.map(|(column, exists)| match (column.source, &along) {
+                (ColumnSource::Force(quantity), Some(along)) if exists => along.change(quantity),
+                _ => column.change(&scenario.own, &change),
+            }),
+        );
+        Ok(())
+    }
+
+    /// Solves rates and forces at the pose of a row.
+    fn solve(&mut self, row: usize) -> Result<(), Error> {
         let time = self.solver.pose().time;
         for index in 0..self.driver_rates.len() {
             let driver = DriverId(index);
@@ -149,8 +252,22 @@ impl<'a> Runner<'a> {
                 self.driver_rates[index] = sample;
             }
         }
-        let driver_rates = &self.driver_rates;
-        self.solver
-            .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
+        let Self {
+            solver,
+            rates,
+            driver_rates,
+            forces,
+            ..
+        } = self;
+        solver.solve_rates(|driver| driver_rates[driver.index()], rates)?;
+        if let Some(ActingForces { forces, inputs, .. }) = forces {
+            let motion = KnownMotion {
+                rates,
+                driver_rates,
+                inputs,
+            };
+            solver.solve_forces(motion, ForceParts::ALL, forces)?;
+        }
+        Ok(())
     }
 }

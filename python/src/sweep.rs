@@ -59,7 +59,7 @@ pub(crate) fn sweep(
     columns: &[Column],
 ) -> Result<Sweep, Failure> {
     // An error of the equations is the same for all variants.
-    Runner::new(scenario)?;
+    Runner::new(scenario, columns)?;
     let rows = scenario.times.len();
     let size = rows * columns.len();
     let mut values = vec![f64::NAN; variants * size];
@@ -94,7 +94,7 @@ pub(crate) fn sweep(
                 return outcome;
             }
             for (column, values) in columns.iter().zip(values.chunks_exact_mut(rows)) {
-                values[row] = column.value(&runner.solver, &runner.rates, &runner.driver_rates);
+                values[row] = runner.value(column);
             }
             outcome.rows += 1;
         }
@@ -103,7 +103,7 @@ pub(crate) fn sweep(
     let turns = values.par_chunks_mut((TURN * size).max(1)).enumerate();
     let outcomes: Vec<Vec<Outcome>> = turns
         .map(|(turn, values)| {
-            let mut runner = Runner::new(scenario)?;
+            let mut runner = Runner::new(scenario, columns)?;
             let variants = values.chunks_exact_mut(size).enumerate();
             Ok(variants
                 .map(|(index, values)| run(&mut runner, TURN * turn + index, values))

@@ -6,7 +6,7 @@ use super::signals::Signals;
 use crate::kinematics::{
     Blocked, Curve, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Path, Rates, Solver,
 };
-use crate::mechanism::{DriverId, Jet, shown};
+use crate::mechanism::{DriverId, Jet};
 
 /// A mechanism that moves from one time to the next.
 pub(super) struct Motion {
@@ -30,9 +30,6 @@ struct ActingForces {
     /// Whether each contact pulls.
     lifted: Vec<bool>,
 }
-
-/// A part of the largest reaction below which a pulling force is rounding.
-const PULLS: f64 = 1e-9;
 
 impl Motion {
     /// Moves from the file's pose, which `home_solver` has, to the scenario's start.
@@ -114,24 +111,9 @@ impl Motion {
         };
         let forces = &mut acting.forces;
         self.solver.solve_forces(motion, ForceParts::ALL, forces)?;
-        let least = PULLS * forces.largest_reaction();
-        let contacts = self.solver.contact_forces(forces);
-        for ((joint, force), lifted) in contacts.zip(&mut acting.lifted) {
-            let pulls = force < -least;
-            if pulls && !*lifted {
-                let (time, joint) = (
-                    self.solver.pose().time,
-                    &self.solver.mechanism().joints[joint].name,
-                );
-                let notice = format!(
-                    "t = {time} s: joint `{joint}` would lift off: its parts would have to pull \
-                     each other with {} N; the mechanism keeps them together",
-                    shown(-force)
-                );
-                self.notices.push(Message::Warning(notice));
-            }
-            *lifted = pulls;
-        }
+        let lift_offs = self.solver.lift_offs(forces, &mut acting.lifted);
+        let notices = lift_offs.map(|lift_off| Message::Warning(lift_off.to_string()));
+        self.notices.extend(notices);
         Ok(())
     }
 

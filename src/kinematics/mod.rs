@@ -87,7 +87,9 @@ pub use element::Element;
 #[cfg(feature = "cli")]
 pub(crate) use error::in_line;
 pub use error::{Error, Fit, OpenJoint, Proof, Verdict};
-pub use forces::{ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, Reported};
+pub use forces::{
+    ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff, Reported,
+};
 pub use initial_pose::{Assembly, Start};
 pub use linear::PivotOrder;
 pub use path::{Curve, Path, Rates};

@@ -8,7 +8,7 @@ use super::block::Crossing;
 use super::continuation::{Blocked, PathTracker, Progress};
 use super::element::Element;
 use super::error::Error;
-use super::forces::{self, Along, ForceParts, ForceSensitivity, Forces, KnownMotion};
+use super::forces::{self, Along, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff};
 use super::initial_pose::{self, Assembly, Start};
 use super::model::Model;
 use super::path::{Path, Rates};
@@ -315,14 +315,15 @@ impl Solver {
         forces.solve(&mut self.model, &mut self.state, motion, parts)
     }
 
-    /// Returns each joint that can only push, by its index, with the force between its two parts
-    /// at the present pose \[N\]: negative where it would have to pull. The reactions in `forces`
-    /// must be up to date.
-    pub fn contact_forces<'a>(
+    /// Returns the joints that can only push and begin to pull at the present pose, and sets in
+    /// `lifted`, one entry per [contact](Forces::contacts), which of them pull. The reactions in
+    /// `forces` must be up to date.
+    pub fn lift_offs<'a>(
         &'a self,
         forces: &'a Forces,
-    ) -> impl Iterator<Item = (usize, f64)> + 'a {
-        forces.contact_forces(&self.state)
+        lifted: &'a mut [bool],
+    ) -> impl Iterator<Item = LiftOff<'a>> {
+        forces.lift_offs(&self.state, lifted)
     }
 
     /// Returns the derivatives of motion and forces at the present pose along a direction, along

@@ -2,16 +2,23 @@
 
 use std::f64::consts::TAU;
 
-use super::{Dual, Ends, Expression, Interval, Jet3, ParameterId, Spline, Table};
+use super::{
+    Dual, Ends, Expression, Interpolation, Interval, Jet3, Law, ParameterId, Spline, Table,
+};
 
 /// A closed contour R(θ), θ counter-clockwise from the cam marker's x-axis \[rad, m\].
 #[derive(Clone, Debug)]
 pub enum Profile {
     /// An expression in `theta`, which goes from 0 to 2π, and the parameters.
     Expression(Expression),
-    /// Points of the contour, joined by a closed cubic spline. They go once round; the first is
-    /// not repeated.
-    Table(Table),
+    /// Points of the contour, which go once round; the first is not repeated.
+    Table {
+        /// Polar angles \[rad\], rising, and radii \[m\].
+        table: Table,
+        /// Course from one point to the next: a closed cubic spline, or a rise, dwell or return by
+        /// a motion law.
+        interpolation: Interpolation,
+    },
 }
 
 impl Profile {
@@ -19,7 +26,7 @@ impl Profile {
     pub fn parameters(&self) -> Box<dyn Iterator<Item = ParameterId> + '_> {
         match self {
             Self::Expression(expression) => Box::new(expression.parameters()),
-            Self::Table(table) => Box::new(table.parameters()),
+            Self::Table { table, .. } => Box::new(table.parameters()),
         }
     }
 }
@@ -112,9 +119,10 @@ pub struct ProfileBounds {
 #[derive(Clone, Debug)]
 enum Curve {
     Expression(Expression),
-    Spline {
+    Points {
         table: Table,
-        /// Its last point is the first one, a turn later.
+        interpolation: Interpolation,
+        /// Through the points, the last of which is the first one, a turn later.
         spline: Spline<f64>,
     },
 }
@@ -137,9 +145,13 @@ impl ProfileInForce {
     pub fn new(profile: &Profile, parameters: usize) -> Self {
         let curve = match profile {
             Profile::Expression(expression) => Curve::Expression(expression.clone()),
-            Profile::Table(table) => Curve::Spline {
+            Profile::Table {
+                table,
+                interpolation,
+            } => Curve::Points {
                 spline: Spline::new(table.points.len() + 1, Ends::Periodic),
                 table: table.clone(),
+                interpolation: *interpolation,
             },
         };
         Self {
@@ -169,7 +181,12 @@ impl ProfileInForce {
         for (index, value) in self.parameters.iter_mut().enumerate() {
             *value = parameter(ParameterId(index));
         }
-        if let Curve::Spline { table, spline } = &mut self.curve {
+        if let Curve::Points {
+            table,
+            interpolation,
+            spline,
+        } = &mut self.curve
+        {
             let (angles, radii) = spline.points_mut();
             table.write(&parameter, angles, radii);
             let last = angles.len() - 1;
@@ -177,7 +194,9 @@ impl ProfileInForce {
             if !spline.is_valid() {
                 return Err(ProfileError::Disordered);
             }
-            spline.fit();
+            if *interpolation == Interpolation::Spline {
+                spline.fit();
+            }
         }
         self.check()?;
         self.joint = Joint::Kink;
@@ -303,9 +322,13 @@ impl ProfileInForce {
     pub fn radius(&self, theta: f64) -> Jet3 {
         match &self.curve {
             Curve::Expression(expression) => self.evaluate(expression, theta.rem_euclid(TAU)),
-            Curve::Spline { spline, .. } => {
+            Curve::Points {
+                spline,
+                interpolation,
+                ..
+            } => {
                 let theta = first_turn(spline, theta);
-                cubic(spline, spline.segment(theta), theta)
+                on_segment(spline, *interpolation, spline.segment(theta), theta)
             }
         }
     }
@@ -320,7 +343,10 @@ impl ProfileInForce {
     #[must_use]
     pub fn bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
         if let Some(radius) = self.smooth_bounds(theta, reach) {
-            let jumps = false;
+            let jumps = match self.curve {
+                Curve::Expression(_) => false,
+                Curve::Points { interpolation, .. } => interpolation.jumps(),
+            };
             return Some(ProfileBounds { radius, jumps });
         }
         let Curve::Expression(expression) = &self.curve else {
@@ -337,13 +363,18 @@ impl ProfileInForce {
         })
     }
 
-    /// Returns bounds where the contour is three times differentiable in the whole range.
+    /// Returns bounds where an expression is three times differentiable in the whole range, and of
+    /// a contour through points, whose slope is continuous.
     fn smooth_bounds(&self, theta: f64, reach: f64) -> Option<Jet3<Interval>> {
         match &self.curve {
             Curve::Expression(expression) => over_turn(theta, reach, |range| {
                 expression.enclose(&|p| self.parameters[p.index()], range)
             }),
-            Curve::Spline { spline, .. } => Some(spline_bounds(spline, theta, reach)),
+            Curve::Points {
+                spline,
+                interpolation,
+                ..
+            } => Some(bounds_through_points(spline, *interpolation, theta, reach)),
         }
     }
 
@@ -393,7 +424,7 @@ enum CurveAlong {
         /// All parameters.
         parameters: Vec<Jet3<Dual>>,
     },
-    Spline(Spline<Jet3<Dual>>),
+    Points(Spline<Jet3<Dual>>, Interpolation),
 }
 
 impl ProfileInForce {
@@ -409,15 +440,21 @@ impl ProfileInForce {
                     .map(|p| parameter(ParameterId(p)))
                     .collect(),
             },
-            Curve::Spline { table, spline } => {
+            Curve::Points {
+                table,
+                interpolation,
+                spline,
+            } => {
                 let mut along = Spline::new(spline.knots().len(), Ends::Periodic);
                 let (angles, radii) = along.points_mut();
                 table.write(&parameter, angles, radii);
                 let last = angles.len() - 1;
                 angles[last] = angles[0] + Jet3::constant(TAU);
                 radii[last] = radii[0];
-                along.fit();
-                CurveAlong::Spline(along)
+                if *interpolation == Interpolation::Spline {
+                    along.fit();
+                }
+                CurveAlong::Points(along, *interpolation)
             }
         })
     }
@@ -442,61 +479,137 @@ impl ProfileAlong {
                 let theta = Jet3::variable(from(0.0));
                 expression.evaluate(&|p| parameters[p.index()], theta)
             }
-            CurveAlong::Spline(spline) => {
+            CurveAlong::Points(spline, interpolation) => {
                 let theta = from(spline.knots()[0].value.value);
-                spline.on_segment(spline.segment(theta.value), Jet3::variable(theta))
+                let segment = spline.segment(theta.value);
+                match interpolation {
+                    Interpolation::Spline => spline.on_segment(segment, Jet3::variable(theta)),
+                    Interpolation::Law(law) => {
+                        let knots = spline.knots();
+                        law.between(knots, spline.values(), segment, Jet3::variable(theta))
+                    }
+                }
             }
         }
     }
 }
 
-/// Returns the angle in the turn that a closed spline covers.
+/// Returns the angle in the turn that closed points cover.
 fn first_turn(spline: &Spline<f64>, theta: f64) -> f64 {
     let start = spline.knots()[0];
     start + (theta - start).rem_euclid(TAU)
 }
 
 /// Returns value and derivatives of one segment.
-fn cubic(spline: &Spline<f64>, segment: usize, theta: f64) -> Jet3 {
-    let [second, third] = spline.curvature_on_segment(segment, theta);
-    Jet3::new(
-        spline.on_segment(segment, theta),
-        [spline.slope_on_segment(segment, theta), second, third],
-    )
+fn on_segment(
+    spline: &Spline<f64>,
+    interpolation: Interpolation,
+    segment: usize,
+    theta: f64,
+) -> Jet3 {
+    match interpolation {
+        Interpolation::Spline => {
+            let [second, third] = spline.curvature_on_segment(segment, theta);
+            Jet3::new(
+                spline.on_segment(segment, theta),
+                [spline.slope_on_segment(segment, theta), second, third],
+            )
+        }
+        Interpolation::Law(law) => {
+            let point = |values: &[f64], k: usize| Jet3::constant(values[k]);
+            let [knots, radii] = [spline.knots(), spline.values()]
+                .map(|values| [point(values, segment), point(values, segment + 1)]);
+            law.between(&knots, &radii, 0, Jet3::variable(theta))
+        }
+    }
 }
 
-fn spline_bounds(spline: &Spline<f64>, theta: f64, reach: f64) -> Jet3<Interval> {
+fn bounds_through_points(
+    spline: &Spline<f64>,
+    interpolation: Interpolation,
+    theta: f64,
+    reach: f64,
+) -> Jet3<Interval> {
     let knots = spline.knots();
     let segments = knots.len() - 1;
     let reach = reach.min(0.5 * TAU);
     let low = first_turn(spline, theta - reach);
     let high = low + 2.0 * reach;
+    let on = |segment: usize, from: f64, to: f64| {
+        segment_bounds(spline, interpolation, segment, from, to)
+    };
     // The segment that contains `low`, then what else the region meets; it may go on past the
     // end of the turn, into its beginning.
     let first = spline.segment(low);
-    let mut bounds = segment_bounds(spline, first, low, high.min(knots[first + 1]).max(low));
+    let mut bounds = on(first, low, high.min(knots[first + 1]).max(low));
     for lap in [0.0, TAU] {
         for segment in 0..segments {
             let from = (knots[segment] + lap).max(low);
             let to = (knots[segment + 1] + lap).min(high);
             if from < to {
-                bounds = bounds.hull(segment_bounds(spline, segment, from - lap, to - lap));
+                bounds = bounds.hull(on(segment, from - lap, to - lap));
             }
         }
     }
     bounds
 }
 
-/// Returns bounds on a part of one segment: each derivative differs from its value in the middle by
-/// at most half the width times the bound of the next derivative.
-fn segment_bounds(spline: &Spline<f64>, segment: usize, from: f64, to: f64) -> Jet3<Interval> {
+/// Returns bounds on a part of one segment.
+fn segment_bounds(
+    spline: &Spline<f64>,
+    interpolation: Interpolation,
+    segment: usize,
+    from: f64,
+    to: f64,
+) -> Jet3<Interval> {
+    let law = match interpolation {
+        Interpolation::Spline => {
+            let third = on_segment(spline, interpolation, segment, from.midpoint(to)).third();
+            let third = Interval::point(third);
+            return around_middle(spline, interpolation, segment, [from, to], third);
+        }
+        Interpolation::Law(law) => law,
+    };
+    // Piece by piece of the law: within each the third derivative is continuous.
+    let (knots, radii) = (spline.knots(), spline.values());
+    let width = knots[segment + 1] - knots[segment];
+    let stroke = radii[segment + 1] - radii[segment];
+    let mut bounds: Option<Jet3<Interval>> = None;
+    for (piece, part) in Law::PIECES.windows(2).enumerate() {
+        let [first, last] = [piece == 0, piece + 2 == Law::PIECES.len()];
+        let [begin, end] = [part[0], part[1]].map(|part| knots[segment] + part * width);
+        // The first and the last piece take what rounding leaves.
+        let begin = if first { from } else { begin.max(from) };
+        let end = if last { to } else { end.min(to) };
+        if begin > end {
+            continue;
+        }
+        let tau = [begin, end].map(|x| ((x - knots[segment]) / width).clamp(part[0], part[1]));
+        let third = law
+            .stroke(Jet3::variable(Interval::new(tau[0], tau[1])))
+            .third();
+        let third = third * Interval::point(stroke / (width * width * width));
+        let piece = around_middle(spline, interpolation, segment, [begin, end], third);
+        bounds = Some(bounds.map_or(piece, |bounds| bounds.hull(piece)));
+    }
+    bounds.expect("the pieces cover the segment")
+}
+
+/// Returns bounds on a part of one segment with this bound of the third derivative: each derivative
+/// differs from its value in the middle by at most half the width times the bound of the next one.
+fn around_middle(
+    spline: &Spline<f64>,
+    interpolation: Interpolation,
+    segment: usize,
+    [from, to]: [f64; 2],
+    third: Interval,
+) -> Jet3<Interval> {
     let half = 0.5 * (to - from);
-    let middle = cubic(spline, segment, from + half);
+    let middle = on_segment(spline, interpolation, segment, from + half);
     let around = |value: f64, slope: Interval| {
         let off = half * slope.magnitude();
         Interval::new(value - off, value + off)
     };
-    let third = Interval::point(middle.third());
     let second = around(middle.second(), third);
     let first = around(middle.first(), second);
     Jet3::new(around(middle.value, first), [first, second, third])
@@ -515,9 +628,27 @@ mod tests {
                 .collect(),
             scale: [1.0, 1.0].map(Expression::constant),
         };
-        let mut profile = ProfileInForce::new(&Profile::Table(table), 0);
+        through(table, Interpolation::Spline)
+    }
+
+    fn through(table: Table, interpolation: Interpolation) -> Result<ProfileInForce, ProfileError> {
+        let profile = Profile::Table {
+            table,
+            interpolation,
+        };
+        let mut profile = ProfileInForce::new(&profile, 0);
         profile.set_parameters(|_| 0.0).map(|()| profile)
     }
+
+    const LAWS: [Law; 7] = [
+        Law::Polynomial345,
+        Law::Polynomial4567,
+        Law::Cycloidal,
+        Law::Harmonic,
+        Law::ModifiedSine,
+        Law::ModifiedTrapezoidal,
+        Law::Trapezoidal,
+    ];
 
     proptest! {
         /// Bounds contain what is found in the region, wherever it lies relative to the seam of
@@ -546,6 +677,46 @@ mod tests {
                     prop_assert!(
                         bound.low - 1e-12 <= value && value <= bound.high + 1e-12,
                         "{bound:?} {value}"
+                    );
+                }
+            }
+        }
+
+        /// The same for the motion laws, rises, returns and a dwell.
+        #[test]
+        fn bounds_of_laws_contain_their_values(
+            radii in prop::collection::vec(1.0..2.0_f64, 2..6),
+            law in prop::sample::select(LAWS.to_vec()),
+            theta in -20.0..20.0_f64,
+            reach in prop_oneof![0.0..0.05_f64, 0.0..4.0],
+            parts in prop::collection::vec(-1.0..1.0_f64, 20),
+        ) {
+            let step = TAU / (radii.len() + 1) as f64;
+            let dwell = radii.iter().chain(&radii[..1]).enumerate();
+            let points = dwell.map(|(k, r)| {
+                [0.7 + step * k as f64, *r].map(Expression::constant)
+            });
+            let table = Table {
+                points: points.collect(),
+                scale: [1.0, 1.0].map(Expression::constant),
+            };
+            let profile = through(table, Interpolation::Law(law)).expect("it makes a contour");
+            let found = profile.bounds(theta, reach).expect("its slope is continuous");
+            let smooth = !matches!(law, Law::Harmonic | Law::Trapezoidal);
+            prop_assert_eq!(found.jumps, !smooth);
+            for part in parts {
+                let values = profile.radius(theta + part * reach);
+                let pairs = [
+                    (found.radius.value, values.value),
+                    (found.radius.first(), values.first()),
+                    (found.radius.second(), values.second()),
+                    (found.radius.third(), values.third()),
+                ];
+                for (order, (bound, value)) in pairs.into_iter().enumerate() {
+                    // Derivatives of strokes within a radian reach some hundreds.
+                    prop_assert!(
+                        bound.low - 1e-10 <= value && value <= bound.high + 1e-10,
+                        "{law:?} {order}: {bound:?} {value}"
                     );
                 }
             }

@@ -132,3 +132,88 @@ pub fn scissor_lift(cells: usize) -> String {
          markers = [\"ground.O\", \"left_{cells}.Q\"], start = {height} }}\n"
     )
 }
+
+/// A lift of `cells` pairs of crossing bars of 1 m, driven by the angle `u` of its lowest bar `a0`,
+/// the foot of the other one, `b0`, sliding on ground. `crossings` gives the distances of the
+/// crossing of each cell from the lower ends of its two bars; bars that do not cross in their
+/// middles bend the lift. Bodies: `a0`, `b0`, `a1`, … with their origins at their lower ends.
+///
+/// Estimates are the closed form of [`lift_from_below_pose`] at the angle `start` \[rad\].
+pub fn lift_from_below(cells: usize, start: f64, crossings: impl Fn(usize) -> [f64; 2]) -> String {
+    let pose = lift_from_below_pose(cells, start, &crossings);
+    let (mut bodies, mut joints) = (String::new(), "[joints]\n".to_owned());
+    for k in 0..cells {
+        for (side, name) in ["a", "b"].into_iter().enumerate() {
+            let [x, y, phi] = pose[2 * k + side];
+            let at = crossings(k)[side];
+            writeln!(
+                bodies,
+                "[bodies.{name}{k}]\nmarkers = {{ P = [0, 0], M = [{at}, 0], Q = [1, 0] }}\n\
+                 estimate = [{x}, {y}, {phi}]"
+            )
+            .expect("a text takes all");
+        }
+        writeln!(
+            joints,
+            "M{k} = {{ type = \"revolute\", markers = [\"a{k}.M\", \"b{k}.M\"] }}"
+        )
+        .expect("a text takes all");
+        let [on_a, on_b] = if k == 0 {
+            ["revolute", "slot"].map(|kind| (kind, "ground.O".to_owned()))
+        } else {
+            ["b", "a"].map(|below| ("revolute", format!("{below}{}.Q", k - 1)))
+        };
+        for (name, (kind, below)) in [("a", on_a), ("b", on_b)] {
+            writeln!(
+                joints,
+                "{}{k} = {{ type = \"{kind}\", markers = [\"{below}\", \"{name}{k}.P\"] }}",
+                name.to_uppercase()
+            )
+            .expect("a text takes all");
+        }
+    }
+    format!(
+        "format = 1\nname = \"lift\"\n[ground.markers]\nO = [0, 0]\n{bodies}{joints}[drivers]\n\
+         u = {{ coordinate = \"angle\", markers = [\"ground.O\", \"a0.P\"], start = {start} }}\n"
+    )
+}
+
+/// The pose of [`lift_from_below`]: x, y and phi of `a0`, `b0`, `a1`, …, cell by cell by the
+/// intersection of two circles about the lower ends, at whose left `a` begins.
+pub fn lift_from_below_pose(
+    cells: usize,
+    angle: f64,
+    crossings: impl Fn(usize) -> [f64; 2],
+) -> Vec<[f64; 3]> {
+    let [on_a, on_b] = crossings(0);
+    let mut left = [0.0, 0.0];
+    let height = on_a * angle.sin();
+    let mut right = [
+        on_a * angle.cos() + (on_b * on_b - height * height).sqrt(),
+        0.0,
+    ];
+    let mut pose = Vec::new();
+    for k in 0..cells {
+        let [on_a, on_b] = crossings(k);
+        let base = [right[0] - left[0], right[1] - left[1]];
+        let distance = f64::hypot(base[0], base[1]);
+        let along = (distance * distance + on_a * on_a - on_b * on_b) / (2.0 * distance);
+        let up = (on_a * on_a - along * along).sqrt();
+        let [e, n] = [
+            base.map(|c| c / distance),
+            [-base[1] / distance, base[0] / distance],
+        ];
+        let crossing = [0, 1].map(|c| left[c] + along * e[c] + up * n[c]);
+        let bar = |from: [f64; 2]| {
+            let phi = f64::atan2(crossing[1] - from[1], crossing[0] - from[0]);
+            (
+                [from[0], from[1], phi],
+                [from[0] + phi.cos(), from[1] + phi.sin()],
+            )
+        };
+        let ((a, top_a), (b, top_b)) = (bar(left), bar(right));
+        pose.extend([a, b]);
+        [left, right] = [top_b, top_a];
+    }
+    pose
+}

@@ -20,6 +20,8 @@ from manual import PAGES, Block, blocks, commands, page_name, same_output
 NOT_RUN = {
     "make install": "writes below the home folder; CI's own machine does without",
     "make runtimes && make install": "likewise",
+    "make runtimes && make wheel": "likewise",
+    "pip install target/wheels/biela-*manylinux*": "`make test-install` does",
     "make wheel": "builds for minutes, from the libraries of `make runtimes`",
     "make wheel ONLY=linux64": "likewise",
     "make runtimes": "builds for minutes, with compilers that are not everywhere",
@@ -30,6 +32,7 @@ NOT_RUN = {
     "biela page piston.toml -o piston.html": "needs `make page`; tests/page has tests of its own",
     "env/bin/python parameter_sweep.py": "test_examples.py runs it",
     "env/bin/python dask_sweep.py": "test_examples.py runs it",
+    "env/bin/python sweep_on_dask.py": "test_examples.py runs it",
     "env/bin/python dc_motor.py": "test_examples.py runs it",
     "env/bin/python step_errors.py": "docs/fmu.md runs it",
     "env/bin/python system/run.py": "it runs further below",

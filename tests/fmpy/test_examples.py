@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from harness import ROOT, program
 
@@ -15,7 +16,12 @@ def example(tmp_path):
 
     def run(name):
         path = f"{program().parent}{os.pathsep}{os.environ['PATH']}"
-        small = {"PATH": path, "MPLBACKEND": "agg", "BIELA_EXAMPLE": "small"}
+        small = {
+            "PATH": path,
+            "MPLBACKEND": "agg",
+            "BIELA_EXAMPLE": "small",
+            "PYTHONPATH": str(ROOT / "python"),
+        }
         done = subprocess.run(
             [sys.executable, ROOT / "examples" / name],
             cwd=tmp_path,
@@ -54,6 +60,16 @@ def test_dask_sweep(example, tmp_path):
     # the arc cosine of the closed form loses as much again.
     assert error < 1e-12
     assert (tmp_path / "dask_sweep.png").stat().st_size > 10_000
+
+
+def test_sweep_on_dask(example):
+    printed = example("sweep_on_dask.py")
+    assert printed.count("same bits") == 3, printed
+    lengths = np.linspace(0.151, 0.60, 12)
+    coupler, rocker = np.meshgrid(lengths, lengths)
+    # Grashof: the crank, 100 mm on a base of 400 mm, is the shortest link and turns fully.
+    turns = (np.abs(coupler - rocker) < 0.3) & (0.5 < coupler + rocker)
+    assert f"{np.count_nonzero(turns)} cranks turn fully" in printed
 
 
 def test_dc_motor(example, tmp_path):

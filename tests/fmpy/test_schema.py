@@ -100,6 +100,10 @@ def test_each_fault_is_named(validator, where, value, message):
     assert any(message in found for found in messages), messages
 
 
+def contour(law):
+    return {"table": [[0, 0.04], ["90*deg", 0.05]], "law": law}
+
+
 def test_a_link_needs_its_length_and_gears_one_kind_of_size(validator):
     for joint, right in [
         ({"type": "link", "length": "2*base"}, True),
@@ -109,6 +113,8 @@ def test_a_link_needs_its_length_and_gears_one_kind_of_size(validator):
         ({"type": "gear"}, False),
         ({"type": "cam", "follower": "flat", "profile": "0.04"}, True),
         ({"type": "cam", "follower": "round", "profile": "0.04"}, False),
+        ({"type": "cam", "follower": "flat", "profile": contour("cycloidal")}, True),
+        ({"type": "cam", "follower": "flat", "profile": contour("sine")}, False),
     ]:
         document = four_bar()
         document["joints"]["more"] = {"markers": ["crank.A", "coupler.A"], **joint}

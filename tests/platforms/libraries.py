@@ -12,8 +12,14 @@ WINDOWS_LIBRARIES = re.compile(r"kernel32|ntdll|msvcrt|bcryptprimitives|api-ms-w
 
 
 def declared():
-    text = (headers() / "fmi2Functions.h").read_text(encoding="utf-8")
-    return set(re.findall(r"FMI2_Export\s+fmi2\w+\s+(fmi2\w+)\s*;", text))
+    """Returns the functions of FMI 2.0 and 3.0."""
+    names = set()
+    for version, count in ((2, 44), (3, 75)):
+        text = (headers() / f"fmi{version}Functions.h").read_text(encoding="utf-8")
+        found = re.findall(rf"FMI{version}_Export\s+fmi{version}\w+\s+(fmi{version}\w+)\s*;", text)
+        expect(len(found) == count, f"the header of FMI {version}.0 declares {len(found)} functions")
+        names.update(found)
+    return names
 
 
 def inspect(library):
@@ -72,6 +78,8 @@ def macho(library):
         used = [line.split()[0] for line in used if line.strip() and "@rpath" not in line]
         expect(all(name.startswith("/usr/lib/") for name in used), f"{library} needs {used}")
         needs.append(f"{processor}: macOS {oldest}, {signed}, {', '.join(Path(u).name for u in used)}")
-    # Names of the standard library for exceptions, which clash with nobody's.
+    # A name of the standard library for exceptions, and two by which zig's linker, which takes no
+    # list of exports, names the start of the file. Symbols of macOS are looked up by library.
     exports -= {"rust_eh_personality", "__rust_alloc_error_handler_should_panic"}
+    exports -= {"__dso_handle", "_mh_dylib_header"}
     return {name for name in exports if not name.startswith("_R")}, "; ".join(needs)

@@ -149,31 +149,41 @@ fn an_unrelated_mechanism_beside_it_changes_nothing() {
         let Some(here) = run(&mechanism) else {
             continue;
         };
-        // Declared last, so that the unknowns before keep their places.
-        let beside = text(&name).replacen(
-            "[ground.markers]",
-            "[ground.markers]\nunrelated = [0.1, 0.2]",
-            1,
-        ) + "\n[bodies.unrelated_arm]\nmarkers = { O = [0, 0], P = [0.1, 0] }\n\
-            [joints.unrelated_pin]\ntype = \"revolute\"\n\
-            markers = [\"ground.unrelated\", \"unrelated_arm.O\"]\n\
-            [drivers.unrelated_turn]\ncoordinate = \"angle\"\n\
-            markers = [\"ground.unrelated\", \"unrelated_arm.O\"]\nstart = 0.5\n";
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/mechanisms");
-        let source = Source::new(format!("{folder}/{name}.toml"), beside);
-        let Ok((beside, _)) = Mechanism::parse(&source) else {
-            panic!("{name} with an unrelated arm");
-        };
-        let there = run(&Arc::new(beside)).expect("it has the same drivers");
-        let bodies = 3 * mechanism.bodies.len();
-        let without = |run: Run| Run {
-            poses: run
-                .poses
-                .iter()
-                .map(|q| [&q[..bodies], &q[bodies + 3..]].concat())
-                .collect(),
-            ..run
-        };
-        expect_alike(&name, &here, &without(there), <[f64]>::to_vec);
+        for length in ["0.1", "1e6", "1e-7"] {
+            beside_an_arm(&name, &here, 3 * mechanism.bodies.len(), length);
+        }
     }
+}
+
+/// Compares a run with that of the mechanism beside an arm of this length, be it a million times
+/// larger or smaller.
+fn beside_an_arm(name: &str, here: &Run, bodies: usize, length: &str) {
+    // Declared last, so that the unknowns before keep their places.
+    let beside = text(name).replacen(
+        "[ground.markers]",
+        "[ground.markers]\nunrelated = [0.1, 0.2]",
+        1,
+    ) + &format!(
+        "\n[bodies.unrelated_arm]\nmarkers = {{ O = [0, 0], P = [{length}, 0] }}\n\
+         [joints.unrelated_pin]\ntype = \"revolute\"\n\
+         markers = [\"ground.unrelated\", \"unrelated_arm.O\"]\n\
+         [drivers.unrelated_turn]\ncoordinate = \"angle\"\n\
+         markers = [\"ground.unrelated\", \"unrelated_arm.O\"]\nstart = 0.5\n"
+    );
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/mechanisms");
+    let source = Source::new(format!("{folder}/{name}.toml"), beside);
+    let Ok((beside, _)) = Mechanism::parse(&source) else {
+        panic!("{name} with an unrelated arm");
+    };
+    let there = run(&Arc::new(beside)).expect("it has the same drivers");
+    let there = Run {
+        poses: there
+            .poses
+            .iter()
+            .map(|q| [&q[..bodies], &q[bodies + 3..]].concat())
+            .collect(),
+        ..there
+    };
+    let name = format!("{name} beside an arm of {length} m");
+    expect_alike(&name, here, &there, <[f64]>::to_vec);
 }

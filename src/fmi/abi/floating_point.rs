@@ -36,7 +36,7 @@ impl Drop for StandardEnvironment {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(windows)))]
 use x86_64::{CONTROL, Register, STANDARD, control, set_control};
 
 /// The register `MXCSR`.
@@ -68,6 +68,48 @@ mod x86_64 {
         // bits, so that no reserved bit is set.
         unsafe {
             asm!("ldmxcsr [{}]", in(reg) &raw const value, options(nostack, preserves_flags));
+        }
+    }
+}
+
+#[cfg(all(target_arch = "x86_64", windows))]
+use x86_64_windows::{CONTROL, Register, STANDARD, control, set_control};
+
+/// The register `MXCSR`, and above it the control word of the x87, with which the C library
+/// evaluates elementary functions on Windows.
+#[cfg(all(target_arch = "x86_64", windows))]
+mod x86_64_windows {
+    use std::arch::asm;
+
+    use super::x86_64;
+
+    pub(super) type Register = u64;
+
+    /// Place of the control word.
+    const X87: u32 = 32;
+    /// Also masks of exceptions, precision and rounding of the x87.
+    pub(super) const CONTROL: Register = x86_64::CONTROL as Register | 0x0F3F << X87;
+    /// Also all exceptions masked, 64 bits of precision and rounding to nearest in the x87.
+    pub(super) const STANDARD: Register = x86_64::STANDARD as Register | 0x033F << X87;
+
+    #[inline(always)]
+    pub(super) fn control() -> Register {
+        let mut x87: u16 = 0;
+        // SAFETY: the instruction writes the two bytes behind the pointer and nothing else.
+        unsafe {
+            asm!("fnstcw [{}]", in(reg) &raw mut x87, options(nostack, preserves_flags));
+        }
+        Register::from(x86_64::control()) | Register::from(x87) << X87
+    }
+
+    #[inline(always)]
+    pub(super) fn set_control(value: Register) {
+        x86_64::set_control(value as u32);
+        let x87 = (value >> X87) as u16;
+        // SAFETY: the value came from this register, or has its standard bits in place of control
+        // bits. Flags of exceptions are cleared, which would trap if the value unmasks theirs.
+        unsafe {
+            asm!("fnclex", "fldcw [{}]", in(reg) &raw const x87, options(nostack));
         }
     }
 }

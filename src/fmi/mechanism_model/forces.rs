@@ -6,10 +6,6 @@ use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Phase;
 use crate::kinematics::{Direction, Error};
 use crate::kinematics::{ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, Solver};
-use crate::mechanism::shown;
-
-/// A part of the largest reaction below which a pulling force is rounding.
-const PULLS: f64 = 1e-9;
 
 /// Forces with the inputs on which they depend.
 #[derive(Debug)]
@@ -129,27 +125,13 @@ impl MechanismModel {
             forces,
             solver,
             lifted,
-            mechanism,
             ..
         } = self;
         let Some(ModelForces { forces, .. }) = forces.as_deref() else {
             return;
         };
-        let least = PULLS * forces.largest_reaction();
-        for ((joint, force), lifted) in solver.contact_forces(forces).zip(lifted) {
-            let pulls = force < -least;
-            if pulls && !std::mem::replace(lifted, pulls) {
-                log.advise(|| {
-                    format!(
-                        "t = {} s: joint `{}` would lift off: its parts would have to pull each \
-                         other with {} N; the mechanism keeps them together",
-                        solver.pose().time,
-                        mechanism.joints[joint].name,
-                        shown(-force)
-                    )
-                });
-            }
-            *lifted = pulls;
+        for lift_off in solver.lift_offs(forces, lifted) {
+            log.advise(|| lift_off.to_string());
         }
     }
 }

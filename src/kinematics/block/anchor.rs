@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::kinematics::certificate::{ChordBound, Pivots, StepBounds};
-use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
+use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// A marker on ground or on a body that an earlier block has found.
@@ -13,8 +13,7 @@ pub(super) struct Anchor {
     body: u32,
     /// s, its point in the body's frame.
     s: Vector2<f64>,
-    /// Vector from the body's pivot to the point, in the body's frame, and its length.
-    lever: Vector2<f64>,
+    /// Distance of the point from the body's pivot.
     length: f64,
 }
 
@@ -92,7 +91,6 @@ impl Anchor {
         Self {
             body: body.map_or(GROUND, |body| compact(body.index())),
             s: Vector2::zeros(),
-            lever: Vector2::zeros(),
             length: 0.0,
         }
     }
@@ -101,24 +99,14 @@ impl Anchor {
     pub(super) fn set_parameters(&mut self, at: &Configuration, pivots: &Pivots, marker: MarkerId) {
         self.s = at.local(marker).0;
         if self.body != GROUND {
-            self.lever = self.s - pivots.get(self.body as usize);
-            self.length = self.lever.norm();
+            self.length = (self.s - pivots.get(self.body as usize)).norm();
         }
     }
 
     /// Returns the chord bound of its body and the length of its lever; `None` on ground.
     #[inline(always)]
-    pub(super) fn carrier<'a>(&self, bounds: &'a StepBounds) -> Option<(&'a ChordBound, f64)> {
+    fn carrier<'a>(&self, bounds: &'a StepBounds) -> Option<(&'a ChordBound, f64)> {
         (self.body != GROUND).then(|| (bounds.body(self.body as usize), self.length))
-    }
-
-    /// Returns its lever at the start of the sub-step and at the end. Not for ground.
-    #[inline(always)]
-    pub(super) fn levers(&self, bound: &ChordBound, frames: &[BodyPose]) -> [Vector2<f64>; 2] {
-        [
-            rotate(bound.cos, bound.sin, self.lever),
-            frames[self.body as usize].rotate(self.lever),
-        ]
     }
 
     /// Returns its largest deviation from the straight line between its two ends in a sub-step
@@ -131,9 +119,12 @@ impl Anchor {
     }
 
     /// Returns the rounding of its body's stored origin \[m\]: half an eps of each coordinate,
-    /// twice that for a start farther off. Not for ground.
+    /// twice that for a start farther off. Zero for ground.
     #[inline(always)]
     pub(super) fn rounding(&self, frames: &[BodyPose]) -> f64 {
+        if self.body == GROUND {
+            return 0.0;
+        }
         let origin = frames[self.body as usize].origin;
         f64::EPSILON * (origin.x.abs() + origin.y.abs())
     }

@@ -10,6 +10,7 @@ use super::coupled::{CoupledBlock, column_owners};
 use super::elimination::EliminationOrder;
 use super::pinned::{self, PinnedBody};
 use super::revolute::Revolute;
+use super::revolute_graph::RevoluteGraph;
 use super::rrp_dyad::{self, RrpDyad, SecondParts};
 use super::rrr_dyad::{self, RrrDyad, SideParts};
 use super::{BlockPlan, BlockSolver};
@@ -402,6 +403,7 @@ impl Search<'_> {
                 second,
                 row,
                 projection,
+                part: self.system.equations()[row].part(),
             }),
             blocks,
         })
@@ -475,13 +477,36 @@ impl Search<'_> {
         // The orders of elimination of coupled blocks, by index in the plan.
         let mut orders = Vec::new();
         let mut recipes = Vec::with_capacity(order.len());
+        // The ways between the anchors of dyads, over revolutes of earlier groups.
+        let mut graph = RevoluteGraph::new(self.mechanism);
+        let mut is_found = vec![false; self.system.equations().len()];
+        let mut spread_is_read = vec![false; order.len()];
+        let mut paths = Vec::new();
         for (index, group) in groups.enumerate() {
-            if let Recipe::CoupledBlock = group.recipe {
-                let block = &self.structure.blocks()[group.blocks[0]];
-                orders.push((index, EliminationOrder::new(self.system, block)));
+            match &group.recipe {
+                Recipe::CoupledBlock => {
+                    let block = &self.structure.blocks()[group.blocks[0]];
+                    orders.push((index, EliminationOrder::new(self.system, block)));
+                }
+                Recipe::RrrDyad(parts) => {
+                    let [a, b] = &parts.sides;
+                    paths.push(graph.path([a.anchor, b.anchor], &mut spread_is_read));
+                    graph.add_dyad(index, [a.body, b.body]);
+                }
+                Recipe::PinnedBody(_) | Recipe::RrpDyad(_) => {}
+            }
+            let blocks = group.blocks.iter();
+            for &row in blocks.flat_map(|&block| &self.structure.blocks()[block].rows) {
+                is_found[row] = true;
+                if let Some(Revolute { rows, from, to }) = self.revolutes[row]
+                    && rows.iter().all(|&row| is_found[row])
+                {
+                    graph.add(from, to);
+                }
             }
             recipes.push(group.recipe);
         }
+        let mut paths = paths.into_iter();
         let owners = column_owners(
             self.system.unknowns(),
             orders.iter().map(|(index, order)| (*index, order)),
@@ -494,11 +519,16 @@ impl Search<'_> {
                 &owners,
             )))
         });
-        let solvers = recipes.into_iter().map(|recipe| match recipe {
+        let recipes = recipes.into_iter().zip(spread_is_read);
+        let solvers = recipes.map(|(recipe, spread_is_read)| match recipe {
             Recipe::PinnedBody(parts) => {
                 BlockSolver::PinnedBody(Box::new(PinnedBody::new(self.mechanism, parts)))
             }
-            Recipe::RrrDyad(parts) => BlockSolver::RrrDyad(RrrDyad::new(self.mechanism, parts)),
+            Recipe::RrrDyad(parts) => {
+                let path = paths.next().expect("each dyad has its path");
+                let dyad = RrrDyad::new(self.mechanism, parts, path, spread_is_read);
+                BlockSolver::RrrDyad(dyad)
+            }
             Recipe::RrpDyad(parts) => {
                 BlockSolver::RrpDyad(Box::new(RrpDyad::new(self.mechanism, parts)))
             }

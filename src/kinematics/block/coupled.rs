@@ -43,9 +43,11 @@ pub(in crate::kinematics) struct CoupledBlock {
     segment: CheckedSegment,
     /// The markers of its bodies.
     markers: Vec<MarkerId>,
-    /// Largest distance of these from the origins of the bodies, as a part of the mechanism's size:
-    /// an angle moves points by as much.
+    /// Largest distance of these from the origins of the bodies, as a part of the size of their
+    /// part of the mechanism: an angle moves points by as much.
     length: f64,
+    /// The size of that part, as a part of the mechanism's size.
+    part: f64,
 }
 
 impl CoupledBlock {
@@ -59,6 +61,9 @@ impl CoupledBlock {
         let lu = order.matrix(system);
         let test = Box::new(ContractionTest::new(system, &order, &lu, owners, index));
         let EliminationOrder { rows, columns, .. } = order;
+        let part = rows
+            .first()
+            .map_or(1.0, |&row| system.equations()[row].part());
         let order = rows.len();
         let bodies = &system.mechanism().bodies;
         let mut own: Vec<_> = columns
@@ -79,6 +84,7 @@ impl CoupledBlock {
             test,
             markers,
             length: 1.0,
+            part,
         }
     }
 
@@ -140,12 +146,24 @@ impl SolveBlock for CoupledBlock {
         &self.equations.columns
     }
 
+    /// Returns the work of evaluating, factorising and bounding the rows a few times, and of the
+    /// inverse where it is written down.
+    fn work(&self) -> f64 {
+        let order = self.equations.rows.len() as f64;
+        let inverse = if self.test.inverse.is_empty() {
+            0.0
+        } else {
+            order.powi(3)
+        };
+        100.0 * order + 0.1 * inverse
+    }
+
     fn set_parameters(&mut self, at: &Configuration, _targets: &Targets, _pivots: &mut Pivots) {
         self.forget_proofs();
         let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());
         let longest = arms.fold(0.0, f64::max);
         self.length = if longest > 0.0 {
-            (longest / at.size()).min(1.0)
+            (longest / (at.size() * self.part)).min(1.0)
         } else {
             1.0
         };

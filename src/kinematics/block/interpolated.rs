@@ -83,6 +83,7 @@ impl InterpolatedBlock {
                     bounds.set_joint_unknown(column, deviation);
                 } else if column % 3 == 2 {
                     if phi {
+                        bounds.set_spread(column / 3, f64::INFINITY);
                         let (sin, cos) = before.sin_cos();
                         *bounds.body_mut(column / 3) = ChordBound {
                             cos,
@@ -114,6 +115,10 @@ impl SolveBlock for InterpolatedBlock {
 
     fn columns(&self) -> &[usize] {
         self.block.columns()
+    }
+
+    fn work(&self) -> f64 {
+        self.block.work()
     }
 
     /// Moves to the driver's value. The crossing is one motion from end to end and needs neither

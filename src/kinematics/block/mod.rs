@@ -16,6 +16,7 @@
 //! recognition in [`compile`].
 
 mod anchor;
+mod anchor_path;
 mod carryover;
 mod compile;
 mod coupled;
@@ -27,6 +28,7 @@ mod jacobian;
 mod pinned;
 mod reach;
 mod revolute;
+mod revolute_graph;
 mod rrp_dyad;
 mod rrr_dyad;
 mod solve;
@@ -107,6 +109,11 @@ impl DerefMut for BlockSolver {
 }
 
 impl BlockPlan {
+    /// Returns an estimate of the work of a sub-step, in that of one row in closed form.
+    pub(super) fn work(&self) -> f64 {
+        self.blocks.iter().map(|block| block.work()).sum()
+    }
+
     /// Takes over all that depends on the parameters alone. Allocates nothing, but the first time.
     pub(super) fn set_parameters(
         &mut self,

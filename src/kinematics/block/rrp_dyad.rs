@@ -46,8 +46,10 @@ pub(in crate::kinematics) struct RrpDyad {
     g: Vector2<f64>,
     slope: f64,
     still: Vector2<f64>,
-    /// |w| |g|, or the mechanism's size if that is larger: the scale of the slope.
+    /// |w| |g|, or the size of the part of the mechanism if that is larger: the scale of the slope.
     scale: f64,
+    /// The size of the block's part of the mechanism \[m\].
+    size: f64,
     parts: Box<Parts>,
 }
 
@@ -112,6 +114,8 @@ pub(super) struct Parts {
     /// The row of the projection, and its relation.
     pub(super) row: usize,
     pub(super) projection: Projection,
+    /// The size of its part of the mechanism, as a part of the mechanism's size.
+    pub(super) part: f64,
 }
 
 /// The row and markers of the second body.
@@ -178,6 +182,7 @@ impl RrpDyad {
             slope: 0.0,
             still: zero,
             scale: 0.0,
+            size: 1.0,
             parts: Box::new(parts),
         }
     }
@@ -206,7 +211,7 @@ impl RrpDyad {
                 self.put(state.at.frames_mut(), &known, frame);
                 // Next to the pin |w| |g| goes to zero: a line through the pin turns freely.
                 (self.g, self.slope, self.still) = (g, slope, known.still);
-                self.scale = scale.max(state.at.size());
+                self.scale = scale.max(self.size);
                 return Ok(Found {
                     known,
                     correction,
@@ -235,6 +240,7 @@ impl SolveBlock for RrpDyad {
 
     fn set_parameters(&mut self, at: &Configuration, targets: &Targets, pivots: &mut Pivots) {
         self.take_over_parameters(at, targets, pivots);
+        self.size = at.size() * self.parts.part;
     }
 
     fn step(
@@ -301,7 +307,7 @@ impl SolveBlock for RrpDyad {
         self.g = state.at.frames()[self.body as usize].rotate(known.g);
         self.slope = known.w.dot(&perp(self.g));
         self.still = known.still;
-        self.scale = (known.w.norm() * known.g.norm()).max(state.at.size());
+        self.scale = (known.w.norm() * known.g.norm()).max(self.size);
         if self.slope == 0.0 || !self.slope.is_finite() {
             return Err(Rejected);
         }

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use super::anchor::{Anchor, Moving, compact, larger, largest};
+use super::anchor_path::AnchorPath;
 use super::reach::{ClosureGap, Reach};
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Extrapolation, Step};
@@ -25,8 +26,12 @@ use crate::mechanism::{Jet, MarkerId, Mechanism};
 #[derive(Debug)]
 pub(in crate::kinematics) struct RrrDyad {
     sides: [Side; 2],
+    /// The way from the anchor of b to that of a.
+    path: AnchorPath,
     /// d_a × d_b at the pose last factorised.
     determinant: f64,
+    /// Whether a later block asks for the deviation of the angle between the two bodies.
+    spread_is_read: bool,
     /// Numbers that no step needs.
     parts: Box<Parts>,
 }
@@ -163,13 +168,20 @@ impl Side {
 }
 
 impl RrrDyad {
-    pub(super) fn new(mechanism: &Mechanism, parts: Parts) -> Self {
+    pub(super) fn new(
+        mechanism: &Mechanism,
+        parts: Parts,
+        path: AnchorPath,
+        spread_is_read: bool,
+    ) -> Self {
         Self {
             sides: [
                 Side::new(mechanism, &parts.sides[0]),
                 Side::new(mechanism, &parts.sides[1]),
             ],
+            path,
             determinant: 0.0,
+            spread_is_read,
             parts: Box::new(parts),
         }
     }
@@ -216,7 +228,8 @@ impl RrrDyad {
                 self.determinant = determinant;
                 return Ok(Found {
                     correction,
-                    open: open + rounding,
+                    open,
+                    rounding,
                 });
             }
             if correction.iterations == max_iterations {
@@ -313,6 +326,7 @@ impl SolveBlock for RrrDyad {
         for (side, parts) in self.sides.iter_mut().zip(&self.parts.sides) {
             side.set_parameters(at, pivots, parts);
         }
+        self.path.set_parameters(at, pivots);
     }
 
     #[inline(always)]
@@ -569,8 +583,9 @@ struct Turned {
 /// The result of Newton–Raphson.
 struct Found {
     correction: Correction,
-    /// Bound of the gap that is left \[m\].
+    /// The gap that is left, and its rounding \[m\].
     open: f64,
+    rounding: f64,
 }
 
 /// The start of a sub-step; the chord bounds hold its sines and cosines.

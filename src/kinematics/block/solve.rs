@@ -33,6 +33,12 @@ pub(in crate::kinematics) trait SolveBlock:
     /// Returns the unknowns that it finds, as many as rows.
     fn columns(&self) -> &[usize];
 
+    /// Returns an estimate of the work of a sub-step, in that of one row in closed form: some ten
+    /// nanoseconds.
+    fn work(&self) -> f64 {
+        self.rows().len() as f64
+    }
+
     /// Takes over all that depends on the parameters alone, and sets the pivots of its bodies.
     /// Allocates nothing.
     fn set_parameters(&mut self, at: &Configuration, targets: &Targets, pivots: &mut Pivots) {

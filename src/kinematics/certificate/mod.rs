@@ -59,6 +59,9 @@ pub(super) struct Pivots(Vec<Option<Vector2<f64>>>);
 #[derive(Debug)]
 pub(super) struct StepBounds {
     bodies: Vec<ChordBound>,
+    /// Largest deviation of the angle between each body and the other one of its dyad from its
+    /// chord, where a later block reads it \[rad\].
+    spreads: Vec<f64>,
     /// Largest deviation of the origin in x and in y, of bodies without a pivot \[m\].
     origins: Vec<[f64; 2]>,
     /// Largest deviation of each joint unknown \[rad\].
@@ -107,6 +110,7 @@ impl StepBounds {
         let drivers = system.mechanism().drivers.len();
         Self {
             bodies: vec![ChordBound::default(); bodies],
+            spreads: vec![0.0; bodies],
             origins: vec![[0.0; 2]; bodies],
             joint_unknowns: vec![0.0; unknowns - 3 * bodies],
             drivers: vec![0.0; drivers],
@@ -143,6 +147,16 @@ impl StepBounds {
     #[inline(always)]
     pub(super) fn body_mut(&mut self, body: usize) -> &mut ChordBound {
         &mut self.bodies[body]
+    }
+
+    /// Returns the largest deviation of the angle between a body and the other one of its dyad.
+    pub(super) fn spread(&self, body: usize) -> f64 {
+        self.spreads[body]
+    }
+
+    /// Sets the largest deviation of that angle; infinite where it is not bounded.
+    pub(super) fn set_spread(&mut self, body: usize, deviation: f64) {
+        self.spreads[body] = deviation;
     }
 
     /// Returns the largest deviation of q\[column\] from its chord.

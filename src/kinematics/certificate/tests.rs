@@ -5,7 +5,7 @@ mod paths;
 use nalgebra::{Rotation2, Vector2};
 use proptest::prelude::*;
 
-use crate::kinematics::reference::generated::{BAR, Ground, chain, scissor_lift};
+use crate::kinematics::reference::generated::{BAR, Ground, chain, lift_from_below, scissor_lift};
 use crate::kinematics::reference::{assembled, grown, part};
 use crate::kinematics::{Curve, Path, Pose, Progress, Solver};
 use crate::mechanism::{DriverId, Mechanism, Source};
@@ -245,6 +245,16 @@ fn chains_and_lifts_stay_within_their_bounds() {
         ("chain", chain(30, Ground::Straight), 0.4),
         ("lift of one", scissor_lift(1), 0.1),
         ("lift of six", scissor_lift(6), 0.1),
+        (
+            "straight lift",
+            lift_from_below(9, 0.7, |_| [0.5, 0.5]),
+            0.1,
+        ),
+        (
+            "bent lift",
+            lift_from_below(9, 0.7, |k| [0.5, 0.5 + 0.004 * (k as f64).sin()]),
+            0.1,
+        ),
     ] {
         let (largest, _) = sweep(&Source::new(name, &text), &[size, -0.1 * size], 2);
         assert!(largest > 0.05 * size, "{name}: {largest}");

@@ -18,9 +18,18 @@ use crate::kinematics::system::System;
 use crate::mechanism::{DriverId, Jet};
 
 /// Most sub-steps of a path: some thousand turns.
-const MOST_SUBSTEPS: u32 = 100_000;
-/// A path is given up if, at the pace of so many sub-steps, twice the most would be needed ahead.
-const ENOUGH_TO_JUDGE: u32 = 2_000;
+const MOST_SUBSTEPS: f64 = 100_000.0;
+/// The same for a mechanism of any size.
+const FEWEST_SUBSTEPS: f64 = 1_000.0;
+/// Most work of a path between these limits, in that of one row in closed form: about a second.
+const MOST_WORK: f64 = 5e7;
+/// The work of checking a cam's profile at each sub-step, while parameters move it.
+const WORK_OF_PROFILE: f64 = 5e4;
+/// A path is given up if, at the pace of this part of the most sub-steps, twice the most would be
+/// needed ahead.
+const PART_TO_JUDGE: f64 = 0.02;
+/// Fewest sub-steps that a pace is judged by.
+const ENOUGH_TO_JUDGE: u32 = 200;
 /// A motion that stops while a driver still moves by more than this per sub-step \[m or rad\] asks
 /// for too long a path.
 const LARGEST_LAST_MOVE: f64 = 1e-6;
@@ -248,9 +257,23 @@ impl Run<'_> {
         if substeps - judged < ENOUGH_TO_JUDGE {
             return false;
         }
+        let most = self.most_substeps();
+        let since = f64::from(substeps - judged);
+        if since < PART_TO_JUDGE * most {
+            return false;
+        }
         self.judged = (substeps, self.s);
-        let pace = (self.s - from) / f64::from(substeps - judged);
-        substeps >= MOST_SUBSTEPS || pace * f64::from(2 * MOST_SUBSTEPS) < 1.0 - self.s
+        let pace = (self.s - from) / since;
+        f64::from(substeps) >= most || pace * 2.0 * most < 1.0 - self.s
+    }
+
+    /// Returns the most sub-steps of a path: fewer for a mechanism that takes more work.
+    fn most_substeps(&self) -> f64 {
+        let mut work = self.model.plan.work();
+        if self.drivers.parameters_move {
+            work += WORK_OF_PROFILE * self.state.at.profiles().len() as f64;
+        }
+        (MOST_WORK / work).clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS)
     }
 
     /// Takes one sub-step: predicts, corrects and certifies its end, then accepts it or tries a

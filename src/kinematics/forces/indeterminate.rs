@@ -13,6 +13,7 @@ use crate::kinematics::model::Model;
 use crate::kinematics::path::{Curve, Path};
 use crate::kinematics::redundancy::{DEPENDENT, drivers_first, jacobian_rows};
 use crate::kinematics::state::State;
+use crate::mechanism::DriverId;
 
 /// Distances of the other poses \[rad, characteristic lengths\] at which self-stresses are sought:
 /// a reaction may have no part in one at a single pose.
@@ -39,11 +40,12 @@ pub(in crate::kinematics) fn indeterminate(
         path.from.clone_from(&home.parameters);
         path.to.clone_from(&home.parameters);
         let drivers = mechanism.drivers.iter().zip(&home.drivers);
-        for (curve, (driver, &now)) in path.curves.iter_mut().zip(drivers) {
+        let curves = path.curves.iter_mut().enumerate();
+        for ((index, curve), (driver, &now)) in curves.zip(drivers) {
             let scale = if driver.coordinate.kind.is_angle() {
                 1.0
             } else {
-                state.at.size()
+                model.system.driver_row(DriverId(index)).size(&state.at)
             };
             *curve = Curve::held(now + away * scale, now);
         }

@@ -23,11 +23,13 @@
 //! | `self_stress` | reactions of least norm |
 //! | `indeterminate` | reactions that redundant constraints leave open |
 //! | `solve` | [`Forces`]: all results at a pose |
+//! | `lift_off` | [`LiftOff`]: contacts that begin to pull |
 //! | `sensitivity` | [`ForceSensitivity`]: their derivatives along a direction |
 
 mod applied;
 mod indeterminate;
 mod inertial;
+mod lift_off;
 mod quantity;
 mod self_stress;
 mod sensitivity;
@@ -35,6 +37,7 @@ mod solve;
 mod wrench;
 
 pub(super) use indeterminate::indeterminate;
+pub use lift_off::LiftOff;
 pub use quantity::ForceQuantity;
 pub(super) use sensitivity::Along;
 pub use sensitivity::ForceSensitivity;

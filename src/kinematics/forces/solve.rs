@@ -33,7 +33,7 @@ pub struct Forces {
     /// Rows that the factors leave out.
     set_aside: Vec<usize>,
     pub(super) rows: ReactionRows,
-    contacts: Vec<Contact>,
+    pub(super) contacts: Vec<Contact>,
     self_stresses: SelfStresses,
     pub(super) results: Results,
     work: Work,
@@ -182,26 +182,6 @@ impl Forces {
     #[must_use]
     pub fn contacts(&self) -> usize {
         self.contacts.len()
-    }
-
-    /// Returns the largest component of a reaction \[N or N m\].
-    #[must_use]
-    pub fn largest_reaction(&self) -> f64 {
-        let components = self.results.reactions.as_flattened().iter();
-        components.fold(0.0, |most: f64, component| most.max(component.abs()))
-    }
-
-    /// Returns each joint that can only push, by its index, with the force between its two parts
-    /// \[N\], negative where it would have to pull.
-    pub(in crate::kinematics) fn contact_forces(
-        &self,
-        state: &State,
-    ) -> impl Iterator<Item = (usize, f64)> {
-        let multipliers = &self.results.multipliers;
-        self.contacts.iter().map(move |contact| {
-            let force = contact.force(&self.mechanism, &state.at, multipliers);
-            (contact.joint, force)
-        })
     }
 
     /// Solves the forces at the pose. Allocates nothing, unless other rows have become redundant.

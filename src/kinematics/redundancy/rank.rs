@@ -9,6 +9,7 @@ use crate::kinematics::linear::{Echelon, ReducedRow, Row};
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
+use crate::mechanism::DriverId;
 
 /// A row of which no more than this is left, scaled, depends on the others. A singular position
 /// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] from it leaves some
@@ -80,7 +81,7 @@ fn ranks_with_drivers_moved(model: &Model, state: &mut State, home: &[f64]) -> V
             let scale = if driver.coordinate.kind.is_angle() {
                 1.0
             } else {
-                state.at.size()
+                model.system.driver_row(DriverId(k)).size(&state.at)
             };
             value + sense * scale * mixture(k)
         });

@@ -1,7 +1,7 @@
 //! The linearisation: the scaled rows of Phi with their gradients.
 //!
-//! Metres and radians compare: rows in metres are divided by the mechanism's size, columns
-//! multiplied by [`System::column_scale`].
+//! Metres and radians compare: rows in metres are divided by the size of their part of the
+//! mechanism, columns multiplied by [`System::column_scale`].
 
 use nalgebra::{DMatrix, DVector};
 

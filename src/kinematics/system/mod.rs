@@ -5,6 +5,7 @@
 
 mod joint;
 mod linearise;
+mod parts;
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -39,6 +40,8 @@ pub struct Equation {
     pub target: Target,
     /// The parameters that it uses besides those of markers and of the target.
     pub parameters: Vec<ParameterId>,
+    /// Size of the part of the mechanism that it belongs to, as a part of the mechanism's size.
+    part: f64,
 }
 
 /// The equations of a mechanism: kinematic constraints (Eq. 3.6.1), then drivers (Eq. 3.6.2).
@@ -49,6 +52,8 @@ pub struct System {
     /// The row of each driver.
     driver_rows: Vec<usize>,
     joint_parts: JointParts,
+    /// Size of the part that each body belongs to, as a part of the mechanism's size.
+    part_sizes: Vec<f64>,
 }
 
 /// The targets in force.
@@ -84,6 +89,7 @@ impl System {
                     constraint,
                     target: Target::Constant(target),
                     parameters: joint_parts.parameters.clone(),
+                    part: 1.0,
                 });
             }
         }
@@ -93,6 +99,7 @@ impl System {
                 constraint: constraint::of_coordinate(&held.coordinate),
                 target: Target::Constant(held.value.clone()),
                 parameters: Vec::new(),
+                part: 1.0,
             });
         }
         let mut driver_rows = Vec::with_capacity(mechanism.drivers.len());
@@ -103,13 +110,23 @@ impl System {
                 constraint: constraint::of_coordinate(&driver.coordinate),
                 target: Target::Driver(DriverId(index)),
                 parameters: Vec::new(),
+                part: 1.0,
             });
+        }
+        let part_sizes = parts::part_sizes(&mechanism, &equations);
+        for equation in &mut equations {
+            let mut incidence = Incidence::default();
+            equation.constraint.incidence(&mechanism, &mut incidence);
+            let mut unknowns = incidence.unknowns.iter();
+            let part = unknowns.find_map(|column| part_sizes.get(column / 3));
+            equation.part = part.copied().unwrap_or(1.0);
         }
         Self {
             mechanism,
             equations,
             driver_rows,
             joint_parts,
+            part_sizes,
         }
     }
 
@@ -283,10 +300,14 @@ impl System {
         Ok(())
     }
 
+    /// Returns the row of a driver.
+    pub(in crate::kinematics) fn driver_row(&self, driver: DriverId) -> &Equation {
+        &self.equations[self.driver_rows[driver.index()]]
+    }
+
     /// Returns a driver as messages name it.
     pub(in crate::kinematics) fn describe_driver(&self, driver: DriverId) -> String {
-        let row = self.driver_rows[driver.index()];
-        self.equations[row].element.describe(&self.mechanism)
+        self.driver_row(driver).element.describe(&self.mechanism)
     }
 
     /// Fixes the whole turns of each angle row that is not a driver: those nearest the present
@@ -353,10 +374,15 @@ impl System {
         }
     }
 
-    /// Returns the scale factor of an unknown \[m or rad\].
+    /// Returns the scale factor of an unknown \[m or rad\], for this size of the mechanism: for a
+    /// place the size of the body's part.
     #[must_use]
     pub fn column_scale(&self, column: usize, size: f64) -> f64 {
-        if self.is_angle(column) { 1.0 } else { size }
+        if self.is_angle(column) {
+            1.0
+        } else {
+            size * self.part_sizes[column / 3]
+        }
     }
 }
 
@@ -377,10 +403,21 @@ impl Equation {
             && self.constraint.turn_effect() == TurnEffect::Whole
     }
 
-    /// Returns the scale factor of the row: rows in metres are divided by the mechanism's size.
+    /// Returns the size of the part of the mechanism that the row belongs to, as a part of the
+    /// mechanism's size.
+    pub(in crate::kinematics) fn part(&self) -> f64 {
+        self.part
+    }
+
+    /// Returns the size of the part of the mechanism that the row belongs to \[m\].
+    pub(in crate::kinematics) fn size(&self, at: &Configuration) -> f64 {
+        at.size() * self.part
+    }
+
+    /// Returns the scale factor of the row: rows in metres are divided by the size of their part.
     pub(in crate::kinematics) fn row_scale(&self, at: &Configuration) -> f64 {
         match self.constraint.dimension() {
-            Dimension::Length => 1.0 / at.size(),
+            Dimension::Length => 1.0 / self.size(at),
             Dimension::Angle => 1.0,
         }
     }

@@ -25,6 +25,32 @@ pub enum Law {
 }
 
 impl Law {
+    /// The ends of the pieces of all laws, as parts of their time.
+    pub const PIECES: [f64; 9] = [
+        0.0,
+        0.125,
+        1.0 / 3.0,
+        0.375,
+        0.5,
+        0.625,
+        2.0 / 3.0,
+        0.875,
+        1.0,
+    ];
+
+    /// Returns whether its acceleration jumps, at its ends or in between.
+    #[must_use]
+    pub fn jumps(self) -> bool {
+        matches!(self, Self::Harmonic | Self::Trapezoidal)
+    }
+
+    /// Returns the way from one point of a table to the next, at the abscissa `x` of this segment.
+    pub fn between<N: Number>(self, abscissas: &[N], ordinates: &[N], segment: usize, x: N) -> N {
+        let [from, to] = [segment, segment + 1].map(|k| abscissas[k]);
+        let [low, high] = [segment, segment + 1].map(|k| ordinates[k]);
+        low + (high - low) * self.stroke((x - from) / (to - from))
+    }
+
     /// Returns the part of the stroke done after the part `tau` of its time, both from 0 to 1.
     ///
     /// Each law is symmetric: s(τ) + s(1 − τ) = 1.

@@ -35,6 +35,17 @@ pub enum Interpolation {
     Law(Law),
 }
 
+impl Interpolation {
+    /// Returns whether the second derivative jumps somewhere.
+    #[must_use]
+    pub fn jumps(self) -> bool {
+        match self {
+            Self::Spline => false,
+            Self::Law(law) => law.jumps(),
+        }
+    }
+}
+
 impl Motion {
     /// Whether it moves at all.
     #[must_use]
@@ -251,8 +262,6 @@ impl MotionTable {
         let Interpolation::Law(law) = self.interpolation else {
             return spline.on_segment(segment, t);
         };
-        let [from, to] = [segment, segment + 1].map(|k| spline.knots()[k]);
-        let [low, high] = [segment, segment + 1].map(|k| spline.values()[k]);
-        low + (high - low) * law.stroke((t - from) / (to - from))
+        law.between(spline.knots(), spline.values(), segment, t)
     }
 }

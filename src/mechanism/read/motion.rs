@@ -29,7 +29,7 @@ table! {
     }
 }
 
-const LAW: Word<Interpolation> = Word::new("motion law", code::ILLEGAL_VALUE, || {
+pub(super) const LAW: Word<Interpolation> = Word::new("motion law", code::ILLEGAL_VALUE, || {
     vec![
         ("spline", Interpolation::Spline),
         ("polynomial_345", Interpolation::Law(Law::Polynomial345)),

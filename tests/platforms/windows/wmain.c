@@ -7,11 +7,13 @@ int host_main(int argc, char **argv);
 
 int wmain(int argc, wchar_t **wide)
 {
-    static char text[8][4096];
-    char *argv[9] = {NULL};
-    for (int k = 0; k < argc && k < 8; k++) {
+    enum { MOST = 16 };
+    static char text[MOST][4096];
+    char *argv[MOST + 1] = {NULL};
+    if (argc > MOST) return 1;
+    for (int k = 0; k < argc; k++) {
         WideCharToMultiByte(CP_UTF8, 0, wide[k], -1, text[k], sizeof text[k], NULL, NULL);
         argv[k] = text[k];
     }
-    return host_main(argc < 8 ? argc : 8, argv);
+    return host_main(argc, argv);
 }

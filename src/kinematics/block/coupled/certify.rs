@@ -158,8 +158,9 @@ impl CoupledBlock {
         let first = self.lay_chord(state, step);
         let columns = self.equations.columns.iter();
         for (radius, &column) in self.test.radii.iter_mut().zip(columns) {
-            // The scale of an unknown in the block as a part of that in the mechanism.
-            *radius = first * state.system.column_scale(column, self.length);
+            // The scale of an unknown in the block as a part of that in its part of the mechanism.
+            let is_angle = state.system.is_angle(column);
+            *radius = if is_angle { first } else { first * self.length };
         }
         self.factorise_middle(state).map_err(|Rejected| None)?;
         let mut last = None;

@@ -15,19 +15,29 @@
 //! add up with their directions, so that links that turn alike leave nothing. Elsewhere the gap
 //! is at most the one in the middle plus the effect of the third derivative on a parabola.
 //!
-//! An anchor whose body's angle is uncertain by ρ, with the lever a from the body's pivot, opens
-//! the loop in a known direction, which makes r_a = ρ |a × d_b| / det. Along the chord this is a
-//! quotient of two sines of angles that run straight, with values R at the ends, and nowhere
-//! above
+//! The loop runs from one anchor to the other over arms fixed to bodies found before
+//! ([`AnchorPath`]), so that F depends on their angles alone. A body whose angle is uncertain by ρ
+//! opens the loop with its arm t in a known direction, which makes r_a = ρ |t × d_b| / det. Along
+//! the chord this is a quotient of two sines of angles that run straight, with values R at the
+//! ends; det being concave, it is nowhere above
 //!
-//! > max R + (|a| l_b Δψ² + max R · l_a l_b Δμ²) / (8 det),
+//! > max R + |t| l_b Δψ² / (8 det),
 //!
-//! ψ and μ being those angles. A parallelogram, where a and d_b are parallel to each other,
+//! ψ being the angle from t to d_b. A parallelogram, where t and d_b are parallel to each other,
 //! passes an uncertainty on unchanged, however long the row of parallelograms; without the
 //! direction each of them would enlarge it.
 //!
-//! While parameters move, the chord is that of the links in force at the end. The links on the way
-//! differ from them by the parameter bounds, which count twice: on the way and at the start.
+//! Two bodies that follow each other on the way and are the sides of one dyad have uncertain angles
+//! δ₁ and δ₂ that differ by no more than σ, the uncertainty of the angle between them. With the
+//! factors T of their effects,
+//!
+//! > T₁ δ₁ + T₂ δ₂ = (T₁ + T₂) δ₁ + T₂ (δ₂ − δ₁) = (T₁ + T₂) δ₂ − T₁ (δ₂ − δ₁),
+//!
+//! of which the least bound counts. If both turn alike, the dyad turns with them: from cell to cell
+//! of a scissor lift σ depends on σ alone, and the angles grow by a multiple of it.
+//!
+//! While parameters move, the chord is that of the links in force at the end. The numbers on the
+//! way differ from them by the parameter bounds, which add to the gap.
 
 use std::f64::consts::PI;
 
@@ -35,13 +45,16 @@ use nalgebra::Vector2;
 
 use super::{Before, Found, RrrDyad};
 use crate::kinematics::block::anchor::larger;
+use crate::kinematics::block::anchor_path::{AnchorPath, Arm, PathKind};
 use crate::kinematics::block::step::BlockState;
 use crate::kinematics::certificate::{Gap, StepBounds, sagitta};
-use crate::kinematics::configuration::rotate;
+use crate::kinematics::configuration::{BodyPose, rotate};
 use crate::kinematics::newton::Rejected;
 
 /// An uncertain angle that adds no more than this part to the gap is added without its direction.
 const NEGLIGIBLE: f64 = 0.01;
+/// Rounding of an arm at both ends, as a part of its length.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Returns the distance of a vector that turns by `turn` from `from` to `to` from the middle
 /// between them, up to terms of fourth order.
@@ -81,10 +94,10 @@ impl RrrDyad {
             frames[b.body as usize].phi - before.phi[1],
         ];
         let (mut before_links, mut before_determinant) = (before.links, before.determinant);
-        let mut gap = 2.0 * found.open;
-        let mut deviations = [0.0; 2];
-        // Bounds of the change of the links by moving parameters.
-        let mut slack = [0.0; 2];
+        let mut gap = 2.0 * found.rounding;
+        let mut deviations = [a, b].map(|side| side.anchor.deviation(bounds, frames));
+        // Bounds of the change of the links and of the path by moving parameters.
+        let (mut slack, mut path_slack) = ([0.0; 2], 0.0);
         if let Some(parameters) = bounds.moving_parameters() {
             // The loop at the start with the lengths in force now.
             before_links = [a, b].map(|side| {
@@ -92,54 +105,78 @@ impl RrrDyad {
                 rotate(bound.cos, bound.sin, side.l)
             });
             before_determinant = before_links[0].perp(&before_links[1]);
+            path_slack = self.path.slack(parameters);
             for (k, parts) in self.parts.sides.iter().enumerate() {
-                let [outer, inner] = [parts.outer, parts.inner].map(|m| parameters.position(m));
-                deviations[k] = 2.0 * (outer + parameters.position(parts.anchor));
+                let [outer, inner, anchor] =
+                    [parts.outer, parts.inner, parts.anchor].map(|m| parameters.position(m));
+                deviations[k] += 2.0 * (outer + anchor);
                 slack[k] = outer + inner;
-                gap += deviations[k] + 2.0 * inner;
             }
+            // Along a chain the gap at the start is found with the numbers in force.
+            let times = if self.path.kind == PathKind::Chain {
+                1.0
+            } else {
+                2.0
+            };
+            gap += times * (slack[0] + slack[1] + path_slack);
         }
         let spread = turns[1] - turns[0];
         if !(before_determinant * self.determinant > 0.0 && spread.abs() < PI) {
             return Err(bounds.reject());
         }
+        let links = [before_links, [a.link, b.link]];
+        let lengths = [a.length, b.length];
         let inverses = [before_determinant, self.determinant].map(|det| 1.0 / det.abs());
         let inverse = larger(inverses[0], inverses[1]);
 
-        let links = [before_links, [a.link, b.link]];
-        let lengths = [a.length, b.length];
-        let product = a.length * b.length;
+        let loop_of = || Loop {
+            links,
+            lengths,
+            turns,
+            inverses,
+        };
+        // The gap at both ends.
+        gap += match self.path.kind {
+            PathKind::Short => 2.0 * found.open + self.roundings(frames),
+            PathKind::Chain => loop_of().gap_at_ends(&self.path, bounds, frames),
+            PathKind::ByPivots => {
+                2.0 * found.open + self.roundings(frames) + self.path.loose(bounds)
+            }
+        };
         // The gap in the middle.
         let mut middle =
             bulge(links[0][0], links[1][0], turns[0]) - bulge(links[0][1], links[1][1], turns[1]);
         gap += beyond_parabola(a.length, turns[0]) + beyond_parabola(b.length, turns[1]);
-        // The effect of the uncertain angles of the bodies that carry the anchors.
+        // The effect of the uncertain angles of the bodies on the way between the anchors.
         let mut turned = [0.0; 2];
-        for (k, side) in self.sides.iter().enumerate() {
-            let Some((bound, length)) = side.anchor.carrier(bounds) else {
+        for arm in self.path.arms() {
+            let bound = bounds.body(arm.body as usize);
+            let levers = arm.ends(bound, frames);
+            middle += bulge(levers[0], levers[1], bound.turn);
+            let swung = arm.length * bound.angle_deviation;
+            gap += beyond_parabola(arm.length, bound.turn);
+            if arm.paired {
+                gap += (0.5 * swung + path_slack) * bound.angle_deviation;
                 continue;
-            };
-            let levers = side.anchor.levers(bound, frames);
-            let lever = bulge(levers[0], levers[1], bound.turn);
-            middle += if k == 0 { lever } else { -lever };
-            let swung = length * bound.angle_deviation;
-            let pivot = bound.point_deviation + side.anchor.rounding(frames);
-            deviations[k] += pivot + length * sagitta(bound.turn) + swung;
-            gap += pivot + beyond_parabola(length, bound.turn);
+            }
             if swung <= NEGLIGIBLE * gap {
                 gap += swung;
                 continue;
             }
-            gap += 0.5 * swung * bound.angle_deviation;
+            gap += (0.5 * swung + path_slack) * bound.angle_deviation;
             for (k, turned) in turned.iter_mut().enumerate() {
                 let other = 1 - k;
-                let ratios =
-                    [0, 1].map(|end| levers[end].perp(&links[end][other]).abs() * inverses[end]);
-                let ratio = larger(ratios[0], ratios[1]);
-                let bend = length * lengths[other] * sagitta(turns[other] - bound.turn)
-                    + ratio * product * sagitta(spread);
-                *turned += (ratio + bend * inverse) * bound.angle_deviation;
+                let bend = arm.length * lengths[other] * sagitta(turns[other] - bound.turn);
+                let ratios = [0, 1]
+                    .map(|end: usize| levers[end].perp(&links[end][other]).abs() * inverses[end]);
+                let ratio = larger(ratios[0], ratios[1]) + bend * inverse;
+                *turned += ratio * bound.angle_deviation;
             }
+        }
+        if self.path.has_pairs() {
+            let by_pairs = loop_of().turned_by_pairs(&self.path, bounds, frames);
+            turned[0] += by_pairs[0];
+            turned[1] += by_pairs[1];
         }
 
         gap += middle.x.abs() + middle.y.abs();
@@ -154,6 +191,12 @@ impl RrrDyad {
         }
         let gap = Gap::new(gap, linear, square);
         bounds.require(gap.step_ratio)?;
+        if self.spread_is_read {
+            let deviation = loop_of().spread(&self.path, gap.value, bounds, frames);
+            for side in &self.sides {
+                bounds.set_spread(side.body as usize, deviation);
+            }
+        }
         for (k, side) in self.sides.iter().enumerate() {
             let bound = bounds.body_mut(side.body as usize);
             bound.turn = turns[k];
@@ -161,5 +204,137 @@ impl RrrDyad {
             bound.point_deviation = deviations[k];
         }
         Ok(())
+    }
+
+    /// Returns the rounding of the stored origins of the bodies that carry the anchors \[m\].
+    #[inline(always)]
+    fn roundings(&self, frames: &[BodyPose]) -> f64 {
+        let [a, b] = &self.sides;
+        a.anchor.rounding(frames) + b.anchor.rounding(frames)
+    }
+}
+
+/// The links of a dyad over a sub-step.
+struct Loop {
+    /// The links at the start, then at the end.
+    links: [[Vector2<f64>; 2]; 2],
+    lengths: [f64; 2],
+    turns: [f64; 2],
+    /// 1 / |det| at the start and at the end.
+    inverses: [f64; 2],
+}
+
+/// An angle that an uncertain arm turns.
+#[derive(Clone, Copy)]
+enum Target {
+    /// The angle of a link.
+    Link(usize),
+    /// The angle between the links.
+    Spread,
+}
+
+impl Loop {
+    /// Bounds |t × d| / |det| along the chord for a vector t with these ends, d being `others`, if
+    /// t × d deviates from its chord by no more than `bend`.
+    fn quotient(&self, levers: [Vector2<f64>; 2], others: [Vector2<f64>; 2], bend: f64) -> f64 {
+        let ratios =
+            [0, 1].map(|end: usize| levers[end].perp(&others[end]).abs() * self.inverses[end]);
+        larger(ratios[0], ratios[1]) + bend * larger(self.inverses[0], self.inverses[1])
+    }
+
+    /// Returns the larger of the gaps that the loop has at its ends, with its rounding \[m\].
+    #[inline(never)]
+    fn gap_at_ends(&self, path: &AnchorPath, bounds: &StepBounds, frames: &[BodyPose]) -> f64 {
+        let between = path.ends(bounds, frames);
+        let lengths: f64 = path.arms().iter().map(|arm| arm.length).sum();
+        let [start, end] = [0, 1].map(|end: usize| {
+            let gap = between[end] + self.links[end][0] - self.links[end][1];
+            gap.x.abs() + gap.y.abs()
+        });
+        larger(start, end) + ROUNDING * lengths
+    }
+
+    /// Bounds the effect of the uncertain angles of pairs on the angles of both links \[rad\].
+    #[inline(never)]
+    fn turned_by_pairs(
+        &self,
+        path: &AnchorPath,
+        bounds: &StepBounds,
+        frames: &[BodyPose],
+    ) -> [f64; 2] {
+        [0, 1].map(|k| {
+            let pairs = path.pairs();
+            pairs
+                .map(|pair| self.turn_by_pair(pair, Target::Link(k), bounds, frames))
+                .sum()
+        })
+    }
+
+    /// Bounds the deviation of the angle between the links, the loop being open by `gap`
+    /// \[rad\].
+    #[inline(never)]
+    fn spread(&self, path: &AnchorPath, gap: f64, bounds: &StepBounds, frames: &[BodyPose]) -> f64 {
+        let single = path.arms().iter().filter(|arm| !arm.paired);
+        let single = single.map(|arm| {
+            let bound = bounds.body(arm.body as usize);
+            let bend = self.bend(arm, bound.turn, Target::Spread);
+            let others = self.others(Target::Spread);
+            self.quotient(arm.ends(bound, frames), others, bend) * bound.angle_deviation
+        });
+        let pairs = path.pairs();
+        let pairs = pairs.map(|pair| self.turn_by_pair(pair, Target::Spread, bounds, frames));
+        let inverse = larger(self.inverses[0], self.inverses[1]);
+        single.chain(pairs).sum::<f64>() + gap * self.widest() * inverse
+    }
+
+    /// Returns d of an angle, at the start and at the end: the other link, or d_a − d_b.
+    fn others(&self, target: Target) -> [Vector2<f64>; 2] {
+        self.links.map(|links| match target {
+            Target::Link(k) => links[1 - k],
+            Target::Spread => links[0] - links[1],
+        })
+    }
+
+    /// Bounds the deviation of t × d from its chord for an arm t that turns by `turn`.
+    fn bend(&self, arm: &Arm, turn: f64, target: Target) -> f64 {
+        let bend =
+            |other: usize| arm.length * self.lengths[other] * sagitta(self.turns[other] - turn);
+        match target {
+            Target::Link(k) => bend(1 - k),
+            Target::Spread => bend(0) + bend(1),
+        }
+    }
+
+    /// Returns the largest length of d_a − d_b. The angle between the links runs straight, so that
+    /// it is the length at one of the ends.
+    fn widest(&self) -> f64 {
+        let [start, end] = self.others(Target::Spread).map(|d| d.norm());
+        larger(start, end)
+    }
+
+    /// Bounds the effect of the uncertain angles of the two sides of an earlier dyad.
+    fn turn_by_pair(
+        &self,
+        pair: [&Arm; 2],
+        target: Target,
+        bounds: &StepBounds,
+        frames: &[BodyPose],
+    ) -> f64 {
+        let [first, second] = pair.map(|arm| bounds.body(arm.body as usize));
+        let others = self.others(target);
+        let levers = [pair[0].ends(first, frames), pair[1].ends(second, frames)];
+        let together = [0, 1].map(|end: usize| levers[0][end] + levers[1][end]);
+        let bends = [
+            self.bend(pair[0], first.turn, target),
+            self.bend(pair[1], second.turn, target),
+        ];
+        let alone = [0, 1].map(|k: usize| self.quotient(levers[k], others, bends[k]));
+        let both = self.quotient(together, others, bends[0] + bends[1]);
+        let apart = bounds.spread(pair[0].body as usize);
+        let [r1, r2] = [first.angle_deviation, second.angle_deviation];
+        // `f64::min` passes over the product of zero and a spread without bound.
+        (alone[0] * r1 + alone[1] * r2)
+            .min(both * r1 + alone[1] * apart)
+            .min(both * r2 + alone[0] * apart)
     }
 }

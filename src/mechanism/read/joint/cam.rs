@@ -5,12 +5,14 @@ use crate::mechanism::read::context::Context;
 #[cfg(feature = "cli")]
 use crate::mechanism::read::kind::Described;
 use crate::mechanism::read::kind::{Item, Kind, Word, schema};
+use crate::mechanism::read::motion::LAW;
 #[cfg(feature = "cli")]
 use crate::mechanism::read::number::NUMBER;
 use crate::mechanism::read::number::{LENGTH, Quantity};
 use crate::mechanism::read::points::PointKeys;
+use crate::mechanism::read::table::table;
 use crate::mechanism::{
-    CamFollower, JointKind, Profile, ProfileError, ProfileInForce, Span, Variable,
+    CamFollower, Interpolation, JointKind, Profile, ProfileError, ProfileInForce, Span, Variable,
 };
 
 use super::joint_type;
@@ -46,6 +48,14 @@ const FOLLOWER: Word<Follower> = Word::new("follower", code::ILLEGAL_VALUE, || {
     ]
 });
 
+table! {
+    /// A contour through points.
+    struct ContourKeys<'a> {
+        /// Way from each point to the next; a closed spline if left out.
+        law: Interpolation = LAW,
+    }
+}
+
 /// Contour of a cam.
 struct Contour;
 
@@ -55,7 +65,7 @@ impl<'a> Kind<'a> for Contour {
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Profile> {
         let profile = if item.value.get_ref().is_table() {
             let fields = context.fields(item.span(), item.value, "the profile".to_owned())?;
-            let keys = context.table::<PointKeys<'a>>(&fields);
+            let keys = context.table::<(PointKeys<'a>, ContourKeys<'a>)>(&fields);
             context.contour_table(keys)?
         } else {
             Profile::Expression(context.expression(item.value, &[Variable::PolarAngle])?)
@@ -64,7 +74,7 @@ impl<'a> Kind<'a> for Contour {
         Some(profile)
     }
 
-    schema! {{ "anyOf": [NUMBER.schema(), PointKeys::schema()] }}
+    schema! {{ "anyOf": [NUMBER.schema(), <(PointKeys<'_>, ContourKeys<'_>)>::schema()] }}
 }
 
 impl<'a> Context<'a> {
@@ -92,17 +102,26 @@ impl<'a> Context<'a> {
         })
     }
 
-    fn contour_table(&mut self, keys: PointKeys<'a>) -> Option<Profile> {
+    fn contour_table(
+        &mut self,
+        (keys, contour): (PointKeys<'a>, ContourKeys<'a>),
+    ) -> Option<Profile> {
+        let interpolation = contour.law.or(Interpolation::Spline);
         let place = keys.owner.place.clone();
         let mut points = self.points(keys)?;
         self.check_ordinates_positive(&points, "the radius of a contour")?;
         self.close_turn(&mut points)?;
-        if points.table.points.len() < 3 {
+        let interpolation = interpolation?;
+        if interpolation == Interpolation::Spline && points.table.points.len() < 3 {
             let message = "a closed contour has three points at least";
-            self.error(code::BAD_TABLE, place, message);
+            self.error(code::BAD_TABLE, place, message)
+                .suggest("a rise and a return by a law, such as `law = \"cycloidal\"`, need two");
             return None;
         }
-        Some(Profile::Table(points.table))
+        Some(Profile::Table {
+            table: points.table,
+            interpolation,
+        })
     }
 
     /// Refuses a profile that is no contour with the file's parameters.

@@ -1,0 +1,62 @@
+//! Contacts that would lift off.
+
+use std::fmt;
+
+use super::solve::Forces;
+use crate::kinematics::state::State;
+use crate::mechanism::shown;
+
+/// A part of the largest reaction below which a pulling force is rounding.
+const PULLS: f64 = 1e-9;
+
+/// A joint that can only push and begins to pull.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LiftOff<'a> {
+    /// Time \[s\].
+    pub time: f64,
+    /// Name of the joint.
+    pub joint: &'a str,
+    /// Force by which its parts would have to pull each other \[N\].
+    pub pull: f64,
+}
+
+impl fmt::Display for LiftOff<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { time, joint, pull } = self;
+        write!(
+            out,
+            "t = {time} s: joint `{joint}` would lift off: its parts would have to pull each other \
+             with {} N; the mechanism keeps them together",
+            shown(*pull)
+        )
+    }
+}
+
+impl Forces {
+    /// Returns the contacts that begin to pull, and sets in `lifted` which contacts pull.
+    pub(in crate::kinematics) fn lift_offs<'a>(
+        &'a self,
+        state: &'a State,
+        lifted: &'a mut [bool],
+    ) -> impl Iterator<Item = LiftOff<'a>> {
+        let least = PULLS * self.largest_reaction();
+        let contacts = self.contacts.iter().zip(lifted);
+        contacts.filter_map(move |(contact, lifted)| {
+            let force = contact.force(&self.mechanism, &state.at, &self.results.multipliers);
+            let pulls = force < -least;
+            let begins = pulls && !*lifted;
+            *lifted = pulls;
+            begins.then(|| LiftOff {
+                time: state.pose.time,
+                joint: &self.mechanism.joints[contact.joint].name,
+                pull: -force,
+            })
+        })
+    }
+
+    /// Returns the largest component of a reaction \[N or N m\].
+    fn largest_reaction(&self) -> f64 {
+        let components = self.results.reactions.as_flattened().iter();
+        components.fold(0.0, |most: f64, component| most.max(component.abs()))
+    }
+}

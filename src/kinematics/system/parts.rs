@@ -1,0 +1,82 @@
+//! The parts of a mechanism that do not move each other, and their sizes.
+
+use petgraph::unionfind::UnionFind;
+
+use super::{Equation, Target};
+use crate::kinematics::constraint::{Dimension, Incidence};
+use crate::mechanism::{MarkerId, Mechanism};
+
+/// Least part of the mechanism's size that counts: a body of some eps of it is a point.
+const LEAST: f64 = 1e-15;
+
+/// Returns the size of the part that each body belongs to, as a part of the mechanism's size:
+/// powers of two, so that scaling rounds nothing.
+///
+/// The bodies in one row belong together, those joined by ground alone do not: a platform of 1 mm
+/// is no singular mechanism because a pendulum of 1 km hangs beside it. A size is that of
+/// [`Configuration::size`], for the parameters of the file; a part of points alone has the
+/// mechanism's.
+///
+/// [`Configuration::size`]: crate::kinematics::Configuration::size
+pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f64> {
+    let bodies = mechanism.bodies.len();
+    let mut parts = UnionFind::new(bodies);
+    // The first body of each row.
+    let first: Vec<Option<usize>> = equations
+        .iter()
+        .map(|equation| {
+            let mut incidence = Incidence::default();
+            equation.constraint.incidence(mechanism, &mut incidence);
+            let unknowns = incidence.unknowns.into_iter();
+            let mut met = unknowns.map(|column| column / 3).filter(|&b| b < bodies);
+            let first = met.next()?;
+            met.for_each(|body| {
+                parts.union(first, body);
+            });
+            Some(first)
+        })
+        .collect();
+    let value = |p: crate::mechanism::ParameterId| mechanism.parameters[p.index()].default;
+    let mut sizes = vec![0.0_f64; bodies];
+    for (index, body) in mechanism.bodies.iter().enumerate() {
+        let part = parts.find(index);
+        sizes[part] = sizes[part].max(extent(mechanism, &body.markers, value));
+    }
+    for (equation, first) in equations.iter().zip(first) {
+        if let (Some(first), Target::Constant(target)) = (first, &equation.target)
+            && equation.constraint.dimension() == Dimension::Length
+        {
+            let part = parts.find(first);
+            sizes[part] = sizes[part].max(target.evaluate(&value, 0.0).abs());
+        }
+    }
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
+    let relative = |body: usize| {
+        let part = sizes[parts.find(body)] / largest;
+        if part > LEAST && part < 1.0 {
+            part.log2().round().exp2()
+        } else {
+            1.0
+        }
+    };
+    (0..bodies).map(relative).collect()
+}
+
+/// Returns the diagonal of the box around the markers of a body; zero where they have no place.
+fn extent(
+    mechanism: &Mechanism,
+    markers: &[MarkerId],
+    value: impl Fn(crate::mechanism::ParameterId) -> f64 + Copy,
+) -> f64 {
+    let side = |axis: usize| {
+        let places = markers
+            .iter()
+            .map(|marker| mechanism.markers[marker.index()].position[axis].evaluate(&value, 0.0));
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
+            (low.min(place), high.max(place))
+        });
+        high - low
+    };
+    let extent = f64::hypot(side(0), side(1));
+    if extent.is_finite() { extent } else { 0.0 }
+}
