@@ -56,7 +56,9 @@ def moving_inputs(slave: Slave) -> dict[str, float]:
     for name in inputs(slave):
         start = float(slave.variables[name].start)
         _, order = name.split(".")
-        values[name] = {"position": start + 0.003, "velocity": 0.7, "acceleration": -0.4}[order]
+        moving = {"position": start + 0.003, "velocity": 0.7, "acceleration": -0.4}
+        # Others are forces.
+        values[name] = moving.get(order, 2.0)
     return values | ({"rates": 2} if values else {})
 
 

@@ -86,7 +86,8 @@ def run(name: str, case: Case, fmu: Fmu) -> Row:
 
     # FMPy holds inputs over a step: a row's outputs belong to the inputs recorded with it, which
     # were set at the row before.
-    names = sorted({i.rpartition(".")[0] for i in fmu.names("input")})
+    positions = (name for name in fmu.names("input") if name.endswith(".position"))
+    names = sorted(name.removesuffix(".position") for name in positions)
     time = Taylor.time(late(motion["time"]) if names else motion["time"])
     drivers = {driver: Taylor(*(motion[o] for o in outputs_of(driver))) for driver in names}
     if not covers(drivers, case.drivers(time)):
