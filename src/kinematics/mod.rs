@@ -78,7 +78,7 @@ pub use analysis::{
     RangeSettings, Sample, Sensitivity,
 };
 pub use assembly::estimate::Move;
-pub use block::{BlockCarryover, CheckedSegment, Crossing};
+pub use block::{BlockCarryover, CheckedSegment, Crossing, TERMS};
 pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };

@@ -47,8 +47,8 @@ use crate::mechanism::Jet;
 
 pub use carryover::{BlockCarryover, CheckedSegment};
 pub(super) use coupled::CoupledBlock;
-pub use crossing::Crossing;
-pub(super) use crossing::SEAM;
+pub use crossing::{Crossing, TERMS};
+pub(super) use crossing::{INNER, SEAM, divided_differences};
 pub(super) use factors::JacobianFactors;
 pub(super) use interpolated::InterpolatedBlock;
 pub(super) use jacobian::BlockJacobian;

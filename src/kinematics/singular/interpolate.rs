@@ -2,16 +2,21 @@
 
 use super::locate::{Finding, ROUNDING};
 use super::reduced::ReducedEquation;
-use crate::kinematics::block::Crossing;
+use crate::kinematics::block::{Crossing, INNER, TERMS, divided_differences};
+use crate::kinematics::linear::nan_or_larger;
 use crate::mechanism::DriverId;
 
 /// Distance from the point to either end of a crossing at first, and the least one, as turn of the
 /// fastest body or its way in characteristic lengths. Newton–Raphson at the distance δ gives
-/// accelerations to some eps/δ³, 1e-10 at 0.01.
-const REACH: f64 = 0.02;
+/// accelerations to some eps/δ³, 1e-12 at the inner places of the first; the error of the
+/// polynomials falls with the twelfth power of the distance.
+const REACH: f64 = 0.2;
 const LEAST_REACH: f64 = 0.004;
-/// Largest error of an acceleration at the change point, which is known independently, for
-/// velocities of one; far from the origin there is more rounding.
+/// Place between inner places and ends at which the error of the polynomials is about the largest.
+const BETWEEN: f64 = 0.85;
+/// Error of an acceleration, for velocities of one, with which no shorter crossing is tried.
+const GOOD: f64 = 4e-12;
+/// Largest error of an acceleration; far from the origin there is more rounding.
 const INTERPOLATED: f64 = 1e-6;
 /// Largest error of a prediction, as part of the distance between both motions.
 const OFF: f64 = 0.25;
@@ -32,31 +37,42 @@ pub(super) fn crossing_of(
     let velocity = &point.tangents[1] + slope * &point.tangents[0];
     let speed = equation.scaled_speed(&velocity);
     let free = &point.tangents[0] / point.tangents[0].amax();
+    let center = Center {
+        alpha: point.alpha,
+        tau: point.tau,
+        epsilon: point.epsilon,
+        slopes: [slope, other],
+        rate: equation.unscaled(&velocity),
+        z: point.z,
+    };
+    let mut best: Option<(f64, Crossing)> = None;
     let mut reach = REACH;
     while reach >= LEAST_REACH {
         let half_width = reach / speed;
-        let ends = [-half_width, half_width].map(|off| {
-            let slopes = [slope, other];
-            End::find(equation, [point.alpha, point.tau], off, slopes)
-        });
-        if let [Some(before), Some(behind)] = ends {
+        let interpolated = interpolate(equation, &center, half_width);
+        if let Some((coefficients, between)) = interpolated {
             let crossing = Crossing {
                 block,
                 driver,
-                center: point.tau,
+                center: center.tau,
                 half_width,
-                coefficients: interpolate(&before, &behind, half_width),
+                coefficients,
                 free: free.iter().copied().collect(),
             };
-            let error = error_at_center(&crossing, equation, &point.z, &velocity, speed);
+            let error = error_between(&crossing, equation, &between, speed);
             let rounding = error_of_shape(ROUNDING * equation.extent(), reach);
-            if error <= INTERPOLATED + rounding {
-                return Some(crossing);
+            let least = best.as_ref().map_or(INTERPOLATED + rounding, |best| best.0);
+            if error <= least {
+                best = Some((error, crossing));
+            }
+            // In shorter ones there is more rounding.
+            if error <= GOOD || error > least && best.is_some() {
+                break;
             }
         }
         reach *= 0.5;
     }
-    None
+    best.map(|(_, crossing)| crossing)
 }
 
 /// Returns the error of an acceleration that goes with one of a position, for ends at the distance
@@ -65,57 +81,80 @@ fn error_of_shape(position: f64, width: f64) -> f64 {
     6.0 * position / (width * width)
 }
 
-/// Returns the error of the interpolated motion at the point and of its tangent there, as an error
-/// of the acceleration.
-fn error_at_center(
+/// Returns the largest error of the interpolated motion at places where it is known, as an error of
+/// the acceleration.
+fn error_between(
     crossing: &Crossing,
     equation: &ReducedEquation<'_>,
-    z: &[f64],
-    velocity: &nalgebra::DVector<f64>,
+    places: &[Place; 2],
     speed: f64,
 ) -> f64 {
-    let unit = equation.unscaled(&nalgebra::DVector::repeat(z.len(), 1.0));
-    let velocity = equation.unscaled(velocity);
+    let order = crossing.coefficients.len();
+    let unit = equation.unscaled(&nalgebra::DVector::repeat(order, 1.0));
     let width = crossing.half_width * speed;
-    let errors = (0..z.len()).map(|k| {
-        let [value, first, _] = crossing.evaluate(k, crossing.center);
-        let position = (value - z[k]).abs() / unit[k];
-        let tangent = (first - velocity[k]).abs() / (unit[k] * speed);
-        error_of_shape(position, width).max(tangent / width)
-    });
-    errors.fold(0.0, f64::max)
+    let mut largest = 0.0;
+    for place in places {
+        for k in 0..order {
+            let [value, first, second] = crossing.evaluate(k, place.tau);
+            let [velocity, acceleration] = &place.rates;
+            let position = (value - place.z[k]).abs() / unit[k];
+            let tangent = (first - velocity[k]).abs() / (unit[k] * speed);
+            let bend = (second - acceleration[k]).abs() / (unit[k] * speed * speed);
+            let error = error_of_shape(position, width).max(tangent / width);
+            largest = nan_or_larger(largest, error.max(bend));
+        }
+    }
+    largest
 }
 
-/// The motion at one end of a crossing.
-struct End {
+/// The change point.
+struct Center {
+    alpha: f64,
+    tau: f64,
+    /// ε there, some rounding.
+    epsilon: f64,
+    /// Slopes dα/dτ of the motion and of the other one, which may be infinite.
+    slopes: [f64; 2],
+    z: Vec<f64>,
+    /// First derivative of z along the motion.
+    rate: Vec<f64>,
+}
+
+/// The motion at one place of a crossing.
+struct Place {
+    tau: f64,
+    alpha: f64,
     z: Vec<f64>,
     rates: [Vec<f64>; 2],
 }
 
-impl End {
-    /// Finds the pose on the motion of slope `slope` at the distance `off` from the point, by
-    /// Newton's method on ε from the tangent. The pose has to stay near, compared with the distance
-    /// of the motion of slope `other`, and its own slope has to be nearer to `slope`.
+impl Place {
+    /// Finds the pose on the motion at the distance `off` from the point, where α is predicted to be
+    /// off the tangent by `bend`, by Newton's method on ε. The pose has to stay near, compared with
+    /// the distance of the other motion, and its own slope has to be nearer to that of the motion.
+    ///
+    /// The rounding of ε at the point parts the motions by its root; without it they cross.
     fn find(
         equation: &mut ReducedEquation<'_>,
-        [alpha, tau]: [f64; 2],
+        center: &Center,
         off: f64,
-        [slope, other]: [f64; 2],
+        bend: f64,
     ) -> Option<Self> {
-        let tau = tau + off;
-        let expected = alpha + slope * off;
+        let [slope, other] = center.slopes;
+        let tau = center.tau + off;
+        let tangent = center.alpha + slope * off;
         let apart = if other.is_finite() {
             ((slope - other) * off).abs()
         } else {
             off.abs() * equation.speed
         };
-        let mut alpha = expected;
+        let mut alpha = tangent + bend;
         let mut last = f64::INFINITY;
         for _ in 0..10 {
             let point = equation.solve(alpha, tau)?;
-            let step = -point.epsilon / point.first[0];
+            let step = (center.epsilon - point.epsilon) / point.first[0];
             alpha += step;
-            let astray = (alpha - expected).abs();
+            let astray = (alpha - tangent).abs();
             if astray.is_nan() || astray > OFF * apart {
                 return None;
             }
@@ -124,6 +163,8 @@ impl End {
                 let kept = point.first[0].abs() >= FLAT
                     && (!other.is_finite() || (own - slope).abs() < (own - other).abs());
                 return kept.then(|| Self {
+                    tau,
+                    alpha: point.alpha,
                     rates: equation.rates(&point),
                     z: point.z,
                 });
@@ -134,27 +175,53 @@ impl End {
     }
 }
 
-/// Returns the polynomials of fifth degree with values and derivatives of both ends.
-fn interpolate(before: &End, behind: &End, half_width: f64) -> Vec<[f64; 6]> {
-    let half = |a: f64, b: f64| (0.5 * (b + a), 0.5 * (b - a));
-    (0..before.z.len())
-        .map(|k| {
-            let (value_even, value_odd) = half(before.z[k], behind.z[k]);
-            let (first_even, first_odd) = half(
-                before.rates[0][k] * half_width,
-                behind.rates[0][k] * half_width,
-            );
-            let square = half_width * half_width;
-            let (second_even, second_odd) =
-                half(before.rates[1][k] * square, behind.rates[1][k] * square);
-            // The odd powers have an even first derivative, and the other way round.
-            let a5 = (second_odd - 3.0 * (first_even - value_odd)) / 8.0;
-            let a3 = 0.5 * (first_even - value_odd) - 2.0 * a5;
-            let a1 = value_odd - a3 - a5;
-            let a4 = (second_even - first_odd) / 8.0;
-            let a2 = 0.5 * first_odd - 2.0 * a4;
-            let a0 = value_even - a2 - a4;
-            [a0, a1, a2, a3, a4, a5]
-        })
-        .collect()
+/// Returns the polynomials of a crossing of this width, and the motion at two places that they do
+/// not know of; `None` if the motion was not found at all places.
+fn interpolate(
+    equation: &mut ReducedEquation<'_>,
+    center: &Center,
+    half_width: f64,
+) -> Option<(Vec<[[f64; TERMS]; 2]>, [Place; 2])> {
+    // The second derivative of α, once it is known.
+    let mut curvature = 0.0;
+    let mut pair = |place: f64| {
+        let off = place * half_width;
+        let mut find = |off: f64| Place::find(equation, center, off, 0.5 * curvature * off * off);
+        let (before, behind) = (find(-off)?, find(off)?);
+        curvature = (before.alpha + behind.alpha - 2.0 * center.alpha) / (off * off);
+        Some([before, behind])
+    };
+    let (inner, between, end) = (pair(INNER)?, pair(BETWEEN)?, pair(1.0)?);
+    let coefficients = (0..center.z.len()).map(|k| {
+        let parts = [(INNER, &inner), (1.0, &end)];
+        let [inner, end] = parts.map(|(x, pair)| even_and_odd(x, pair, k, half_width));
+        [
+            divided_differences(center.z[k], inner[0], end[0]),
+            divided_differences(center.rate[k] * half_width, inner[1], end[1]),
+        ]
+    });
+    Some((coefficients.collect(), between))
+}
+
+/// Splits an unknown at ±x into an even part E(y) and an odd part x P(y), y = x². Returns E with its
+/// first and second derivative in y, then P.
+fn even_and_odd(x: f64, [before, behind]: &[Place; 2], k: usize, half_width: f64) -> [[f64; 3]; 2] {
+    let jet = |place: &Place| {
+        let [first, second] = &place.rates;
+        let square = half_width * half_width;
+        [place.z[k], first[k] * half_width, second[k] * square]
+    };
+    let (before, behind) = (jet(before), jet(behind));
+    let sum = [0, 1, 2].map(|order| 0.5 * (behind[order] + before[order]));
+    let difference = [0, 1, 2].map(|order| 0.5 * (behind[order] - before[order]));
+    // The odd part has an even first derivative, and the other way round.
+    let even = [sum[0], difference[1], sum[2]];
+    let odd = [difference[0], sum[1], difference[2]];
+    let square = x * x;
+    let e1 = even[1] / (2.0 * x);
+    let e2 = (even[2] - 2.0 * e1) / (4.0 * square);
+    let p = odd[0] / x;
+    let p1 = (odd[1] - p) / (2.0 * square);
+    let p2 = (odd[2] - 6.0 * x * p1) / (4.0 * square * x);
+    [[even[0], e1, e2], [p, p1, p2]]
 }

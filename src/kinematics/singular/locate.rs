@@ -118,7 +118,11 @@ fn newton(
         let by_alpha = -(f * gt - g * ft) / determinant;
         let by_tau = -(g * fa - f * ga) / determinant;
         let length = by_alpha.abs().max(by_tau.abs() * speed);
-        if length <= CONVERGED || (step > 2 && length < NEARLY && length >= 0.5 * last) {
+        if length <= CONVERGED {
+            // The last correction takes off what rounding alone does not explain.
+            return equation.solve(alpha + by_alpha, tau + by_tau);
+        }
+        if step > 2 && length < NEARLY && length >= 0.5 * last {
             return Some(point);
         }
         // Not a number is not within reach either.

@@ -1,8 +1,10 @@
 //! Positions that are crossed, dead points, and refusals by name, on mechanisms of all kinds
 //! of blocks.
 
+mod accuracy;
+#[path = "../common/mod.rs"]
 mod common;
-#[path = "common/generated.rs"]
+#[path = "../common/generated.rs"]
 #[allow(dead_code, reason = "also used by `benches/`")]
 mod generated;
 
