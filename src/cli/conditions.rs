@@ -133,8 +133,9 @@ impl Conditions {
         let names = mechanism.parameters.iter().map(|p| p.name.as_str());
         for (index, text) in SET.assignments(&self.set, &names.collect::<Vec<_>>())? {
             let parameter = &mechanism.parameters[index];
-            check_settable(parameter)
-                .map_err(|message| Error::Usage(format!("--set: {message}")))?;
+            parameter
+                .check_settable()
+                .map_err(|error| Error::Usage(format!("--set: {error}")))?;
             values[index] = mechanism
                 .parse_expression(text, None)
                 .map_err(|error| SET.refuse(text, &error))?
@@ -321,17 +322,6 @@ fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
         message += &format!("\n  {text}\n  {:column$}^", "");
     }
     Error::Usage(message)
-}
-
-/// Refuses a parameter that follows from others.
-pub(super) fn check_settable(parameter: &Parameter) -> Result<(), String> {
-    if parameter.derived {
-        return Err(format!(
-            "`{}` is derived from other parameters; set those",
-            parameter.name
-        ));
-    }
-    Ok(())
 }
 
 /// Refuses a value that the FMU refuses, in its words.

@@ -51,7 +51,7 @@ pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 pub(crate) use names::help;
 pub use names::is_identifier;
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
-pub use parameter::Parameter;
+pub use parameter::{DerivedParameter, Parameter};
 pub use profile::{Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce};
 pub(crate) use signal::{COMPONENTS, SUFFIXES};
 pub use signal::{Order, Signal};
