@@ -1,6 +1,7 @@
 //! Tests of contours.
 
 use super::*;
+use crate::mechanism::Law;
 use proptest::prelude::*;
 
 fn table(points: &[(f64, f64)]) -> Result<ProfileInForce, ProfileError> {
