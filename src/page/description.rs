@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use serde_json::{Value, json};
 
-use super::quantity::shown_in;
 use super::session::Session;
+use super::values::{is_told, shown_in};
 use crate::mechanism::{Driver, Motion, Parameter, Unit};
 
 impl Session {
@@ -53,14 +53,14 @@ impl Session {
                 })
             })
             .collect();
-        let variables: Vec<Value> = (self.quantities.iter())
-            .map(|quantity| {
-                let (unit, factor) = quantity.shown_in(self.length);
+        let variables: Vec<Value> = (self.outputs.iter())
+            .map(|output| {
+                let (unit, factor) = shown_in(output.unit, self.length);
                 json!({
-                    "name": quantity.name,
+                    "name": output.name,
                     "unit": unit,
                     "factor": factor,
-                    "is_told": quantity.is_told,
+                    "is_told": is_told(output),
                 })
             })
             .collect();

@@ -8,7 +8,7 @@
 //! | file | subject |
 //! |---|---|
 //! | `outcome` | [`Outcome`]: the end of a move, and what stopped it |
-//! | `quantity` | the variables of a mechanism, by name |
+//! | `values` | values of outputs, and their units |
 //! | `ranges` | ranges and speeds of the drivers |
 //! | `undo` | states that can be undone |
 //! | `session` | [`Session`]: the mechanism and its moves |
@@ -28,12 +28,12 @@ mod frame;
 mod hand;
 mod host;
 mod outcome;
-mod quantity;
 mod ranges;
 mod session;
 #[cfg(test)]
 mod tests;
 mod undo;
+mod values;
 
 pub use chart::Over;
 pub use edit::{EditError, Place, edit};

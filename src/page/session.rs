@@ -6,12 +6,14 @@ use serde_json::Value;
 
 use super::edit::{EditError, Place, edit};
 use super::outcome::{Obstacle, Outcome};
-use super::quantity::{Moment, Quantity, length_display, shown_in};
 use super::ranges::{DriverRange, driver_ranges, driver_speeds};
 use super::undo::{Kept, UndoHistory};
+use super::values::{Moment, length_display, shown_in};
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
-use crate::kinematics::{Curve, ForceParts, Forces, KnownMotion, Path, Pose, Rates, Solver};
+use crate::kinematics::{
+    Curve, ForceParts, Forces, KnownMotion, Output, Path, Pose, Rates, Solver,
+};
 use crate::mechanism::{
     DisplayUnit, DriverId, Jet, Mechanism, Parameter, ParameterId, Severity, Source, Unit,
 };
@@ -32,7 +34,7 @@ pub struct Session {
     pub(super) forces: Option<Box<Forces>>,
     force_inputs: Vec<f64>,
     pub(super) picture: MovingPicture,
-    pub(super) quantities: Vec<Quantity>,
+    pub(super) outputs: Vec<Output>,
     pub(super) length: Option<DisplayUnit>,
     pub(super) ranges: Vec<Option<DriverRange>>,
     path: Path,
@@ -77,7 +79,7 @@ impl Session {
             force_inputs: vec![0.0; forces.as_ref().map_or(0, |forces| forces.inputs())],
             forces,
             picture: MovingPicture::new(&mut solver, &reached, None),
-            quantities: Quantity::all(&mechanism),
+            outputs: Output::all(&mechanism),
             length: length_display(&mechanism),
             ranges,
             path,

@@ -273,10 +273,7 @@ fn the_frame_has_the_places_that_the_layout_says() {
 fn a_chart_over_the_crank_is_periodic_and_leaves_the_pose() {
     let mut session = open(FOUR_BAR);
     let before = session.pose().clone();
-    let rocker = session
-        .quantities
-        .iter()
-        .position(|q| q.name == "rocker.phi");
+    let rocker = session.outputs.iter().position(|q| q.name == "rocker.phi");
     let over = super::Over::Driver(DriverId(0));
     let chart = session.chart(over, &[rocker.expect("it is there")], 61);
     let y = chart["y"][0].as_array().expect("a list");
