@@ -59,16 +59,14 @@ impl Conditions {
         let mut driven = mechanism.clone();
         let mut driven_by_option = Vec::new();
         let drivers = mechanism.drivers.len();
-        let force_inputs = force_inputs(mechanism);
+        let force_inputs = mechanism.force_inputs();
         let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
-        let names = names.chain(force_inputs.iter().map(|(name, ..)| name.as_str()));
+        let names = names.chain(force_inputs.iter().map(|input| input.name.as_str()));
         for (index, text) in DRIVE.assignments(&self.drive, &names.collect::<Vec<_>>())? {
-            if let Some((_, force, component)) =
-                index.checked_sub(drivers).map(|k| &force_inputs[k])
-            {
+            if let Some(input) = index.checked_sub(drivers).map(|k| &force_inputs[k]) {
                 let size = mechanism.parse_expression(text, Some(Variable::Time));
                 let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
-                set_force(&mut driven.forces[*force].load, *component, size);
+                set_force(&mut driven.forces[input.force].load, input.component, size);
                 continue;
             }
             let motion = motion(mechanism, text, &parameters, start)?;
@@ -164,19 +162,6 @@ pub(super) fn warn_of_degrees(option: &str, text: &str, value: f64) {
         );
         Message::Warning(warning).show();
     }
-}
-
-/// Returns the inputs of forces: name of the variable, index of the force, component.
-fn force_inputs(mechanism: &Mechanism) -> Vec<(String, usize, usize)> {
-    let forces = mechanism.forces.iter().enumerate();
-    let inputs = forces.filter(|(_, force)| force.load.is_input());
-    let variables = inputs.flat_map(|(index, force)| {
-        let suffixes = force.load.variables().into_iter().enumerate();
-        suffixes.map(move |(component, (suffix, _))| {
-            (format!("{}.{suffix}", force.name), index, component)
-        })
-    });
-    variables.collect()
 }
 
 /// Gives a component of a force a size; those without one are zero.

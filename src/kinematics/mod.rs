@@ -93,7 +93,7 @@ pub use forces::{
 };
 pub use initial_pose::{Assembly, Start};
 pub use linear::PivotOrder;
-pub use output::{Output, OutputSource, describe_load};
+pub use output::{Output, OutputSource};
 pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};

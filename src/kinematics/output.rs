@@ -222,7 +222,14 @@ impl List {
         if mechanism.has_dynamics() {
             self.add_driver_forces(mechanism);
             self.add_reactions(mechanism);
-            self.add_applied_forces(mechanism);
+            let given = mechanism.given_forces().into_iter();
+            self.0.extend(given.map(|given| Output {
+                name: given.name,
+                description: given.description,
+                source: OutputSource::Force(ForceQuantity::Applied(given.force, given.component)),
+                unit: given.unit,
+                derivative_of: None,
+            }));
             self.add_energies();
         }
     }
@@ -248,7 +255,7 @@ impl List {
         for (index, driver) in mechanism.drivers.iter().enumerate() {
             let (id, kind) = (DriverId(index), driver.coordinate.kind);
             let (name, effort) = (&driver.name, kind.effort_unit());
-            let exerted = format!("{} that driver `{name}` exerts", word_of_effort(kind));
+            let exerted = format!("{} that driver `{name}` exerts", kind.effort_word());
             let quantity = ForceQuantity::Effort(id);
             self.add_force(name, "effort", exerted.clone(), quantity, effort);
             let power = format!("power of driver `{name}`");
@@ -296,24 +303,10 @@ impl List {
             }
             let held = &mechanism.constraints[index];
             let kind = held.coordinate.kind;
-            let word = word_of_effort(kind);
+            let word = kind.effort_word();
             let description = format!("{word} that constraint `{}` exerts", held.name);
             let (quantity, unit) = (ForceQuantity::Held(index), kind.effort_unit());
             self.add_force(&held.name, "effort", description, quantity, unit);
-        }
-    }
-
-    /// Adds the forces of the file that are no inputs.
-    fn add_applied_forces(&mut self, mechanism: &Mechanism) {
-        for (index, force) in mechanism.forces.iter().enumerate() {
-            if force.load.is_input() {
-                continue;
-            }
-            let components = describe_load(mechanism, &force.description, &force.load);
-            for (component, (suffix, unit, description)) in components.into_iter().enumerate() {
-                let quantity = ForceQuantity::Applied(index, component);
-                self.add_force(&force.name, suffix, description, quantity, unit);
-            }
         }
     }
 
@@ -344,56 +337,12 @@ fn indeterminate(mechanism: &Mechanism) -> Vec<Element> {
     }
 }
 
-/// Returns the components of a force: last part of the name, unit and description, which is the
-/// file's own or else tells the place where the force acts.
-#[must_use]
-pub fn describe_load(
-    mechanism: &Mechanism,
-    own: &str,
-    load: &Load,
-) -> Vec<(&'static str, Unit, String)> {
-    let whole = match load {
-        _ if !own.is_empty() => own.to_owned(),
-        Load::Coordinate { coordinate, .. } => {
-            let word = word_of_effort(coordinate.kind);
-            format!("{word} along {}", describe(mechanism, "", coordinate))
-        }
-        Load::Marker { marker, .. } => {
-            format!("force and torque at `{}`", mechanism.marker_path(*marker))
-        }
-    };
-    let components = load.variables().into_iter().map(|(suffix, unit)| {
-        let description = match suffix {
-            "effort" => whole.clone(),
-            component => format!("{component}: {whole}"),
-        };
-        (suffix, unit, description)
-    });
-    components.collect()
-}
-
-/// Returns the word for the effort along a coordinate.
-fn word_of_effort(kind: CoordinateKind) -> &'static str {
-    if kind.is_angle() { "torque" } else { "force" }
-}
-
 /// Returns the file's own description of a coordinate, or else what it measures.
 fn describe(mechanism: &Mechanism, own: &str, coordinate: &Coordinate) -> String {
-    if !own.is_empty() {
-        return own.to_owned();
-    }
-    let [from, to, axes] =
-        [coordinate.from, coordinate.to, coordinate.axes].map(|id| mechanism.marker_path(id));
-    let on_axes = if axes == from {
-        String::new()
+    if own.is_empty() {
+        coordinate.describe(mechanism)
     } else {
-        format!(" on the axes of `{axes}`")
-    };
-    match coordinate.kind {
-        CoordinateKind::Angle => format!("the angle from `{from}` to `{to}`"),
-        CoordinateKind::X => format!("x from `{from}` to `{to}`{on_axes}"),
-        CoordinateKind::Y => format!("y from `{from}` to `{to}`{on_axes}"),
-        CoordinateKind::Distance => format!("the distance from `{from}` to `{to}`"),
+        own.to_owned()
     }
 }
 

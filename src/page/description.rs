@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 
 use serde_json::{Value, json};
 
+use super::ranges::driver_speeds;
 use super::session::Session;
 use super::values::{is_told, shown_in};
-use crate::mechanism::{Driver, Motion, Parameter, Unit};
+use crate::mechanism::{Driver, Mechanism, Motion, Parameter, ParameterId, Unit};
 
 impl Session {
     /// Returns what a page shows once: names, units, limits.
@@ -19,11 +20,13 @@ impl Session {
             .drivers
             .iter()
             .zip(&pose.drivers)
-            .zip(&self.driver_rates);
+            .zip(&self.driver_rates)
+            .zip(driver_speeds(mechanism, &self.ranges));
         let drivers: Vec<Value> = drivers
-            .map(|((driver, value), rates)| {
+            .map(|(((driver, value), rates), usual)| {
                 let kind = driver.coordinate.kind;
-                let (unit, factor) = shown_in(kind.unit(), self.length);
+                let [(unit, factor), velocity, acceleration] =
+                    kind.units().map(|unit| shown_in(unit, self.length));
                 json!({
                     "name": driver.name,
                     "description": driver.description,
@@ -31,8 +34,14 @@ impl Session {
                     "is_input": inputs_move(driver),
                     "value": value,
                     "velocity": rates.first(),
+                    "acceleration": rates.second(),
                     "unit": unit,
                     "factor": factor,
+                    "usual_velocity": usual.first(),
+                    "velocity_unit": velocity.0,
+                    "velocity_factor": velocity.1,
+                    "acceleration_unit": acceleration.0,
+                    "acceleration_factor": acceleration.1,
                 })
             })
             .collect();
@@ -64,6 +73,19 @@ impl Session {
                 })
             })
             .collect();
+        let largest = largest_load(mechanism, &pose.parameters);
+        let loads: Vec<Value> = (mechanism.force_inputs().iter().zip(&self.loads))
+            .map(|(input, load)| {
+                json!({
+                    "name": input.name,
+                    "description": input.description,
+                    "unit": input.unit.name,
+                    "factor": 1.0,
+                    "value": load,
+                    "largest": largest,
+                })
+            })
+            .collect();
         let uses_time = self.uses_time();
         json!({
             "name": mechanism.name,
@@ -72,6 +94,7 @@ impl Session {
             "drivers": drivers,
             "parameters": parameters,
             "variables": variables,
+            "loads": loads,
             "uses_time": uses_time,
             "start": mechanism.simulation.start,
             "stop": mechanism.simulation.stop,
@@ -100,6 +123,19 @@ impl Session {
         drivers
             .iter()
             .any(|d| d.motion().is_some_and(Motion::uses_time))
+    }
+}
+
+/// Returns the end of a load's slider \[N or N m\]: ten times the weight of all bodies.
+fn largest_load(mechanism: &Mechanism, parameters: &[f64]) -> f64 {
+    let masses = mechanism.bodies.iter().filter_map(|b| b.mass.as_ref());
+    let mass: f64 = masses
+        .map(|mass| mass.evaluate(&|p: ParameterId| parameters[p.index()], 0.0))
+        .sum();
+    if mass > 0.0 {
+        10.0 * 9.81 * mass
+    } else {
+        100.0
     }
 }
 

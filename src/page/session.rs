@@ -32,7 +32,8 @@ pub struct Session {
     /// Whether the rates belong to the pose, where they exist.
     pub(super) has_rates: bool,
     pub(super) forces: Option<Box<Forces>>,
-    force_inputs: Vec<f64>,
+    /// Sizes of the forces that are inputs \[SI\].
+    pub(super) loads: Vec<f64>,
     pub(super) picture: MovingPicture,
     pub(super) outputs: Vec<Output>,
     pub(super) length: Option<DisplayUnit>,
@@ -76,7 +77,7 @@ impl Session {
             rates: Rates::new(home.pose.q.len()),
             driver_rates,
             has_rates: false,
-            force_inputs: vec![0.0; forces.as_ref().map_or(0, |forces| forces.inputs())],
+            loads: vec![0.0; mechanism.force_inputs().len()],
             forces,
             picture: MovingPicture::new(&mut solver, &reached, None),
             outputs: Output::all(&mechanism),
@@ -212,6 +213,16 @@ impl Session {
         }
     }
 
+    /// Sets the size of a force that is an input \[SI\].
+    pub fn set_load(&mut self, input: usize, size: f64) {
+        if let Some(load) = self.loads.get_mut(input)
+            && size.is_finite()
+        {
+            *load = size;
+            self.refresh();
+        }
+    }
+
     /// Prepares the path on which nothing moves, at the pose.
     pub(super) fn path_here(&mut self) -> &mut Path {
         let pose = self.solver.pose();
@@ -270,7 +281,7 @@ impl Session {
             rates,
             driver_rates,
             forces,
-            force_inputs,
+            loads,
             ..
         } = self;
         let solved = solver.solve_rates(|driver| driver_rates[driver.index()], rates);
@@ -279,7 +290,7 @@ impl Session {
                 let motion = KnownMotion {
                     rates,
                     driver_rates,
-                    inputs: force_inputs,
+                    inputs: loads,
                 };
                 solver.solve_forces(motion, ForceParts::ALL, forces).is_ok()
             });
@@ -375,12 +386,13 @@ impl Session {
         self.go_to_state(back)
     }
 
-    /// Returns to the file's own values and pose.
+    /// Returns to the file's own values and pose, to the speeds of the start and to no loads.
     pub fn reset(&mut self) {
         self.keep();
         self.go_to_state(Some(self.home.clone()));
         let mechanism = Arc::clone(self.mechanism());
         self.driver_rates = driver_speeds(&mechanism, &self.ranges);
+        self.loads.fill(0.0);
         self.refresh();
     }
 

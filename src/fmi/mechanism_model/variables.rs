@@ -2,7 +2,7 @@
 //! it.
 
 use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
-use crate::kinematics::{Dependencies, ForceQuantity, Output, OutputSource, describe_load};
+use crate::kinematics::{Dependencies, ForceQuantity, Output, OutputSource};
 use crate::mechanism::{DriverId, DriverSource, Mechanism, Order, ParameterId, Signal, Unit};
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
@@ -230,20 +230,13 @@ impl Table {
     }
 
     fn add_force_inputs(&mut self, mechanism: &Mechanism) {
-        let inputs = mechanism.forces.iter().filter(|f| f.load.is_input());
-        let components = inputs.flat_map(|force| {
-            let components = describe_load(mechanism, &force.description, &force.load);
-            components
-                .into_iter()
-                .map(move |component| (force, component))
-        });
-        for (place, (force, (suffix, unit, description))) in components.enumerate() {
+        for (place, input) in mechanism.force_inputs().into_iter().enumerate() {
             self.add(
-                format!("{}.{suffix}", force.name),
-                description,
+                input.name,
+                input.description,
                 Quantity::ForceInput(place),
                 (Causality::Input, Variability::Continuous),
-                Kind::real(Some(unit), Some(0.0)),
+                Kind::real(Some(input.unit), Some(0.0)),
             );
         }
     }
