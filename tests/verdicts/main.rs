@@ -4,6 +4,9 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/generated.rs"]
+#[allow(dead_code, reason = "also used by `benches/`")]
+mod generated;
 
 mod cams;
 mod closing;

@@ -61,6 +61,23 @@ pub(super) struct Estimate {
     pub(super) drift: Vec<(usize, usize, f64)>,
     /// F where the rows were evaluated last.
     pub(super) gap: Vec<f64>,
+    /// The rows that depend on the contour of a cam, with their unknowns.
+    pub(super) contours: Vec<(usize, Vec<usize>)>,
+}
+
+/// Returns the rows of a block that depend on the contour of a cam, with their unknowns.
+fn contour_rows(system: &System, rows: &[usize]) -> Vec<(usize, Vec<usize>)> {
+    let contours = rows
+        .iter()
+        .enumerate()
+        .filter(|(_, row)| system.equations()[**row].constraint.has_contour());
+    let with_unknowns = contours.map(|(local, &row)| {
+        let mut unknowns = system.incidence(row).unknowns;
+        unknowns.sort_unstable();
+        unknowns.dedup();
+        (local, unknowns)
+    });
+    with_unknowns.collect()
 }
 
 impl ContractionTest {
@@ -97,6 +114,7 @@ impl ContractionTest {
             let estimate = Estimate {
                 drift: Vec::with_capacity(ENTRIES * n),
                 gap: vec![0.0; n],
+                contours: contour_rows(system, &order.rows),
             };
             (0, estimate)
         };

@@ -17,6 +17,11 @@
 //!
 //! Norms are estimated from below, and one place represents the whole chord. The factor [`MARGIN`]
 //! allows for both, and the sub-step is *checked*, not proved.
+//!
+//! A contour may have a lobe or a notch anywhere between two places. The rows that depend on one
+//! are bounded over the whole chord: an eighth of the second derivative along it is the value that
+//! it leaves them, and their gradients differ from those at its end by at most twice their change
+//! around its middle.
 
 use super::CoupledBlock;
 use super::contraction::{
@@ -185,14 +190,35 @@ impl CoupledBlock {
         for (&column, radius) in test.known.iter().zip(&test.known_radii) {
             bounds.region[column] = radius * scale(column);
         }
+        let around = |column: usize| match test.known.binary_search(&column) {
+            Ok(place) => test.known_radii[place] * scale(column),
+            Err(_) => radius * scale(column),
+        };
+        let mut contours = test.estimate.contours.iter().peekable();
         for local in 0..equations.rows.len() {
-            let bend = equations.bend(local, state, bounds)?;
+            let contour = contours.next_if(|(row, _)| *row == local);
             let (mut open, mut change) = (test.slack[local], 0.0);
+            let bend = match contour {
+                None => equations.bend(local, state, bounds)?,
+                Some((_, columns)) => {
+                    for &column in columns {
+                        bounds.region[column] = around(column) + 0.5 * bounds.chord[column].abs();
+                    }
+                    let bend = equations.bend(local, state, bounds);
+                    for &column in columns {
+                        bounds.region[column] = around(column);
+                    }
+                    let bend = bend?;
+                    open += 0.125 * bend.along;
+                    bend
+                }
+            };
+            let differs = if contour.is_some() { 2.0 } else { 1.0 };
             if let Target::Driver(driver) = state.system.equations()[equations.rows[local]].target {
                 open += 0.125 * bend.along + bounds.drivers[driver.index()] * bend.row_scale;
             }
             for (column, value) in bend.changes() {
-                let value = value * scale(column);
+                let value = differs * value * scale(column);
                 if equations.own(column).is_some() {
                     change += value * radius;
                 } else if let Ok(place) = test.known.binary_search(&column) {
