@@ -79,7 +79,7 @@ pub use analysis::{
     RangeSettings, Sample, Sensitivity,
 };
 pub use assembly::estimate::Move;
-pub use block::{BlockCarryover, CheckedSegment, Crossing, TERMS};
+pub use block::{BlockCarryover, CheckedSegment, Crossing, Polynomial};
 pub use configuration::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, MarkerPose, ProfileId,
 };

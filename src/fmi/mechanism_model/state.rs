@@ -11,7 +11,7 @@ use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
 use crate::kinematics::{
-    BlockCarryover, Carryover, CheckedSegment, Crossing, PivotOrder, Pose, Progress, TERMS,
+    BlockCarryover, Carryover, CheckedSegment, Crossing, PivotOrder, Polynomial, Pose, Progress,
 };
 use crate::mechanism::{DriverId, Jet};
 
@@ -368,7 +368,7 @@ fn visit_crossing(
     codec.index(&mut driver.0)?;
     codec.finite(center)?;
     codec.finite(half_width)?;
-    codec.resize(coefficients, unknowns, || [[0.0; TERMS]; 2])?;
+    codec.resize(coefficients, unknowns, Polynomial::default)?;
     for value in coefficients.iter_mut().flatten().flatten() {
         codec.finite(value)?;
     }

@@ -11,7 +11,10 @@ const NODES: [f64; TERMS] = {
     [0.0, inner, inner, inner, 1.0, 1.0, 1.0]
 };
 /// Number of coefficients of either part of a polynomial.
-pub const TERMS: usize = 7;
+const TERMS: usize = 7;
+
+/// A polynomial in x: its even part E(x²), then P of its odd part x P(x²), both in Newton's form.
+pub type Polynomial = [[f64; TERMS]; 2];
 
 /// The place up to which a crossing is good: rounding may move a driver's value beyond its ends.
 pub(in crate::kinematics) const SEAM: f64 = 1.0 + 1e-9;
@@ -33,9 +36,8 @@ pub struct Crossing {
     pub center: f64,
     /// Distance from the change point to either end \[m or rad\].
     pub half_width: f64,
-    /// One polynomial per unknown of the block in x = (u − center) / half_width: its even part
-    /// E(x²), then P of its odd part x P(x²), both in Newton's form.
-    pub coefficients: Vec<[[f64; TERMS]; 2]>,
+    /// One polynomial per unknown of the block in x = (u − center) / half_width.
+    pub coefficients: Vec<Polynomial>,
     /// The null vector of the Jacobian at the point, one entry per unknown of the block, scaled so
     /// that metres and radians compare and the largest entry is one.
     pub free: Vec<f64>,

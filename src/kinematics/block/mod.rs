@@ -48,7 +48,7 @@ use crate::mechanism::Jet;
 
 pub use carryover::{BlockCarryover, CheckedSegment};
 pub(super) use coupled::CoupledBlock;
-pub use crossing::{Crossing, TERMS};
+pub use crossing::{Crossing, Polynomial};
 pub(super) use crossing::{INNER, SEAM, divided_differences};
 pub(super) use factors::JacobianFactors;
 pub(super) use interpolated::InterpolatedBlock;

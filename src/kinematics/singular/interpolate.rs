@@ -2,7 +2,7 @@
 
 use super::locate::{Finding, ROUNDING};
 use super::reduced::ReducedEquation;
-use crate::kinematics::block::{Crossing, INNER, TERMS, divided_differences};
+use crate::kinematics::block::{Crossing, INNER, Polynomial, divided_differences};
 use crate::kinematics::linear::nan_or_larger;
 use crate::mechanism::DriverId;
 
@@ -181,7 +181,7 @@ fn interpolate(
     equation: &mut ReducedEquation<'_>,
     center: &Center,
     half_width: f64,
-) -> Option<(Vec<[[f64; TERMS]; 2]>, [Place; 2])> {
+) -> Option<(Vec<Polynomial>, [Place; 2])> {
     // The second derivative of α, once it is known.
     let mut curvature = 0.0;
     let mut pair = |place: f64| {
