@@ -205,7 +205,9 @@ angle = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0.3 }
     )
     # By virtual power: the effort lifts the load, whose arm is 0.5 m cos 0.3.
     effort = 11 * 0.5 * math.cos(0.3)
-    assert seen == pytest.approx([effort, 2 * effort, 2, 3, 0], abs=1e-13)
+    # The fields are in degrees per second.
+    omega, alpha = math.radians(2), math.radians(3)
+    assert seen == pytest.approx([effort, omega * effort, omega, alpha, 0], abs=1e-13)
 
 
 def test_other_positions(page_of, tmp_path):
