@@ -39,7 +39,7 @@ MECHANISMS := $(wildcard mechanisms/*.toml mechanisms/*.csv)
 
 PLATFORMS := linux64 win64 darwin64 aarch64-linux aarch64-darwin
 
-.PHONY: help demo test bench fuzz lint build module setup install uninstall refresh lock clean \
+.PHONY: help demo test bench fuzz attack lint build module setup install uninstall refresh lock clean \
     runtimes licences advisories wheel test-platforms test-install page test-page gallery
 .NOTPARALLEL:
 
@@ -84,6 +84,12 @@ fuzz: setup ## try what may come from outside (FUZZ_TARGET, FUZZ_SECONDS; see fu
 	    --package fuzz --features engine --bin $(FUZZ_TARGET) --target $$host --target-dir target/fuzz; \
 	target/fuzz/$$host/release/$(FUZZ_TARGET) target/fuzz/$(FUZZ_TARGET) fuzz/corpus/$(FUZZ_TARGET) \
 	    -max_total_time=$(FUZZ_SECONDS) -timeout=20 -rss_limit_mb=2048 -artifact_prefix=target/fuzz/
+
+ATTACK_CASES ?= 1000
+ATTACK_SEED ?= 1
+
+attack: ## move generated mechanisms, in jumps and in tiny steps (ATTACK_CASES, ATTACK_SEED; see fuzz/src/attack)
+	$(CARGO) run --release --locked --package fuzz --bin attack -- $(ATTACK_CASES) $(ATTACK_SEED)
 
 lint: setup ## check formatting, lints, documentation and licences
 	$(CARGO) fmt --all --check

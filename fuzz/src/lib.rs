@@ -3,6 +3,7 @@
 //! `corpus/` has a folder a target with inputs from which mutations start, what was found among
 //! them.
 
+pub mod attack;
 pub mod call_sequence;
 pub mod fmu_state;
 pub mod mechanism_file;

@@ -24,6 +24,11 @@ impl Chance {
         (self.next() % end as u64) as usize
     }
 
+    /// A number from `low` to `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.next() >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+
     fn byte(&mut self) -> u8 {
         self.next() as u8
     }
