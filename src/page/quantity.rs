@@ -129,13 +129,6 @@ pub(super) fn shown_in(unit: Unit, length: Option<DisplayUnit>) -> (&'static str
     }
 }
 
-/// Returns the unit in which the file shows lengths: that of its first parameter that is a length.
-pub(super) fn length_display(mechanism: &Mechanism) -> Option<DisplayUnit> {
-    let units = mechanism.parameters.iter().filter_map(|p| p.unit);
-    let mut lengths = units.filter(|unit| unit.dimension == Unit::METRE.dimension);
-    lengths.find_map(|unit| unit.display)
-}
-
 /// Returns the variables of forces.
 fn forces(mechanism: &Mechanism) -> Vec<Quantity> {
     let mut all = Vec::new();

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::edit::{EditError, Place, edit};
 use super::outcome::{Obstacle, Outcome};
-use super::quantity::{Moment, Quantity, length_display, shown_in};
+use super::quantity::{Moment, Quantity, shown_in};
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
 use crate::kinematics::{
@@ -110,7 +110,7 @@ impl Session {
             forces,
             picture: MovingPicture::new(&mut solver, &reached, None),
             quantities: Quantity::all(&mechanism),
-            length: length_display(&mechanism),
+            length: mechanism.length_display(),
             ranges,
             path,
             home,
