@@ -59,16 +59,14 @@ impl Conditions {
         let mut driven = mechanism.clone();
         let mut driven_by_option = Vec::new();
         let drivers = mechanism.drivers.len();
-        let force_inputs = force_inputs(mechanism);
+        let force_inputs = mechanism.force_inputs();
         let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
-        let names = names.chain(force_inputs.iter().map(|(name, ..)| name.as_str()));
+        let names = names.chain(force_inputs.iter().map(|input| input.name.as_str()));
         for (index, text) in DRIVE.assignments(&self.drive, &names.collect::<Vec<_>>())? {
-            if let Some((_, force, component)) =
-                index.checked_sub(drivers).map(|k| &force_inputs[k])
-            {
+            if let Some(input) = index.checked_sub(drivers).map(|k| &force_inputs[k]) {
                 let size = mechanism.parse_expression(text, Some(Variable::Time));
                 let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
-                set_force(&mut driven.forces[*force].load, *component, size);
+                set_force(&mut driven.forces[input.force].load, input.component, size);
                 continue;
             }
             let motion = motion(mechanism, text, &parameters, start)?;
@@ -137,8 +135,9 @@ impl Conditions {
         let names = mechanism.parameters.iter().map(|p| p.name.as_str());
         for (index, text) in SET.assignments(&self.set, &names.collect::<Vec<_>>())? {
             let parameter = &mechanism.parameters[index];
-            check_settable(parameter)
-                .map_err(|message| Error::Usage(format!("--set: {message}")))?;
+            parameter
+                .check_settable()
+                .map_err(|error| Error::Usage(format!("--set: {error}")))?;
             values[index] = mechanism
                 .parse_expression(text, None)
                 .map_err(|error| SET.refuse(text, &error))?
@@ -167,19 +166,6 @@ pub(super) fn warn_of_degrees(option: &str, text: &str, value: f64) {
         );
         Message::Warning(warning).show();
     }
-}
-
-/// Returns the inputs of forces: name of the variable, index of the force, component.
-fn force_inputs(mechanism: &Mechanism) -> Vec<(String, usize, usize)> {
-    let forces = mechanism.forces.iter().enumerate();
-    let inputs = forces.filter(|(_, force)| force.load.is_input());
-    let variables = inputs.flat_map(|(index, force)| {
-        let suffixes = force.load.variables().into_iter().enumerate();
-        suffixes.map(move |(component, (suffix, _))| {
-            (format!("{}.{suffix}", force.name), index, component)
-        })
-    });
-    variables.collect()
 }
 
 /// Gives a component of a force a size; those without one are zero.
@@ -325,17 +311,6 @@ fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
         message += &format!("\n  {text}\n  {:column$}^", "");
     }
     Error::Usage(message)
-}
-
-/// Refuses a parameter that follows from others.
-pub(super) fn check_settable(parameter: &Parameter) -> Result<(), String> {
-    if parameter.derived {
-        return Err(format!(
-            "`{}` is derived from other parameters; set those",
-            parameter.name
-        ));
-    }
-    Ok(())
 }
 
 /// Refuses a value that the FMU refuses, in its words.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::Error;
-use crate::fmi::Order;
+use crate::mechanism::Order;
 use crate::mechanism::{
     DriverId, DriverSource, Jet, Mechanism, Separated, comma_hint, help, quoted, shown,
 };
