@@ -1,5 +1,11 @@
 //! Attacks the solver with generated mechanisms: `attack [CASES [SEED [KIND]]]`.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program for the terminal"
+)]
+
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
