@@ -13,6 +13,7 @@
 //! | `sheet`, `label` | marks and texts on paper, and places of names |
 //! | [`symbol`] | one file per symbol: its joint, its shape, its motion |
 //! | `sweep`, `scene`, `layout` | the motion shown, all symbols, and their fit on a sheet |
+//! | `diagram` | what a diagram shows on demand |
 //!
 //! ```
 //! use biela::drawing::{Scene, Sheet, svg};
@@ -35,6 +36,7 @@ mod anchor;
 pub mod animation;
 mod attachment;
 mod chart;
+mod diagram;
 mod label;
 mod layout;
 mod lettering;
@@ -50,7 +52,9 @@ mod ticks;
 
 pub use anchor::{Anchor, Frame};
 pub use chart::{Axis, COLOURS, Chart, Line, Panel};
+pub use diagram::{Diagram, Followed};
 pub use palette::Colour;
 pub use scene::Scene;
 pub use sheet::Sheet;
+pub use sweep::usual_driver;
 pub use symbol::Symbol;

@@ -25,8 +25,8 @@ use pen::{
     ARROW, BAR, BLOCK, DASH_DOTS, DASHES, HATCH, LINE, PIN, THIN, colour_of, on_sheet_direction,
 };
 
-pub(super) use composer::compose;
-pub(super) use pen::Pen;
+pub(super) use composer::{compose, compose_dimensions};
+pub(super) use pen::{OtherPoses, Pen};
 pub use slide_way::{GuideContact, WaySide};
 
 /// A symbol as the scene and the sheet see it.
@@ -74,7 +74,7 @@ pub(super) fn bounds<'a>(symbols: impl IntoIterator<Item = &'a Symbol>, q: &[f64
 macro_rules! symbols {
     ($composer:ident, $ends:ident:
      $($module:ident: $name:ident $(, $joint:pat => $compose:expr)*;)+) => {
-        $(mod $module; pub use $module::$name;)+
+        $(pub(super) mod $module; pub use $module::$name;)+
 
         /// A symbol with its size and its place on bodies or on ground.
         ///
@@ -136,5 +136,8 @@ symbols! { composer, ends:
     length_driver: LengthDriver;
     spring: Spring;
     point: InterestPoint;
+    joint_letter: JointLetter;
+    dimension: Dimension;
+    instant_centre: InstantCentreMark;
     trace: Trace;
 }
