@@ -9,7 +9,7 @@ use clap::Args;
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::message::Message;
-use super::signals::Signals;
+use super::signals::{Signals, force_inputs};
 use crate::fmi;
 use crate::kinematics::{self, Curve, Solver, Start};
 use crate::mechanism::{
@@ -48,7 +48,7 @@ impl Conditions {
     }
 
     /// Applies the options to a mechanism whose run starts at `start`; the CSV file `signals`
-    /// moves further drivers.
+    /// moves further drivers and sets further inputs of forces.
     pub(super) fn scenario(
         &self,
         mechanism: &Mechanism,
@@ -61,14 +61,12 @@ impl Conditions {
         let drivers = mechanism.drivers.len();
         let force_inputs = force_inputs(mechanism);
         let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
-        let names = names.chain(force_inputs.iter().map(|(name, ..)| name.as_str()));
+        let names = names.chain(force_inputs.iter().map(|input| input.name.as_str()));
         for (index, text) in DRIVE.assignments(&self.drive, &names.collect::<Vec<_>>())? {
-            if let Some((_, force, component)) =
-                index.checked_sub(drivers).map(|k| &force_inputs[k])
-            {
+            if let Some(input) = index.checked_sub(drivers).map(|k| &force_inputs[k]) {
                 let size = mechanism.parse_expression(text, Some(Variable::Time));
                 let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
-                set_force(&mut driven.forces[*force].load, *component, size);
+                set_force(&mut driven.forces[input.force].load, input.component, size);
                 continue;
             }
             let motion = motion(mechanism, text, &parameters, start)?;
@@ -163,19 +161,6 @@ pub(super) fn warn_of_degrees(option: &str, text: &str, value: f64) {
         );
         Message::Warning(warning).show();
     }
-}
-
-/// Returns the inputs of forces: name of the variable, index of the force, component.
-fn force_inputs(mechanism: &Mechanism) -> Vec<(String, usize, usize)> {
-    let forces = mechanism.forces.iter().enumerate();
-    let inputs = forces.filter(|(_, force)| force.load.is_input());
-    let variables = inputs.flat_map(|(index, force)| {
-        let suffixes = force.load.variables().into_iter().enumerate();
-        suffixes.map(move |(component, (suffix, _))| {
-            (format!("{}.{suffix}", force.name), index, component)
-        })
-    });
-    variables.collect()
 }
 
 /// Gives a component of a force a size; those without one are zero.

@@ -23,7 +23,7 @@ pub(super) struct Motion {
     near_singular: bool,
 }
 
-/// Forces of a run; inputs of forces that no option moves are zero.
+/// Forces of a run; inputs of forces that no option sets are zero.
 struct ActingForces {
     forces: Forces,
     inputs: Vec<f64>,
@@ -104,6 +104,8 @@ impl Motion {
         let Some(acting) = &mut self.forces else {
             return Ok(());
         };
+        let time = self.solver.pose().time;
+        self.signals.write_forces(time, &mut acting.inputs);
         let motion = KnownMotion {
             rates: &self.rates,
             driver_rates: &self.driver_rates,

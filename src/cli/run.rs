@@ -40,11 +40,11 @@ pub(super) struct Run {
     file: PathBuf,
     #[command(flatten)]
     conditions: Conditions,
-    /// Move drivers by a CSV file: its first column is time, the others are variables of drivers
-    /// such as crank_angle.position.
+    /// Move drivers and set inputs of forces by a CSV file: its first column is time, the others
+    /// are variables of drivers such as crank_angle.position, and inputs such as cylinder.effort.
     ///
     /// Values are linear between two rows, constant before the first and after the last, and jump
-    /// at a time that occurs twice, as in FMPy. Velocities are those of the columns .velocity, or
+    /// at a time that occurs twice, as in FMPy. Velocities of drivers are those of the columns .velocity, or
     /// else the slopes; accelerations those of .acceleration, or else zero. Columns are separated
     /// by commas, semicolons, tabs or blanks.
     #[arg(short, long, value_name = "CSV")]
@@ -229,7 +229,7 @@ impl Run {
 /// Returns a note if nothing moves, with an example of a motion.
 fn note_of_rest(mechanism: &Mechanism, scenario: &Scenario) -> Option<Message> {
     let moves = |driver: &Driver| driver.motion().is_some_and(Prescribed::uses_time);
-    if !scenario.signals.is_empty() || scenario.mechanism.drivers.iter().any(moves) {
+    if scenario.signals.has_drivers() || scenario.mechanism.drivers.iter().any(moves) {
         return None;
     }
     let mut examples = mechanism.drivers.iter().filter_map(example);
