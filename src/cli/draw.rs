@@ -9,8 +9,10 @@ use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
 use super::input_files::InputFiles;
+use super::motion::Motion;
 use super::picture::Format;
-use crate::drawing::{Scene, Sheet};
+use super::signals::Signals;
+use crate::drawing::{Scene, Sheet, force_arrows};
 
 /// Draw a mechanism as a kinematic diagram, in SVG or PNG.
 ///
@@ -47,6 +49,10 @@ pub(super) struct Draw {
     /// Leave out the paths of the points of interest.
     #[arg(long)]
     no_traces: bool,
+    /// Show forces as arrows with their sizes: what joints and drivers exert, and springs, dampers
+    /// and loads. Drivers have the rates of their motions and of --drive, others are at rest.
+    #[arg(long)]
+    forces: bool,
     /// Leave out the white background.
     #[arg(long)]
     transparent: bool,
@@ -56,12 +62,27 @@ impl Draw {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.output.as_deref().map_or(Ok(Format::Svg), Format::of)?;
         let input = Input::read(&self.file)?;
+        if self.forces {
+            input.check_dynamics()?;
+        }
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
         InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(&path)])?;
         let mut solver = self.conditions.solver_at_start(&input)?;
-        let scene = Scene::new(&mut solver, !self.no_traces);
+        let mut arrows = Vec::new();
+        if self.forces {
+            let start = solver.pose().time;
+            let motion = Motion::from(solver, Signals::default(), start);
+            let motion = motion.and_then(Motion::with_forces);
+            let mut motion = motion.map_err(|error| input.error(error))?;
+            let places = motion.force_places();
+            let values = motion.values(&places);
+            arrows = force_arrows(&places.into_iter().zip(values).collect::<Vec<_>>());
+            solver = motion.solver;
+        }
+        let mut scene = Scene::new(&mut solver, !self.no_traces);
+        scene.symbols.extend(arrows);
         let sheet = Sheet::new(&scene, &solver.pose().q);
         let width = self.width.unwrap_or(sheet.width());
         format.write(&path, &sheet, width, self.transparent)

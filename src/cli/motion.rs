@@ -3,6 +3,7 @@
 use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
+use crate::drawing::ForcePlace;
 use crate::kinematics::{
     Blocked, Curve, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Path, Rates, Solver,
 };
@@ -80,6 +81,26 @@ impl Motion {
     pub(super) fn force(&self, quantity: ForceQuantity) -> f64 {
         let acting = self.forces.as_ref();
         acting.map_or(f64::NAN, |acting| acting.forces.value(quantity))
+    }
+
+    /// Returns the forces that a picture shows; none without [forces](Self::with_forces).
+    pub(super) fn force_places(&mut self) -> Vec<ForcePlace> {
+        if self.forces.is_none() {
+            return Vec::new();
+        }
+        let indeterminate = self.solver.indeterminate();
+        let parameters = &self.solver.pose().parameters;
+        ForcePlace::all(self.solver.mechanism(), parameters, &indeterminate)
+    }
+
+    /// Returns components in ground axes \[N\] and torque \[N m\] of forces at the present time.
+    pub(super) fn values(&self, places: &[ForcePlace]) -> Vec<[f64; 3]> {
+        let Some(acting) = &self.forces else {
+            return Vec::new();
+        };
+        let q = &self.solver.pose().q;
+        let values = places.iter().map(|place| place.value(&acting.forces, q));
+        values.collect()
     }
 
     /// Moves on to `time`, from one point of the signals to the next.

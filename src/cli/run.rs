@@ -72,6 +72,10 @@ pub(super) struct Run {
     /// offline. Of more than 10,000 rows it shows every second, third and so on.
     #[arg(short, long, value_name = "PAGE")]
     animate: Option<PathBuf>,
+    /// Let the page show forces as arrows where its reader asks for them: what joints and drivers
+    /// exert, and springs, dampers and loads.
+    #[arg(long, requires = "animate")]
+    forces: bool,
 }
 
 /// Largest number of rows that a picture holds.
@@ -89,6 +93,9 @@ impl Run {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
         self.check_page()?;
         let input = Input::read(&self.file)?;
+        if self.forces {
+            input.check_dynamics()?;
+        }
         self.refuse_overwriting(&input.mechanism)?;
         let times = self.span.times(&input.mechanism)?;
         let rows = times.steps + 1;
@@ -110,14 +117,15 @@ impl Run {
             let [plotted, told] = [Column::plotted(&all), Column::told(&all)];
             [all, plotted, told]
         };
-        let asks_forces = [&written, &plotted, &told]
-            .into_iter()
-            .zip([
-                self.output.is_some(),
-                self.plot.is_some(),
-                self.animate.is_some(),
-            ])
-            .any(|(columns, asked)| asked && columns.iter().any(Column::is_force))
+        let asks_forces = self.forces
+            || [&written, &plotted, &told]
+                .into_iter()
+                .zip([
+                    self.output.is_some(),
+                    self.plot.is_some(),
+                    self.animate.is_some(),
+                ])
+                .any(|(columns, asked)| asked && columns.iter().any(Column::is_force))
             || over.as_ref().is_some_and(Column::is_force);
         let home_solver = input.assemble()?;
         let notes = [
@@ -132,15 +140,18 @@ impl Run {
         if let (Some(path), Some(format)) = (self.plot.clone(), format) {
             recorders.push(Box::new(Plot::new(path, format, plotted, !is_choice, over)));
         }
-        if let Some(path) = self.animate.clone() {
-            let film = Film::new(told, times.steps, [times.start, times.step]);
-            recorders.push(Box::new(Page { film, path }));
-        }
         let mut motion = Motion::start(home_solver, scenario);
         if asks_forces {
             motion = motion.and_then(Motion::with_forces);
         }
         let mut motion = motion.map_err(|error| input.error(error))?;
+        if let Some(path) = self.animate.clone() {
+            let mut film = Film::new(told, times.steps, [times.start, times.step]);
+            if self.forces {
+                film.show_forces(motion.force_places());
+            }
+            recorders.push(Box::new(Page { film, path }));
+        }
         let outcome = self.play(&mut motion, input.source.name(), &times, &mut recorders);
         // Also after a dead point: the results up to there are written.
         let finished = recorders

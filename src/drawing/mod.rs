@@ -12,6 +12,7 @@
 //! | `anchor`, `attachment` | frames on bodies, and frames that marks move with |
 //! | `sheet`, `label` | marks and texts on paper, and places of names |
 //! | [`symbol`] | one file per symbol: its joint, its shape, its motion |
+//! | `force_place` | forces that pictures show, and where they act |
 //! | `sweep`, `scene`, `layout` | the motion shown, all symbols, and their fit on a sheet |
 //!
 //! ```
@@ -35,6 +36,7 @@ mod anchor;
 pub mod animation;
 mod attachment;
 mod chart;
+mod force_place;
 mod label;
 mod layout;
 mod lettering;
@@ -50,6 +52,7 @@ mod ticks;
 
 pub use anchor::{Anchor, Frame};
 pub use chart::{Axis, COLOURS, Chart, Line, Panel};
+pub use force_place::{ForcePlace, force_arrows};
 pub use palette::Colour;
 pub use scene::Scene;
 pub use sheet::Sheet;

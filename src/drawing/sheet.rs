@@ -70,13 +70,14 @@ pub(super) enum Layer {
     Joint,
     Driver,
     Point,
+    Force,
     Curve,
     Scale,
 }
 
 impl Layer {
     /// All layers with their names, in the order in which later ones cover earlier ones.
-    pub(super) const ALL: [(Self, &'static str); 14] = [
+    pub(super) const ALL: [(Self, &'static str); 15] = [
         (Self::Grid, "grid"),
         (Self::Ground, "ground"),
         (Self::Slider, "sliders"),
@@ -89,6 +90,7 @@ impl Layer {
         (Self::Joint, "joints"),
         (Self::Driver, "drivers"),
         (Self::Point, "points"),
+        (Self::Force, "forces"),
         (Self::Curve, "curves"),
         (Self::Scale, "scale"),
     ];

@@ -47,7 +47,8 @@ pub(super) fn picture(scene: &Scene, q: &[f64], stage: &Stage) -> String {
             svg += "</g>";
         }
     }
-    svg += "<g class=\"arrows acceleration\"/><g class=\"arrows velocity\"/>";
+    svg += "<g class=\"arrows force\"/><g class=\"arrows acceleration\"/>\
+            <g class=\"arrows velocity\"/>";
     svg += &names(stage);
     svg + "</svg>"
 }

@@ -26,6 +26,7 @@ use pen::{
 };
 
 pub(super) use composer::compose;
+pub use force_arrow::ForceKind;
 pub(super) use pen::Pen;
 pub use slide_way::{GuideContact, WaySide};
 
@@ -136,5 +137,7 @@ symbols! { composer, ends:
     length_driver: LengthDriver;
     spring: Spring;
     point: InterestPoint;
+    force_arrow: ForceArrow;
+    torque_arrow: TorqueArrow;
     trace: Trace;
 }
