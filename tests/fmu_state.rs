@@ -4,7 +4,8 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use biela::fmi::{Causality, Error, Failure, Interface, Kind, Order, Quantity, State, StateError};
+use biela::fmi::{Causality, Error, Failure, Interface, Kind, Quantity, State, StateError};
+use biela::mechanism::Order;
 use common::{FmuState, Instance, instance_of, shipped, stems};
 use proptest::prelude::*;
 use proptest::sample::Index;

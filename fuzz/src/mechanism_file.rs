@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use biela::fmi::{Causality, Interface, Order, Quantity, Version};
-use biela::mechanism::{Mechanism, Source};
+use biela::fmi::{Causality, Interface, Quantity, Version};
+use biela::mechanism::{Mechanism, Order, Source};
 
 use crate::{instance, reals};
 

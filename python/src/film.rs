@@ -2,7 +2,7 @@
 
 use biela::drawing::Scene;
 use biela::drawing::animation::{Animation, Clock, Moment, Reading, page};
-use biela::fmi::Column;
+use biela::kinematics::Output;
 use biela::mechanism::Mechanism;
 
 use crate::runner::Runner;
@@ -18,7 +18,7 @@ const SAME: f64 = 1e-6;
 
 /// The poses of a run.
 pub(crate) struct Film {
-    columns: Vec<Column>,
+    columns: Vec<Output>,
     parameters: Vec<f64>,
     stride: usize,
     times: Vec<f64>,
@@ -27,7 +27,7 @@ pub(crate) struct Film {
 
 impl Film {
     /// Returns an empty film of a run of so many rows, which tells the columns in numbers.
-    pub(crate) fn new(columns: Vec<Column>, rows: usize, parameters: &[f64]) -> Self {
+    pub(crate) fn new(columns: Vec<Output>, rows: usize, parameters: &[f64]) -> Self {
         Self {
             columns,
             parameters: parameters.to_vec(),

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use biela::cli;
 use biela::drawing::{Scene, Sheet, svg};
-use biela::fmi::Column;
+use biela::kinematics::Output;
 use biela::kinematics::{Carryover, End, Mode, Path, RangeSettings, Solver};
 use biela::mechanism::{
     Diagnostic, DriverId, DriverSource, Mechanism as Model, ParameterId, Source, Unit,
@@ -84,7 +84,7 @@ pub(crate) struct Mechanism {
     /// The pose of the file's own values, once it was asked for.
     home: OnceLock<Arc<Home>>,
     /// The columns of a run, once they were asked for.
-    columns: OnceLock<Vec<Column>>,
+    columns: OnceLock<Vec<Output>>,
 }
 
 #[pymethods]
@@ -436,11 +436,11 @@ impl Mechanism {
     }
 
     /// Returns the columns of a run; reactions that are indeterminate take an assembly to find.
-    fn all_columns(&self) -> &[Column] {
-        self.columns.get_or_init(|| Column::all(&self.model))
+    fn all_columns(&self) -> &[Output] {
+        self.columns.get_or_init(|| Output::all(&self.model))
     }
 
-    fn chosen(&self, indices: &[usize]) -> Vec<Column> {
+    fn chosen(&self, indices: &[usize]) -> Vec<Output> {
         let columns = self.all_columns();
         indices
             .iter()

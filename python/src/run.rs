@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use biela::fmi::Column;
 use biela::kinematics::Direction;
+use biela::kinematics::Output;
 use biela::mechanism::{Jet, Mechanism, ParameterId};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
@@ -64,9 +64,9 @@ const REASSEMBLED: &str = "no continuous motion leads from the file's own pose t
 pub(crate) fn run(
     scenario: &Scenario,
     parameters: &[f64],
-    columns: &[Column],
+    columns: &[Output],
     by: &[ParameterId],
-    told: Vec<Column>,
+    told: Vec<Output>,
 ) -> Result<Run, Failure> {
     let mut runner = Runner::new(scenario, columns)?;
     let rows = scenario.times.len();

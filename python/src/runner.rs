@@ -1,10 +1,10 @@
 //! A mechanism that moves along the samples and motions of its drivers.
 
-use biela::fmi::{Column, ColumnSource};
 use biela::kinematics::{
     Carryover, Curve, Direction, Error, ForceParts, ForceQuantity, ForceSensitivity, Forces,
     KnownMotion, Path, Rates, Solver, Start,
 };
+use biela::kinematics::{Output, OutputSource};
 use biela::mechanism::{DriverId, Jet, Motion, ParameterId};
 
 use crate::error::Failure;
@@ -44,10 +44,10 @@ pub(crate) enum Beginning {
 
 impl<'a> Runner<'a> {
     /// Makes a runner; with a column of forces it solves them too.
-    pub(crate) fn new(scenario: &'a Scenario, columns: &[Column]) -> Result<Self, Failure> {
+    pub(crate) fn new(scenario: &'a Scenario, columns: &[Output]) -> Result<Self, Failure> {
         let home = Solver::new(scenario.own.clone())?;
         let solver = Solver::new(scenario.driven.clone())?;
-        let forces = columns.iter().any(Column::is_force).then(|| {
+        let forces = columns.iter().any(Output::is_force).then(|| {
             let forces = solver.forces();
             ActingForces {
                 inputs: vec![0.0; forces.inputs()],
@@ -173,9 +173,9 @@ impl<'a> Runner<'a> {
 
     /// Returns the value of a column \[SI\]. Inertia and bias of a driver are no numbers if its
     /// motion is an expression, whose acceleration is not free.
-    pub(crate) fn value(&self, column: &Column) -> f64 {
+    pub(crate) fn value(&self, column: &Output) -> f64 {
         match (column.source, &self.forces) {
-            (ColumnSource::Force(quantity), Some(acting)) if self.exists(quantity) => {
+            (OutputSource::Force(quantity), Some(acting)) if self.exists(quantity) => {
                 acting.forces.value(quantity)
             }
             _ => column.value(&self.solver, &self.rates, &self.driver_rates),
@@ -199,14 +199,14 @@ impl<'a> Runner<'a> {
     /// They do not exist at a singular position.
     pub(crate) fn differentiate(
         &mut self,
-        columns: &[Column],
+        columns: &[Output],
         direction: &Direction,
         derivatives: &mut Vec<f64>,
     ) -> Result<(), Error> {
         let exists: Vec<bool> = columns
             .iter()
             .map(|column| match column.source {
-                ColumnSource::Force(quantity) => self.exists(quantity),
+                OutputSource::Force(quantity) => self.exists(quantity),
                 _ => true,
             })
             .collect();
@@ -234,7 +234,7 @@ impl<'a> Runner<'a> {
         let columns = columns.iter().zip(exists);
         derivatives.extend(
             columns.map(|(column, exists)| match (column.source, &along) {
-                (ColumnSource::Force(quantity), Some(along)) if exists => along.change(quantity),
+                (OutputSource::Force(quantity), Some(along)) if exists => along.change(quantity),
                 _ => column.change(&scenario.own, &change),
             }),
         );

@@ -1,7 +1,7 @@
 //! The same motion of many variants, on all cores.
 
 use biela::cli::check_parameter;
-use biela::fmi::Column;
+use biela::kinematics::Output;
 use biela::mechanism::ParameterId;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
@@ -56,7 +56,7 @@ pub(crate) fn sweep(
     parameters: &[f64],
     swept: &[(ParameterId, Vec<f64>)],
     variants: usize,
-    columns: &[Column],
+    columns: &[Output],
 ) -> Result<Sweep, Failure> {
     // An error of the equations is the same for all variants.
     Runner::new(scenario, columns)?;

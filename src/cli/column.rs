@@ -3,12 +3,12 @@
 use super::conditions::unknown;
 use super::error::Error;
 use super::motion::Motion;
-use crate::fmi::Signal;
-pub(super) use crate::fmi::{Column, ColumnSource as Source};
 use crate::kinematics::ForceQuantity;
+pub(super) use crate::kinematics::{Output, OutputSource as Source};
+use crate::mechanism::Signal;
 use crate::mechanism::{BodyId, MarkerId, Mechanism, Order, help};
 
-impl Column {
+impl Output {
     /// Returns the columns of these names: of a variable, or of a body, marker, driver or measure
     /// with all its variables.
     pub(super) fn named(
@@ -114,7 +114,7 @@ fn why_no_output(name: &str, mechanism: &Mechanism) -> Option<String> {
 }
 
 /// Suggests a variable, or an owner of variables, for an unknown name.
-fn suggestion(name: &str, columns: &[Column]) -> String {
+fn suggestion(name: &str, columns: &[Output]) -> String {
     let names = || columns.iter().map(|column| column.name.as_str());
     let mut owners = Vec::new();
     for (owner, _) in names().filter_map(|name| name.split_once('.')) {

@@ -9,7 +9,7 @@ use clap::Args;
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::message::Message;
-use super::signals::{Signals, force_inputs};
+use super::signals::Signals;
 use crate::fmi;
 use crate::kinematics::{self, Curve, Solver, Start};
 use crate::mechanism::{
@@ -59,7 +59,7 @@ impl Conditions {
         let mut driven = mechanism.clone();
         let mut driven_by_option = Vec::new();
         let drivers = mechanism.drivers.len();
-        let force_inputs = force_inputs(mechanism);
+        let force_inputs = mechanism.force_inputs();
         let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
         let names = names.chain(force_inputs.iter().map(|input| input.name.as_str()));
         for (index, text) in DRIVE.assignments(&self.drive, &names.collect::<Vec<_>>())? {
@@ -131,8 +131,9 @@ impl Conditions {
         let names = mechanism.parameters.iter().map(|p| p.name.as_str());
         for (index, text) in SET.assignments(&self.set, &names.collect::<Vec<_>>())? {
             let parameter = &mechanism.parameters[index];
-            check_settable(parameter)
-                .map_err(|message| Error::Usage(format!("--set: {message}")))?;
+            parameter
+                .check_settable()
+                .map_err(|error| Error::Usage(format!("--set: {error}")))?;
             values[index] = mechanism
                 .parse_expression(text, None)
                 .map_err(|error| SET.refuse(text, &error))?
@@ -306,17 +307,6 @@ fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
         message += &format!("\n  {text}\n  {:column$}^", "");
     }
     Error::Usage(message)
-}
-
-/// Refuses a parameter that follows from others.
-pub(super) fn check_settable(parameter: &Parameter) -> Result<(), String> {
-    if parameter.derived {
-        return Err(format!(
-            "`{}` is derived from other parameters; set those",
-            parameter.name
-        ));
-    }
-    Ok(())
 }
 
 /// Refuses a value that the FMU refuses, in its words.

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
-use super::column::Column;
+use super::column::Output;
 use super::error::Error;
 use super::motion::Motion;
 use super::output::tell_written;
@@ -15,12 +15,12 @@ use super::stdout::is_stdout;
 pub(super) struct Csv {
     out: BufWriter<Box<dyn Write>>,
     path: PathBuf,
-    columns: Vec<Column>,
+    columns: Vec<Output>,
 }
 
 impl Csv {
     /// Creates the file, or takes stdout for `-`, and writes the line of names.
-    pub(super) fn create(path: PathBuf, columns: Vec<Column>) -> Result<Self, Error> {
+    pub(super) fn create(path: PathBuf, columns: Vec<Output>) -> Result<Self, Error> {
         let out: Box<dyn Write> = if is_stdout(&path) {
             Box::new(io::stdout().lock())
         } else {
@@ -44,7 +44,7 @@ impl Csv {
     /// Writes one line.
     fn write(
         &mut self,
-        line: impl FnOnce(&mut dyn Write, &[Column]) -> io::Result<()>,
+        line: impl FnOnce(&mut dyn Write, &[Output]) -> io::Result<()>,
     ) -> Result<(), Error> {
         line(&mut self.out, &self.columns)
             .and_then(|()| writeln!(self.out))

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use super::column::Column;
+use super::column::Output;
 use super::error::Error;
 use super::film::Film;
 use super::input::Input;
@@ -166,7 +166,7 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     solver.restore(&home);
     let start = simulation.start;
     let mut motion = Motion::from(solver, Signals::default(), start)?;
-    let told = Column::told(&Column::all(&driven));
+    let told = Output::told(&Output::all(&driven));
     let moments = (MOST_PLACED / own.bodies.len().max(1)).clamp(MOMENTS / 10, MOMENTS);
     let step = duration / moments as f64;
     let mut film = Film::new(told, moments as u64, [start, step]);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::column::Column;
+use super::column::Output;
 use super::error::Error;
 use super::motion::Motion;
 use super::output::{tell_written, write};
@@ -18,7 +18,7 @@ const POSES: usize = 2000;
 
 /// The moments of a run.
 pub(super) struct Film {
-    columns: Vec<Column>,
+    columns: Vec<Output>,
     start: f64,
     /// Time between two moments \[s\].
     step: f64,
@@ -35,7 +35,7 @@ pub(super) struct Film {
 impl Film {
     /// Returns an empty film of a run of `steps` steps from `start`, `step` seconds apart, which
     /// tells these columns in numbers.
-    pub(super) fn new(columns: Vec<Column>, steps: u64, [start, step]: [f64; 2]) -> Self {
+    pub(super) fn new(columns: Vec<Output>, steps: u64, [start, step]: [f64; 2]) -> Self {
         let stride = steps / MOST_MOMENTS + 1;
         Self {
             columns,

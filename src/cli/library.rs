@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::check::json::report_on;
-use super::conditions::{check_limits, check_settable};
+use super::conditions::check_limits;
 use super::export::{pack, platform, version};
 use super::input::Input;
 use super::{conditions, page_solver, range, runtime};
@@ -96,7 +96,9 @@ pub fn check_parameter(
     value: f64,
 ) -> Result<(), String> {
     let parameter = &mechanism.parameters[parameter.index()];
-    check_settable(parameter)?;
+    parameter
+        .check_settable()
+        .map_err(|error| error.to_string())?;
     check_limits(parameter, value)
 }
 

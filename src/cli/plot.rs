@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use super::column::{Column, Source};
+use super::column::{Output, Source};
 use super::error::Error;
 use super::message::Message;
 use super::motion::Motion;
 use super::picture::Format;
 use super::recorder::Recorder;
 use crate::drawing::{Axis, COLOURS, Chart, Line, Panel, Sheet};
-use crate::fmi::{Order, Signal};
 use crate::mechanism::{BodyId, Mechanism, Unit};
+use crate::mechanism::{Order, Signal};
 
 /// Largest number of bodies whose lines can be told apart.
 pub(super) const MOST_BODIES: usize = 8;
@@ -19,7 +19,7 @@ pub(super) const MOST_BODIES: usize = 8;
 pub(super) struct Plot {
     path: PathBuf,
     format: Format,
-    columns: Vec<Column>,
+    columns: Vec<Output>,
     /// Whether a note says which bodies are left out: the user has named none.
     notes_omission: bool,
     /// The quantity on the x-axis, `None` for time.
@@ -30,7 +30,7 @@ pub(super) struct Plot {
 
 /// A quantity on the x-axis.
 struct Over {
-    column: Column,
+    column: Output,
     values: Vec<f64>,
 }
 
@@ -38,9 +38,9 @@ impl Plot {
     pub(super) fn new(
         path: PathBuf,
         format: Format,
-        columns: Vec<Column>,
+        columns: Vec<Output>,
         notes_omission: bool,
-        over: Option<Column>,
+        over: Option<Output>,
     ) -> Self {
         Self {
             path,
@@ -89,7 +89,7 @@ impl Plot {
     fn leave_out_constants(&mut self) {
         let over = self.over.as_ref().map(|over| over.column.source);
         let is_kept =
-            |column: &Column, values: &[f64]| varies(values) && Some(column.source) != over;
+            |column: &Output, values: &[f64]| varies(values) && Some(column.source) != over;
         let mut all = self.columns.iter().zip(&self.values);
         if !all.any(|(column, values)| is_kept(column, values)) {
             return;
@@ -166,14 +166,14 @@ fn displayed(values: Vec<f64>, unit: Unit) -> Vec<f64> {
 
 /// Returns the look of each column. What belongs to a body has its colour in the drawing; several
 /// such signals of one kind differ in their dashes. Others have the colours that are left.
-fn looks(columns: &[Column], mechanism: &Mechanism) -> Vec<usize> {
-    let body = |column: &Column| match column.source {
+fn looks(columns: &[Output], mechanism: &Mechanism) -> Vec<usize> {
+    let body = |column: &Output| match column.source {
         Source::Signal(Signal::Body(body, _), _) => Some(body),
         Source::Signal(Signal::Marker(marker, _), _) => mechanism.markers[marker.index()].body,
         _ => None,
     };
-    let mut known: Vec<(&Column, usize)> = Vec::new();
-    let (of_bodies, others): (Vec<&Column>, Vec<&Column>) =
+    let mut known: Vec<(&Output, usize)> = Vec::new();
+    let (of_bodies, others): (Vec<&Output>, Vec<&Output>) =
         columns.iter().partition(|column| body(column).is_some());
     for column in of_bodies.into_iter().chain(others) {
         let akin = known
@@ -183,7 +183,7 @@ fn looks(columns: &[Column], mechanism: &Mechanism) -> Vec<usize> {
         // Looks are apart within a panel.
         let is_free = |look: &usize| {
             let same =
-                |(other, taken): &(&Column, usize)| taken == look && other.unit == column.unit;
+                |(other, taken): &(&Output, usize)| taken == look && other.unit == column.unit;
             !known.iter().any(same)
         };
         let look = look.or_else(|| match body(column) {
@@ -192,7 +192,7 @@ fn looks(columns: &[Column], mechanism: &Mechanism) -> Vec<usize> {
         });
         known.push((column, look.unwrap_or(0)));
     }
-    let look = |column: &Column| {
+    let look = |column: &Output| {
         let same = known.iter().find(|(other, _)| std::ptr::eq(*other, column));
         same.map_or(0, |(_, look)| *look)
     };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::column::Column;
+use super::column::Output;
 use super::conditions::{Conditions, Scenario};
 use super::csv::Csv;
 use super::error::Error;
@@ -106,15 +106,15 @@ impl Run {
         }
         let scenario =
             (self.conditions).scenario(&input.mechanism, times.start, self.input.as_deref())?;
-        let all = Column::all(&scenario.mechanism);
-        let over = self.over.as_deref().map(|name| Column::over(&all, name));
+        let all = Output::all(&scenario.mechanism);
+        let over = self.over.as_deref().map(|name| Output::over(&all, name));
         let over = over.transpose()?;
         let is_choice = !self.variables.is_empty();
         let [written, plotted, told] = if is_choice {
-            let named = Column::named(&all, &self.variables, &scenario.mechanism)?;
+            let named = Output::named(&all, &self.variables, &scenario.mechanism)?;
             [named.clone(), named.clone(), named]
         } else {
-            let [plotted, told] = [Column::plotted(&all), Column::told(&all)];
+            let [plotted, told] = [Output::plotted(&all), Output::told(&all)];
             [all, plotted, told]
         };
         let asks_forces = self.forces
@@ -125,8 +125,8 @@ impl Run {
                     self.plot.is_some(),
                     self.animate.is_some(),
                 ])
-                .any(|(columns, asked)| asked && columns.iter().any(Column::is_force))
-            || over.as_ref().is_some_and(Column::is_force);
+                .any(|(columns, asked)| asked && columns.iter().any(Output::is_force))
+            || over.as_ref().is_some_and(Output::is_force);
         let home_solver = input.assemble()?;
         let notes = [
             note_of_rest(&input.mechanism, &scenario),

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use super::error::Error;
-use crate::fmi::Order;
+use crate::mechanism::Order;
 use crate::mechanism::{
     DriverId, DriverSource, Jet, Mechanism, Separated, comma_hint, help, quoted, shown,
 };
 
-/// Values of drivers and of inputs of forces over time: linear between two points, constant before the first and after
-/// the last. At a time that occurs twice the value jumps to that of the later row.
+/// Values of drivers and of inputs of forces over time: linear between two points, constant before
+/// the first and after the last. At a time that occurs twice the value jumps to that of the later
+/// row.
 #[derive(Debug, Default)]
 pub(super) struct Signals {
     times: Vec<f64>,
@@ -37,36 +38,6 @@ struct ForceSignal {
 enum Place {
     Driver(usize, usize),
     Force(usize),
-}
-
-/// An input of a force.
-pub(super) struct ForceInput {
-    /// Name of its variable.
-    pub(super) name: String,
-    /// Index of the force.
-    pub(super) force: usize,
-    /// Index of the component.
-    pub(super) component: usize,
-}
-
-/// Returns the inputs of all forces, in the order of their values.
-pub(super) fn force_inputs(mechanism: &Mechanism) -> Vec<ForceInput> {
-    variables_of_forces(mechanism, true)
-}
-
-/// Returns the variables of all forces that are inputs, or of those that are not.
-fn variables_of_forces(mechanism: &Mechanism, inputs: bool) -> Vec<ForceInput> {
-    let forces = mechanism.forces.iter().enumerate();
-    let chosen = forces.filter(|(_, force)| force.load.is_input() == inputs);
-    let variables = chosen.flat_map(|(index, force)| {
-        let suffixes = force.load.variables().into_iter().enumerate();
-        suffixes.map(move |(component, (suffix, _))| ForceInput {
-            name: format!("{}.{suffix}", force.name),
-            force: index,
-            component,
-        })
-    });
-    variables.collect()
 }
 
 /// Largest difference of two times that count as one, relative or in seconds.
@@ -150,7 +121,7 @@ impl Signals {
 
     /// Adds an empty column; returns its place.
     fn add_column(&mut self, name: &str, mechanism: &Mechanism) -> Result<Place, String> {
-        let inputs = force_inputs(mechanism);
+        let inputs = mechanism.force_inputs();
         if let Some(input) = inputs.iter().position(|input| input.name == name) {
             if self.forces.iter().any(|signal| signal.input == input) {
                 return Err(format!("two columns for `{name}`"));
@@ -262,7 +233,7 @@ impl Signal {
 /// Says that a column is neither a variable of a driver nor an input of a force, and which one may
 /// be meant.
 fn unknown(name: &str, mechanism: &Mechanism) -> String {
-    let given = variables_of_forces(mechanism, false);
+    let given = mechanism.given_forces();
     if let Some(given) = given.iter().find(|given| given.name == name) {
         let force = &mechanism.forces[given.force].name;
         return format!(
@@ -270,7 +241,7 @@ fn unknown(name: &str, mechanism: &Mechanism) -> String {
         );
     }
     let drivers = || mechanism.drivers.iter().map(|driver| driver.name.as_str());
-    let inputs = force_inputs(mechanism);
+    let inputs = mechanism.force_inputs();
     let variables = |order: Order| drivers().map(move |d| format!("{d}.{}", order.suffix()));
     let positions: Vec<String> = variables(Order::Position).collect();
     let main = positions

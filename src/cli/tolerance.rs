@@ -7,16 +7,16 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::check::scientific;
-use super::column::{Column, Source};
+use super::column::{Output, Source};
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
 use super::motion::Motion;
 use super::output::print;
 use super::times::Span;
-use crate::fmi::{Order, Signal};
 use crate::kinematics::Direction;
 use crate::mechanism::{Jet, Mechanism, ParameterId, Unit};
+use crate::mechanism::{Order, Signal};
 
 /// Tell how tolerances of parameters change the motion.
 ///
@@ -80,17 +80,17 @@ impl Tolerance {
     }
 
     /// Returns the columns of the table; drivers are given and do not deviate.
-    fn columns(&self, mechanism: &Mechanism) -> Result<Vec<Column>, Error> {
-        let mut columns = Column::all(mechanism);
+    fn columns(&self, mechanism: &Mechanism) -> Result<Vec<Output>, Error> {
+        let mut columns = Output::all(mechanism);
         columns.retain(|column| match column.source {
             Source::Signal(signal, _) => !matches!(signal, Signal::Motion(_)),
             Source::Derived(_) => true,
             Source::Force(_) => false,
         });
         if !self.variables.is_empty() {
-            return Column::named(&columns, &self.variables, mechanism);
+            return Output::named(&columns, &self.variables, mechanism);
         }
-        let told = Column::told(&columns);
+        let told = Output::told(&columns);
         if told.is_empty() {
             columns.retain(|column| matches!(column.source, Source::Signal(_, Order::Position)));
             return Ok(columns);
@@ -118,7 +118,7 @@ fn tolerances(mechanism: &Mechanism) -> Result<Vec<(ParameterId, f64)>, Error> {
 fn add(
     deviations: &mut [Deviation],
     motion: &mut Motion,
-    columns: &[Column],
+    columns: &[Output],
     tolerances: &[(ParameterId, f64)],
 ) -> Result<(), crate::kinematics::Error> {
     let mechanism = Arc::clone(motion.solver.mechanism());
@@ -151,7 +151,7 @@ fn add(
 
 fn table(
     mechanism: &Mechanism,
-    columns: &[Column],
+    columns: &[Output],
     tolerances: &[(ParameterId, f64)],
     deviations: &[Deviation],
 ) -> String {

@@ -35,8 +35,8 @@ pub use error::{Error, Failure, StateError};
 pub use instance::{CoSimulation, FmuState, Instance, Reals, StepOutcome, StepProgress};
 pub use log::{Category, Logger, Sink};
 pub use mechanism_model::{
-    Column, ColumnSource, MechanismModel, MechanismState, Order, Quantity, RESOURCE, Signal,
-    TABLE_VERSION, describe, guid, indeterminate, variables, write_fmu,
+    MechanismModel, MechanismState, Quantity, RESOURCE, TABLE_VERSION, describe, guid, variables,
+    write_fmu,
 };
 pub use model::{Groups, Model};
 pub use model_description::{

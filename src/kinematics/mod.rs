@@ -61,6 +61,7 @@ mod initial_pose;
 mod linear;
 mod model;
 mod newton;
+mod output;
 mod path;
 mod redundancy;
 #[cfg(test)]
@@ -92,6 +93,7 @@ pub use forces::{
 };
 pub use initial_pose::{Assembly, Start};
 pub use linear::PivotOrder;
+pub use output::{Output, OutputSource};
 pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};

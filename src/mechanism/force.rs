@@ -54,6 +54,71 @@ pub struct Spring {
     pub free: Expression,
 }
 
+/// Component of a force under the name of its variable.
+#[derive(Clone, Debug)]
+pub struct ForceComponent {
+    /// Name, such as `cylinder.effort` or `load.fx`.
+    pub name: String,
+    /// Description in one line.
+    pub description: String,
+    /// Unit of its values.
+    pub unit: Unit,
+    /// Index of the force.
+    pub force: usize,
+    /// Index of the component: x, y and torque of a force at a marker.
+    pub component: usize,
+}
+
+impl Mechanism {
+    /// Returns the components of the forces that are inputs, in the order of these inputs.
+    #[must_use]
+    pub fn force_inputs(&self) -> Vec<ForceComponent> {
+        self.force_components(Load::is_input)
+    }
+
+    /// Returns the components of the forces whose sizes the file gives.
+    #[must_use]
+    pub fn given_forces(&self) -> Vec<ForceComponent> {
+        self.force_components(|load| !load.is_input())
+    }
+
+    fn force_components(&self, is_wanted: impl Fn(&Load) -> bool) -> Vec<ForceComponent> {
+        let forces = self.forces.iter().enumerate();
+        let wanted = forces.filter(|(_, force)| is_wanted(&force.load));
+        let components = wanted.flat_map(|(index, force)| {
+            let whole = force.describe(self);
+            let variables = force.load.variables().into_iter().enumerate();
+            variables.map(move |(component, (suffix, unit))| ForceComponent {
+                name: format!("{}.{suffix}", force.name),
+                description: match suffix {
+                    "effort" => whole.clone(),
+                    component => format!("{component}: {whole}"),
+                },
+                unit,
+                force: index,
+                component,
+            })
+        });
+        components.collect()
+    }
+}
+
+impl Force {
+    /// Returns the file's own description, or else the place where the force acts.
+    fn describe(&self, mechanism: &Mechanism) -> String {
+        match &self.load {
+            _ if !self.description.is_empty() => self.description.clone(),
+            Load::Coordinate { coordinate, .. } => {
+                let word = coordinate.kind.effort_word();
+                format!("{word} along {}", coordinate.describe(mechanism))
+            }
+            Load::Marker { marker, .. } => {
+                format!("force and torque at `{}`", mechanism.marker_path(*marker))
+            }
+        }
+    }
+}
+
 impl Spring {
     /// Returns the stiffness, and the extension of the spring at a value of the coordinate.
     pub fn evaluate<N: Number>(
@@ -116,7 +181,7 @@ impl Load {
 
     /// Returns the last parts of the names of its FMI variables, with their units.
     #[must_use]
-    pub fn variables(&self) -> Vec<(&'static str, Unit)> {
+    fn variables(&self) -> Vec<(&'static str, Unit)> {
         match self {
             Self::Coordinate { coordinate, .. } => vec![("effort", coordinate.kind.effort_unit())],
             Self::Marker { .. } => {

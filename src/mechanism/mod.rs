@@ -8,6 +8,7 @@
 //! | `diagnostic` | [`Diagnostic`]: a problem with its places and its help |
 //! | `expression` | [`Expression`]: a number as a function of the parameters |
 //! | `motion`, `profile`, `spline`, `table` | functions of time and of an angle |
+//! | `coordinate` | [`Coordinate`]: what is measured from one marker to another |
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
@@ -16,6 +17,7 @@
 //!
 //! Nothing here computes a pose.
 
+mod coordinate;
 mod derived;
 mod diagnostic;
 mod encoding;
@@ -39,10 +41,11 @@ mod toml_error;
 mod wording;
 
 pub use crate::unit::{Dimension, DisplayUnit, Unit};
+pub use coordinate::{Coordinate, CoordinateKind};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use expression::{Expression, ExpressionError, Variable};
-pub use force::{Force, ForceLaw, Load, Spring};
+pub use force::{Force, ForceComponent, ForceLaw, Load, Spring};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 #[cfg(feature = "cli")]
 pub(crate) use motion::not_finite;
@@ -51,7 +54,7 @@ pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 pub(crate) use names::help;
 pub use names::is_identifier;
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
-pub use parameter::Parameter;
+pub use parameter::{DerivedParameter, Parameter};
 pub use profile::{Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce};
 pub(crate) use signal::{COMPONENTS, SUFFIXES};
 pub use signal::{Order, Signal};
@@ -144,113 +147,6 @@ pub struct Marker {
     pub position: [Expression; 2],
     /// Direction of the marker's x-axis in the body's frame \[rad\].
     pub angle: Expression,
-}
-
-/// Scalar measured from one marker to another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Coordinate {
-    /// Quantity measured.
-    pub kind: CoordinateKind,
-    /// Marker i, measured from.
-    pub from: MarkerId,
-    /// Marker j, measured to.
-    pub to: MarkerId,
-    /// Marker k on whose axes `x` and `y` are measured; marker i unless the file gives another.
-    /// Without meaning for `angle` and `distance`.
-    pub axes: MarkerId,
-}
-
-/// Relative coordinates. theta is a marker's direction, P its point, u and n the x- and
-/// y-axis of marker k.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum CoordinateKind {
-    /// `theta_j − theta_i` \[rad\], counting turns.
-    Angle,
-    /// `u_k · (P_j − P_i)` \[m\].
-    X,
-    /// `n_k · (P_j − P_i)` \[m\].
-    Y,
-    /// `‖P_j − P_i‖` \[m\].
-    Distance,
-}
-
-impl CoordinateKind {
-    /// Units of a length and of its first and second time derivatives.
-    pub const LENGTHS: [Unit; 3] = [
-        Unit::METRE,
-        Unit::METRE_PER_SECOND,
-        Unit::METRE_PER_SECOND_SQUARED,
-    ];
-    /// Units of an angle and of its first and second time derivatives.
-    pub const ANGLES: [Unit; 3] = [
-        Unit::RADIAN,
-        Unit::RADIAN_PER_SECOND,
-        Unit::RADIAN_PER_SECOND_SQUARED,
-    ];
-
-    /// Returns the units of its values and of their first and second time derivatives.
-    #[must_use]
-    pub fn units(self) -> [Unit; 3] {
-        if self.is_angle() {
-            Self::ANGLES
-        } else {
-            Self::LENGTHS
-        }
-    }
-
-    /// Whether the coordinate is measured on the axes of a marker.
-    #[must_use]
-    pub fn has_axes(self) -> bool {
-        match self {
-            Self::X | Self::Y => true,
-            Self::Angle | Self::Distance => false,
-        }
-    }
-
-    /// Whether its values are angles; they are lengths otherwise.
-    #[must_use]
-    pub fn is_angle(self) -> bool {
-        match self {
-            Self::Angle => true,
-            Self::X | Self::Y | Self::Distance => false,
-        }
-    }
-
-    /// Returns the unit of its values.
-    #[must_use]
-    pub fn unit(self) -> Unit {
-        self.units()[0]
-    }
-
-    /// Returns the unit of a generalized force conjugate to it.
-    #[must_use]
-    pub fn effort_unit(self) -> Unit {
-        if self.is_angle() {
-            Unit::NEWTON_METRE
-        } else {
-            Unit::NEWTON
-        }
-    }
-
-    /// Returns the unit of the inertia that a driver feels.
-    #[must_use]
-    pub fn inertia_unit(self) -> Unit {
-        if self.is_angle() {
-            Unit::KILOGRAM_METRE_SQUARED
-        } else {
-            Unit::KILOGRAM
-        }
-    }
-
-    /// Returns a value as text with its unit.
-    #[must_use]
-    pub fn show(self, value: f64) -> String {
-        if self.is_angle() {
-            format!("{value:.9} rad ({:.6} deg)", value.to_degrees())
-        } else {
-            format!("{value:.9} m")
-        }
-    }
 }
 
 /// Named set of constraints between two markers.

@@ -27,6 +27,30 @@ pub struct Parameter {
     pub tolerance: Option<f64>,
 }
 
+/// A parameter that follows from others cannot be set.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is derived from other parameters; set those")]
+pub struct DerivedParameter {
+    /// Name of the parameter.
+    pub name: String,
+}
+
+impl Parameter {
+    /// Checks that it can be set.
+    ///
+    /// # Errors
+    ///
+    /// It is derived.
+    pub fn check_settable(&self) -> Result<(), DerivedParameter> {
+        if self.derived {
+            return Err(DerivedParameter {
+                name: self.name.clone(),
+            });
+        }
+        Ok(())
+    }
+}
+
 impl Mechanism {
     /// Returns the file's values of all parameters, in parameter order.
     #[must_use]

@@ -107,10 +107,10 @@ impl Session {
             Over::Driver(driver) => self.pose().drivers[driver.index()],
         };
         let moment = self.moment();
-        let known = |&index: &usize| self.quantities.get(index);
+        let known = |&index: &usize| self.outputs.get(index);
         let values = variables
             .iter()
-            .map(|index| known(index).map_or(f64::NAN, |q| q.value(&moment)));
+            .map(|index| known(index).map_or(f64::NAN, |output| moment.value(output)));
         rows.push((x, values.collect()));
         reached
     }

@@ -19,7 +19,7 @@ impl Session {
         let drivers = HEAD;
         let parameters = drivers + 3 * mechanism.drivers.len();
         let variables = parameters + mechanism.parameters.len();
-        let joints = variables + self.quantities.len();
+        let joints = variables + self.outputs.len();
         let attachments = joints + 4 * self.reactions();
         let [frames, lengths] = self.picture.parts();
         json!({
@@ -58,11 +58,7 @@ impl Session {
         }
         out.extend_from_slice(&pose.parameters);
         let moment = self.moment();
-        out.extend(
-            self.quantities
-                .iter()
-                .map(|quantity| quantity.value(&moment)),
-        );
+        out.extend(self.outputs.iter().map(|output| moment.value(output)));
         if let Some(forces) = self.forces.as_deref() {
             use crate::kinematics::ForceQuantity::Reaction;
             let none = Rates::new(pose.q.len());

@@ -16,6 +16,7 @@ use crate::mechanism::{BodyId, DriverId, ParameterId, Source};
 /// | `redraw` | `keep` (the scale) | `picture`, `page` |
 /// | `drive` | `driver`, `value` | an outcome |
 /// | `speed` | `driver`, `velocity`, `acceleration` | |
+/// | `load` | `input`, `value` | |
 /// | `time` | `value` | an outcome |
 /// | `set` | `parameter`, `value`, `anew` | an outcome |
 /// | `grab` | `body`, `at` (in the picture) | `grip` |
@@ -111,6 +112,10 @@ impl Host {
                     "speed" => {
                         let driver = DriverId(index("driver")?);
                         session.set_speed(driver, number("velocity")?, number("acceleration")?);
+                        json!({})
+                    }
+                    "load" => {
+                        session.set_load(index("input")?, number("value")?);
                         json!({})
                     }
                     "grab" => json!({ "grip": session.grip(body(session)?, point(session)?) }),

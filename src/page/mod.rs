@@ -8,8 +8,11 @@
 //! | file | subject |
 //! |---|---|
 //! | `outcome` | [`Outcome`]: the end of a move, and what stopped it |
-//! | `quantity` | the variables of a mechanism, by name |
+//! | `values` | values of outputs, and their units |
+//! | `ranges` | ranges and speeds of the drivers |
+//! | `undo` | states that can be undone |
 //! | `session` | [`Session`]: the mechanism and its moves |
+//! | `description` | names, units and limits, shown once |
 //! | `hand` | a body that is pulled towards a point |
 //! | `assemblies` | the other positions in which the mechanism closes |
 //! | `chart` | variables over time or over a driver |
@@ -19,15 +22,18 @@
 
 mod assemblies;
 mod chart;
+mod description;
 mod edit;
 mod frame;
 mod hand;
 mod host;
 mod outcome;
-mod quantity;
+mod ranges;
 mod session;
 #[cfg(test)]
 mod tests;
+mod undo;
+mod values;
 
 pub use chart::Over;
 pub use edit::{EditError, Place, edit};

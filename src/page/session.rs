@@ -1,40 +1,28 @@
 //! A mechanism at one pose, and its moves.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::edit::{EditError, Place, edit};
 use super::outcome::{Obstacle, Outcome};
-use super::quantity::{Moment, Quantity, length_display, shown_in};
+use super::ranges::{DriverRange, driver_ranges, driver_speeds};
+use super::undo::{Kept, UndoHistory};
+use super::values::{Moment, length_display, shown_in};
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
 use crate::kinematics::{
-    Curve, End, ForceParts, Forces, KnownMotion, Path, Pose, RangeSettings, Rates, Solver,
+    Curve, ForceParts, Forces, KnownMotion, Output, Path, Pose, Rates, Solver,
 };
 use crate::mechanism::{
-    DisplayUnit, DriverId, Jet, Mechanism, Motion, ParameterId, Severity, Source, Unit,
+    DisplayUnit, DriverId, Jet, Mechanism, Parameter, ParameterId, Severity, Source, Unit,
 };
-
-/// Resolution and extent of the ranges of drivers: steps of three degrees, one turn, lengths up to
-/// the size of the mechanism.
-const RANGE: RangeSettings = RangeSettings {
-    samples: 120,
-    turns: 1,
-    lengths: 1.0,
-    bounds: [None; 2],
-};
-/// Time that a driver takes for a turn, or from one end of its range to the other \[s\].
-const PERIOD: [f64; 2] = [4.0, 2.0];
-/// Most states that can be undone.
-const MOST_KEPT: usize = 200;
 
 /// A mechanism that its reader moves by hand.
 pub struct Session {
     source: Source,
     /// Warnings about the file, one line each.
-    warnings: Vec<String>,
+    pub(super) warnings: Vec<String>,
     pub(super) solver: Solver,
     /// The pose at the start of the simulation, from which times are reached.
     start: Pose,
@@ -44,34 +32,17 @@ pub struct Session {
     /// Whether the rates belong to the pose, where they exist.
     pub(super) has_rates: bool,
     pub(super) forces: Option<Box<Forces>>,
-    force_inputs: Vec<f64>,
+    /// Sizes of the forces that are inputs \[SI\].
+    pub(super) loads: Vec<f64>,
     pub(super) picture: MovingPicture,
-    pub(super) quantities: Vec<Quantity>,
+    pub(super) outputs: Vec<Output>,
     pub(super) length: Option<DisplayUnit>,
     pub(super) ranges: Vec<Option<DriverRange>>,
     path: Path,
     home: Kept,
-    undone: Vec<Kept>,
-    kept: Vec<Kept>,
+    history: UndoHistory,
     /// The assembly modes listed last, with their bodies.
     pub(super) modes: Vec<Vec<f64>>,
-}
-
-/// The range of a driver that is an input.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct DriverRange {
-    /// The ends \[m or rad\]; of a driver that turns fully, one turn.
-    pub(super) ends: [f64; 2],
-    /// Whether the driver turns fully.
-    pub(super) turns: bool,
-}
-
-/// A state to which the reader can return.
-#[derive(Clone)]
-struct Kept {
-    mechanism: Arc<Mechanism>,
-    pose: Pose,
-    start: Pose,
 }
 
 impl Session {
@@ -93,8 +64,8 @@ impl Session {
         solver.assemble(&path).map_err(refuse)?;
         let pose = solver.pose().clone();
         let forces = mechanism.has_dynamics().then(|| Box::new(solver.forces()));
-        let (ranges, reached) = ranges(&mut solver);
-        let driver_rates = speeds(&mechanism, &ranges);
+        let (ranges, reached) = driver_ranges(&mut solver);
+        let driver_rates = driver_speeds(&mechanism, &ranges);
         let home = Kept {
             mechanism: Arc::clone(&mechanism),
             start: pose.clone(),
@@ -106,16 +77,15 @@ impl Session {
             rates: Rates::new(home.pose.q.len()),
             driver_rates,
             has_rates: false,
-            force_inputs: vec![0.0; forces.as_ref().map_or(0, |forces| forces.inputs())],
+            loads: vec![0.0; mechanism.force_inputs().len()],
             forces,
             picture: MovingPicture::new(&mut solver, &reached, None),
-            quantities: Quantity::all(&mechanism),
+            outputs: Output::all(&mechanism),
             length: length_display(&mechanism),
             ranges,
             path,
             home,
-            undone: Vec::new(),
-            kept: Vec::new(),
+            history: UndoHistory::default(),
             modes: Vec::new(),
             solver,
             source,
@@ -134,99 +104,6 @@ impl Session {
     #[must_use]
     pub fn pose(&self) -> &Pose {
         self.solver.pose()
-    }
-
-    /// Returns what a page shows once: names, units, limits.
-    #[must_use]
-    pub fn description(&self) -> Value {
-        let mechanism = self.mechanism();
-        let pose = self.pose();
-        let inputs_move = |driver: &crate::mechanism::Driver| driver.motion().is_none();
-        let drivers = mechanism
-            .drivers
-            .iter()
-            .zip(&pose.drivers)
-            .zip(&self.driver_rates);
-        let drivers: Vec<Value> = drivers
-            .map(|((driver, value), rates)| {
-                let kind = driver.coordinate.kind;
-                let (unit, factor) = shown_in(kind.unit(), self.length);
-                json!({
-                    "name": driver.name,
-                    "description": driver.description,
-                    "is_angle": kind.is_angle(),
-                    "is_input": inputs_move(driver),
-                    "value": value,
-                    "velocity": rates.first(),
-                    "unit": unit,
-                    "factor": factor,
-                })
-            })
-            .collect();
-        let parameters: Vec<Value> = (mechanism.parameters.iter().zip(&pose.parameters))
-            .map(|(parameter, value)| {
-                let (unit, factor) = shown_in(parameter.unit.unwrap_or(Unit::ONE), None);
-                json!({
-                    "name": parameter.name,
-                    "description": parameter.description,
-                    "is_derived": parameter.derived,
-                    "value": value,
-                    "default": parameter.default,
-                    "min": parameter.min,
-                    "max": parameter.max,
-                    "slider": slider(parameter),
-                    "unit": unit,
-                    "factor": factor,
-                })
-            })
-            .collect();
-        let variables: Vec<Value> = (self.quantities.iter())
-            .map(|quantity| {
-                let (unit, factor) = quantity.shown_in(self.length);
-                json!({
-                    "name": quantity.name,
-                    "unit": unit,
-                    "factor": factor,
-                    "is_told": quantity.is_told,
-                })
-            })
-            .collect();
-        let uses_time = self.uses_time();
-        json!({
-            "name": mechanism.name,
-            "description": mechanism.description,
-            "warnings": self.warnings,
-            "drivers": drivers,
-            "parameters": parameters,
-            "variables": variables,
-            "uses_time": uses_time,
-            "start": mechanism.simulation.start,
-            "stop": mechanism.simulation.stop,
-            "has_forces": self.forces.is_some(),
-            "places": self.layout(),
-            "ranges": self.ranges(),
-        })
-    }
-
-    /// Returns the ranges of the drivers: ends and whether the driver turns fully, `null` for
-    /// prescribed motions.
-    #[must_use]
-    pub fn ranges(&self) -> Value {
-        let ranges = self.ranges.iter().map(|range| {
-            range.as_ref().map(|range| {
-                json!({ "low": range.ends[0], "high": range.ends[1], "turns": range.turns })
-            })
-        });
-        json!(ranges.collect::<Vec<_>>())
-    }
-
-    /// Whether a prescribed motion depends on time.
-    #[must_use]
-    pub fn uses_time(&self) -> bool {
-        let drivers = &self.mechanism().drivers;
-        drivers
-            .iter()
-            .any(|d| d.motion().is_some_and(Motion::uses_time))
     }
 
     // -- moves -------------------------------------------------------------------------------
@@ -336,6 +213,16 @@ impl Session {
         }
     }
 
+    /// Sets the size of a force that is an input \[SI\].
+    pub fn set_load(&mut self, input: usize, size: f64) {
+        if let Some(load) = self.loads.get_mut(input)
+            && size.is_finite()
+        {
+            *load = size;
+            self.refresh();
+        }
+    }
+
     /// Prepares the path on which nothing moves, at the pose.
     pub(super) fn path_here(&mut self) -> &mut Path {
         let pose = self.solver.pose();
@@ -394,7 +281,7 @@ impl Session {
             rates,
             driver_rates,
             forces,
-            force_inputs,
+            loads,
             ..
         } = self;
         let solved = solver.solve_rates(|driver| driver_rates[driver.index()], rates);
@@ -403,7 +290,7 @@ impl Session {
                 let motion = KnownMotion {
                     rates,
                     driver_rates,
-                    inputs: force_inputs,
+                    inputs: loads,
                 };
                 solver.solve_forces(motion, ForceParts::ALL, forces).is_ok()
             });
@@ -429,7 +316,7 @@ impl Session {
             let scale = self.picture.scale();
             MovingPicture::new(&mut self.solver, &[], Some(scale))
         } else {
-            let (ranges, reached) = ranges(&mut self.solver);
+            let (ranges, reached) = driver_ranges(&mut self.solver);
             self.ranges = ranges;
             MovingPicture::new(&mut self.solver, &reached, None)
         };
@@ -484,46 +371,28 @@ impl Session {
 
     /// Keeps the present state, to which [`undo`](Self::undo) returns.
     pub fn keep(&mut self) {
-        let now = self.now();
-        if self.kept.last().is_none_or(|kept| kept.pose != now.pose) {
-            if self.kept.len() == MOST_KEPT {
-                self.kept.remove(0);
-            }
-            self.kept.push(now);
-            self.undone.clear();
-        }
+        self.history.keep(self.now());
     }
 
     /// Returns to the state kept last; false if there is none.
     pub fn undo(&mut self) -> bool {
-        while let Some(kept) = self.kept.pop() {
-            if kept.pose != *self.pose() {
-                let now = self.now();
-                self.undone.push(now);
-                self.go_back(kept);
-                return true;
-            }
-        }
-        false
+        let back = self.history.undo(self.now());
+        self.go_to_state(back)
     }
 
     /// Returns to the state that [`undo`](Self::undo) left; false if there is none.
     pub fn redo(&mut self) -> bool {
-        let Some(undone) = self.undone.pop() else {
-            return false;
-        };
-        let now = self.now();
-        self.kept.push(now);
-        self.go_back(undone);
-        true
+        let back = self.history.redo(self.now());
+        self.go_to_state(back)
     }
 
-    /// Returns to the file's own values and pose.
+    /// Returns to the file's own values and pose, to the speeds of the start and to no loads.
     pub fn reset(&mut self) {
         self.keep();
-        self.go_back(self.home.clone());
+        self.go_to_state(Some(self.home.clone()));
         let mechanism = Arc::clone(self.mechanism());
-        self.driver_rates = speeds(&mechanism, &self.ranges);
+        self.driver_rates = driver_speeds(&mechanism, &self.ranges);
+        self.loads.fill(0.0);
         self.refresh();
     }
 
@@ -535,7 +404,11 @@ impl Session {
         }
     }
 
-    fn go_back(&mut self, kept: Kept) {
+    /// Goes to a state, if there is one; returns whether there is.
+    fn go_to_state(&mut self, state: Option<Kept>) -> bool {
+        let Some(kept) = state else {
+            return false;
+        };
         if !Arc::ptr_eq(&kept.mechanism, self.mechanism())
             && let Ok(mut solver) = Solver::new(kept.mechanism)
         {
@@ -546,6 +419,7 @@ impl Session {
         self.solver.restore(&kept.pose);
         self.start = kept.start;
         self.refresh();
+        true
     }
 
     /// Takes over a solver of the same mechanism with other estimates, at its pose.
@@ -558,13 +432,11 @@ impl Session {
 }
 
 /// Returns the reason why a parameter cannot have a value.
-fn unfit(parameter: &crate::mechanism::Parameter, value: f64) -> Option<String> {
-    let name = &parameter.name;
-    if parameter.derived {
-        return Some(format!(
-            "`{name}` is derived from other parameters; set those"
-        ));
+fn unfit(parameter: &Parameter, value: f64) -> Option<String> {
+    if let Err(error) = parameter.check_settable() {
+        return Some(error.to_string());
     }
+    let name = &parameter.name;
     if !value.is_finite() {
         return Some(format!("`{name}` must be a finite number"));
     }
@@ -579,87 +451,4 @@ fn unfit(parameter: &crate::mechanism::Parameter, value: f64) -> Option<String> 
         }
         _ => None,
     }
-}
-
-/// Returns the ends of a parameter's slider: its limits, or a range in which most mechanisms move.
-fn slider(parameter: &crate::mechanism::Parameter) -> [f64; 2] {
-    let value = parameter.default;
-    let is_angle = parameter
-        .unit
-        .is_some_and(|u| u.dimension == Unit::RADIAN.dimension);
-    let [low, high] = if is_angle {
-        [value - 0.25 * TAU, value + 0.25 * TAU]
-    } else if value == 0.0 {
-        [-1.0, 1.0]
-    } else {
-        let ends = [0.25 * value, 2.0 * value];
-        [ends[0].min(ends[1]), ends[0].max(ends[1])]
-    };
-    // A limit far away would make the slider coarse.
-    let near = |limit: Option<f64>, end: f64, extreme: fn(f64, f64) -> f64| {
-        limit.map_or(end, |limit| extreme(limit, end))
-    };
-    let low = near(parameter.min, low, f64::max);
-    let high = near(parameter.max, high, f64::min);
-    [low.min(value), high.max(value)]
-}
-
-/// Returns the range of each driver that is an input, and poses in the ranges.
-fn ranges(solver: &mut Solver) -> (Vec<Option<DriverRange>>, Vec<Vec<f64>>) {
-    let mechanism = Arc::clone(solver.mechanism());
-    let home = solver.pose().clone();
-    let mut poses = Vec::new();
-    let ranges = mechanism.drivers.iter().enumerate().map(|(index, driver)| {
-        if driver.motion().is_some() {
-            return None;
-        }
-        let range = solver.range(DriverId(index), &RANGE);
-        let value = home.drivers[index];
-        let is_angle = driver.coordinate.kind.is_angle();
-        let end = |end: &End| match end {
-            End::Turns(_) => None,
-            End::Singular(point) => Some(point.drivers[index]),
-            End::NotFound { .. } if is_angle => None,
-            End::Blocked { value, .. } | End::Bound { value } | End::NotFound { value } => {
-                Some(*value)
-            }
-        };
-        let ends = [end(&range.lower), end(&range.upper)];
-        poses.extend(range.samples.into_iter().map(|sample| sample.q));
-        Some(match ends {
-            [Some(low), Some(high)] => DriverRange {
-                ends: [low, high],
-                turns: false,
-            },
-            [Some(low), None] => DriverRange {
-                ends: [low, low + TAU],
-                turns: false,
-            },
-            [None, Some(high)] => DriverRange {
-                ends: [high - TAU, high],
-                turns: false,
-            },
-            [None, None] => {
-                let low = TAU * (value / TAU).floor();
-                DriverRange {
-                    ends: [low, low + TAU],
-                    turns: true,
-                }
-            }
-        })
-    });
-    let ranges = ranges.collect();
-    solver.restore(&home);
-    (ranges, poses)
-}
-
-/// Returns rates for drivers that are inputs: a turn, or the range, in some seconds.
-fn speeds(mechanism: &Mechanism, ranges: &[Option<DriverRange>]) -> Vec<Jet> {
-    let drivers = mechanism.drivers.iter().zip(ranges);
-    let rates = drivers.map(|(driver, range)| match range {
-        Some(_) if driver.coordinate.kind.is_angle() => TAU / PERIOD[0],
-        Some(range) => (range.ends[1] - range.ends[0]) / PERIOD[1],
-        None => 0.0,
-    });
-    rates.map(|rate| Jet::new(0.0, [rate, 0.0])).collect()
 }

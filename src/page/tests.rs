@@ -273,10 +273,7 @@ fn the_frame_has_the_places_that_the_layout_says() {
 fn a_chart_over_the_crank_is_periodic_and_leaves_the_pose() {
     let mut session = open(FOUR_BAR);
     let before = session.pose().clone();
-    let rocker = session
-        .quantities
-        .iter()
-        .position(|q| q.name == "rocker.phi");
+    let rocker = session.outputs.iter().position(|q| q.name == "rocker.phi");
     let over = super::Over::Driver(DriverId(0));
     let chart = session.chart(over, &[rocker.expect("it is there")], 61);
     let y = chart["y"][0].as_array().expect("a list");
@@ -284,4 +281,41 @@ fn a_chart_over_the_crank_is_periodic_and_leaves_the_pose() {
     let at = |k: usize| y[k].as_f64().expect("a number");
     assert!((at(0) - at(60)).abs() < 1e-12);
     assert_eq!(session.pose(), &before);
+}
+
+// The powers of driver and load add up to zero: effort + Fx dx/dφ + Fy dy/dφ + torque = 0, at
+// (x, y) = (l cos φ, l sin φ). Numbers of the size 10: to 1e-13.
+#[test]
+fn a_load_is_felt_by_the_driver() {
+    let mut session = open(
+        r#"
+        format = 1
+        name = "arm"
+        [ground.markers]
+        O = [0, 0]
+        [bodies.arm]
+        markers = { O = [0, 0], P = [0.5, 0] }
+        [joints]
+        O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+        [forces]
+        load = { marker = "arm.P" }
+        [drivers]
+        angle = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0.3 }
+        "#,
+    );
+    let loads = [7.0, -11.0, 0.5];
+    for (input, size) in loads.into_iter().enumerate() {
+        session.set_load(input, size);
+    }
+    let effort = |session: &Session| {
+        let is_effort = |output: &&crate::kinematics::Output| output.name == "angle.effort";
+        let output = session.outputs.iter().find(is_effort);
+        session.moment().value(output.expect("it has dynamics"))
+    };
+    let (sin, cos) = 0.3_f64.sin_cos();
+    let expected = 0.5 * (loads[0] * sin - loads[1] * cos) - loads[2];
+    assert!((effort(&session) - expected).abs() < 1e-13);
+    assert_eq!(session.description()["loads"][1]["value"], loads[1]);
+    session.reset();
+    assert_eq!(effort(&session), 0.0);
 }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use biela::fmi::{Causality, Interface, Kind, Order, Quantity, Unknown, describe};
+use biela::fmi::{Causality, Interface, Kind, Quantity, Unknown, describe};
+use biela::mechanism::Order;
 
 use crate::common::{Instance, assembled, instance_of, shipped, stems};
 use crate::vr;

@@ -1,6 +1,7 @@
 //! Derivatives of outputs by differences of fourth order, through the FMI instance.
 
-use biela::fmi::{Kind, Order, Quantity, Variable};
+use biela::fmi::{Kind, Quantity, Variable};
+use biela::mechanism::Order;
 
 use super::common::Instance;
 

@@ -113,11 +113,7 @@ fn solve(mechanism: Mechanism, drawn: Drawn, scale: Scale, inputs: &[f64]) -> Op
 }
 
 fn inputs(mechanism: &Mechanism) -> Vec<f64> {
-    let inputs = mechanism
-        .forces
-        .iter()
-        .filter(|force| force.load.is_input());
-    let count = inputs.map(|force| force.load.variables().len()).sum();
+    let count = mechanism.force_inputs().len();
     (0..count).map(|k| 5.0 * spread(k) - 2.0).collect()
 }
 

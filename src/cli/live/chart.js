@@ -99,7 +99,7 @@ export class Chart {
 function panel(place, axis, x, { name, unit, y }) {
   const known = y.filter((value) => value !== null);
   let [low, high] = [Math.min(...known), Math.max(...known)];
-  // What does not change is a line in the middle.
+  // A constant is a line in the middle.
   const least = 1e-9 * Math.max(1e-3, Math.abs(low), Math.abs(high));
   if (!(high - low > least)) {
     [low, high] = [low - 1, high + 1];

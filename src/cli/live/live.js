@@ -147,6 +147,7 @@ class Live {
       }
       return new Row(drivers, driver, range, (value, done) => this.slide({ do: "drive", driver: index, value }, done));
     });
+    this.makeRateRows();
     const parameters = this.find(".parameter-rows");
     parameters.replaceChildren();
     this.parameters = page.parameters.map((parameter, index) => {
@@ -173,6 +174,50 @@ class Live {
     });
     this.find(".modes").replaceChildren();
     this.find(".modes-text").textContent = "";
+  }
+
+  /** Rows for the rates of the drivers that are inputs, and for the forces that are. */
+  makeRateRows() {
+    const { page } = this;
+    const place = this.find(".rate-rows");
+    place.replaceChildren();
+    const row = (item, low, high, value, set) => {
+      const made = new Row(place, item, { low, high }, (next) => {
+        made.set(next);
+        set(next);
+      });
+      made.set(value);
+    };
+    page.drivers.forEach((driver, index) => {
+      if (!driver.is_input) {
+        return;
+      }
+      const rates = { velocity: driver.velocity, acceleration: driver.acceleration };
+      const largest = { velocity: 4 * driver.usual_velocity, acceleration: 8 * driver.usual_velocity };
+      for (const rate of Object.keys(rates)) {
+        const item = {
+          name: `${driver.name}.${rate}`,
+          description: driver.description,
+          unit: driver[`${rate}_unit`],
+          factor: driver[`${rate}_factor`],
+        };
+        row(item, -largest[rate], largest[rate], rates[rate], (value) => {
+          rates[rate] = value;
+          this.give({ do: "speed", driver: index, ...rates });
+        });
+      }
+    });
+    page.loads.forEach((load, index) =>
+      row(load, -load.largest, load.largest, load.value, (value) => this.give({ do: "load", input: index, value })),
+    );
+    this.find(".rate-part").hidden = place.childElementCount === 0;
+  }
+
+  /** Gives speeds or loads, which move nothing. */
+  give(request) {
+    this.ask(request);
+    this.draw();
+    this.chart.draw();
   }
 
   /** A slider moves: solves at once, and draws anew what parameters change. */
@@ -235,6 +280,7 @@ class Live {
       this.play.stop();
       if (this.ask({ do: word })?.done) {
         this.redraw(false);
+        this.makeRateRows();
         this.tellOutcome({ outcome: "reached" });
         this.chart.draw();
       }

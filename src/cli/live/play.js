@@ -87,7 +87,7 @@ export class Play {
     const range = live.page.ranges[driver];
     const next = value + this.direction * velocity * seconds;
     const [low, high] = [Math.min(range.low, value), Math.max(range.high, value)];
-    // Where there is an end, the driver turns back shortly before it.
+    // The driver turns back shortly before an end.
     const margin = 1e-3 * (range.high - range.low);
     const ends = !range.turns || this.swing.checked;
     if (ends && (next < low + margin || next > high - margin) && (next - value) * (next - 0.5 * (low + high)) > 0) {

@@ -1,13 +1,12 @@
 //! Directional derivatives of outputs and calculated parameters.
 
 use super::rule::RateSource;
-use super::variables::Order;
 use super::{MechanismModel, Quantity, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::Direction;
-use crate::mechanism::{DriverId, Jet};
+use crate::mechanism::{DriverId, Jet, Order};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.

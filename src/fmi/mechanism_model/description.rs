@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::variables::{Order, Quantity, Signal, is_angle, variables};
+use super::variables::{Quantity, variables};
 use super::{MechanismModel, guid};
 use crate::fmi::model::Model;
 use crate::fmi::model_description::{
@@ -12,7 +12,7 @@ use crate::fmi::model_description::{
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable};
 use crate::kinematics::{Dependencies, ForceQuantity, Structure, System};
-use crate::mechanism::{DriverId, Load, Mechanism, Unit, Variable as Of};
+use crate::mechanism::{DriverId, Load, Mechanism, Order, Signal, Unit, Variable as Of};
 
 /// Capabilities of a [`MechanismModel`](super::MechanismModel).
 const CAPABILITIES: Capabilities = Capabilities {
@@ -343,7 +343,8 @@ fn driver_angle(mechanism: &Mechanism, quantity: Quantity) -> Option<DriverId> {
         .position(|coordinate| {
             let bodies =
                 [coordinate.from, coordinate.to].map(|id| mechanism.markers[id.index()].body);
-            is_angle(coordinate) && (bodies == [None, Some(body)] || bodies == [Some(body), None])
+            coordinate.kind.is_angle()
+                && (bodies == [None, Some(body)] || bodies == [Some(body), None])
         });
     found.map(DriverId)
 }

@@ -1,8 +1,8 @@
 //! The last samples of one driver's inputs, and the rates estimated from them.
 
 use super::rule::{DriverRates, RateSource, Source};
-use super::variables::Order;
 use crate::fmi::codec::{Codec, Unreadable};
+use crate::mechanism::Order;
 
 /// The inputs at one communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

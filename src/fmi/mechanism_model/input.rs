@@ -19,8 +19,8 @@ use std::f64::consts::TAU;
 
 use super::history::{History, Sample};
 use super::rule::{DriverRates, Extrapolation, RateSource, Rule, Source};
-use super::variables::Order;
 use crate::fmi::codec::{Codec, Unreadable};
+use crate::mechanism::Order;
 
 /// The three FMI inputs of one driver.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,12 +5,11 @@ use std::f64::consts::PI;
 use super::MechanismModel;
 use super::monitor::Contradiction;
 use super::rule::{Extrapolation, RateSource, Rule, Source};
-use super::variables::{Order, is_angle};
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
-use crate::mechanism::{Driver, shown};
+use crate::mechanism::{Driver, Order, shown};
 
 impl MechanismModel {
     /// Describes why a step stopped: the drivers that move, their limits and the values asked for.
@@ -96,7 +95,7 @@ impl MechanismModel {
         for ((driver, curve), (input, monitor)) in drivers.zip(observed) {
             if let Curve::Input { jump, .. } = *curve
                 && jump.abs() > PI
-                && is_angle(&driver.coordinate)
+                && driver.coordinate.kind.is_angle()
                 && monitor.falls(-jump, input.last_change())
             {
                 let name = &driver.name;

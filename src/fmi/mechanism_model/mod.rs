@@ -17,7 +17,6 @@
 //! | `dependencies`, `derivatives` | what a variable depends on, and directional derivatives |
 //! | `state` | the saved state |
 
-mod column;
 mod dependencies;
 mod derivatives;
 mod description;
@@ -39,12 +38,11 @@ mod variables;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
-pub use column::{Column, ColumnSource};
 pub use description::describe;
 pub use guid::guid;
 pub use resource::{RESOURCE, write_fmu};
 pub use state::MechanismState;
-pub use variables::{Order, Quantity, Signal, TABLE_VERSION, indeterminate, variables};
+pub use variables::{Quantity, TABLE_VERSION, variables};
 
 use super::codec::{Codec, Unreadable};
 use super::error::Failure;
@@ -54,7 +52,7 @@ use super::model_description::DependencyKind;
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Carryover, Path, Pose, Progress, Rates, Solver};
-use crate::mechanism::{DriverSource, Jet, Mechanism};
+use crate::mechanism::{DriverSource, Jet, Mechanism, Order};
 use force_input::ForceInput;
 use forces::ModelForces;
 use input::DriverInput;

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use super::history::Sample;
 use super::rule::Source;
-use super::variables::Order;
 use crate::fmi::codec::{Codec, Unreadable};
+use crate::mechanism::Order;
 
 /// Observations of one driver.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,13 +1,14 @@
 //! Values of Reals by value reference, computed in groups.
 
 use super::MechanismModel;
-use super::variables::{Order, Quantity, Signal};
+use super::variables::Quantity;
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::model::Groups;
 use crate::fmi::state::Phase;
 use crate::fmi::variable::{Variable, derivatives};
 use crate::kinematics::{ForceParts, ForceQuantity};
+use crate::mechanism::{Order, Signal};
 
 /// Inputs, parameters, time, and counts of the last step.
 const SETTINGS: Groups = 1;

@@ -264,6 +264,20 @@ pub(super) fn write_experiment(xml: &mut Xml, experiment: Experiment) -> io::Res
     Ok(())
 }
 
+/// Writes the list of variables, each with its index.
+pub(super) fn write_variables<Q>(
+    xml: &mut Xml,
+    variables: &[Variable<Q>],
+    write_variable: impl Fn(&mut Xml, usize, &Variable<Q>) -> io::Result<()>,
+) -> io::Result<()> {
+    xml.create_element("ModelVariables")
+        .write_inner_content(|xml| {
+            (variables.iter().enumerate())
+                .try_for_each(|(index, variable)| write_variable(xml, index, variable))
+        })?;
+    Ok(())
+}
+
 /// Returns the name of a causality.
 pub(super) fn causality_name(causality: Causality) -> &'static str {
     match causality {

@@ -5,6 +5,7 @@ use std::io;
 use super::elements::{
     Root, Type, causality_name, initial_name, lists, types, variability_name, with_values,
     write_experiment, write_items, write_log_categories, write_real_type, write_root, write_units,
+    write_variables,
 };
 use super::xml::{WithOptional, Xml, boolean, non_empty};
 use super::{Capabilities, ModelDescription, Unknown};
@@ -29,11 +30,7 @@ pub(super) fn write<Q>(
         write_types(xml, variables)?;
         write_log_categories(xml, "; always logged")?;
         write_experiment(xml, description.experiment)?;
-        xml.create_element("ModelVariables")
-            .write_inner_content(|xml| {
-                (variables.iter().enumerate())
-                    .try_for_each(|(index, variable)| write_variable(xml, index, variable))
-            })?;
+        write_variables(xml, variables, write_variable)?;
         write_structure(xml, description)
     })
 }

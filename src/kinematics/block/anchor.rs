@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use super::load::add_force;
 use crate::kinematics::certificate::{ChordBound, Pivots, StepBounds};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::mechanism::{MarkerId, Mechanism};
@@ -158,10 +159,7 @@ impl Anchor {
             return;
         }
         let body = self.body as usize;
-        let own = &mut side[3 * body..3 * body + 3];
-        own[0] += force.x;
-        own[1] += force.y;
-        own[2] += frames[body].rotate(self.s).perp(&force);
+        add_force(side, body, frames[body].rotate(self.s), force);
     }
 
     /// Returns Ṗ and P̈.

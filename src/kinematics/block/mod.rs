@@ -25,6 +25,7 @@ mod elimination;
 mod factors;
 mod interpolated;
 mod jacobian;
+mod load;
 mod pinned;
 mod reach;
 mod revolute;

@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::anchor::Anchor;
+use super::load::{add_moment, load_about};
 use super::solve::SolveBlock;
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::{ChordBound, Pivots};
@@ -179,16 +180,15 @@ impl SolveBlock for PinnedBody {
     ) -> bool {
         let frames = at.frames();
         let parts = &self.parts;
-        let [fx, fy, moment] = self.columns.map(|column| side[column]);
-        let force = Vector2::new(fx, fy);
-        let torque = moment - frames[parts.body].rotate(self.s).perp(&force);
+        let arm = frames[parts.body].rotate(self.s);
+        let (force, torque) = load_about(side, parts.body, arm);
         let [x, y, angle] = parts.rows;
-        multipliers[x] = parts.pin_sense * fx;
-        multipliers[y] = parts.pin_sense * fy;
+        multipliers[x] = parts.pin_sense * force.x;
+        multipliers[y] = parts.pin_sense * force.y;
         multipliers[angle] = parts.sense * torque;
         self.anchor.load(frames, force, side);
         if let Some(body) = self.reference {
-            side[3 * body + 2] += torque;
+            add_moment(side, body, torque);
         }
         true
     }

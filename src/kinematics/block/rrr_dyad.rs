@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 
 use super::anchor::{Anchor, Moving, compact, larger, largest};
 use super::anchor_path::AnchorPath;
+use super::load::load_about;
 use super::reach::{ClosureGap, Reach};
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Extrapolation, Step};
@@ -512,10 +513,8 @@ impl SolveBlock for RrrDyad {
         let [a, b] = &self.sides;
         let links = [a, b].map(|side| frames[side.body as usize].rotate(side.l));
         let loads = [a, b].map(|own| {
-            let column = 3 * own.body as usize;
-            let force = Vector2::new(side[column], side[column + 1]);
-            let arm = frames[own.body as usize].rotate(own.s);
-            (force, side[column + 2] - arm.perp(&force))
+            let body = own.body as usize;
+            load_about(side, body, frames[body].rotate(own.s))
         });
         let [(force_a, moment_a), (force_b, moment_b)] = loads;
         // F on the first side: d_a × F is the one moment, d_b × F the negative of the other.

@@ -39,15 +39,10 @@ pub(in crate::kinematics) fn indeterminate(
         path.start = home.time;
         path.from.clone_from(&home.parameters);
         path.to.clone_from(&home.parameters);
-        let drivers = mechanism.drivers.iter().zip(&home.drivers);
         let curves = path.curves.iter_mut().enumerate();
-        for ((index, curve), (driver, &now)) in curves.zip(drivers) {
-            let scale = if driver.coordinate.kind.is_angle() {
-                1.0
-            } else {
-                model.system.driver_row(DriverId(index)).size(&state.at)
-            };
-            *curve = Curve::held(now + away * scale, now);
+        for ((index, curve), &now) in curves.zip(&home.drivers) {
+            let row = model.system.driver_row(DriverId(index));
+            *curve = Curve::held(now + away / row.row_scale(&state.at), now);
         }
         if tracker.track(model, state, &path).is_ok() {
             stressed.push(self_stressed(model, state));

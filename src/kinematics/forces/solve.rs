@@ -109,11 +109,7 @@ impl Forces {
         let system = &model.system;
         let mechanism = Arc::clone(system.mechanism());
         let places = input_places(&mechanism);
-        let inputs = mechanism
-            .forces
-            .iter()
-            .filter(|force| force.load.is_input());
-        let inputs = inputs.map(|force| force.load.variables().len()).sum();
+        let inputs = mechanism.force_inputs().len();
         let (unknowns, drivers) = (system.unknowns(), mechanism.drivers.len());
         let rows = ReactionRows::new(system);
         Self {

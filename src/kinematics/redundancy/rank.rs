@@ -76,14 +76,9 @@ fn ranks_with_drivers_moved(model: &Model, state: &mut State, home: &[f64]) -> V
             break;
         }
         state.at.set_pose(model.system.mechanism(), home);
-        let moved = drivers.iter().zip(&model.system.mechanism().drivers);
-        let moved = moved.enumerate().map(|(k, (value, driver))| {
-            let scale = if driver.coordinate.kind.is_angle() {
-                1.0
-            } else {
-                model.system.driver_row(DriverId(k)).size(&state.at)
-            };
-            value + sense * scale * mixture(k)
+        let moved = drivers.iter().enumerate().map(|(k, value)| {
+            let row = model.system.driver_row(DriverId(k));
+            value + sense * mixture(k) / row.row_scale(&state.at)
         });
         state.pose.drivers = moved.collect();
         if problem

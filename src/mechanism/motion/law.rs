@@ -25,6 +25,16 @@ pub enum Law {
 }
 
 impl Law {
+    /// All laws.
+    pub const ALL: [Self; 7] = [
+        Self::Polynomial345,
+        Self::Polynomial4567,
+        Self::Cycloidal,
+        Self::Harmonic,
+        Self::ModifiedSine,
+        Self::ModifiedTrapezoidal,
+        Self::Trapezoidal,
+    ];
     /// The ends of the pieces of all laws, as parts of their time.
     pub const PIECES: [f64; 9] = [
         0.0,
@@ -131,16 +141,6 @@ mod tests {
     use crate::mechanism::Jet;
     use proptest::prelude::*;
 
-    const LAWS: [Law; 7] = [
-        Law::Polynomial345,
-        Law::Polynomial4567,
-        Law::Cycloidal,
-        Law::Harmonic,
-        Law::ModifiedSine,
-        Law::ModifiedTrapezoidal,
-        Law::Trapezoidal,
-    ];
-
     /// Returns the peak velocity of a unit stroke in unit time, at τ = 1/2.
     fn peak_velocity(law: Law) -> f64 {
         match law {
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn peaks_are_those_of_the_closed_forms() {
-        for law in LAWS {
+        for law in Law::ALL {
             let (velocity, acceleration) = (peak_velocity(law), law.peak_acceleration());
             let peak = |of: fn(Jet) -> f64| {
                 (0..=100_000)
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_stroke_goes_from_rest_to_rest() {
-        for law in LAWS {
+        for law in Law::ALL {
             let (start, end) = (
                 law.stroke(Jet::variable(0.0)),
                 law.stroke(Jet::variable(1.0)),
@@ -196,7 +196,7 @@ mod tests {
         #[test]
         fn pieces_meet(tau in 0.0..0.999_f64) {
             const STEP: f64 = 1e-7;
-            for law in LAWS {
+            for law in Law::ALL {
                 for tau in [tau, 0.125, 0.375, 0.5, 0.625, 0.875, 1.0 / 3.0, 2.0 / 3.0] {
                     let (here, there) =
                         (law.stroke(Jet::variable(tau - STEP)), law.stroke(Jet::variable(tau)));

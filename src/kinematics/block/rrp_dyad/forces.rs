@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::{RrpDyad, Second};
+use crate::kinematics::block::load::{add_force, add_moment, load_about};
 use crate::kinematics::block::revolute::Revolute;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::constraint::Gradient;
@@ -47,51 +48,29 @@ pub(super) fn solve_transposed(
         s: dyad.s,
         revolute: parts.outer,
     };
-    match (&dyad.second, &parts.second) {
-        (
-            Second::Carried {
-                body,
-                reference,
-                l,
-                s,
-                ..
-            },
-            Some(second),
-        ) => {
-            let pin = Pin {
-                body: *body as usize,
-                s: *s,
-                revolute: second.revolute,
-            };
-            let (force, torque) = pin.bear(second.pin, frames, side, multipliers);
-            multipliers[second.row] = second.sense * torque;
-            if let Some(body) = reference {
-                side[3 * body + 2] += torque;
+    if let (Some((body, s)), Some(second)) = (dyad.second.pin(), &parts.second) {
+        let pin = Pin {
+            body,
+            s,
+            revolute: second.revolute,
+        };
+        let (force, torque) = pin.bear(second.pin, frames, side, multipliers);
+        multipliers[second.row] = second.sense * torque;
+        match &dyad.second {
+            Second::None => {}
+            Second::Carried { reference, l, .. } => {
+                if let Some(body) = *reference {
+                    add_moment(side, body, torque);
+                }
+                let frame = &frames[first.body];
+                let arm = frame.rotate(first.s) + frame.rotate(*l);
+                add_force(side, first.body, arm, force);
             }
-            let frame = &frames[first.body];
-            let arm = frame.rotate(dyad.s) + frame.rotate(*l);
-            let own = &mut side[3 * first.body..3 * first.body + 3];
-            own[0] += force.x;
-            own[1] += force.y;
-            own[2] += arm.perp(&force);
+            Second::Parallel { anchor, .. } => {
+                add_moment(side, first.body, torque);
+                anchor.load(frames, force, side);
+            }
         }
-        (
-            Second::Parallel {
-                body, anchor, s, ..
-            },
-            Some(second),
-        ) => {
-            let pin = Pin {
-                body: *body as usize,
-                s: *s,
-                revolute: second.revolute,
-            };
-            let (force, torque) = pin.bear(second.pin, frames, side, multipliers);
-            multipliers[second.row] = second.sense * torque;
-            side[3 * first.body + 2] += torque;
-            anchor.load(frames, force, side);
-        }
-        _ => {}
     }
     // No moment is left about the pin.
     let (force, _) = first.bear(parts.pin, frames, side, multipliers);
@@ -115,14 +94,25 @@ impl Pin {
         side: &[f64],
         multipliers: &mut [f64],
     ) -> (Vector2<f64>, f64) {
-        let load = &side[3 * self.body..3 * self.body + 3];
-        let force = Vector2::new(load[0], load[1]);
+        let arm = frames[self.body].rotate(self.s);
+        let (force, moment) = load_about(side, self.body, arm);
         let sense = self.revolute.sense_to(own);
         let [x, y] = self.revolute.rows;
         multipliers[x] = sense * force.x;
         multipliers[y] = sense * force.y;
-        let arm = frames[self.body].rotate(self.s);
-        (force, load[2] - arm.perp(&force))
+        (force, moment)
+    }
+}
+
+impl Second {
+    /// Returns the second body and its point in the revolute.
+    fn pin(&self) -> Option<(usize, Vector2<f64>)> {
+        match self {
+            Self::None => None,
+            Self::Carried { body, s, .. } | Self::Parallel { body, s, .. } => {
+                Some((*body as usize, *s))
+            }
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 //! Profiles of cams: the polar radius of a contour as a function of the polar angle.
 
+mod closed_points;
+
 use std::f64::consts::TAU;
 
-use super::{
-    Dual, Ends, Expression, Interpolation, Interval, Jet3, Law, ParameterId, Spline, Table,
-};
+use super::{Dual, Expression, Interpolation, Interval, Jet3, ParameterId, Table};
+use closed_points::ClosedPoints;
 
 /// A closed contour R(θ), θ counter-clockwise from the cam marker's x-axis \[rad, m\].
 #[derive(Clone, Debug)]
@@ -121,9 +122,7 @@ enum Curve {
     Expression(Expression),
     Points {
         table: Table,
-        interpolation: Interpolation,
-        /// Through the points, the last of which is the first one, a turn later.
-        spline: Spline<f64>,
+        points: ClosedPoints<f64>,
     },
 }
 
@@ -149,9 +148,8 @@ impl ProfileInForce {
                 table,
                 interpolation,
             } => Curve::Points {
-                spline: Spline::new(table.points.len() + 1, Ends::Periodic),
+                points: ClosedPoints::new(table.points.len(), *interpolation),
                 table: table.clone(),
-                interpolation: *interpolation,
             },
         };
         Self {
@@ -181,22 +179,8 @@ impl ProfileInForce {
         for (index, value) in self.parameters.iter_mut().enumerate() {
             *value = parameter(ParameterId(index));
         }
-        if let Curve::Points {
-            table,
-            interpolation,
-            spline,
-        } = &mut self.curve
-        {
-            let (angles, radii) = spline.points_mut();
-            table.write(&parameter, angles, radii);
-            let last = angles.len() - 1;
-            (angles[last], radii[last]) = (angles[0] + TAU, radii[0]);
-            if !spline.is_valid() {
-                return Err(ProfileError::Disordered);
-            }
-            if *interpolation == Interpolation::Spline {
-                spline.fit();
-            }
+        if let Curve::Points { table, points } = &mut self.curve {
+            points.set(table, &parameter)?;
         }
         self.check()?;
         self.joint = Joint::Kink;
@@ -322,14 +306,7 @@ impl ProfileInForce {
     pub fn radius(&self, theta: f64) -> Jet3 {
         match &self.curve {
             Curve::Expression(expression) => self.evaluate(expression, theta.rem_euclid(TAU)),
-            Curve::Points {
-                spline,
-                interpolation,
-                ..
-            } => {
-                let theta = first_turn(spline, theta);
-                on_segment(spline, *interpolation, spline.segment(theta), theta)
-            }
+            Curve::Points { points, .. } => points.radius(theta),
         }
     }
 
@@ -343,9 +320,9 @@ impl ProfileInForce {
     #[must_use]
     pub fn bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
         if let Some(radius) = self.smooth_bounds(theta, reach) {
-            let jumps = match self.curve {
+            let jumps = match &self.curve {
                 Curve::Expression(_) => false,
-                Curve::Points { interpolation, .. } => interpolation.jumps(),
+                Curve::Points { points, .. } => points.jumps(),
             };
             return Some(ProfileBounds { radius, jumps });
         }
@@ -370,11 +347,7 @@ impl ProfileInForce {
             Curve::Expression(expression) => over_turn(theta, reach, |range| {
                 expression.enclose(&|p| self.parameters[p.index()], range)
             }),
-            Curve::Points {
-                spline,
-                interpolation,
-                ..
-            } => Some(bounds_through_points(spline, *interpolation, theta, reach)),
+            Curve::Points { points, .. } => Some(points.bounds(theta, reach)),
         }
     }
 
@@ -424,7 +397,7 @@ enum CurveAlong {
         /// All parameters.
         parameters: Vec<Jet3<Dual>>,
     },
-    Points(Spline<Jet3<Dual>>, Interpolation),
+    Points(ClosedPoints<Jet3<Dual>>),
 }
 
 impl ProfileInForce {
@@ -440,22 +413,7 @@ impl ProfileInForce {
                     .map(|p| parameter(ParameterId(p)))
                     .collect(),
             },
-            Curve::Points {
-                table,
-                interpolation,
-                spline,
-            } => {
-                let mut along = Spline::new(spline.knots().len(), Ends::Periodic);
-                let (angles, radii) = along.points_mut();
-                table.write(&parameter, angles, radii);
-                let last = angles.len() - 1;
-                angles[last] = angles[0] + Jet3::constant(TAU);
-                radii[last] = radii[0];
-                if *interpolation == Interpolation::Spline {
-                    along.fit();
-                }
-                CurveAlong::Points(along, *interpolation)
-            }
+            Curve::Points { table, points } => CurveAlong::Points(points.along(table, &parameter)),
         })
     }
 }
@@ -465,286 +423,18 @@ impl ProfileAlong {
     /// with its change along the direction.
     #[must_use]
     pub fn radius(&self, theta: Dual) -> Jet3<Dual> {
-        let from = |start: f64| {
-            Dual::new(
-                start + (theta.value - start).rem_euclid(TAU),
-                theta.derivatives,
-            )
-        };
         match &self.0 {
             CurveAlong::Expression {
                 expression,
                 parameters,
             } => {
-                let theta = Jet3::variable(from(0.0));
-                expression.evaluate(&|p| parameters[p.index()], theta)
+                let turn = Dual::new(theta.value.rem_euclid(TAU), theta.derivatives);
+                expression.evaluate(&|p| parameters[p.index()], Jet3::variable(turn))
             }
-            CurveAlong::Points(spline, interpolation) => {
-                let theta = from(spline.knots()[0].value.value);
-                let segment = spline.segment(theta.value);
-                match interpolation {
-                    Interpolation::Spline => spline.on_segment(segment, Jet3::variable(theta)),
-                    Interpolation::Law(law) => {
-                        let knots = spline.knots();
-                        law.between(knots, spline.values(), segment, Jet3::variable(theta))
-                    }
-                }
-            }
+            CurveAlong::Points(points) => points.radius_along(theta),
         }
     }
-}
-
-/// Returns the angle in the turn that closed points cover.
-fn first_turn(spline: &Spline<f64>, theta: f64) -> f64 {
-    let start = spline.knots()[0];
-    start + (theta - start).rem_euclid(TAU)
-}
-
-/// Returns value and derivatives of one segment.
-fn on_segment(
-    spline: &Spline<f64>,
-    interpolation: Interpolation,
-    segment: usize,
-    theta: f64,
-) -> Jet3 {
-    match interpolation {
-        Interpolation::Spline => {
-            let [second, third] = spline.curvature_on_segment(segment, theta);
-            Jet3::new(
-                spline.on_segment(segment, theta),
-                [spline.slope_on_segment(segment, theta), second, third],
-            )
-        }
-        Interpolation::Law(law) => {
-            let point = |values: &[f64], k: usize| Jet3::constant(values[k]);
-            let [knots, radii] = [spline.knots(), spline.values()]
-                .map(|values| [point(values, segment), point(values, segment + 1)]);
-            law.between(&knots, &radii, 0, Jet3::variable(theta))
-        }
-    }
-}
-
-fn bounds_through_points(
-    spline: &Spline<f64>,
-    interpolation: Interpolation,
-    theta: f64,
-    reach: f64,
-) -> Jet3<Interval> {
-    let knots = spline.knots();
-    let segments = knots.len() - 1;
-    let reach = reach.min(0.5 * TAU);
-    let low = first_turn(spline, theta - reach);
-    let high = low + 2.0 * reach;
-    let on = |segment: usize, from: f64, to: f64| {
-        segment_bounds(spline, interpolation, segment, from, to)
-    };
-    // The segment that contains `low`, then what else the region meets; it may go on past the
-    // end of the turn, into its beginning.
-    let first = spline.segment(low);
-    let mut bounds = on(first, low, high.min(knots[first + 1]).max(low));
-    for lap in [0.0, TAU] {
-        for segment in 0..segments {
-            let from = (knots[segment] + lap).max(low);
-            let to = (knots[segment + 1] + lap).min(high);
-            if from < to {
-                bounds = bounds.hull(on(segment, from - lap, to - lap));
-            }
-        }
-    }
-    bounds
-}
-
-/// Returns bounds on a part of one segment.
-fn segment_bounds(
-    spline: &Spline<f64>,
-    interpolation: Interpolation,
-    segment: usize,
-    from: f64,
-    to: f64,
-) -> Jet3<Interval> {
-    let law = match interpolation {
-        Interpolation::Spline => {
-            let third = on_segment(spline, interpolation, segment, from.midpoint(to)).third();
-            let third = Interval::point(third);
-            return around_middle(spline, interpolation, segment, [from, to], third);
-        }
-        Interpolation::Law(law) => law,
-    };
-    // Piece by piece of the law: within each the third derivative is continuous.
-    let (knots, radii) = (spline.knots(), spline.values());
-    let width = knots[segment + 1] - knots[segment];
-    let stroke = radii[segment + 1] - radii[segment];
-    let mut bounds: Option<Jet3<Interval>> = None;
-    for (piece, part) in Law::PIECES.windows(2).enumerate() {
-        let [first, last] = [piece == 0, piece + 2 == Law::PIECES.len()];
-        let [begin, end] = [part[0], part[1]].map(|part| knots[segment] + part * width);
-        // The first and the last piece take what rounding leaves.
-        let begin = if first { from } else { begin.max(from) };
-        let end = if last { to } else { end.min(to) };
-        if begin > end {
-            continue;
-        }
-        let tau = [begin, end].map(|x| ((x - knots[segment]) / width).clamp(part[0], part[1]));
-        let third = law
-            .stroke(Jet3::variable(Interval::new(tau[0], tau[1])))
-            .third();
-        let third = third * Interval::point(stroke / (width * width * width));
-        let piece = around_middle(spline, interpolation, segment, [begin, end], third);
-        bounds = Some(bounds.map_or(piece, |bounds| bounds.hull(piece)));
-    }
-    bounds.expect("the pieces cover the segment")
-}
-
-/// Returns bounds on a part of one segment with this bound of the third derivative: each derivative
-/// differs from its value in the middle by at most half the width times the bound of the next one.
-fn around_middle(
-    spline: &Spline<f64>,
-    interpolation: Interpolation,
-    segment: usize,
-    [from, to]: [f64; 2],
-    third: Interval,
-) -> Jet3<Interval> {
-    let half = 0.5 * (to - from);
-    let middle = on_segment(spline, interpolation, segment, from + half);
-    let around = |value: f64, slope: Interval| {
-        let off = half * slope.magnitude();
-        Interval::new(value - off, value + off)
-    };
-    let second = around(middle.second(), third);
-    let first = around(middle.first(), second);
-    Jet3::new(around(middle.value, first), [first, second, third])
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn table(points: &[(f64, f64)]) -> Result<ProfileInForce, ProfileError> {
-        let table = Table {
-            points: points
-                .iter()
-                .map(|(x, y)| [*x, *y].map(Expression::constant))
-                .collect(),
-            scale: [1.0, 1.0].map(Expression::constant),
-        };
-        through(table, Interpolation::Spline)
-    }
-
-    fn through(table: Table, interpolation: Interpolation) -> Result<ProfileInForce, ProfileError> {
-        let profile = Profile::Table {
-            table,
-            interpolation,
-        };
-        let mut profile = ProfileInForce::new(&profile, 0);
-        profile.set_parameters(|_| 0.0).map(|()| profile)
-    }
-
-    const LAWS: [Law; 7] = [
-        Law::Polynomial345,
-        Law::Polynomial4567,
-        Law::Cycloidal,
-        Law::Harmonic,
-        Law::ModifiedSine,
-        Law::ModifiedTrapezoidal,
-        Law::Trapezoidal,
-    ];
-
-    proptest! {
-        /// Bounds contain what is found in the region, wherever it lies relative to the seam of
-        /// the turn. Rounding: radii up to 2 m.
-        #[test]
-        fn bounds_of_a_table_contain_its_values(
-            radii in prop::collection::vec(1.0..2.0_f64, 3..9),
-            theta in -20.0..20.0_f64,
-            reach in 0.0..4.0_f64,
-            parts in prop::collection::vec(-1.0..1.0_f64, 20),
-        ) {
-            let step = TAU / radii.len() as f64;
-            let points: Vec<_> =
-                radii.iter().enumerate().map(|(k, r)| (0.7 + step * k as f64, *r)).collect();
-            let profile = table(&points).expect("it makes a contour");
-            let bounds = profile.bounds(theta, reach).expect("a spline is smooth").radius;
-            for part in parts {
-                let values = profile.radius(theta + part * reach);
-                let pairs = [
-                    (bounds.value, values.value),
-                    (bounds.first(), values.first()),
-                    (bounds.second(), values.second()),
-                    (bounds.third(), values.third()),
-                ];
-                for (bound, value) in pairs {
-                    prop_assert!(
-                        bound.low - 1e-12 <= value && value <= bound.high + 1e-12,
-                        "{bound:?} {value}"
-                    );
-                }
-            }
-        }
-
-        /// The same for the motion laws, rises, returns and a dwell.
-        #[test]
-        fn bounds_of_laws_contain_their_values(
-            radii in prop::collection::vec(1.0..2.0_f64, 2..6),
-            law in prop::sample::select(LAWS.to_vec()),
-            theta in -20.0..20.0_f64,
-            reach in prop_oneof![0.0..0.05_f64, 0.0..4.0],
-            parts in prop::collection::vec(-1.0..1.0_f64, 20),
-        ) {
-            let step = TAU / (radii.len() + 1) as f64;
-            let dwell = radii.iter().chain(&radii[..1]).enumerate();
-            let points = dwell.map(|(k, r)| {
-                [0.7 + step * k as f64, *r].map(Expression::constant)
-            });
-            let table = Table {
-                points: points.collect(),
-                scale: [1.0, 1.0].map(Expression::constant),
-            };
-            let profile = through(table, Interpolation::Law(law)).expect("it makes a contour");
-            let found = profile.bounds(theta, reach).expect("its slope is continuous");
-            let smooth = !matches!(law, Law::Harmonic | Law::Trapezoidal);
-            prop_assert_eq!(found.jumps, !smooth);
-            for part in parts {
-                let values = profile.radius(theta + part * reach);
-                let pairs = [
-                    (found.radius.value, values.value),
-                    (found.radius.first(), values.first()),
-                    (found.radius.second(), values.second()),
-                    (found.radius.third(), values.third()),
-                ];
-                for (order, (bound, value)) in pairs.into_iter().enumerate() {
-                    // Derivatives of strokes within a radian reach some hundreds.
-                    prop_assert!(
-                        bound.low - 1e-10 <= value && value <= bound.high + 1e-10,
-                        "{law:?} {order}: {bound:?} {value}"
-                    );
-                }
-            }
-        }
-
-        /// The spline closes: value, slope and second derivative are the same a turn later, on
-        /// either side of the seam.
-        #[test]
-        fn a_table_closes_smoothly(radii in prop::collection::vec(1.0..2.0_f64, 3..9)) {
-            let step = TAU / radii.len() as f64;
-            let points: Vec<_> =
-                radii.iter().enumerate().map(|(k, r)| (step * k as f64, *r)).collect();
-            let profile = table(&points).expect("it makes a contour");
-            // Across 2e-9 rad at third derivatives up to some 100 m/rad³.
-            let (before, after) = (profile.radius(-1e-9), profile.radius(1e-9));
-            prop_assert!((before.value - after.value).abs() < 1e-6);
-            prop_assert!((before.first() - after.first()).abs() < 1e-6);
-            prop_assert!((before.second() - after.second()).abs() < 1e-6);
-            prop_assert!((profile.radius(TAU).value - radii[0]).abs() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn angles_that_do_not_rise_within_a_turn_make_no_contour() {
-        let disordered = [(0.0, 1.0), (2.0, 1.0), (1.0, 1.0)];
-        let more_than_a_turn = [(0.0, 1.0), (3.0, 1.0), (7.0, 1.0)];
-        for points in [disordered, more_than_a_turn] {
-            assert_eq!(table(&points).expect_err("no"), ProfileError::Disordered);
-        }
-    }
-}
+mod tests;

@@ -1,0 +1,135 @@
+//! Relative coordinates.
+
+use super::{MarkerId, Mechanism, Unit};
+
+/// Scalar measured from one marker to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Coordinate {
+    /// Quantity measured.
+    pub kind: CoordinateKind,
+    /// Marker i, measured from.
+    pub from: MarkerId,
+    /// Marker j, measured to.
+    pub to: MarkerId,
+    /// Marker k on whose axes `x` and `y` are measured; marker i unless the file gives another.
+    /// Without meaning for `angle` and `distance`.
+    pub axes: MarkerId,
+}
+
+impl Coordinate {
+    /// Returns what it measures, as descriptions of variables say it.
+    #[must_use]
+    pub fn describe(&self, mechanism: &Mechanism) -> String {
+        let [from, to, axes] = [self.from, self.to, self.axes].map(|id| mechanism.marker_path(id));
+        let on_axes = if axes == from {
+            String::new()
+        } else {
+            format!(" on the axes of `{axes}`")
+        };
+        match self.kind {
+            CoordinateKind::Angle => format!("the angle from `{from}` to `{to}`"),
+            CoordinateKind::X => format!("x from `{from}` to `{to}`{on_axes}"),
+            CoordinateKind::Y => format!("y from `{from}` to `{to}`{on_axes}"),
+            CoordinateKind::Distance => format!("the distance from `{from}` to `{to}`"),
+        }
+    }
+}
+
+/// Relative coordinates. theta is a marker's direction, P its point, u and n the x- and
+/// y-axis of marker k.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CoordinateKind {
+    /// `theta_j − theta_i` \[rad\], counting turns.
+    Angle,
+    /// `u_k · (P_j − P_i)` \[m\].
+    X,
+    /// `n_k · (P_j − P_i)` \[m\].
+    Y,
+    /// `‖P_j − P_i‖` \[m\].
+    Distance,
+}
+
+impl CoordinateKind {
+    /// Units of a length and of its first and second time derivatives.
+    pub const LENGTHS: [Unit; 3] = [
+        Unit::METRE,
+        Unit::METRE_PER_SECOND,
+        Unit::METRE_PER_SECOND_SQUARED,
+    ];
+    /// Units of an angle and of its first and second time derivatives.
+    pub const ANGLES: [Unit; 3] = [
+        Unit::RADIAN,
+        Unit::RADIAN_PER_SECOND,
+        Unit::RADIAN_PER_SECOND_SQUARED,
+    ];
+
+    /// Returns the units of its values and of their first and second time derivatives.
+    #[must_use]
+    pub fn units(self) -> [Unit; 3] {
+        if self.is_angle() {
+            Self::ANGLES
+        } else {
+            Self::LENGTHS
+        }
+    }
+
+    /// Whether the coordinate is measured on the axes of a marker.
+    #[must_use]
+    pub fn has_axes(self) -> bool {
+        match self {
+            Self::X | Self::Y => true,
+            Self::Angle | Self::Distance => false,
+        }
+    }
+
+    /// Whether its values are angles; they are lengths otherwise.
+    #[must_use]
+    pub fn is_angle(self) -> bool {
+        match self {
+            Self::Angle => true,
+            Self::X | Self::Y | Self::Distance => false,
+        }
+    }
+
+    /// Returns the unit of its values.
+    #[must_use]
+    pub fn unit(self) -> Unit {
+        self.units()[0]
+    }
+
+    /// Returns the unit of a generalized force conjugate to it.
+    #[must_use]
+    pub fn effort_unit(self) -> Unit {
+        if self.is_angle() {
+            Unit::NEWTON_METRE
+        } else {
+            Unit::NEWTON
+        }
+    }
+
+    /// Returns the word for a generalized force conjugate to it.
+    #[must_use]
+    pub fn effort_word(self) -> &'static str {
+        if self.is_angle() { "torque" } else { "force" }
+    }
+
+    /// Returns the unit of the inertia that a driver feels.
+    #[must_use]
+    pub fn inertia_unit(self) -> Unit {
+        if self.is_angle() {
+            Unit::KILOGRAM_METRE_SQUARED
+        } else {
+            Unit::KILOGRAM
+        }
+    }
+
+    /// Returns a value as text with its unit.
+    #[must_use]
+    pub fn show(self, value: f64) -> String {
+        if self.is_angle() {
+            format!("{value:.9} rad ({:.6} deg)", value.to_degrees())
+        } else {
+            format!("{value:.9} m")
+        }
+    }
+}

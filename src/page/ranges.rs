@@ -1,0 +1,87 @@
+//! Ranges and speeds of the drivers that a reader moves.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use crate::kinematics::{End, RangeSettings, Solver};
+use crate::mechanism::{DriverId, Jet, Mechanism};
+
+/// Resolution and extent of the ranges of drivers: steps of three degrees, one turn, lengths up to
+/// the size of the mechanism.
+const RANGE: RangeSettings = RangeSettings {
+    samples: 120,
+    turns: 1,
+    lengths: 1.0,
+    bounds: [None; 2],
+};
+/// Time that a driver takes for a turn, or from one end of its range to the other \[s\].
+const PERIOD: [f64; 2] = [4.0, 2.0];
+
+/// The range of a driver that is an input.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DriverRange {
+    /// The ends \[m or rad\]; of a driver that turns fully, one turn.
+    pub(super) ends: [f64; 2],
+    /// Whether the driver turns fully.
+    pub(super) turns: bool,
+}
+
+/// Returns the range of each driver that is an input, and poses in the ranges.
+pub(super) fn driver_ranges(solver: &mut Solver) -> (Vec<Option<DriverRange>>, Vec<Vec<f64>>) {
+    let mechanism = Arc::clone(solver.mechanism());
+    let home = solver.pose().clone();
+    let mut poses = Vec::new();
+    let ranges = mechanism.drivers.iter().enumerate().map(|(index, driver)| {
+        if driver.motion().is_some() {
+            return None;
+        }
+        let range = solver.range(DriverId(index), &RANGE);
+        let value = home.drivers[index];
+        let is_angle = driver.coordinate.kind.is_angle();
+        let end = |end: &End| match end {
+            End::Turns(_) => None,
+            End::Singular(point) => Some(point.drivers[index]),
+            End::NotFound { .. } if is_angle => None,
+            End::Blocked { value, .. } | End::Bound { value } | End::NotFound { value } => {
+                Some(*value)
+            }
+        };
+        let ends = [end(&range.lower), end(&range.upper)];
+        poses.extend(range.samples.into_iter().map(|sample| sample.q));
+        Some(match ends {
+            [Some(low), Some(high)] => DriverRange {
+                ends: [low, high],
+                turns: false,
+            },
+            [Some(low), None] => DriverRange {
+                ends: [low, low + TAU],
+                turns: false,
+            },
+            [None, Some(high)] => DriverRange {
+                ends: [high - TAU, high],
+                turns: false,
+            },
+            [None, None] => {
+                let low = TAU * (value / TAU).floor();
+                DriverRange {
+                    ends: [low, low + TAU],
+                    turns: true,
+                }
+            }
+        })
+    });
+    let ranges = ranges.collect();
+    solver.restore(&home);
+    (ranges, poses)
+}
+
+/// Returns rates for drivers that are inputs: a turn, or the range, in some seconds.
+pub(super) fn driver_speeds(mechanism: &Mechanism, ranges: &[Option<DriverRange>]) -> Vec<Jet> {
+    let drivers = mechanism.drivers.iter().zip(ranges);
+    let rates = drivers.map(|(driver, range)| match range {
+        Some(_) if driver.coordinate.kind.is_angle() => TAU / PERIOD[0],
+        Some(range) => (range.ends[1] - range.ends[0]) / PERIOD[1],
+        None => 0.0,
+    });
+    rates.map(|rate| Jet::new(0.0, [rate, 0.0])).collect()
+}

@@ -1,0 +1,170 @@
+//! The number of sub-steps of a step, and whether they are proved.
+
+use std::f64::consts::TAU;
+
+use biela::kinematics::{Curve, Reason};
+
+use crate::common::{assembled, parse, shipped, straight_to};
+use crate::difference;
+use crate::generated::{Ground, chain, lift_from_below, lift_from_below_pose, scissor_lift};
+
+#[test]
+fn a_path_that_never_ends_is_given_up() {
+    let (mut solver, mut path) = assembled(&shipped("four_bar"));
+    for target in [1e8, 1e17] {
+        straight_to(&solver, &mut path, target);
+        let blocked = solver.track(&path).expect_err("that is too far to follow");
+        assert_eq!(blocked.reason, Reason::TooLong);
+        assert!(solver.residual() < 1e-10);
+    }
+}
+
+/// A hundred steps a turn are one sub-step each, proved, whatever the mechanism is made of; and so
+/// they are in a chain of a thousand loops.
+#[test]
+fn ordinary_steps_are_one_substep() {
+    let cranks = [
+        "four_bar",
+        "slider_crank",
+        "tlv_crank",
+        "slotted_lever",
+        "jansen_leg",
+        "watt_six_bar",
+        "stephenson_six_bar",
+        "whitworth",
+        "scotch_yoke",
+        "v_twin",
+        "drag_link",
+        "elliptic_trammel",
+        "geared_five_bar",
+        "planetary_gear",
+        "cam_knife",
+        "cam_flat",
+        "chebyshev",
+    ];
+    let texts = cranks.map(|name| (name, shipped(name), 100));
+    let long = ("chain", parse(&chain(1000, Ground::Straight)), 5);
+    for (name, mechanism, steps) in texts.into_iter().chain([long]) {
+        let (mut solver, mut path) = assembled(&mechanism);
+        for _ in 0..steps {
+            let target = solver.pose().drivers[0] + TAU / 100.0;
+            straight_to(&solver, &mut path, target);
+            let progress = solver.track(&path).expect("nothing is in the way");
+            assert_eq!(
+                (progress.substeps, progress.checked),
+                (1, 0),
+                "{name} at {target}"
+            );
+        }
+    }
+}
+
+/// The uncertainty of one cell passes on to the next with its sign: in straight lifts unchanged, in
+/// lifts whose bars do not cross in their middles by the cells' own leverage.
+#[test]
+fn lifts_driven_from_below_are_proved_at_any_height() {
+    type Crossings = fn(usize) -> [f64; 2];
+    let crossings: [(&str, Crossings); 3] = [
+        ("straight", |_| [0.5, 0.5]),
+        ("bent", |k| [0.5, 0.5 + 0.004 * (k as f64).sin()]),
+        ("uneven", |k| {
+            if k.is_multiple_of(2) {
+                [0.47, 0.47]
+            } else {
+                [0.53, 0.53]
+            }
+        }),
+    ];
+    for (name, crossings) in crossings {
+        for cells in [10, 26, 60, 200] {
+            let mechanism = parse(&lift_from_below(cells, 40.0_f64.to_radians(), crossings));
+            let (mut solver, mut path) = assembled(&mechanism);
+            for step in 1..=20 {
+                let angle = (40.0 + 0.05 * f64::from(step)).to_radians();
+                straight_to(&solver, &mut path, angle);
+                let progress = solver.track(&path).expect("the lift rises");
+                let steps = (progress.substeps, progress.checked);
+                assert_eq!(steps, (1, 0), "{name}, {cells} cells");
+                let pose = lift_from_below_pose(cells, angle, crossings);
+                let off = difference(&solver.pose().q, pose.as_flattened());
+                // Some roundings of angles per cell, here and in the closed form, add up from cell
+                // to cell, those of points once more.
+                let rounding = 32.0 * f64::EPSILON * (cells * cells) as f64;
+                assert!(off < rounding, "{name}, {cells} cells: {off:e}");
+            }
+        }
+    }
+}
+
+/// A block of more than 32 torn unknowns has no rigorous bound, and says so.
+#[test]
+fn large_blocks_are_checked_only() {
+    for (cells, proved) in [(12, true), (20, false)] {
+        let (mut solver, mut path) = assembled(&parse(&scissor_lift(cells)));
+        let target = solver.pose().drivers[0] + 0.001;
+        straight_to(&solver, &mut path, target);
+        let progress = solver.track(&path).expect("nothing is in the way");
+        assert_eq!(progress.checked == 0, proved, "{cells} cells: {progress:?}");
+    }
+}
+
+/// A platform of 1 mm on three legs takes as many sub-steps beside a pendulum of 1 m or of 1 km as
+/// alone, and is as regular.
+#[test]
+fn a_large_mechanism_beside_a_small_one_costs_it_no_sub_steps() {
+    let file = |pendulum: [&str; 3]| {
+        let [ground, body, rest] = pendulum;
+        parse(&format!(
+            "format = 1\nname = \"mixed\"\n[ground.markers]\nA0 = [-0.0008, -0.0005]\n\
+             A1 = [0.0009, -0.0004]\nA2 = [0.0001, 0.0009]\n{ground}\n\
+             [bodies.platform]\nmarkers = {{ B0 = [-0.0003, -0.0002], \
+             B1 = [0.00035, -0.00015], B2 = [0.00005, 0.0003] }}\n\
+             estimate = [0.00005, 0.0001, 0.2]\n{body}\n[drivers]\n\
+             u0 = {{ coordinate = \"distance\", markers = [\"ground.A0\", \"platform.B0\"], \
+             start = 0.0006880964176648267 }}\n\
+             u1 = {{ coordinate = \"distance\", markers = [\"ground.A1\", \"platform.B1\"], \
+             start = 0.0006373570317599123 }}\n\
+             u2 = {{ coordinate = \"distance\", markers = [\"ground.A2\", \"platform.B2\"], \
+             start = 0.0004997341725430079 }}\n{rest}\n"
+        ))
+    };
+    let joints = ["1", "1000", "1e9"].map(|length| {
+        format!(
+            "[bodies.pendulum]\nmarkers = {{ O = [0, 0], T = [{length}, 0] }}\n[joints]\n\
+             z = {{ type = \"revolute\", markers = [\"ground.Z\", \"pendulum.O\"] }}"
+        )
+    });
+    let driver =
+        "w = { coordinate = \"angle\", markers = [\"ground.Z\", \"pendulum.O\"], start = 0 }";
+    let alone = ["", "[joints]", ""];
+    let beside = |k: usize| ["Z = [0, 0]", joints[k].as_str(), driver];
+    let [alone, beside @ ..] = [alone, beside(0), beside(1), beside(2)].map(|pendulum| {
+        let (mut solver, mut path) = assembled(&file(pendulum));
+        let rcond = solver.rcond();
+        for (driver, curve) in path.curves.iter_mut().enumerate() {
+            let here = solver.pose().drivers[driver];
+            *curve = Curve::Input {
+                position: 1.01 * here,
+                velocity: 0.0,
+                acceleration: 0.0,
+                jump: -0.01 * here,
+            };
+        }
+        let progress = solver.track(&path).expect("the legs reach");
+        assert_eq!(progress.checked, 0);
+        (progress.substeps, rcond)
+    });
+    assert!(alone.0 <= 10, "{alone:?}");
+    for beside in beside {
+        assert!(
+            beside.0 <= alone.0 + 1,
+            "{alone:?}, {beside:?} beside a pendulum"
+        );
+        // Sizes are scaled by powers of two.
+        let ratio = beside.1 / alone.1;
+        assert!(
+            (0.5..2.0).contains(&ratio),
+            "{alone:?}, {beside:?} beside a pendulum"
+        );
+    }
+}
