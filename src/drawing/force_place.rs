@@ -160,13 +160,14 @@ pub(super) fn largest<'a>(values: impl Iterator<Item = &'a [f64; 3]>) -> [f64; 2
 
 /// Returns a size with three digits, in thousands of its unit from 1000 on.
 fn in_words(size: f64, unit: &str) -> String {
-    let (size, prefix) = if size >= 999.5 {
-        (size / 1000.0, "k")
+    let rounded = format!("{size:.2e}").parse().unwrap_or(size);
+    let (size, prefix) = if rounded >= 1000.0 {
+        (rounded / 1000.0, "k")
     } else {
-        (size, "")
+        (rounded, "")
     };
-    let digits = 2 - size.max(0.01).log10().floor() as i32;
-    format!("{size:.*} {prefix}{unit}", digits.max(0) as usize)
+    let digits = (2.0 - size.log10().floor()).clamp(0.0, 6.0);
+    format!("{size:.*} {prefix}{unit}", digits as usize)
 }
 
 #[cfg(test)]
