@@ -167,6 +167,49 @@ def test_a_parameter_by_its_field(page_of, tmp_path):
     assert undone == BASE
 
 
+def test_speeds_and_loads(page_of, tmp_path):
+    arm = tmp_path / "arm.toml"
+    arm.write_text(
+        """
+format = 1
+name = "arm"
+[ground.markers]
+O = [0, 0]
+[bodies.arm]
+markers = { O = [0, 0], P = [0.5, 0] }
+[joints]
+O = { type = "revolute", markers = ["ground.O", "arm.O"] }
+[forces]
+load = { marker = "arm.P" }
+[drivers]
+angle = { coordinate = "angle", markers = ["ground.O", "arm.O"], start = 0.3 }
+"""
+    )
+    seen = look(
+        tmp_path,
+        page_of(arm),
+        """
+        const give = (name, value) => {
+          const rows = [...document.querySelectorAll(".rate-rows .row")];
+          const field = rows.find((row) => row.textContent.startsWith(name)).querySelector("[type=number]");
+          field.value = value;
+          field.dispatchEvent(new Event("change"));
+        };
+        give("load.fy", -11);
+        give("angle.velocity", 2);
+        give("angle.acceleration", 3);
+        const seen = ["angle.effort", "angle.power", "arm.omega", "arm.alpha"].map(number);
+        find(".reset").click();
+        return [...seen, number("angle.effort")];
+        """,
+    )
+    # By virtual power: the effort lifts the load, whose arm is 0.5 m cos 0.3.
+    effort = 11 * 0.5 * math.cos(0.3)
+    # The fields are in degrees per second.
+    omega, alpha = math.radians(2), math.radians(3)
+    assert seen == pytest.approx([effort, omega * effort, omega, alpha, 0], abs=1e-13)
+
+
 def test_other_positions(page_of, tmp_path):
     count, phi = look(
         tmp_path,
