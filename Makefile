@@ -155,7 +155,7 @@ uninstall: ## remove what `make install` put under PREFIX
 	for file in $(MECHANISMS); do rm -f "$(SHARE_DIR)/$$file"; done
 	@rmdir $(foreach folder,$(PLATFORMS),"$(LIB_DIR)/$(folder)") "$(LIB_DIR)" "$(SHARE_DIR)/mechanisms" "$(SHARE_DIR)" 2>/dev/null || true
 
-refresh: setup build ## regenerate modelDescription/*.xml and the gallery from mechanisms/*.toml
+refresh: setup build ## regenerate modelDescription/*.xml, the gallery and the picture of README
 	@set -e; for file in mechanisms/*.toml; do \
 	    name=$$(basename "$$file" .toml); \
 	    echo "modelDescription/$$name.xml"; \
@@ -165,6 +165,7 @@ refresh: setup build ## regenerate modelDescription/*.xml and the gallery from m
 	    echo "$$file"; \
 	    target/release/biela export "mechanisms/$$(basename "$$file" .xml).toml" --fmi 3 --model-description "$$file"; \
 	done
+	target/release/biela run mechanisms/jansen_leg.toml --drive 'crank_angle = -pi*t' --stop 2 --step 0.04 --animate docs/jansen_leg.svg
 	cd tests/fmpy && ../../$(PYTHON) -m gallery --page
 
 lock: setup ## renew tests/fmpy/requirements.txt from requirements.in

@@ -5,8 +5,8 @@ mod common;
 #[allow(dead_code, reason = "also used by `benches/`")]
 mod generated;
 
-use biela::kinematics::{Curve, Rates};
-use biela::mechanism::Jet;
+use biela::kinematics::{Curve, InstantCentre, Rates, Solver};
+use biela::mechanism::{BodyId, DriverId, Jet};
 use common::{EXACT, Errors, assembled, parse, shipped, straight_to};
 use generated::{Ground, chain};
 
@@ -145,4 +145,73 @@ fn a_wheel_rolls_on_either_side_of_a_tilted_track() {
             }
         }
     }
+}
+
+/// Returns the instant centres of all bodies while the first driver moves alone.
+fn instant_centres(solver: &mut Solver) -> Vec<InstantCentre> {
+    let mut rates = Rates::new(solver.pose().q.len());
+    let jet = |driver: DriverId| Jet::linear(0.0, f64::from(u8::from(driver.index() == 0)));
+    solver.solve_rates(jet, &mut rates).expect("it moves");
+    let bodies = (0..solver.mechanism().bodies.len()).map(BodyId);
+    bodies
+        .map(|body| solver.instant_centre(body, &rates))
+        .collect()
+}
+
+/// Asserts that an instant centre is a point, to the rounding of rates: 1e-13 of some tenths of a
+/// metre, divided by an angular velocity of about one.
+fn assert_at(centre: InstantCentre, expected: [f64; 2]) {
+    let InstantCentre::At([x, y]) = centre else {
+        panic!("{centre:?}, not {expected:?}");
+    };
+    assert!(
+        (x - expected[0]).hypot(y - expected[1]) < 1e-12,
+        "{x}, {y}, not {expected:?}"
+    );
+}
+
+#[test]
+fn the_instant_centres_of_a_four_bar_are_in_line() {
+    let (mut solver, mut path) = assembled(&shipped("four_bar"));
+    for degrees in [60.0_f64, 100.0, 200.0, 300.0] {
+        straight_to(&solver, &mut path, degrees.to_radians());
+        solver.track(&path).expect("the crank turns fully");
+        let q = solver.pose().q.clone();
+        let centres = instant_centres(&mut solver);
+        // Pivots O2 = (0, 0) and O4 = (0.4, 0); bars of 0.1 m and 0.3 m from them to A and B.
+        let a = [0.1 * q[2].cos(), 0.1 * q[2].sin()];
+        let b = [0.4 + 0.3 * q[8].cos(), 0.3 * q[8].sin()];
+        assert_at(centres[0], [0.0, 0.0]);
+        assert_at(centres[2], [0.4, 0.0]);
+        // Kennedy's theorem: the coupler's centre is on the lines O2 A and O4 B.
+        let determinant = a[0] * b[1] - a[1] * (b[0] - 0.4);
+        let s = 0.4 * b[1] / determinant;
+        assert_at(centres[1], [s * a[0], s * a[1]]);
+    }
+}
+
+#[test]
+fn sliders_translate_and_wheels_turn_about_their_contact() {
+    let (mut solver, _) = assembled(&shipped("slider_crank"));
+    let q = solver.pose().q.clone();
+    let centres = instant_centres(&mut solver);
+    assert_at(centres[0], [0.0, 0.0]);
+    // The rod's centre is above the slider on the line of the crank.
+    assert_at(centres[1], [q[6], q[6] * q[2].tan()]);
+    assert_eq!(centres[2], InstantCentre::AtInfinity);
+
+    // A rolling wheel is at rest where it touches its track.
+    let (mut solver, mut path) = assembled(&shipped("rolling_wheel"));
+    straight_to(&solver, &mut path, 1.0);
+    solver.track(&path).expect("it rolls on");
+    let centres = instant_centres(&mut solver);
+    assert_at(centres[0], [solver.pose().q[0], 0.0]);
+
+    // A body that another driver moves is at rest.
+    let (mut solver, _) = assembled(&shipped("five_bar_robot"));
+    let centres = instant_centres(&mut solver);
+    let resting = centres
+        .iter()
+        .filter(|centre| **centre == InstantCentre::AtRest);
+    assert_eq!(resting.count(), 1);
 }

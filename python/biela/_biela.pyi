@@ -87,9 +87,9 @@ class Mechanism:
         self,
         motions: _Motions,
         parameters: _Values,
-        traces: bool,
         width: int | None,
         transparent: bool,
+        contents: tuple[bool, int, str | None, bool, bool],
     ) -> str: ...
     def edited(
         self, motions: _Motions, parameters: _Values, estimates: Sequence[float] | None

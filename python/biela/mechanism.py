@@ -321,11 +321,28 @@ class Mechanism:
         traces: bool = True,
         width: int | None = None,
         transparent: bool = False,
+        poses: int = 0,
+        driver: str | None = None,
+        dimensions: bool = False,
+        instant_centres: bool = False,
     ) -> Drawing:
-        """Draws the mechanism at the start values, as SVG that notebooks show."""
+        """Draws the mechanism at the start values, as SVG that notebooks show.
+
+        `poses` further poses stand as faint outlines along the motion that the traces cover, or
+        along the range of `driver`. `dimensions` adds letters of joints and lengths of bodies,
+        `instant_centres` the instant centre of each body and ground.
+        """
         parameters = list((parameters or {}).items())
         start = self._start(drive)
-        return Drawing(self._inner.draw(start, parameters, traces, width, transparent))
+        return Drawing(
+            self._inner.draw(
+                start,
+                parameters,
+                width,
+                transparent,
+                (traces, poses, driver, dimensions, instant_centres),
+            )
+        )
 
     def changed(self, parameters: Parameters | None = None, drive: Drive | None = None) -> Mechanism:
         """Returns the mechanism with other parameters and start values of drivers.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use biela::cli;
-use biela::drawing::{Scene, Sheet, svg};
+use biela::drawing::{Diagram, Followed, svg};
 use biela::kinematics::Output;
 use biela::kinematics::{Carryover, End, Mode, Path, RangeSettings, Solver};
 use biela::mechanism::{
@@ -74,6 +74,9 @@ type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
 
 /// Times, and motions of drivers.
 type Motions = (Vec<f64>, Vec<(String, Drive)>);
+
+/// Contents of a drawing: traces, number of poses, driver that moves, dimensions, instant centres.
+type Contents = (bool, usize, Option<String>, bool, bool);
 
 /// A mechanism file that has no errors.
 #[pyclass(frozen)]
@@ -283,11 +286,7 @@ impl Mechanism {
     ) -> PyResult<RangeRow<'py>> {
         let found = py.detach(|| {
             let scenario = self.scenario(motions)?;
-            let id = self.model.driver_id(driver).ok_or_else(|| {
-                let names = self.model.drivers.iter().map(|d| d.name.as_str());
-                let names: Vec<&str> = names.collect();
-                Failure::Usage(cli::unknown_name("driver", driver, &names))
-            })?;
+            let id = self.driver_named(driver)?;
             let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&scenario.parameters(parameters)?)?;
             Ok((id, runner.solver.range(id, &RangeSettings::default())))
@@ -342,16 +341,29 @@ impl Mechanism {
         py: Python<'_>,
         motions: Motions,
         parameters: Vec<(String, Value)>,
-        traces: bool,
         width: Option<u32>,
         transparent: bool,
+        contents: Contents,
     ) -> PyResult<String> {
+        let (traces, poses, driver, dimensions, instant_centres) = contents;
         py.detach(|| {
             let scenario = self.scenario(motions)?;
             let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&scenario.parameters(parameters)?)?;
-            let scene = Scene::new(&mut runner.solver, traces);
-            let sheet = Sheet::new(&scene, &runner.solver.pose().q);
+            let driver = driver.map(|name| self.driver_named(&name)).transpose()?;
+            let followed = driver.map(|driver| Followed {
+                driver,
+                bounds: [None; 2],
+            });
+            let diagram = Diagram {
+                traces,
+                followed,
+                poses,
+                dimensions,
+                instant_centres,
+                ..Diagram::default()
+            };
+            let sheet = diagram.sheet(&mut runner.solver)?;
             let width = width.unwrap_or(sheet.width());
             Ok(svg::write(&sheet, width, transparent))
         })
@@ -409,6 +421,14 @@ impl Mechanism {
 }
 
 impl Mechanism {
+    fn driver_named(&self, name: &str) -> Result<DriverId, Failure> {
+        self.model.driver_id(name).ok_or_else(|| {
+            let names = self.model.drivers.iter().map(|d| d.name.as_str());
+            let names: Vec<&str> = names.collect();
+            Failure::Usage(cli::unknown_name("driver", name, &names))
+        })
+    }
+
     fn scenario(&self, (times, drives): Motions) -> Result<Scenario, Failure> {
         Scenario::new(&self.model, &self.home()?, times, drives)
     }

@@ -106,23 +106,27 @@ impl Conditions {
         solver.map_err(|error| input.error(error))
     }
 
-    /// Returns the value of an expression over the parameters in force, given by `option`.
+    /// Returns the value of an expression over the parameters in force, given by `option`. Warns of
+    /// an angle that looks like degrees.
     pub(super) fn value(
         &self,
         mechanism: &Mechanism,
         option: &str,
         text: &str,
+        is_angle: bool,
     ) -> Result<f64, Error> {
         let parameters = self.parameters(mechanism)?;
         let expression = mechanism.parse_expression(text, None);
         let expression = expression.map_err(|error| refuse(option, text, &error))?;
         let value = expression.evaluate(&|p: ParameterId| parameters[p.index()], 0.0);
-        if value.is_finite() {
-            Ok(value)
-        } else {
+        if !value.is_finite() {
             let text = quoted(text);
-            Err(Error::Usage(format!("{option}: {text} is not finite")))
+            return Err(Error::Usage(format!("{option}: {text} is not finite")));
         }
+        if is_angle {
+            warn_of_degrees(option, text, value);
+        }
+        Ok(value)
     }
 
     /// Returns the parameters in force \[SI\].

@@ -14,7 +14,7 @@ use super::range::{end_text, with_unit};
 use super::signals::Signals;
 use crate::drawing::animation::{Animation, fill, page_with, player};
 use crate::drawing::svg::escape;
-use crate::drawing::{Scene, Sheet, png, svg};
+use crate::drawing::{Scene, Sheet, png};
 use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Version, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
@@ -28,8 +28,6 @@ const LICENSES: &[u8] = include_bytes!("../../runtime/licenses.txt");
 
 /// Width of the picture, which hosts show as an icon or beside the variables.
 const ICON_WIDTH: u32 = 512;
-/// Scale of the drawing on the page, which has more room than a sheet.
-const ENLARGED: f64 = 4.0 / 3.0;
 /// Number of moments of the motion, and the largest number of bodies in all of them.
 const MOMENTS: usize = 240;
 const MOST_PLACED: usize = 24_000;
@@ -93,7 +91,6 @@ pub(super) fn documents(
             content: page(
                 &input.mechanism,
                 &home.pose().parameters,
-                &sheet,
                 &shown,
                 version,
                 page_solver.is_some(),
@@ -240,17 +237,11 @@ const LAG: [&str; 2] = [
 fn page(
     mechanism: &Mechanism,
     values: &[f64],
-    sheet: &Sheet,
     shown: &Shown,
     version: Version,
     has_live_page: bool,
 ) -> String {
     let variables = variables(mechanism);
-    let width = ENLARGED * f64::from(sheet.width());
-    let drawing = svg::write(sheet, width as u32, false);
-    let drawing = drawing
-        .split_once("?>")
-        .map_or(drawing.as_str(), |(_, svg)| svg);
     let live_page = if has_live_page {
         "<p><a href=\"page.html\">Move it by hand</a></p>"
     } else {
@@ -260,7 +251,6 @@ fn page(
         MAIN,
         &[
             ("about", &about(mechanism)),
-            ("drawing", drawing),
             ("moving", &escape(&shown.moving)),
             ("player", &(player(&shown.animation) + live_page)),
             ("drivers", &drivers(mechanism, &shown.ranges)),

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
 
+use super::bounds::{Bounds, driver_named};
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
@@ -12,7 +13,8 @@ use super::input_files::InputFiles;
 use super::motion::Motion;
 use super::picture::Format;
 use super::signals::Signals;
-use crate::drawing::{Scene, Sheet, force_arrows};
+use crate::drawing::{Diagram, Followed, usual_driver};
+use crate::mechanism::Mechanism;
 
 /// Draw a mechanism as a kinematic diagram, in SVG or PNG.
 ///
@@ -21,13 +23,14 @@ use crate::drawing::{Scene, Sheet, force_arrows};
 /// (`[outputs] markers`) with their paths. The paths cover the prescribed motions until the file's
 /// stop time. If no motion is prescribed, they cover the turns, at most eight, after which the
 /// first driver that is an angle brings the mechanism back, or the part of one turn both ways that
-/// it can reach and its `min` and `max` permit.
+/// it can reach and its `min` and `max` permit. With --driver, --from or --to they cover the range
+/// of one driver.
 ///
 /// The same file gives the same picture.
 #[derive(Args, Debug)]
-#[command(
-    after_help = "Example: biela draw four_bar.toml --drive 'crank_angle = 120*deg' -o four_bar.svg"
-)]
+#[command(after_help = "Examples:\n  \
+        biela draw four_bar.toml --drive 'crank_angle = 120*deg' -o four_bar.svg\n  \
+        biela draw four_bar.toml --poses 8 --dimensions -o four_bar.png")]
 pub(super) struct Draw {
     /// The mechanism file.
     file: PathBuf,
@@ -37,6 +40,32 @@ pub(super) struct Draw {
     output: Option<PathBuf>,
     #[command(flatten)]
     conditions: Conditions,
+    /// Add this number of poses, spread evenly over the motion that the paths cover, as faint
+    /// outlines; without angles the first driver moves.
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        default_value = "0",
+        hide_default_value = true,
+        allow_negative_numbers = true,
+        value_parser = RangedI64ValueParser::<u32>::new().range(0..=100)
+    )]
+    poses: u32,
+    /// The driver that moves for paths and poses, from one limit to the other, while the others are
+    /// held [default, with --from or --to: the first one that is an angle, or the first one].
+    #[arg(long, value_name = "DRIVER")]
+    driver: Option<String>,
+    #[command(flatten)]
+    bounds: Bounds,
+    /// Add letters of the joints, and the lengths between the joints and points of interest of each
+    /// body, in the unit in which the file shows lengths.
+    #[arg(long)]
+    dimensions: bool,
+    /// Add the instant centre of each body and ground, at the velocities of --drive and of the
+    /// file's motions; if all are zero, while the driver of --driver or the first angle moves
+    /// alone.
+    #[arg(long)]
+    instant_centres: bool,
     /// Width of the picture in pixels; lines and letters grow with it [default: 640, more where
     /// many bodies need the room].
     #[arg(
@@ -65,12 +94,12 @@ impl Draw {
         if self.forces {
             input.check_dynamics()?;
         }
-        let path = self
-            .output
-            .unwrap_or_else(|| PathBuf::from(format!("{}.svg", input.mechanism.name)));
+        let usual = || PathBuf::from(format!("{}.svg", input.mechanism.name));
+        let path = self.output.clone().unwrap_or_else(usual);
         InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(&path)])?;
+        let followed = self.followed(&input.mechanism)?;
         let mut solver = self.conditions.solver_at_start(&input)?;
-        let mut arrows = Vec::new();
+        let mut forces = Vec::new();
         if self.forces {
             let start = solver.pose().time;
             let motion = Motion::from(solver, Signals::default(), start);
@@ -78,13 +107,36 @@ impl Draw {
             let mut motion = motion.map_err(|error| input.error(error))?;
             let places = motion.force_places();
             let values = motion.values(&places);
-            arrows = force_arrows(&places.into_iter().zip(values).collect::<Vec<_>>());
+            forces = places.into_iter().zip(values).collect();
             solver = motion.solver;
         }
-        let mut scene = Scene::new(&mut solver, !self.no_traces);
-        scene.symbols.extend(arrows);
-        let sheet = Sheet::new(&scene, &solver.pose().q);
+        let diagram = Diagram {
+            traces: !self.no_traces,
+            followed,
+            poses: self.poses as usize,
+            dimensions: self.dimensions,
+            instant_centres: self.instant_centres,
+            forces,
+        };
+        let sheet = diagram
+            .sheet(&mut solver)
+            .map_err(|error| input.error(error))?;
         let width = self.width.unwrap_or(sheet.width());
         format.write(&path, &sheet, width, self.transparent)
+    }
+
+    /// Returns the driver that options name or bound.
+    fn followed(&self, mechanism: &Mechanism) -> Result<Option<Followed>, Error> {
+        let no_driver = |option| Error::Usage(format!("{option}: the mechanism has no driver"));
+        let driver = match &self.driver {
+            Some(name) => driver_named(mechanism, name)?,
+            None if self.bounds.is_empty() && self.poses > 0 && mechanism.drivers.is_empty() => {
+                return Err(no_driver("--poses"));
+            }
+            None if self.bounds.is_empty() => return Ok(None),
+            None => usual_driver(mechanism).ok_or_else(|| no_driver("--from, --to"))?,
+        };
+        let bounds = self.bounds.of(&self.conditions, mechanism, driver)?;
+        Ok(Some(Followed { driver, bounds }))
     }
 }

@@ -1,4 +1,4 @@
-//! A run as a page on which the mechanism moves.
+//! A run as a page on which the mechanism moves, or as a picture that moves.
 
 use std::path::PathBuf;
 
@@ -6,9 +6,10 @@ use super::column::Output;
 use super::error::Error;
 use super::motion::Motion;
 use super::output::{tell_written, write};
+use super::picture::extension;
 use super::plot::axis;
 use super::recorder::Recorder;
-use crate::drawing::animation::{Animation, Clock, Moment, Reading, page};
+use crate::drawing::animation::{Animation, Clock, Moment, Reading, moving_svg, page};
 use crate::drawing::{ForcePlace, Scene};
 
 /// Largest number of moments of a film; of more rows it shows every second, third and so on.
@@ -104,7 +105,7 @@ impl Film {
     }
 }
 
-/// The page of a run's film.
+/// The page or the picture of a run's film.
 pub(super) struct Page {
     pub(super) film: Film,
     pub(super) path: PathBuf,
@@ -117,8 +118,12 @@ impl Recorder for Page {
     }
 
     fn finish(self: Box<Self>, motion: &Motion) -> Result<(), Error> {
-        let page = page(&self.film.animation(motion));
-        write(&self.path, page.as_bytes())?;
+        let animation = self.film.animation(motion);
+        let content = match &*extension(&self.path) {
+            "svg" => moving_svg(&animation),
+            _ => page(&animation),
+        };
+        write(&self.path, content.as_bytes())?;
         tell_written(&self.path);
         Ok(())
     }

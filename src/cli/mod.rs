@@ -4,6 +4,7 @@
 //! the mechanism, 2 for an error in the command. Some commands are also functions, for programs
 //! without a command line.
 
+mod bounds;
 mod check;
 mod column;
 mod completions;

@@ -11,7 +11,8 @@ use forces::describe_largest;
 
 use super::check::scientific;
 
-use super::conditions::{Conditions, unknown};
+use super::bounds::{Bounds, driver_named};
+use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
 use super::input_files::InputFiles;
@@ -40,12 +41,8 @@ pub(super) struct Range {
     /// The driver to follow [default: each in turn].
     #[arg(long, value_name = "DRIVER")]
     driver: Option<String>,
-    /// The value of the driver from which it is followed, such as '30*deg' or 0.4 [m or rad].
-    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
-    from: Option<String>,
-    /// The value of the driver up to which it is followed.
-    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
-    to: Option<String>,
+    #[command(flatten)]
+    bounds: Bounds,
     #[command(flatten)]
     conditions: Conditions,
     /// Speed of the driver in m/s or rad/s, for the largest effort and reaction of a mechanism with
@@ -70,8 +67,15 @@ impl Range {
         InputFiles::new(&self.file, &input.mechanism)
             .refuse_as_outputs(&[self.csv.as_deref(), self.plot.as_deref()])?;
         let drivers = self.drivers(&input.mechanism)?;
+        // --from and --to are given for a single driver only.
+        let bounds = match drivers.first() {
+            Some(driver) => self
+                .bounds
+                .of(&self.conditions, &input.mechanism, *driver)?,
+            None => [None; 2],
+        };
         let settings = RangeSettings {
-            bounds: self.bounds(&input.mechanism)?,
+            bounds,
             ..RangeSettings::default()
         };
         self.check_speed(&input.mechanism)?;
@@ -129,11 +133,7 @@ impl Range {
 
     fn drivers(&self, mechanism: &Mechanism) -> Result<Vec<DriverId>, Error> {
         if let Some(name) = &self.driver {
-            let driver = mechanism.driver_id(name).ok_or_else(|| {
-                let names = mechanism.drivers.iter().map(|d| d.name.as_str());
-                unknown("--driver", "driver", name, &names.collect::<Vec<_>>())
-            })?;
-            return Ok(vec![driver]);
+            return Ok(vec![driver_named(mechanism, name)?]);
         }
         let count = mechanism.drivers.len();
         if count > 1 && (self.csv.is_some() || self.plot.is_some()) {
@@ -142,30 +142,12 @@ impl Range {
                     .to_owned(),
             ));
         }
-        if count > 1 && (self.from.is_some() || self.to.is_some()) {
+        if count > 1 && (!self.bounds.is_empty()) {
             return Err(Error::Usage(
                 "there are several drivers: --from and --to need one, named by --driver".to_owned(),
             ));
         }
         Ok((0..count).map(DriverId).collect())
-    }
-
-    /// Returns the values of --from and --to [m or rad].
-    fn bounds(&self, mechanism: &Mechanism) -> Result<[Option<f64>; 2], Error> {
-        let value = |option, text: &Option<String>| {
-            let text = text.as_deref();
-            text.map(|text| self.conditions.value(mechanism, option, text))
-                .transpose()
-        };
-        let bounds = [value("--from", &self.from)?, value("--to", &self.to)?];
-        match bounds {
-            [Some(from), Some(to)] if from >= to => Err(Error::Usage(format!(
-                "--from, {}, must be less than --to, {}",
-                shown(from),
-                shown(to)
-            ))),
-            _ => Ok(bounds),
-        }
     }
 }
 

@@ -68,8 +68,9 @@ pub(super) struct Run {
     /// Plot over a variable such as a driver instead of time.
     #[arg(long, value_name = "NAME", requires = "plot")]
     over: Option<String>,
-    /// Write a page, .html or .htm or `-` for stdout, on which the mechanism moves; it works
-    /// offline. Of more than 10,000 rows it shows every second, third and so on.
+    /// Write a page on which the mechanism moves, .html or .htm or `-` for stdout, or a picture that
+    /// moves by itself, .svg. Both work offline. Of more than 10,000 rows the page shows every
+    /// second, third and so on, of more than 240 the picture.
     #[arg(short, long, value_name = "PAGE")]
     animate: Option<PathBuf>,
     /// Let the page show forces as arrows where its reader asks for them: what joints and drivers
@@ -200,12 +201,14 @@ impl Run {
         Ok(())
     }
 
-    /// Refuses a page whose name is not that of a page.
+    /// Refuses a page whose name is neither that of a page nor that of a picture.
     fn check_page(&self) -> Result<(), Error> {
         match &self.animate {
-            Some(path) if !is_stdout(path) && !matches!(&*extension(path), "html" | "htm") => {
+            Some(path)
+                if !is_stdout(path) && !matches!(&*extension(path), "html" | "htm" | "svg") =>
+            {
                 Err(Error::Usage(format!(
-                    "`{}` has neither the extension .html nor .htm",
+                    "`{}` has none of the extensions .html, .htm and .svg",
                     path.display()
                 )))
             }

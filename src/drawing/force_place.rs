@@ -115,8 +115,7 @@ impl ForcePlace {
 
 /// Returns arrows for forces with their values at one pose, as long as their parts of the largest
 /// one, with their sizes in words.
-#[must_use]
-pub fn force_arrows(forces: &[(ForcePlace, [f64; 3])]) -> Vec<Symbol> {
+pub(super) fn force_arrows(forces: &[(ForcePlace, [f64; 3])]) -> Vec<Symbol> {
     let [force, torque] = largest(forces.iter().map(|(_, value)| value));
     let mut symbols: Vec<Symbol> = Vec::new();
     for (ForcePlace { kind, at, .. }, [x, y, turning]) in forces {

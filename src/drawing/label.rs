@@ -52,6 +52,8 @@ const ON_AREA: f64 = 14.0;
 pub(super) const ON_WHEEL: f64 = 3.0;
 /// Least difference in cost that counts: rounding decides nothing.
 const BETTER: f64 = 1e-6;
+/// Difference in cost of places among which the order of the candidates may decide.
+const AS_GOOD: f64 = 3.0 * BETTER;
 
 impl Candidate {
     /// Returns places beside a line: at parts of its length, on sides, at gaps.
@@ -159,17 +161,33 @@ pub(super) fn place(
             let taken = &views[0].taken;
             !label.optional || taken.iter().all(|other| bounds.overlap(other) <= 0.0)
         };
-        for candidate in label.candidates.iter().filter(clear) {
+        // Good places first, so that few others are worth a look.
+        let mut cheapest: Vec<(usize, &Candidate)> = (label.candidates.iter().enumerate())
+            .filter(|(_, c)| clear(c))
+            .collect();
+        cheapest.sort_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
+        let mut least = f64::INFINITY;
+        let mut good: Vec<(usize, f64)> = Vec::new();
+        for (number, candidate) in cheapest {
+            let most = least + AS_GOOD;
             let mut cost = candidate.cost;
             for (index, view) in views.iter().enumerate() {
-                let center = center_in(candidate, index);
-                cost += share * view.cost(&Bounds::about(center, padded), center);
-                if best.is_some_and(|(least, _)| cost >= least - BETTER) {
+                if cost > most {
                     break;
                 }
+                let center = center_in(candidate, index);
+                let bounds = Bounds::about(center, padded);
+                cost += share * view.cost(&bounds, center, (most - cost) / share);
             }
+            if cost <= most {
+                good.push((number, cost));
+                least = least.min(cost);
+            }
+        }
+        good.sort_by_key(|(number, _)| *number);
+        for (number, cost) in good {
             if best.is_none_or(|(least, _)| cost < least - BETTER) {
-                best = Some((cost, *candidate));
+                best = Some((cost, label.candidates[number]));
             }
         }
         if let Some((_, place)) = best {
@@ -210,17 +228,25 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Returns the cost of a label with its middle at `center`.
-    fn cost(&self, label: &Bounds, center: Point) -> f64 {
+    /// Returns the cost of a label with its middle at `center`, or a part of it above `most`.
+    fn cost(&self, label: &Bounds, center: Point, most: f64) -> f64 {
         let on_labels: f64 = self.taken.iter().map(|other| label.overlap(other)).sum();
-        let on_marks: f64 = self.obstacles.iter().map(|o| o.cost(label, center)).sum();
-        ON_LABEL * on_labels + on_marks
+        let on_labels = ON_LABEL * on_labels;
+        let mut on_marks = 0.0;
+        for obstacle in &self.obstacles {
+            if on_labels + on_marks > most {
+                break;
+            }
+            on_marks += obstacle.cost(label, center);
+        }
+        on_labels + on_marks
     }
 }
 
 /// A mark that labels keep clear of.
 struct Obstacle {
-    pieces: Vec<[Point; 2]>,
+    /// Pieces of the outline, a few neighbours in each part.
+    parts: Vec<Part>,
     bounds: Bounds,
     /// Cost per unit of its line covered.
     line: f64,
@@ -228,17 +254,48 @@ struct Obstacle {
     area: f64,
 }
 
-impl Obstacle {
-    fn new(mark: &Mark) -> Self {
-        let pieces = mark.outline.flattened();
+/// Neighbouring pieces of an outline.
+struct Part {
+    pieces: Vec<[Point; 2]>,
+    bounds: Bounds,
+}
+
+/// Pieces in a part of an outline.
+const PIECES: usize = 8;
+
+impl Part {
+    fn new(pieces: &[[Point; 2]]) -> Self {
         let mut bounds = Bounds::NONE;
         for point in pieces.iter().flatten() {
-            // Lines along an axis have no area of their own.
-            bounds.join(&Bounds::about(*point, Point::repeat(2.0)));
+            bounds.add(*point);
+        }
+        // Lines along an axis have no area of their own.
+        let one = Point::repeat(1.0);
+        Self {
+            pieces: pieces.to_vec(),
+            bounds: Bounds {
+                low: bounds.low - one,
+                high: bounds.high + one,
+            },
+        }
+    }
+}
+
+impl Obstacle {
+    fn new(mark: &Mark) -> Self {
+        let parts: Vec<Part> = mark
+            .outline
+            .flattened()
+            .chunks(PIECES)
+            .map(Part::new)
+            .collect();
+        let mut bounds = Bounds::NONE;
+        for part in &parts {
+            bounds.join(&part.bounds);
         }
         let line = match mark.layer {
-            Layer::Trace => 0.6,
-            Layer::Wheel | Layer::Plate | Layer::Bar | Layer::Slot => 1.5,
+            Layer::Trace | Layer::Pose => 0.6,
+            Layer::Wheel | Layer::Plate | Layer::Bar | Layer::Slot | Layer::Dimension => 1.5,
             Layer::Ground | Layer::Driver | Layer::Scale | Layer::Grid | Layer::Curve => 2.5,
             Layer::Slider | Layer::Block | Layer::Joint | Layer::Point | Layer::Force => 4.0,
         };
@@ -250,7 +307,7 @@ impl Obstacle {
             _ => 0.0,
         };
         Self {
-            pieces,
+            parts,
             bounds,
             line,
             area,
@@ -258,11 +315,17 @@ impl Obstacle {
     }
 
     fn cost(&self, label: &Bounds, center: Point) -> f64 {
-        if self.bounds.overlap(label) <= 0.0 {
+        if !self.bounds.meets(label) {
             return 0.0;
         }
-        let covered: f64 = self.pieces.iter().map(|piece| inside(*piece, label)).sum();
-        let area = if self.area > 0.0 && contains(self.pieces.iter().copied(), center) {
+        let near = self.parts.iter().filter(|part| part.bounds.meets(label));
+        let pieces = near.flat_map(|part| &part.pieces);
+        let covered: f64 = pieces.map(|piece| inside(*piece, label)).sum();
+        let all = self
+            .parts
+            .iter()
+            .flat_map(|part| part.pieces.iter().copied());
+        let area = if self.area > 0.0 && contains(all, center) {
             self.area
         } else {
             0.0

@@ -1,10 +1,11 @@
 //! A scene at one pose, fitted on a sheet.
 
+use super::lettering;
 use super::outline::{Outline, Point};
 use super::palette::Colour;
 use super::scene::Scene;
 use super::sheet::{Bounds, CAPITALS, Layer, MARGIN, Mark, Sheet, Stroke, Text, WIDTH};
-use super::symbol::{Pen, Symbol, bounds};
+use super::symbol::{OtherPoses, Pen, Symbol, bounds};
 
 /// Greatest height of a sheet as a part of the width.
 const MOST_HEIGHT: f64 = 0.8125;
@@ -14,6 +15,8 @@ const SMALL_WIDTH: f64 = 480.0;
 const ROOMY: f64 = 64.0;
 /// Most growth of a sheet for that reason.
 const MOST_GROWTH: f64 = 2.5;
+/// Distance of lines of text.
+const LINE: f64 = 2.0 * CAPITALS;
 /// Rounds of fitting: symbols and labels do not grow with the scale.
 const ROUNDS: usize = 5;
 
@@ -22,22 +25,29 @@ impl Sheet {
     /// A mechanism of many short bars gets a larger sheet.
     #[must_use]
     pub fn new(scene: &Scene, q: &[f64]) -> Self {
-        fitted(scene, q, WIDTH)
+        fitted(scene, q, &[], WIDTH)
+    }
+
+    /// Draws a scene with its bodies at q, and faint outlines of the bodies at further poses.
+    #[must_use]
+    pub fn with_poses(scene: &Scene, q: &[f64], poses: &[Vec<f64>]) -> Self {
+        fitted(scene, q, poses, WIDTH)
     }
 
     /// Draws a scene on a smaller sheet, with larger lines and letters: for icons and phones.
     #[must_use]
     pub fn small(scene: &Scene, q: &[f64]) -> Self {
-        fitted(scene, q, SMALL_WIDTH)
+        fitted(scene, q, &[], SMALL_WIDTH)
     }
 }
 
-fn fitted(scene: &Scene, q: &[f64], width: f64) -> Sheet {
-    let extent = extent(scene, std::iter::once(q));
+fn fitted(scene: &Scene, q: &[f64], poses: &[Vec<f64>], width: f64) -> Sheet {
+    let all = std::iter::once(q).chain(poses.iter().map(Vec::as_slice));
+    let extent = extent(scene, all);
     let size = size(scene, q, extent, width);
     let room = size - Point::repeat(2.0 * MARGIN);
     let mut scale = fitting(room * 0.8, extent);
-    let mut draft = Draft::new(scene, q, scale);
+    let mut draft = Draft::new(scene, q, poses, scale);
     for _ in 0..ROUNDS {
         // Symbols and labels need this room around the mechanism.
         let around = (draft.bounds.size() - scale * extent).map(|size| size.max(0.0));
@@ -46,7 +56,7 @@ fn fitted(scene: &Scene, q: &[f64], width: f64) -> Sheet {
             break;
         }
         scale = next;
-        draft = Draft::new(scene, q, scale);
+        draft = Draft::new(scene, q, poses, scale);
     }
     draft.finish(scene, scale, size.x)
 }
@@ -94,9 +104,9 @@ struct Draft {
 }
 
 impl Draft {
-    fn new(scene: &Scene, q: &[f64], scale: f64) -> Self {
-        let (mut marks, labels) =
-            Pen::draw(scene.symbols.as_slice(), &scene.bodies, q, scale, None);
+    fn new(scene: &Scene, q: &[f64], poses: &[Vec<f64>], scale: f64) -> Self {
+        let poses = OtherPoses::Shown(poses);
+        let (mut marks, labels) = Pen::draw(&scene.symbols, &scene.bodies, q, scale, poses);
         marks.sort_by_key(|mark| mark.layer);
         let texts = labels.into_iter().map(|label| label.text).collect();
         let mut draft = Self {
@@ -119,12 +129,21 @@ impl Draft {
         }
     }
 
-    /// Adds the scale bar below and moves everything to its place.
+    /// Adds the scale bar and the notes below and moves everything to its place.
     fn finish(mut self, scene: &Scene, scale: f64, width: f64) -> Sheet {
         let corner = Point::new(self.bounds.low.x, self.bounds.high.y + 16.0);
         let (bar, text) = scale_bar(corner, scale);
         self.marks.push(bar);
         self.texts.push(text);
+        let mut start = corner + Point::new(0.0, CAPITALS);
+        for line in notes(&scene.notes, width - 2.0 * MARGIN) {
+            start.y += LINE;
+            self.texts.push(Text {
+                content: line,
+                start,
+                colour: Colour::INK,
+            });
+        }
         self.measure();
         let size = self.bounds.size();
         let left = (0.5 * (width - size.x)).max(MARGIN);
@@ -144,6 +163,24 @@ impl Draft {
             texts: self.texts,
         }
     }
+}
+
+/// Returns sentences in lines of a width at most.
+fn notes(sentences: &[String], width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for sentence in sentences {
+        let mut line = String::new();
+        for word in sentence.split(' ') {
+            let longer = format!("{line}{}{word}", if line.is_empty() { "" } else { " " });
+            if !line.is_empty() && lettering::width(&longer, CAPITALS) > width {
+                lines.push(std::mem::replace(&mut line, word.to_owned()));
+            } else {
+                line = longer;
+            }
+        }
+        lines.push(line);
+    }
+    lines
 }
 
 /// Returns a bar of a round length and its text.

@@ -17,7 +17,7 @@ const GAP: f64 = 2.6;
 const BLANK: f64 = 2.4;
 
 /// The strokes of the characters that names, numbers and units are made of.
-const GLYPHS: [(char, &str); 70] = [
+const GLYPHS: [(char, &str); 75] = [
     ('A', "03 3D 63|16 56"),
     ('B', "03 0D 3D ~5D ~58 38 08|38 ~68 ~63 33 03"),
     ('C', "6B ~6D 3D ~0D 08 ~03 33 ~63 65"),
@@ -84,6 +84,11 @@ const GLYPHS: [(char, &str); 70] = [
     ('.', "03 04"),
     (':', "03 04|08 09"),
     ('-', "07 47"),
+    (',', "14 13 01"),
+    (';', "14 13 01|18 19"),
+    ('=', "06 56|09 59"),
+    ('(', "2E ~0B ~04 21"),
+    (')', "0E ~2B ~24 01"),
     ('/', "02 4D"),
     ('[', "2E 0E 01 21"),
     (']', "0E 2E 21 01"),
@@ -171,7 +176,9 @@ mod tests {
     #[test]
     fn every_character_of_a_name_has_strokes() {
         let letters = ('A'..='Z').chain('a'..='z').chain('0'..='9');
-        for character in letters.chain(['_', '.', ':', '-', '/', '[', ']', '²']) {
+        for character in letters.chain([
+            '_', '.', ':', '-', ',', ';', '=', '(', ')', '/', '[', ']', '²',
+        ]) {
             let strokes: Vec<_> = strokes_of(character).collect();
             assert!(!strokes.is_empty(), "{character}");
             for (point, _) in strokes.iter().flat_map(|stroke| points(stroke)) {

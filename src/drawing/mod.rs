@@ -14,6 +14,7 @@
 //! | [`symbol`] | one file per symbol: its joint, its shape, its motion |
 //! | `force_place` | forces that pictures show, and where they act |
 //! | `sweep`, `scene`, `layout` | the motion shown, all symbols, and their fit on a sheet |
+//! | `diagram` | what a diagram shows on demand |
 //!
 //! ```
 //! use biela::drawing::{Scene, Sheet, svg};
@@ -36,6 +37,7 @@ mod anchor;
 pub mod animation;
 mod attachment;
 mod chart;
+mod diagram;
 mod force_place;
 mod label;
 mod layout;
@@ -52,8 +54,10 @@ mod ticks;
 
 pub use anchor::{Anchor, Frame};
 pub use chart::{Axis, COLOURS, Chart, Line, Panel};
-pub use force_place::{ForcePlace, force_arrows};
+pub use diagram::{Diagram, Followed};
+pub use force_place::ForcePlace;
 pub use palette::Colour;
 pub use scene::Scene;
 pub use sheet::Sheet;
+pub use sweep::usual_driver;
 pub use symbol::Symbol;

@@ -60,10 +60,12 @@ pub(super) struct Stroke {
 pub(super) enum Layer {
     Grid,
     Ground,
+    Pose,
     Slider,
     Plate,
     Bar,
     Wheel,
+    Dimension,
     Trace,
     Slot,
     Block,
@@ -77,13 +79,15 @@ pub(super) enum Layer {
 
 impl Layer {
     /// All layers with their names, in the order in which later ones cover earlier ones.
-    pub(super) const ALL: [(Self, &'static str); 15] = [
+    pub(super) const ALL: [(Self, &'static str); 17] = [
         (Self::Grid, "grid"),
         (Self::Ground, "ground"),
+        (Self::Pose, "poses"),
         (Self::Slider, "sliders"),
         (Self::Plate, "plates"),
         (Self::Bar, "bars"),
         (Self::Wheel, "wheels"),
+        (Self::Dimension, "dimensions"),
         (Self::Trace, "traces"),
         (Self::Slot, "slots"),
         (Self::Block, "blocks"),
@@ -212,6 +216,14 @@ impl Bounds {
 
     pub(super) fn size(&self) -> Point {
         (self.high - self.low).map(|size| size.max(0.0))
+    }
+
+    /// Whether two rectangles have an area in common.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        self.low.x < other.high.x
+            && other.low.x < self.high.x
+            && self.low.y < other.high.y
+            && other.low.y < self.high.y
     }
 
     /// Returns the area that two rectangles have in common.

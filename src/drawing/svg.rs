@@ -97,7 +97,8 @@ pub fn escape(text: &str) -> String {
     quick_xml::escape::escape(text).into_owned()
 }
 
-fn path_data(outline: &Outline) -> String {
+/// Returns an outline as the data of a path.
+pub(super) fn path_data(outline: &Outline) -> String {
     let mut data = String::new();
     let mut add = |command: &str, points: &[Point]| {
         data.push_str(command);

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use crate::kinematics::{Curve, Path, Solver};
-use crate::mechanism::Motion;
+use crate::kinematics::{Curve, End, Path, RangeSettings, Solver};
+use crate::mechanism::{DriverId, Mechanism, Motion};
 
 /// Poses along a whole motion: curves look smooth.
 const STEPS: usize = 240;
@@ -12,6 +12,8 @@ const STEPS: usize = 240;
 const MOST_PLACED: usize = 240_000;
 /// Most turns of the driver that are tried to bring the mechanism back; otherwise one is shown.
 const MOST_TURNS: usize = 8;
+/// Lengths of the mechanism within which the limits of a length are sought.
+const SEARCHED: f64 = 3.0;
 /// Greatest distance from the start that counts as back, as a part of the longest way of a body,
 /// and in radians.
 const BACK: f64 = 1e-6;
@@ -34,13 +36,8 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
         .drivers
         .iter()
         .any(|driver| driver.motion().is_some_and(Motion::uses_time));
-    let crank = mechanism
-        .drivers
-        .iter()
-        .position(|driver| driver.coordinate.kind.is_angle());
-    let fewer = MOST_PLACED / mechanism.bodies.len().max(1);
-    let steps = fewer.clamp(STEPS / 10, STEPS);
-    let most_turns = (fewer / STEPS).clamp(1, MOST_TURNS);
+    let crank = first_angle(&mechanism);
+    let [steps, most_turns] = resolution(&mechanism);
     let mut poses = vec![home.q.clone()];
     if moves {
         let duration = (mechanism.simulation.stop - home.time).max(0.0);
@@ -83,6 +80,83 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
     }
     solver.restore(&home);
     poses
+}
+
+/// Returns the generalized coordinates along the range of one driver between bounds, with the others
+/// held, from its lower to its upper end; of a driver that turns fully, from the solver's pose on.
+/// Without a limit, an angle makes one turn, and a length changes by the size of the mechanism.
+pub(super) fn follow(
+    solver: &mut Solver,
+    driver: DriverId,
+    bounds: [Option<f64>; 2],
+) -> Vec<Vec<f64>> {
+    let [steps, turns] = resolution(solver.mechanism());
+    let settings = RangeSettings {
+        samples: steps as u32,
+        turns: turns as u32,
+        lengths: SEARCHED,
+        bounds,
+    };
+    let start = solver.pose().drivers[driver.index()];
+    let range = solver.range(driver, &settings);
+    let kind = solver.mechanism().drivers[driver.index()].coordinate.kind;
+    let shown = |end: &End| match *end {
+        End::NotFound { .. } if kind.is_angle() => Some(start + TAU),
+        End::NotFound { value } => Some(start + (value - start) / SEARCHED),
+        _ => None,
+    };
+    // One turn upwards shows both ways of an angle without limits.
+    let low = match shown(&range.lower) {
+        Some(_) if kind.is_angle() => start,
+        low => low.unwrap_or(f64::NEG_INFINITY),
+    };
+    let high = shown(&range.upper).map_or(f64::INFINITY, |high| high + 1e-9 * high.abs());
+    let within = |value: f64| (low..=high).contains(&value);
+    let samples = range.samples.into_iter();
+    let mut poses: Vec<Vec<f64>> = (samples.filter(|sample| within(sample.driver)))
+        .map(|sample| sample.q)
+        .collect();
+    if poses.is_empty() {
+        poses.push(solver.pose().q.clone());
+    }
+    poses
+}
+
+/// Returns poses spread evenly over a motion: from one end to the other or, where the motion
+/// returns to its start, without the start.
+pub(super) fn spread(motion: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
+    let last = motion.len() - 1;
+    let index = |k: usize, parts: usize| (k * last + parts / 2) / parts;
+    let indices: Vec<usize> = if last == 0 {
+        Vec::new()
+    } else if is_back(motion) {
+        (1..=count).map(|k| index(k, count + 1)).collect()
+    } else if count == 1 {
+        vec![last]
+    } else {
+        (0..count).map(|k| index(k, count - 1)).collect()
+    };
+    indices.into_iter().map(|k| motion[k].clone()).collect()
+}
+
+/// Returns the driver that a picture follows if nothing is prescribed: the first angle or, without
+/// any, the first one.
+#[must_use]
+pub fn usual_driver(mechanism: &Mechanism) -> Option<DriverId> {
+    let first = (!mechanism.drivers.is_empty()).then_some(0);
+    first_angle(mechanism).or(first).map(DriverId)
+}
+
+fn first_angle(mechanism: &Mechanism) -> Option<usize> {
+    let mut drivers = mechanism.drivers.iter();
+    drivers.position(|driver| driver.coordinate.kind.is_angle())
+}
+
+/// Returns the number of poses per turn, and the greatest number of turns.
+fn resolution(mechanism: &Mechanism) -> [usize; 2] {
+    let fewer = MOST_PLACED / mechanism.bodies.len().max(1);
+    let steps = fewer.clamp(STEPS / 10, STEPS);
+    [steps, (fewer / STEPS).clamp(1, MOST_TURNS)]
 }
 
 /// Whether all bodies end where they started, but for full turns.
@@ -131,4 +205,61 @@ fn advance(solver: &mut Solver, path: &Path, poses: &mut Vec<Vec<f64>>) -> bool 
     let followed = solver.track(path);
     poses.push(solver.pose().q.clone());
     followed.is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::Source;
+
+    /// Returns a shipped mechanism at its own pose.
+    fn assembled(name: &str) -> Solver {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("mechanisms");
+        let file = folder.join(name).with_extension("toml");
+        let source = Source::open(name.to_owned(), &file).expect("it is shipped");
+        let (mechanism, _) = Mechanism::parse(&source).expect("it is right");
+        let mut solver = Solver::new(mechanism.into()).expect("it is determined");
+        let path = Path::new(solver.mechanism());
+        solver.assemble(&path).expect("it closes");
+        solver
+    }
+
+    #[test]
+    fn poses_reach_from_one_dead_point_to_the_other() {
+        // The side between an arm of 0.25 m and a pivot 0.4 m from the arm's: law of cosines.
+        let side = |q: &Vec<f64>| {
+            (0.4_f64.powi(2) + 0.25_f64.powi(2) - 2.0 * 0.4 * 0.25 * q[2].cos()).sqrt()
+        };
+        let mut solver = assembled("tlv");
+        let home = solver.pose().clone();
+        let driver = usual_driver(solver.mechanism()).expect("it has one");
+        let motion = follow(&mut solver, driver, [None; 2]);
+        assert_eq!(*solver.pose(), home);
+        let ends = spread(&motion, 2);
+        // Dead points are located to rounding: arm and base in line.
+        for (end, length) in ends.iter().zip([0.15, 0.65]) {
+            assert!((side(end) - length).abs() < 1e-11, "{}", side(end));
+        }
+        let four = spread(&motion, 4);
+        assert_eq!((&four[0], &four[3]), (&ends[0], &ends[1]));
+        assert_eq!(spread(&motion, 1), ends[1..]);
+        assert!(spread(&motion[..1], 3).is_empty());
+        // Bounds stand in place of the dead points.
+        let motion = follow(&mut solver, driver, [Some(0.3), Some(0.4)]);
+        let ends = spread(&motion, 2);
+        assert!((side(&ends[0]) - 0.3).abs() < 1e-12 && (side(&ends[1]) - 0.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn poses_of_a_full_turn_leave_out_its_start() {
+        let mut solver = assembled("four_bar");
+        let home = solver.pose().q.clone();
+        let driver = usual_driver(solver.mechanism()).expect("it has one");
+        for motion in [sweep(&mut solver), follow(&mut solver, driver, [None; 2])] {
+            let crank: Vec<f64> = spread(&motion, 3).iter().map(|q| q[2] - home[2]).collect();
+            for (turned, quarter) in crank.iter().zip([0.25, 0.5, 0.75]) {
+                assert!((turned - quarter * TAU).abs() < 1e-9, "{crank:?}");
+            }
+        }
+    }
 }

@@ -42,7 +42,7 @@
 //! | `singular` | dead points and change points |
 //! | `continuation` | sub-steps along a path |
 //! | `initial_pose` | the first pose |
-//! | `analysis` | sensitivity, range, modes, checks of the geometry |
+//! | `analysis` | sensitivity, range, modes, instant centres, checks of the geometry |
 //! | `forces` | efforts of drivers, reactions of joints, energies |
 //! | `solver` | the facade |
 //! | `signals` | its values of signals and of measures computed from them |
@@ -75,8 +75,8 @@ mod system;
 pub mod variation;
 
 pub use analysis::{
-    ChangePoint, Direction, End, Extreme, GeometryWarning, GeometryWarningKind, Mode, Modes, Range,
-    RangeSettings, Sample, Sensitivity,
+    ChangePoint, Direction, End, Extreme, GeometryWarning, GeometryWarningKind, InstantCentre,
+    Mode, Modes, Range, RangeSettings, Sample, Sensitivity,
 };
 pub use assembly::estimate::Move;
 pub use block::{BlockCarryover, CheckedSegment, Crossing};

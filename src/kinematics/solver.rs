@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::analysis::{self, Direction, GeometryWarning, Modes, Range, RangeSettings, Sensitivity};
+use super::analysis::{
+    self, Direction, GeometryWarning, InstantCentre, Modes, Range, RangeSettings, Sensitivity,
+};
 use super::assembly::estimate::{Move, estimate, moves};
 use super::block::Crossing;
 use super::continuation::{Blocked, PathTracker, Progress};
@@ -17,7 +19,7 @@ use super::singular::{self, Approach};
 use super::state::{Carryover, Pose, State};
 use super::structure::Structure;
 use super::system::System;
-use crate::mechanism::{DriverId, Jet, MarkerId, Mechanism};
+use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism};
 
 /// Solves position, velocity and acceleration of one mechanism.
 ///
@@ -359,6 +361,17 @@ impl Solver {
             tracker,
         } = self;
         forces::indeterminate(model, state, tracker)
+    }
+
+    /// Returns the instant centre of a body and ground, for rates of the present pose.
+    ///
+    /// # Panics
+    ///
+    /// If the body is none of the mechanism's.
+    #[must_use]
+    pub fn instant_centre(&self, body: BodyId, rates: &Rates) -> InstantCentre {
+        let bodies = self.mechanism().bodies.len();
+        analysis::instant_centre(&self.state, bodies, body, rates)
     }
 
     /// Finds the range of one driver up and down from the present pose, with the other drivers,

@@ -389,4 +389,13 @@ impl Mechanism {
             .map_or("ground", |body| &self.bodies[body.index()].name);
         format!("{body}.{}", marker.name)
     }
+
+    /// Returns the unit in which the file shows lengths: that of its first parameter that is a
+    /// length and has one; `None` for metres.
+    #[must_use]
+    pub fn length_display(&self) -> Option<DisplayUnit> {
+        let units = self.parameters.iter().filter_map(|p| p.unit);
+        let mut lengths = units.filter(|unit| unit.dimension == Unit::METRE.dimension);
+        lengths.find_map(|unit| unit.display)
+    }
 }

@@ -8,7 +8,7 @@ use super::edit::{EditError, Place, edit};
 use super::outcome::{Obstacle, Outcome};
 use super::ranges::{DriverRange, driver_ranges, driver_speeds};
 use super::undo::{Kept, UndoHistory};
-use super::values::{Moment, length_display, shown_in};
+use super::values::{Moment, shown_in};
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
 use crate::kinematics::{
@@ -81,7 +81,7 @@ impl Session {
             forces,
             picture: MovingPicture::new(&mut solver, &reached, None),
             outputs: Output::all(&mechanism),
-            length: length_display(&mechanism),
+            length: mechanism.length_display(),
             ranges,
             path,
             home,

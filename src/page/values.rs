@@ -1,7 +1,7 @@
 //! Values of outputs at a pose, and the units in which they are shown.
 
 use crate::kinematics::{ForceQuantity, Forces, Output, OutputSource, Rates, Solver};
-use crate::mechanism::{DisplayUnit, Jet, Mechanism, Order, Unit};
+use crate::mechanism::{DisplayUnit, Jet, Order, Unit};
 
 /// All that values are read from.
 pub(super) struct Moment<'a> {
@@ -52,11 +52,4 @@ pub(super) fn shown_in(unit: Unit, length: Option<DisplayUnit>) -> (&'static str
         None if unit == Unit::ONE => ("", 1.0),
         None => (unit.name, 1.0),
     }
-}
-
-/// Returns the unit in which the file shows lengths: that of its first parameter that is a length.
-pub(super) fn length_display(mechanism: &Mechanism) -> Option<DisplayUnit> {
-    let units = mechanism.parameters.iter().filter_map(|p| p.unit);
-    let mut lengths = units.filter(|unit| unit.dimension == Unit::METRE.dimension);
-    lengths.find_map(|unit| unit.display)
 }

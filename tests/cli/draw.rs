@@ -88,3 +88,56 @@ fn draw_shows_the_pose_that_is_asked_for() {
     ])
     .code(2);
 }
+
+#[test]
+fn draw_adds_what_is_asked_for() {
+    let draw = |more: &[&str]| {
+        let mut arguments = vec!["draw", "mechanisms/loader.toml", "-o", "-"];
+        arguments.extend(more);
+        biela(&arguments)
+    };
+    let plain = stdout(&draw(&[]).success());
+    let poses = stdout(&draw(&["--poses", "4"]).success());
+    assert!(poses.contains("class=\"poses\"") && !plain.contains("class=\"poses\""));
+    // Without angles the first driver moves, here `lift`.
+    assert_eq!(
+        poses,
+        stdout(&draw(&["--poses", "4", "--driver", "lift"]).success())
+    );
+    assert_ne!(
+        poses,
+        stdout(&draw(&["--poses", "4", "--driver", "tilt"]).success())
+    );
+    let bounded = stdout(&draw(&["--poses", "4", "--from", "1.1"]).success());
+    assert_ne!(poses, bounded);
+    let dimensions = stdout(&draw(&["--dimensions"]).success());
+    assert!(dimensions.contains(">lengths in ") && dimensions.contains("class=\"dimensions\""));
+    let centres = stdout(&draw(&["--instant-centres", "--driver", "tilt"]).success());
+    assert!(centres.contains("instant centres while tilt moves alone"));
+    let refused = stderr(&draw(&["--poses", "4", "--driver", "tild"]).code(2));
+    assert_eq!(
+        refused,
+        "error: --driver: no driver `tild`; did you mean `tilt`?\n"
+    );
+    draw(&["--poses", "101"]).code(2);
+    draw(&["--from", "2", "--to", "1"]).code(2);
+}
+
+#[test]
+fn draw_without_a_driver_has_no_poses() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("truss.toml");
+    let text = "format = 1\nname = 'truss'\n[ground.markers]\nO = [0, 0]\n\
+        [bodies.bar]\nmarkers = { O = [0, 0] }\n\
+        [joints]\nO = { type = 'weld', markers = ['ground.O', 'bar.O'] }\n";
+    std::fs::write(&path, text).unwrap();
+    let path = path.to_str().unwrap();
+    for (option, named) in [("--poses=2", "--poses"), ("--from=1", "--from, --to")] {
+        let refused = stderr(&biela(&["draw", path, "-o", "-", option]).code(2));
+        assert_eq!(
+            refused,
+            format!("error: {named}: the mechanism has no driver\n")
+        );
+    }
+    biela(&["draw", path, "-o", "-", "--instant-centres"]).success();
+}

@@ -205,8 +205,8 @@ fn bad_usage_exits_with_2() {
             "invalid value '0' for '--width <PIXELS>'",
         ),
         (
-            &["run", "mechanisms/tlv.toml", "--animate", "tlv.svg"],
-            "`tlv.svg` has neither the extension .html nor .htm",
+            &["run", "mechanisms/tlv.toml", "--animate", "tlv.gif"],
+            "`tlv.gif` has none of the extensions .html, .htm and .svg",
         ),
         (
             &["watch", "no_such_file.toml"],

@@ -143,3 +143,84 @@ fn run_animates() {
     let (_, messages) = film(&[four_bar], 0);
     assert!(messages.contains("note: nothing moves"), "{messages}");
 }
+
+#[test]
+fn run_writes_a_picture_that_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("four_bar.svg");
+    let path = path.to_str().unwrap();
+    let write = |drive: &str, stop: &str| {
+        let four_bar = "mechanisms/four_bar.toml";
+        let arguments = [
+            "run", four_bar, "--drive", drive, "--stop", stop, "--step", "0.25",
+        ];
+        biela(&[&arguments[..], &["--animate", path]].concat()).success();
+        std::fs::read_to_string(path).unwrap()
+    };
+    let svg = write("crank_angle = 60*deg + 2*pi*t", "1");
+    let mut reader = quick_xml::Reader::from_str(&svg);
+    while reader.read_event().unwrap() != quick_xml::events::Event::Eof {}
+    // The crank turns by quarters about its pivot, the origin, and never back; clockwise is
+    // positive on the sheet.
+    let crank = "type=\"translate\" additive=\"replace\" values=\"0 0\" dur=\"2s\" \
+                 repeatCount=\"indefinite\"/><animateTransform attributeName=\"transform\" \
+                 type=\"rotate\" additive=\"sum\" values=\"-60;-150;-240;-330;-420\"";
+    assert!(svg.contains(crank), "{svg}");
+    for name in ["crank", "coupler", "rocker", "crank_angle", "P"] {
+        assert!(svg.contains(&format!(">{name}<")), "{name}");
+    }
+    // Half a turn in three seconds is shown there and back, in six.
+    let svg = write("crank_angle = 60*deg + pi/3*t", "3");
+    assert!(svg.contains("dur=\"6s\""));
+    let angles = svg
+        .split("type=\"rotate\"")
+        .find(|part| part.contains("values=\"-60;-75;-90;"));
+    let angles = angles.expect("the crank turns").split('"').nth(3).unwrap();
+    let angles: Vec<f64> = angles
+        .split(';')
+        .map(|angle| angle.parse().unwrap())
+        .collect();
+    assert_eq!((angles.len(), angles[12]), (25, -240.0));
+    assert!(angles.iter().eq(angles.iter().rev()));
+    // A page is still a page.
+    biela(&[
+        "run",
+        "mechanisms/four_bar.toml",
+        "--animate",
+        "four_bar.gif",
+    ])
+    .code(2);
+}
+
+#[test]
+fn the_readme_shows_what_its_command_writes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("jansen_leg.svg");
+    let drive = "crank_angle = -pi*t";
+    let command = format!(
+        "biela run mechanisms/jansen_leg.toml --drive '{drive}' --stop 2 --step 0.04 --animate "
+    );
+    for file in ["README.md", "Makefile"] {
+        assert!(
+            std::fs::read_to_string(file).unwrap().contains(&command),
+            "{file}"
+        );
+    }
+    let arguments = [
+        "--drive",
+        drive,
+        "--stop",
+        "2",
+        "--step",
+        "0.04",
+        "--animate",
+    ];
+    let arguments = [&["run", "mechanisms/jansen_leg.toml"], &arguments[..]].concat();
+    biela(&[&arguments[..], &[path.to_str().unwrap()]].concat()).success();
+    let kept = std::fs::read_to_string("docs/jansen_leg.svg").unwrap_or_default();
+    assert!(
+        std::fs::read_to_string(path).unwrap() == kept,
+        "the picture of the readme has changed: run `make refresh` and look at docs/jansen_leg.svg"
+    );
+    assert!(kept.len() < 60_000, "{}", kept.len());
+}

@@ -103,3 +103,24 @@ fn range_tells_the_limits() {
         assert!(message.contains(expected), "{message}");
     }
 }
+
+#[test]
+fn bounds_that_look_like_degrees_are_warned_of() {
+    let warning = |option: &str| {
+        format!(
+            "warning: {option}: an angle of 90 rad is 5156.6 deg; degrees are written `90*deg`\n"
+        )
+    };
+    let range = |more: &[&str]| {
+        let mut arguments = vec!["range", "mechanisms/four_bar.toml"];
+        arguments.extend(more);
+        stderr(&biela(&arguments).success())
+    };
+    assert_eq!(range(&["--from", "0", "--to", "90"]), warning("--to"));
+    assert_eq!(range(&["--from", "0", "--to", "90*deg"]), "");
+    // A length of 90 m is no angle.
+    let side = biela(&["range", "mechanisms/tlv.toml", "--to", "90"]).success();
+    assert_eq!(stderr(&side), "");
+    let arguments = ["draw", "mechanisms/four_bar.toml", "-o", "-", "--to", "90"];
+    assert_eq!(stderr(&biela(&arguments).success()), warning("--to"));
+}

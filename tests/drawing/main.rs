@@ -8,6 +8,7 @@ mod generated;
 
 mod cams;
 mod charts;
+mod diagrams;
 mod gallery;
 mod links;
 mod pictures;

@@ -100,6 +100,10 @@ def test_pictures_are_shown_in_notebooks(four_bar):
     drawing = four_bar.draw(drive={"crank_angle": 2.0}, width=300)
     assert xml.fromstring(drawing).tag.endswith("svg") and drawing._repr_svg_() == drawing
     assert four_bar._repr_svg_() != drawing
+    full = four_bar.draw(poses=4, driver="crank_angle", dimensions=True, instant_centres=True)
+    assert 'class="poses"' in full and "lengths in mm" in full and "I coupler" in full
+    with pytest.raises(biela.UsageError, match="did you mean `crank_angle`"):
+        four_bar.draw(poses=4, driver="crank_angel")
     result = four_bar.run(t=[0, 0.1, 0.3], drive={"crank_angle": "1 + t"})
     assert "four_bar" in result.to_html() and result._repr_html_().startswith("<iframe srcdoc=")
     assert four_bar.run(drive={"crank_angle": [1.0, 1.1]}).to_html()

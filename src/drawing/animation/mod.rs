@@ -1,15 +1,17 @@
-//! Mechanisms that move: a page that plays a motion.
+//! Mechanisms that move: a page, or a picture, that plays a motion.
 //!
 //! Marks are drawn once, in the frames that they move with; each moment adds the places of these
 //! frames. The page is one file that needs no other.
 
 mod film;
 mod moving;
+mod moving_svg;
 mod page;
 mod picture;
 mod stage;
 
 pub use moving::MovingPicture;
+pub use moving_svg::moving_svg;
 pub use page::{fill, page, page_with, player};
 
 use super::force_place::ForcePlace;

@@ -15,7 +15,6 @@ const USUAL: f64 = 1.2 * WIDTH;
 pub(super) fn picture(scene: &Scene, q: &[f64], stage: &Stage) -> String {
     let [corner, size] = stage.view;
     let view = [corner.x, corner.y, size.x, size.y].map(number).join(" ");
-    let placements = stage.placements(q);
     let class = if size.x > USUAL {
         "stage wide"
     } else {
@@ -25,6 +24,25 @@ pub(super) fn picture(scene: &Scene, q: &[f64], stage: &Stage) -> String {
     let mut svg = format!(
         "<svg class=\"{class}\" viewBox=\"{view}\" role=\"img\" aria-label=\"{name}, moving\">"
     );
+    let moving = |attachment| [format!(" data-attachment=\"{attachment}\""), String::new()];
+    let changing = |mark: &Mark| [elastic_data(mark, stage), String::new()];
+    svg += &groups(q, stage, &moving, &changing);
+    svg += "<g class=\"arrows force\"/><g class=\"arrows acceleration\"/>\
+            <g class=\"arrows velocity\"/>";
+    svg += &names(stage);
+    svg + "</svg>"
+}
+
+/// Returns the marks at the pose q in groups of one layer and one frame each. `moving` gives
+/// further attributes and content of a group that moves, `changing` those of a mark.
+pub(super) fn groups(
+    q: &[f64],
+    stage: &Stage,
+    moving: &dyn Fn(usize) -> [String; 2],
+    changing: &dyn Fn(&Mark) -> [String; 2],
+) -> String {
+    let placements = stage.placements(q);
+    let mut svg = String::new();
     for (layer, name) in Layer::ALL {
         let marks = stage.marks.iter().filter(|(_, mark)| mark.layer == layer);
         let marks: Vec<&(usize, Mark)> = marks.collect();
@@ -35,22 +53,25 @@ pub(super) fn picture(scene: &Scene, q: &[f64], stage: &Stage) -> String {
             if attachment > 0 {
                 let Placement { origin, angle } = placements[attachment];
                 let [x, y, degrees] = [origin.x, origin.y, angle.to_degrees()].map(number);
+                let [attributes, content] = moving(attachment);
                 svg += &format!(
-                    " data-attachment=\"{attachment}\" \
-                     transform=\"translate({x} {y}) rotate({degrees})\""
+                    "{attributes} transform=\"translate({x} {y}) rotate({degrees})\">{content}"
                 );
+            } else {
+                svg += ">";
             }
-            svg += ">";
             for (_, mark) in together {
-                svg += &path(mark, &elastic_data(mark, stage));
+                let [attributes, content] = changing(mark);
+                let path = path(mark, &attributes);
+                match path.strip_suffix("/>") {
+                    Some(open) if !content.is_empty() => svg += &format!("{open}>{content}</path>"),
+                    _ => svg += &path,
+                }
             }
             svg += "</g>";
         }
     }
-    svg += "<g class=\"arrows force\"/><g class=\"arrows acceleration\"/>\
-            <g class=\"arrows velocity\"/>";
-    svg += &names(stage);
-    svg + "</svg>"
+    svg
 }
 
 /// Returns the attributes of an elastic line, or nothing.

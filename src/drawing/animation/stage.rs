@@ -7,7 +7,7 @@ use crate::drawing::layout::{extent, fitting, scale_bar, size};
 use crate::drawing::outline::{Point, convex_hull};
 use crate::drawing::scene::Scene;
 use crate::drawing::sheet::{Bounds, CAPITALS, MARGIN, Mark, Text, WIDTH};
-use crate::drawing::symbol::{Pen, Symbol};
+use crate::drawing::symbol::{OtherPoses, Pen, Symbol};
 
 /// Poses that decide how much room the motion needs.
 const SAMPLES: usize = 120;
@@ -53,8 +53,13 @@ impl Stage {
 
         let labelled = poses.len().div_ceil(LABEL_SAMPLES).max(1);
         let further: Vec<&[f64]> = poses.iter().step_by(labelled).skip(1).copied().collect();
-        let (mut marks, labels) =
-            Pen::draw(&scene.symbols, &scene.bodies, q, scale, Some(&further));
+        let (mut marks, labels) = Pen::draw(
+            &scene.symbols,
+            &scene.bodies,
+            q,
+            scale,
+            OtherPoses::Motion(&further),
+        );
         marks.sort_by_key(|mark| mark.layer);
         let mut attachments = vec![Attachment::Ground];
         let mut lengths = Vec::new();

@@ -13,15 +13,7 @@ pub(in crate::drawing) fn compose(
     motion: &[Vec<f64>],
     traces: bool,
 ) -> Vec<Symbol> {
-    let mut composer = Composer {
-        mechanism,
-        parameters,
-        q,
-        motion,
-        symbols: Vec::new(),
-        spans: vec![Vec::new(); mechanism.bodies.len()],
-        pivots: Vec::new(),
-    };
+    let mut composer = Composer::new(mechanism, parameters, q, motion);
     // The other joints decide where a follower reaches, which its knife points to.
     let is_cam = |joint: &&Joint| matches!(joint.kind, JointKind::Cam { .. });
     let (cams, others): (Vec<&Joint>, Vec<&Joint>) = mechanism.joints.iter().partition(is_cam);
@@ -51,8 +43,21 @@ pub(in crate::drawing) fn compose(
     composer.symbols
 }
 
+/// Returns letters of joints and lengths of bodies at the pose q, and sentences about them.
+pub(in crate::drawing) fn compose_dimensions(
+    mechanism: &Mechanism,
+    parameters: &[f64],
+    q: &[f64],
+) -> (Vec<Symbol>, Vec<String>) {
+    let mut composer = Composer::new(mechanism, parameters, q, &[]);
+    let places = joint_letter::places(&composer);
+    let mut notes = joint_letter::compose(&mut composer, &places);
+    notes.extend(dimension::compose(&mut composer, &places));
+    (composer.symbols, notes)
+}
+
 /// Returns the name of a point of interest, with its body where another one has the same name.
-fn point_name(mechanism: &Mechanism, id: MarkerId) -> String {
+pub(super) fn point_name(mechanism: &Mechanism, id: MarkerId) -> String {
     let marker = &mechanism.markers[id.index()];
     let is_alike = |other: &&MarkerId| mechanism.markers[other.index()].name == marker.name;
     let body = marker.body.map(|body| &mechanism.bodies[body.index()].name);
@@ -79,7 +84,24 @@ pub(super) struct Composer<'a> {
     pub(super) pivots: Vec<(Anchor, Option<BodyId>)>,
 }
 
-impl Composer<'_> {
+impl<'a> Composer<'a> {
+    fn new(
+        mechanism: &'a Mechanism,
+        parameters: &'a [f64],
+        q: &'a [f64],
+        motion: &'a [Vec<f64>],
+    ) -> Self {
+        Self {
+            mechanism,
+            parameters,
+            q,
+            motion,
+            symbols: Vec::new(),
+            spans: vec![Vec::new(); mechanism.bodies.len()],
+            pivots: Vec::new(),
+        }
+    }
+
     pub(super) fn value(&self, expression: &Expression) -> f64 {
         expression.evaluate(&|p| self.parameters[p.index()], 0.0)
     }

@@ -25,9 +25,9 @@ use pen::{
     ARROW, BAR, BLOCK, DASH_DOTS, DASHES, HATCH, LINE, PIN, THIN, colour_of, on_sheet_direction,
 };
 
-pub(super) use composer::compose;
+pub(super) use composer::{compose, compose_dimensions};
 pub use force_arrow::ForceKind;
-pub(super) use pen::Pen;
+pub(super) use pen::{OtherPoses, Pen};
 pub use slide_way::{GuideContact, WaySide};
 
 /// A symbol as the scene and the sheet see it.
@@ -75,7 +75,7 @@ pub(super) fn bounds<'a>(symbols: impl IntoIterator<Item = &'a Symbol>, q: &[f64
 macro_rules! symbols {
     ($composer:ident, $ends:ident:
      $($module:ident: $name:ident $(, $joint:pat => $compose:expr)*;)+) => {
-        $(mod $module; pub use $module::$name;)+
+        $(pub(super) mod $module; pub use $module::$name;)+
 
         /// A symbol with its size and its place on bodies or on ground.
         ///
@@ -139,5 +139,8 @@ symbols! { composer, ends:
     point: InterestPoint;
     force_arrow: ForceArrow;
     torque_arrow: TorqueArrow;
+    joint_letter: JointLetter;
+    dimension: Dimension;
+    instant_centre: InstantCentreMark;
     trace: Trace;
 }

@@ -25,6 +25,11 @@ pub(super) const DASHES: &[f64] = &[4.0, 3.0];
 /// Dashes and gaps of pitch lines.
 pub(super) const DASH_DOTS: &[f64] = &[10.0, 3.0, 2.0, 3.0];
 
+/// Part of a body's colour in its texts: half its light can be read.
+const NAME: f64 = 0.55;
+/// Least distance on the sheet that can be seen.
+const SEEN: f64 = 0.1;
+
 /// Most bodies with names: more names would hide the mechanism.
 const MOST_NAMES: usize = 60;
 
@@ -38,26 +43,34 @@ pub(in crate::drawing) struct Pen<'a> {
     middle: Point,
     /// Whether the mechanism starts to move: marks then keep their shape in their frames.
     pub(super) moving: bool,
-    /// Poses of the motion, over which labels keep their places.
-    motion: &'a [&'a [f64]],
+    others: OtherPoses<'a>,
     /// The frame that the next marks and labels move with.
     attachment: Attachment,
     marks: Vec<Mark>,
     driver_labels: Vec<Label>,
     point_labels: Vec<Label>,
+    length_labels: Vec<Label>,
     /// Places for the name of each body, from everything drawn of it.
     body_places: Vec<Vec<Candidate>>,
 }
 
+/// Poses besides the one that is drawn.
+#[derive(Clone, Copy)]
+pub(in crate::drawing) enum OtherPoses<'a> {
+    /// Poses that a picture at rest shows faintly.
+    Shown(&'a [Vec<f64>]),
+    /// Poses along which the mechanism moves; labels keep their places over them.
+    Motion(&'a [&'a [f64]]),
+}
+
 impl<'a> Pen<'a> {
-    /// Draws symbols at the pose q, from which the mechanism moves along further poses if there is
-    /// a motion. Returns the marks, and the labels at their places.
+    /// Draws symbols at the pose q. Returns the marks, and the labels at their places.
     pub(in crate::drawing) fn draw(
         symbols: &'a [Symbol],
         bodies: &[String],
         q: &'a [f64],
         scale: f64,
-        motion: Option<&'a [&'a [f64]]>,
+        others: OtherPoses<'a>,
     ) -> (Vec<Mark>, Vec<Placed>) {
         let shown = symbols.iter().map(Symbol::shape);
         let points: Vec<Point> = shown
@@ -71,12 +84,13 @@ impl<'a> Pen<'a> {
             q,
             scale,
             middle: on_sheet(middle, scale),
-            moving: motion.is_some(),
-            motion: motion.unwrap_or_default(),
+            moving: matches!(others, OtherPoses::Motion(_)),
+            others,
             attachment: Attachment::Ground,
             marks: Vec::new(),
             driver_labels: Vec::new(),
             point_labels: Vec::new(),
+            length_labels: Vec::new(),
             body_places: bodies.iter().map(|_| Vec::new()).collect(),
         };
         for symbol in symbols {
@@ -86,23 +100,50 @@ impl<'a> Pen<'a> {
     }
 
     /// Returns all marks, and the labels at their places.
-    fn finish(self, bodies: &[String]) -> (Vec<Mark>, Vec<Placed>) {
+    fn finish(mut self, bodies: &[String]) -> (Vec<Mark>, Vec<Placed>) {
+        let motion = match self.others {
+            OtherPoses::Motion(motion) => motion,
+            OtherPoses::Shown(poses) => {
+                let shown: Vec<Mark> = (self.marks.iter().filter(|mark| shows_body(mark)))
+                    .flat_map(|mark| poses.iter().filter_map(|q| self.faint(mark, q)))
+                    .collect();
+                self.marks.extend(shown);
+                &[]
+            }
+        };
         // Labels choose their places in this order.
         let mut labels = self.driver_labels;
         labels.extend(self.point_labels);
+        labels.extend(self.length_labels);
         if bodies.len() <= MOST_NAMES {
             let bodies = bodies.iter().zip(self.body_places).enumerate();
             labels.extend(bodies.map(|(index, (name, candidates))| Label {
                 content: name.clone(),
-                // Half the colour's light can be read.
-                colour: Colour::of_body(index).shade(0.55),
+                colour: Colour::of_body(index).shade(NAME),
                 attachment: Attachment::Body(BodyId(index)),
                 optional: true,
                 candidates,
             }));
         }
-        let placed = label::place(labels, &self.marks, self.q, self.motion, self.scale);
+        let placed = label::place(labels, &self.marks, self.q, motion, self.scale);
         (self.marks, placed)
+    }
+
+    /// Returns the faint outline of a mark at another pose, `None` if it is where it was.
+    fn faint(&self, mark: &Mark, q: &[f64]) -> Option<Mark> {
+        /// Part of the colour that is left.
+        const FAINT: f64 = 0.5;
+        let moved = mark.moved(self.q, q, self.scale);
+        let [old, new] = [mark, &moved].map(|mark| mark.outline.flattened());
+        let far = |(old, new): (&[Point; 2], &[Point; 2])| (old[0] - new[0]).norm() > SEEN;
+        let has_moved = old.iter().zip(&new).any(far);
+        let colour = (mark.stroke.map(|stroke| stroke.colour)).or(mark.fill.map(|(c, _)| c))?;
+        has_moved.then(|| Mark {
+            layer: Layer::Pose,
+            fill: None,
+            stroke: Some(Stroke::solid(colour.tint(FAINT), THIN)),
+            ..moved
+        })
     }
 
     /// Attaches the next marks and labels to the body of an anchor. Returns the point and x-axis
@@ -264,6 +305,17 @@ impl<'a> Pen<'a> {
         self.point_labels.push(label);
     }
 
+    /// Tells a length of a body, or of ground, at the best of these places.
+    pub(super) fn name_length(
+        &mut self,
+        text: &str,
+        body: Option<BodyId>,
+        candidates: Vec<Candidate>,
+    ) {
+        let label = self.label(text, colour_of(body).shade(NAME), candidates);
+        self.length_labels.push(label);
+    }
+
     fn label(&self, name: &str, colour: Colour, candidates: Vec<Candidate>) -> Label {
         Label {
             content: name.to_owned(),
@@ -291,6 +343,14 @@ impl<'a> Pen<'a> {
         let gaps = [(5.0, 0.0), (13.0, 5.0), (24.0, 12.0)];
         self.offer(body, Candidate::beside(line, &parts, &[(side, 0.0)], &gaps));
     }
+}
+
+/// Whether a mark shows a body, or a part of it that moves along the body.
+fn shows_body(mark: &Mark) -> bool {
+    matches!(
+        mark.layer,
+        Layer::Slider | Layer::Plate | Layer::Bar | Layer::Wheel | Layer::Slot | Layer::Block
+    )
 }
 
 /// Returns the colour of a body or of ground.

@@ -67,6 +67,7 @@ fn without_ways_back(path: &[Point], near: f64) -> Vec<&[Point]> {
         let earlier = path.windows(2).zip(&travelled[1..]);
         earlier
             .take_while(|(_, travelled_to)| **travelled_to < travelled[k] - FAR_ALONG * near)
+            .filter(|(ends, _)| is_about(ends, path[k], near))
             .any(|(ends, _)| distance([ends[0], ends[1]], path[k]) < near)
     };
     let known: Vec<bool> = (0..path.len()).map(comes_back).collect();
@@ -85,6 +86,13 @@ fn without_ways_back(path: &[Point], near: f64) -> Vec<&[Point]> {
     pieces.push(&path[start..]);
     pieces.retain(|piece| piece.len() > 1);
     pieces
+}
+
+/// Whether a point is in the rectangle around two others, `near` included.
+fn is_about(ends: &[Point], p: Point, near: f64) -> bool {
+    let (a, b) = (ends[0], ends[1]);
+    let between = |a: f64, b: f64, p: f64| p > a.min(b) - near && p < a.max(b) + near;
+    between(a.x, b.x, p.x) && between(a.y, b.y, p.y)
 }
 
 /// Returns the distance of a point from a line between two others.

@@ -5,15 +5,19 @@
 //! | [`sensitivity`] | derivatives of a motion by drivers and parameters |
 //! | [`range`](mod@range) | values that a driver can reach |
 //! | [`modes`](mod@modes) | other poses for the same values of the drivers |
+//! | [`instant_centre`](mod@instant_centre) | points of bodies that are at rest for an instant |
 //! | [`geometry_check`] | distances of wheels, hollows of cams |
 
 mod geometry_check;
+mod instant_centre;
 mod modes;
 mod range;
 mod sensitivity;
 
 pub(super) use geometry_check::geometry_warnings;
 pub use geometry_check::{GeometryWarning, GeometryWarningKind};
+pub use instant_centre::InstantCentre;
+pub(super) use instant_centre::instant_centre;
 pub(super) use modes::modes;
 pub use modes::{Mode, Modes};
 pub(super) use range::range;
