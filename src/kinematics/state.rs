@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::block::{BlockCarryover, BlockState, Crossing};
+use super::block::{BlockCarryover, BlockState, Crossing, JacobianFactors};
 use super::configuration::Configuration;
 use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity};
 use super::error::Error;
@@ -93,6 +93,8 @@ pub(super) struct State {
     factorised: bool,
     /// Rates of the drivers for which rates of q are solved.
     driver_rates: Vec<Jet>,
+    /// Storage for factors of the Jacobian, with the rows that these leave out; made at first use.
+    factors: Option<(Vec<usize>, JacobianFactors)>,
 }
 
 /// The error of rates at a singular pose.
@@ -131,7 +133,23 @@ impl State {
             has_parameters: false,
             factorised: false,
             driver_rates: vec![Jet::constant(0.0); drivers],
+            factors: None,
         }
+    }
+
+    /// Takes the storage for factors of the rows that are solved.
+    pub(super) fn take_factors(&mut self, model: &Model) -> JacobianFactors {
+        let kept = self.factors.take();
+        let fitting = kept.filter(|(set_aside, _)| *set_aside == model.redundant.now);
+        fitting.map_or_else(
+            || JacobianFactors::new(&model.system, &model.structure, &model.plan),
+            |(_, factors)| factors,
+        )
+    }
+
+    /// Keeps the storage for the next use.
+    pub(super) fn keep_factors(&mut self, model: &Model, factors: JacobianFactors) {
+        self.factors = Some((model.redundant.now.clone(), factors));
     }
 
     /// Returns the mechanism as block solvers see it.

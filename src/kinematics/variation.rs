@@ -32,6 +32,7 @@ struct VariedFrame {
     body: Option<BodyId>,
     position: VariedVector,
     angle: Varied,
+    axis: VariedVector,
 }
 
 /// The bodies of a moving mechanism: the counterpart of [`Configuration`](super::Configuration) on
@@ -44,6 +45,8 @@ pub struct VariedConfiguration {
     bodies: usize,
     /// The generalized coordinates, then the joint unknowns.
     q: Vec<Varied>,
+    /// The x-axes of the bodies, which follow from q.
+    axes: Vec<VariedVector>,
 }
 
 impl VariedConfiguration {
@@ -57,23 +60,42 @@ impl VariedConfiguration {
         motion: impl Iterator<Item = [f64; 3]>,
     ) -> Self {
         let value = |expression: &Expression| evaluate(expression, &parameter);
-        let frames = mechanism.markers.iter().map(|marker| VariedFrame {
-            body: marker.body,
-            position: marker.position.each_ref().map(value),
-            angle: value(&marker.angle),
+        let frames = mechanism.markers.iter().map(|marker| {
+            let angle = value(&marker.angle);
+            VariedFrame {
+                body: marker.body,
+                position: marker.position.each_ref().map(value),
+                angle,
+                axis: direction(angle),
+            }
         });
         let q = motion.map(|motion| {
             let [value, first, second] = motion.map(Dual::constant);
             Varied::new(value, [first, second])
         });
         let change = |p| parameter(p).value.first();
-        Self {
+        let bodies = mechanism.bodies.len();
+        let mut made = Self {
             frames: frames.collect(),
             coefficients: coefficients.iter().map(|c| value(&c.expression)).collect(),
             profiles: profiles.iter().map(|p| p.in_force.along(change)).collect(),
-            bodies: mechanism.bodies.len(),
+            bodies,
             q: q.collect(),
+            axes: vec![[Varied::constant(0.0); 2]; bodies],
+        };
+        made.turn_bodies();
+        made
+    }
+
+    /// Makes the axes of all bodies those that q gives.
+    fn turn_bodies(&mut self) {
+        for body in 0..self.bodies {
+            self.turn_body(body);
         }
+    }
+
+    fn turn_body(&mut self, body: usize) {
+        self.axes[body] = direction(self.q[3 * body + 2]);
     }
 
     /// Returns q\[column\].
@@ -91,6 +113,7 @@ impl VariedConfiguration {
             };
             coefficient.derivatives = [*change];
         }
+        self.turn_bodies();
     }
 
     /// Returns the mechanism at rest, with the same changes of q and of the parameters.
@@ -99,12 +122,16 @@ impl VariedConfiguration {
         for q in &mut still.q {
             *q = Varied::fixed(q.value);
         }
+        still.turn_bodies();
         still
     }
 
     /// Sets the rate of q\[column\], which does not change along the direction.
     pub(super) fn set_velocity(&mut self, column: usize, velocity: f64) {
         self.q[column].derivatives[0] = Dual::constant(velocity);
+        if column < 3 * self.bodies && column % 3 == 2 {
+            self.turn_body(column / 3);
+        }
     }
 
     /// Returns a marker.
@@ -114,21 +141,20 @@ impl VariedConfiguration {
             body,
             position,
             angle,
+            axis,
         } = self.frames[marker.index()];
-        let phi = self.phi(body);
-        let arm = rotate(phi, position);
-        let point = match body {
-            Some(body) => {
-                let k = 3 * body.index();
-                add([self.q[k], self.q[k + 1]], arm)
-            }
-            None => arm,
+        let Some(body) = body.map(BodyId::index) else {
+            return VariedMarker {
+                point: position,
+                axis,
+                theta: angle,
+            };
         };
-        let theta = phi + angle;
+        let (k, turn) = (3 * body, self.axes[body]);
         VariedMarker {
-            point,
-            axis: direction(theta),
-            theta,
+            point: add([self.q[k], self.q[k + 1]], turned(turn, position)),
+            axis: turned(turn, axis),
+            theta: self.q[k + 2] + angle,
         }
     }
 
@@ -178,8 +204,12 @@ pub fn direction(theta: Varied) -> VariedVector {
 
 /// Returns a vector turned by an angle.
 #[must_use]
-pub fn rotate(angle: Varied, [x, y]: VariedVector) -> VariedVector {
-    let [cos, sin] = direction(angle);
+pub fn rotate(angle: Varied, vector: VariedVector) -> VariedVector {
+    turned(direction(angle), vector)
+}
+
+/// Returns a vector turned as the x-axis is to the unit vector (cos, sin).
+fn turned([cos, sin]: VariedVector, [x, y]: VariedVector) -> VariedVector {
     [cos * x - sin * y, sin * x + cos * y]
 }
 

@@ -11,7 +11,6 @@
 //!
 //! The relations on [`Varied`] numbers give Φ, Φ̇ and Φ̈ with their changes.
 
-use crate::kinematics::block::{BlockJacobian, BlockState};
 use crate::kinematics::constraint::Constraint;
 use crate::kinematics::error::Error;
 use crate::kinematics::model::Model;
@@ -154,16 +153,9 @@ impl State {
             .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
         let mut at = system.varied(parameter, motion, self.at.profiles());
 
-        let mut jacobian = BlockJacobian::new(system, &model.structure);
-        let mut state = BlockState {
-            system,
-            targets: &self.targets,
-            drivers: &self.pose.drivers,
-            at: &mut self.at,
-            tangent: &mut self.tangent,
-        };
-        jacobian
-            .factorise(&mut state)
+        let mut factors = self.take_factors(model);
+        factors
+            .factorise(system, &self.at)
             .map_err(|Rejected| SINGULAR_HERE)?;
         let targets: Vec<_> = system
             .equations()
@@ -181,9 +173,10 @@ impl State {
                 let error = *target - equation.constraint.along(&at);
                 *side = [error.value, error.first(), error.second()][order].first();
             }
-            jacobian.solve(system, &self.at, &side, &mut change);
+            factors.solve(system, &self.at, &side, &mut change);
             at.change(order, &change);
         }
+        self.keep_factors(model, factors);
         if !change.iter().all(|change| change.is_finite()) {
             return Err(SINGULAR_HERE);
         }

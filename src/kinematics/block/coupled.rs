@@ -109,21 +109,6 @@ impl CoupledBlock {
             .map_err(|_| Rejected)
     }
 
-    /// Solves Phi_q x = `side`, one entry per row of the system, for the block's entries of x;
-    /// those of earlier blocks are known.
-    pub(super) fn solve_for(
-        &mut self,
-        system: &System,
-        at: &Configuration,
-        side: &[f64],
-        x: &mut [f64],
-    ) {
-        for (entry, &row) in self.correction.iter_mut().zip(&self.equations.rows) {
-            *entry = side[row] * system.equations()[row].row_scale(at);
-        }
-        self.solve(system, at.size(), x);
-    }
-
     /// Solves for the block's entries of `rates`, those of earlier blocks being known, with the
     /// scaled right-hand side in `correction`.
     fn solve(&mut self, system: &System, size: f64, rates: &mut [f64]) {
