@@ -96,6 +96,9 @@ fn slips_of_syntax_are_answered_as_reviewed() {
         "mass 0.5",
         "mass = 0.5; inertia = 2",
         "[bodies.crank",
+        "[bodies.crank]\nmarkers = { O = [0, 0]  # pivot\n\nestimate = [0, 0, 0]",
+        "[bodies.crank]\nestimate = [0, 0, 0\nmass = 1",
+        "[bodies.crank]\nmarkers = { O = [0, 0],\n  A = [1, 0]\n  B = [2, 0] }",
         "// a comment",
     ];
     let answers = slips.map(|slip| {

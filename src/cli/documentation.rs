@@ -317,56 +317,69 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
     table(&["Driver", "Start", "Range, other drivers held"], rows)
 }
 
-/// Returns the table of parameters with their values, in SI units.
+/// Returns the table of parameters with their values, in SI units, and folded that of the settings.
 fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
-    let rows = variables.iter().filter_map(|variable| {
-        let Kind::Real { unit, min, max, .. } = variable.kind else {
-            let Kind::Enumeration(choices) = &variable.kind else {
-                return None;
-            };
-            let items: Vec<String> = (1..)
-                .zip(choices.items)
-                .map(|(number, (name, what))| format!("{number} ({name}) {what}"))
-                .collect();
-            let what = format!("{}: {}", variable.description, items.join("; "));
-            return Some([
-                variable.name.clone(),
-                "1".to_owned(),
-                String::new(),
-                String::new(),
-                what,
-            ]);
-        };
-        let Quantity::Parameter(parameter) = variable.quantity else {
+    let header = ["Parameter", "Value", "Unit", "Limits", "Meaning"];
+    let rows = variables
+        .iter()
+        .filter_map(|variable| parameter(variable, values));
+    let mut html = table(&header, rows);
+    let settings = variables.iter().filter_map(|variable| {
+        let Kind::Enumeration(choices) = &variable.kind else {
             return None;
         };
-        let shown = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v}"));
-        let limits = match (min, max) {
-            (None, None) => String::new(),
-            (min, None) => format!("≥ {}", shown(min)),
-            (None, max) => format!("≤ {}", shown(max)),
-            (min, max) => format!("{} to {}", shown(min), shown(max)),
-        };
-        let mut what = variable.description.clone();
-        if variable.causality == Causality::CalculatedParameter {
-            what.push_str(" (derived from others)");
-        } else if variable.variability == crate::fmi::Variability::Tunable {
-            what.push_str(" (may change between steps)");
-        }
-        Some([
-            variable.name.clone(),
-            // A derived value carries the rounding of its expression.
-            shown(Some(rounded(values[parameter.index()]))),
-            name_of(unit),
-            limits,
-            what,
-        ])
+        let items: Vec<String> = (1..)
+            .zip(choices.items)
+            .map(|(number, (name, what))| format!("{number} ({name}) {what}"))
+            .collect();
+        let what = format!("{}: {}", variable.description, items.join("; "));
+        Some([variable.name.clone(), "1".to_owned(), what])
     });
-    table(&["Parameter", "Value", "Unit", "Limits", "Meaning"], rows)
+    let settings: Vec<[String; 3]> = settings.collect();
+    if !settings.is_empty() {
+        let names: Vec<&str> = settings.iter().map(|row| row[0].as_str()).collect();
+        let _ = write!(
+            html,
+            "<details><summary><b>settings</b> {}</summary>\n{}</details>\n",
+            names.join(", "),
+            table(&["Parameter", "Value", "Meaning"], settings.iter().cloned())
+        );
+    }
+    html
+}
+
+/// Returns name, value, unit, limits and meaning of a variable that is a parameter.
+fn parameter(variable: &Variable<Quantity>, values: &[f64]) -> Option<[String; 5]> {
+    let (Kind::Real { unit, min, max, .. }, Quantity::Parameter(parameter)) =
+        (&variable.kind, &variable.quantity)
+    else {
+        return None;
+    };
+    let shown = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v}"));
+    let limits = match (*min, *max) {
+        (None, None) => String::new(),
+        (min, None) => format!("≥ {}", shown(min)),
+        (None, max) => format!("≤ {}", shown(max)),
+        (min, max) => format!("{} to {}", shown(min), shown(max)),
+    };
+    let mut what = variable.description.clone();
+    if variable.causality == Causality::CalculatedParameter {
+        what.push_str(" (derived from others)");
+    } else if variable.variability == crate::fmi::Variability::Tunable {
+        what.push_str(" (may change between steps)");
+    }
+    Some([
+        variable.name.clone(),
+        // A derived value carries the rounding of its expression.
+        shown(Some(rounded(values[parameter.index()]))),
+        name_of(*unit),
+        limits,
+        what,
+    ])
 }
 
 /// Returns the tables of inputs and outputs, one for what each belongs to: a body, a driver, a
-/// joint. Those of drivers, which a host connects, are open.
+/// joint.
 fn outputs(variables: &[Variable<Quantity>]) -> String {
     let told = variables.iter().filter(|variable| {
         matches!(
@@ -385,15 +398,13 @@ fn outputs(variables: &[Variable<Quantity>]) -> String {
     }
     let mut html = String::new();
     for (owner, members) in owners {
-        let is_input = members.iter().any(|v| v.causality == Causality::Input);
-        let open = if is_input { " open" } else { "" };
         let parts = members.iter().map(|v| v.name.strip_prefix(owner));
         let parts: Vec<&str> = parts.filter_map(|part| part?.strip_prefix('.')).collect();
         let rows = members.iter().map(|variable| row(variable));
         let table = table(&["Variable", "Causality", "Unit", "Meaning"], rows);
         let _ = write!(
             html,
-            "<details{open}><summary><b>{}</b> {}</summary>\n{table}</details>\n",
+            "<details><summary><b>{}</b> {}</summary>\n{table}</details>\n",
             escape(owner),
             escape(&parts.join(", "))
         );

@@ -131,8 +131,13 @@ pub(super) fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str>
     // One slip in a short word, up to one per three letters of a long one. A single letter is near
     // to itself in the other case only.
     let near = if length < 2 { 0 } else { length.div_ceil(3) };
+    // `body` for `bodies`; other plurals are one letter longer.
+    let is_plural = |candidate: &str| {
+        let stem = candidate.strip_suffix("ies");
+        stem.is_some_and(|stem| name.strip_suffix('y') == Some(stem))
+    };
     let distance = |candidate: &str| {
-        if candidate.eq_ignore_ascii_case(name) {
+        if candidate.eq_ignore_ascii_case(name) || is_plural(candidate) {
             Some(0)
         } else if candidate.len().abs_diff(name.len()) > 4 * near {
             None
@@ -191,6 +196,7 @@ mod tests {
         assert_eq!(nearest("Coupler", &candidates), Some("coupler"));
         assert_eq!(nearest("rokcer", &candidates), Some("rocker"));
         assert_eq!(nearest("slider", &candidates), None);
+        assert_eq!(nearest("body", &["joints", "bodies"]), Some("bodies"));
         assert_eq!(nearest("A", &["B"]), None);
         assert_eq!(nearest("a", &["B", "A"]), Some("A"));
         assert_eq!(nearest("degrees", &["degre", "deg"]), Some("degre"));

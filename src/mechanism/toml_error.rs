@@ -20,6 +20,14 @@ pub(super) fn syntax_error(text: &str, span: Span, message: &str) -> Diagnostic 
     let line = text[start..].split(['\r', '\n']).next().unwrap_or_default();
     let at = (at - start).min(line.len());
     let has_long_strings = text.contains("\"\"\"") || text.contains("'''");
+    if !has_long_strings
+        && message.contains("missing comma")
+        && line[..at].trim().is_empty()
+        && let Some((end, bracket)) = missing_bracket(text, start)
+    {
+        let message = format!("a `{bracket}` is missing here");
+        return Diagnostic::error(code::SYNTAX, message).label(end..end, "");
+    }
     let slip = (!has_long_strings)
         .then(|| missing_quote(line))
         .flatten()
@@ -60,6 +68,36 @@ fn strings(line: &str) -> (Vec<Range<usize>>, Option<usize>) {
         closed.push(start..end);
     }
     (closed, None)
+}
+
+/// Finds a bracket that is opened before the line at `start` and never closed: the end of the
+/// lines before, where it may be missing, and the closing bracket.
+fn missing_bracket(text: &str, start: usize) -> Option<(usize, char)> {
+    let mut open: Vec<(usize, char)> = Vec::new();
+    let (mut offset, mut end) = (0, 0);
+    for line in text.split_inclusive('\n') {
+        let (closed, _) = strings(line);
+        let is_code = |at: &usize| !closed.iter().any(|string| string.contains(at));
+        for (at, character) in line.char_indices().filter(|(at, _)| is_code(at)) {
+            match character {
+                '#' => break,
+                '[' => open.push((offset + at, ']')),
+                '{' => open.push((offset + at, '}')),
+                ']' | '}' if open.pop()?.1 != character => return None,
+                _ => {}
+            }
+        }
+        offset += line.len();
+        if offset <= start && !line.trim().is_empty() {
+            let code = line.char_indices().find(|(at, c)| *c == '#' && is_code(at));
+            let code = &line[..code.map_or(line.len(), |(comment, _)| comment)];
+            if !code.trim().is_empty() {
+                end = offset - line.len() + code.trim_end().len();
+            }
+        }
+    }
+    let before = open.iter().rev().find(|(at, _)| *at < start);
+    before.map(|(_, bracket)| (end, *bracket))
 }
 
 /// Finds a string without its closing or its opening quote.
