@@ -6,10 +6,11 @@ use std::sync::Arc;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use biela::drawing::Scene;
 use biela::drawing::animation::{Animation, Clock, Moment, Reading, page};
-use biela::kinematics::{Curve, Rates};
-use biela::mechanism::{Jet, Mechanism};
+use biela::drawing::symbol::ForceKind;
+use biela::drawing::{ForcePlace, Scene};
+use biela::kinematics::{Curve, ForceParts, ForceQuantity, KnownMotion, Rates};
+use biela::mechanism::{DriverId, Jet, Mechanism};
 use common::{assembled, parse, shipped, stems, straight_to};
 use serde_json::Value;
 
@@ -96,6 +97,7 @@ fn animation(mechanism: &Arc<Mechanism>, moments: usize) -> Animation {
             name: "moment".to_owned(),
             unit: "1".to_owned(),
         }],
+        forces: Vec::new(),
         moments: motion
             .into_iter()
             .enumerate()
@@ -103,6 +105,7 @@ fn animation(mechanism: &Arc<Mechanism>, moments: usize) -> Animation {
                 q,
                 rates,
                 readings: vec![k as f64],
+                forces: Vec::new(),
             })
             .collect(),
     }
@@ -218,6 +221,97 @@ fn arrows_are_velocities_and_accelerations() {
         // Across the rod, which points along phi.
         let phi = moment.q[2];
         assert!((vx * phi.cos() + vy * phi.sin()).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn arrows_of_forces_are_parts_of_the_largest() {
+    // The pendulum with a mass: its pin bears all forces but gravity, its driver turns it.
+    let text = std::fs::read_to_string(common::folder("mechanisms/pendulum.toml")).unwrap();
+    let mechanism = parse(&text.replace("[bodies.rod]", "[bodies.rod]\nmass = 2"));
+    let mut animation = animation(&mechanism, 8);
+    let (mut solver, _) = assembled(&mechanism);
+    let indeterminate = solver.indeterminate();
+    let parameters = mechanism.default_parameters();
+    animation.forces = ForcePlace::all(&mechanism, &parameters, &indeterminate);
+    let kinds: Vec<ForceKind> = animation.forces.iter().map(|force| force.kind).collect();
+    assert_eq!(kinds, [ForceKind::Reaction, ForceKind::Effort]);
+    for (k, moment) in animation.moments.iter_mut().enumerate() {
+        let k = k as f64;
+        moment.forces = vec![[3.0 + k, -4.0, 0.0], [0.0, 0.0, 0.5 * k - 1.0]];
+    }
+    let film = Film::of(&page(&animation));
+    let forces = film.json["forces"].as_array().expect("there are forces");
+    let torques = film.json["torques"].as_array().expect("there are torques");
+    assert_eq!((forces.len(), torques.len()), (1, 1));
+    assert_eq!(forces[0]["kind"], "reaction");
+    assert_eq!(torques[0]["kind"], "effort");
+    let most = |kind: usize| film.json["most"][kind].as_f64().expect("a number");
+    let largest = 10.0_f64.hypot(4.0);
+    // Seven digits.
+    assert!((most(2) - largest).abs() < 1e-5 && (most(3) - 2.5).abs() < 1e-6);
+    let at = 3 * film.count("attachments") + film.count("lengths") + 4 * film.count("points");
+    for (k, moment) in animation.moments.iter().enumerate() {
+        let [[x, y, _], [_, _, torque]] = moment.forces[..] else {
+            panic!("two forces");
+        };
+        for (channel, expected) in [x / largest, -y / largest, torque / 2.5].iter().enumerate() {
+            let (found, tolerance) = film.value(at + channel, k);
+            assert!((found - expected).abs() <= tolerance + 1e-12, "{channel}");
+        }
+    }
+}
+
+#[test]
+fn forces_are_shown_where_they_act() {
+    // The loader: a cylinder pushes along itself, the load acts along ground's axes.
+    let mechanism = shipped("loader");
+    let (mut solver, _) = assembled(&mechanism);
+    let indeterminate = solver.indeterminate();
+    let parameters = mechanism.default_parameters();
+    let places = ForcePlace::all(&mechanism, &parameters, &indeterminate);
+    let mut rates = Rates::new(solver.pose().q.len());
+    let still = [Jet::constant(0.0); 2];
+    solver
+        .solve_rates(|_| still[0], &mut rates)
+        .expect("it is regular");
+    let mut forces = solver.forces();
+    let motion = KnownMotion {
+        rates: &rates,
+        driver_rates: &still,
+        inputs: &[120.0, -500.0, 7.0],
+    };
+    (solver.solve_forces(motion, ForceParts::ALL, &mut forces)).expect("forces have values");
+    let q = &solver.pose().q;
+    let values: Vec<[f64; 3]> = places.iter().map(|place| place.value(&forces, q)).collect();
+    let of = |kind| {
+        places
+            .iter()
+            .zip(&values)
+            .filter(move |(place, _)| place.kind == kind)
+    };
+    let loads = of(ForceKind::Load).map(|(_, value)| value.map(f64::to_bits));
+    let loads: Vec<[u64; 3]> = loads.collect();
+    let given = [[120.0, -500.0, 7.0]].map(|load| load.map(f64::to_bits));
+    assert_eq!(loads, given);
+    for (index, (place, [x, y, torque])) in of(ForceKind::Effort).enumerate() {
+        let effort = forces.value(ForceQuantity::Effort(DriverId(index)));
+        let coordinate = &mechanism.drivers[index].coordinate;
+        let [from, to] = [coordinate.from, coordinate.to]
+            .map(|marker| solver.marker(marker, &rates).map(|jet| jet.value));
+        let head = place.at.placed(q).point;
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let length = along[0].hypot(along[1]);
+        // Rounding of lengths of a few metres, times forces.
+        let limit = 1e-13 * effort.abs();
+        assert!((head.x - to[0]).hypot(head.y - to[1]) < 1e-13);
+        assert!((x - effort * along[0] / length).abs() < limit);
+        assert!((y - effort * along[1] / length).abs() < limit);
+        assert!(*torque == 0.0);
+    }
+    for (index, (_, value)) in of(ForceKind::Reaction).enumerate() {
+        let of_joint = [0, 1, 2].map(|k| forces.value(ForceQuantity::Reaction(index, k)));
+        assert_eq!(value.map(f64::to_bits), of_joint.map(f64::to_bits));
     }
 }
 

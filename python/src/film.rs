@@ -51,6 +51,7 @@ impl Film {
             q: runner.solver.pose().q.clone(),
             rates: rates.map(<[f64]>::to_vec),
             readings: readings.collect(),
+            forces: Vec::new(),
         });
         self.times.push(runner.solver.pose().time);
     }
@@ -75,6 +76,7 @@ impl Film {
                         .replace('2', "²"),
                 })
                 .collect(),
+            forces: Vec::new(),
             moments,
         }))
     }

@@ -361,6 +361,7 @@ impl Mechanism {
                 poses,
                 dimensions,
                 instant_centres,
+                ..Diagram::default()
             };
             let sheet = diagram.sheet(&mut runner.solver)?;
             let width = width.unwrap_or(sheet.width());

@@ -48,7 +48,7 @@ impl Conditions {
     }
 
     /// Applies the options to a mechanism whose run starts at `start`; the CSV file `signals`
-    /// moves further drivers.
+    /// moves further drivers and sets further inputs of forces.
     pub(super) fn scenario(
         &self,
         mechanism: &Mechanism,

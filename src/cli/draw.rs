@@ -10,7 +10,9 @@ use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
 use super::input_files::InputFiles;
+use super::motion::Motion;
 use super::picture::Format;
+use super::signals::Signals;
 use crate::drawing::{Diagram, Followed, usual_driver};
 use crate::mechanism::Mechanism;
 
@@ -76,6 +78,10 @@ pub(super) struct Draw {
     /// Leave out the paths of the points of interest.
     #[arg(long)]
     no_traces: bool,
+    /// Show forces as arrows with their sizes: what joints and drivers exert, and springs, dampers
+    /// and loads. Drivers have the rates of their motions and of --drive, others are at rest.
+    #[arg(long)]
+    forces: bool,
     /// Leave out the white background.
     #[arg(long)]
     transparent: bool,
@@ -85,17 +91,32 @@ impl Draw {
     pub(super) fn run(self) -> Result<(), Error> {
         let format = self.output.as_deref().map_or(Ok(Format::Svg), Format::of)?;
         let input = Input::read(&self.file)?;
+        if self.forces {
+            input.check_dynamics()?;
+        }
         let usual = || PathBuf::from(format!("{}.svg", input.mechanism.name));
         let path = self.output.clone().unwrap_or_else(usual);
         InputFiles::new(&self.file, &input.mechanism).refuse_as_outputs(&[Some(&path)])?;
         let followed = self.followed(&input.mechanism)?;
         let mut solver = self.conditions.solver_at_start(&input)?;
+        let mut forces = Vec::new();
+        if self.forces {
+            let start = solver.pose().time;
+            let motion = Motion::from(solver, Signals::default(), start);
+            let motion = motion.and_then(Motion::with_forces);
+            let mut motion = motion.map_err(|error| input.error(error))?;
+            let places = motion.force_places();
+            let values = motion.values(&places);
+            forces = places.into_iter().zip(values).collect();
+            solver = motion.solver;
+        }
         let diagram = Diagram {
             traces: !self.no_traces,
             followed,
             poses: self.poses as usize,
             dimensions: self.dimensions,
             instant_centres: self.instant_centres,
+            forces,
         };
         let sheet = diagram
             .sheet(&mut solver)

@@ -9,8 +9,8 @@ use super::output::{tell_written, write};
 use super::picture::extension;
 use super::plot::axis;
 use super::recorder::Recorder;
-use crate::drawing::Scene;
 use crate::drawing::animation::{Animation, Clock, Moment, Reading, moving_svg, page};
+use crate::drawing::{ForcePlace, Scene};
 
 /// Largest number of moments of a film; of more rows it shows every second, third and so on.
 const MOST_MOMENTS: u64 = 10_000;
@@ -28,6 +28,8 @@ pub(super) struct Film {
     rows: u64,
     /// Time of the last moment \[s\].
     stop: f64,
+    /// Forces that arrows show.
+    forces: Vec<ForcePlace>,
     moments: Vec<Moment>,
 }
 
@@ -43,8 +45,14 @@ impl Film {
             stride,
             rows: 0,
             stop: start,
+            forces: Vec::new(),
             moments: Vec::new(),
         }
+    }
+
+    /// Shows these forces by arrows.
+    pub(super) fn show_forces(&mut self, forces: Vec<ForcePlace>) {
+        self.forces = forces;
     }
 
     /// Adds the row of the current time, if it is one to show.
@@ -60,6 +68,7 @@ impl Film {
                 q: pose.q.clone(),
                 rates: rates.map(<[f64]>::to_vec),
                 readings: readings.collect(),
+                forces: motion.values(&self.forces),
             });
             self.stop = pose.time;
         }
@@ -90,6 +99,7 @@ impl Film {
                     unit: axis(column.unit).unit,
                 })
                 .collect(),
+            forces: self.forces,
             moments: self.moments,
         }
     }

@@ -40,6 +40,17 @@ impl Input {
         }
     }
 
+    /// Checks that there are forces to show.
+    pub(super) fn check_dynamics(&self) -> Result<(), Error> {
+        if self.mechanism.has_dynamics() {
+            return Ok(());
+        }
+        Err(Error::Usage(
+            "--forces: the mechanism has no forces; give bodies a `mass` or add `[forces]`"
+                .to_owned(),
+        ))
+    }
+
     /// Returns an error of the kinematics with the name of the file.
     pub(super) fn error(&self, error: crate::kinematics::Error) -> Error {
         Error::Mechanism {

@@ -3,6 +3,7 @@
 use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
+use crate::drawing::ForcePlace;
 use crate::kinematics::{
     Blocked, Curve, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Path, Rates, Solver,
 };
@@ -23,7 +24,7 @@ pub(super) struct Motion {
     near_singular: bool,
 }
 
-/// Forces of a run; inputs of forces that no option moves are zero.
+/// Forces of a run; inputs of forces that no option sets are zero.
 struct ActingForces {
     forces: Forces,
     inputs: Vec<f64>,
@@ -82,6 +83,26 @@ impl Motion {
         acting.map_or(f64::NAN, |acting| acting.forces.value(quantity))
     }
 
+    /// Returns the forces that a picture shows; none without [forces](Self::with_forces).
+    pub(super) fn force_places(&mut self) -> Vec<ForcePlace> {
+        if self.forces.is_none() {
+            return Vec::new();
+        }
+        let indeterminate = self.solver.indeterminate();
+        let parameters = &self.solver.pose().parameters;
+        ForcePlace::all(self.solver.mechanism(), parameters, &indeterminate)
+    }
+
+    /// Returns components in ground axes \[N\] and torque \[N m\] of forces at the present time.
+    pub(super) fn values(&self, places: &[ForcePlace]) -> Vec<[f64; 3]> {
+        let Some(acting) = &self.forces else {
+            return Vec::new();
+        };
+        let q = &self.solver.pose().q;
+        let values = places.iter().map(|place| place.value(&acting.forces, q));
+        values.collect()
+    }
+
     /// Moves on to `time`, from one point of the signals to the next.
     ///
     /// # Errors
@@ -104,6 +125,8 @@ impl Motion {
         let Some(acting) = &mut self.forces else {
             return Ok(());
         };
+        let time = self.solver.pose().time;
+        self.signals.write_forces(time, &mut acting.inputs);
         let motion = KnownMotion {
             rates: &self.rates,
             driver_rates: &self.driver_rates,

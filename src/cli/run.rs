@@ -40,11 +40,11 @@ pub(super) struct Run {
     file: PathBuf,
     #[command(flatten)]
     conditions: Conditions,
-    /// Move drivers by a CSV file: its first column is time, the others are variables of drivers
-    /// such as crank_angle.position.
+    /// Move drivers and set inputs of forces by a CSV file: its first column is time, the others
+    /// are variables of drivers such as crank_angle.position, and inputs such as cylinder.effort.
     ///
     /// Values are linear between two rows, constant before the first and after the last, and jump
-    /// at a time that occurs twice, as in FMPy. Velocities are those of the columns .velocity, or
+    /// at a time that occurs twice, as in FMPy. Velocities of drivers are those of the columns .velocity, or
     /// else the slopes; accelerations those of .acceleration, or else zero. Columns are separated
     /// by commas, semicolons, tabs or blanks.
     #[arg(short, long, value_name = "CSV")]
@@ -73,6 +73,10 @@ pub(super) struct Run {
     /// second, third and so on, of more than 240 the picture.
     #[arg(short, long, value_name = "PAGE")]
     animate: Option<PathBuf>,
+    /// Let the page show forces as arrows where its reader asks for them: what joints and drivers
+    /// exert, and springs, dampers and loads.
+    #[arg(long, requires = "animate")]
+    forces: bool,
 }
 
 /// Largest number of rows that a picture holds.
@@ -90,6 +94,9 @@ impl Run {
         let format = self.plot.as_deref().map(Format::of).transpose()?;
         self.check_page()?;
         let input = Input::read(&self.file)?;
+        if self.forces {
+            input.check_dynamics()?;
+        }
         self.refuse_overwriting(&input.mechanism)?;
         let times = self.span.times(&input.mechanism)?;
         let rows = times.steps + 1;
@@ -111,14 +118,15 @@ impl Run {
             let [plotted, told] = [Output::plotted(&all), Output::told(&all)];
             [all, plotted, told]
         };
-        let asks_forces = [&written, &plotted, &told]
-            .into_iter()
-            .zip([
-                self.output.is_some(),
-                self.plot.is_some(),
-                self.animate.is_some(),
-            ])
-            .any(|(columns, asked)| asked && columns.iter().any(Output::is_force))
+        let asks_forces = self.forces
+            || [&written, &plotted, &told]
+                .into_iter()
+                .zip([
+                    self.output.is_some(),
+                    self.plot.is_some(),
+                    self.animate.is_some(),
+                ])
+                .any(|(columns, asked)| asked && columns.iter().any(Output::is_force))
             || over.as_ref().is_some_and(Output::is_force);
         let home_solver = input.assemble()?;
         let notes = [
@@ -133,15 +141,18 @@ impl Run {
         if let (Some(path), Some(format)) = (self.plot.clone(), format) {
             recorders.push(Box::new(Plot::new(path, format, plotted, !is_choice, over)));
         }
-        if let Some(path) = self.animate.clone() {
-            let film = Film::new(told, times.steps, [times.start, times.step]);
-            recorders.push(Box::new(Page { film, path }));
-        }
         let mut motion = Motion::start(home_solver, scenario);
         if asks_forces {
             motion = motion.and_then(Motion::with_forces);
         }
         let mut motion = motion.map_err(|error| input.error(error))?;
+        if let Some(path) = self.animate.clone() {
+            let mut film = Film::new(told, times.steps, [times.start, times.step]);
+            if self.forces {
+                film.show_forces(motion.force_places());
+            }
+            recorders.push(Box::new(Page { film, path }));
+        }
         let outcome = self.play(&mut motion, input.source.name(), &times, &mut recorders);
         // Also after a dead point: the results up to there are written.
         let finished = recorders
@@ -232,7 +243,7 @@ impl Run {
 /// Returns a note if nothing moves, with an example of a motion.
 fn note_of_rest(mechanism: &Mechanism, scenario: &Scenario) -> Option<Message> {
     let moves = |driver: &Driver| driver.motion().is_some_and(Prescribed::uses_time);
-    if !scenario.signals.is_empty() || scenario.mechanism.drivers.iter().any(moves) {
+    if scenario.signals.has_drivers() || scenario.mechanism.drivers.iter().any(moves) {
         return None;
     }
     let mut examples = mechanism.drivers.iter().filter_map(example);

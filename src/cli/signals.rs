@@ -1,4 +1,4 @@
-//! Values of drivers over time from a CSV file.
+//! Values of drivers and of inputs of forces over time from a CSV file.
 
 use std::path::Path;
 
@@ -8,12 +8,14 @@ use crate::mechanism::{
     DriverId, DriverSource, Jet, Mechanism, Separated, comma_hint, help, quoted, shown,
 };
 
-/// Values of drivers over time: linear between two points, constant before the first and after
-/// the last. At a time that occurs twice the value jumps to that of the later row.
+/// Values of drivers and of inputs of forces over time: linear between two points, constant before
+/// the first and after the last. At a time that occurs twice the value jumps to that of the later
+/// row.
 #[derive(Debug, Default)]
 pub(super) struct Signals {
     times: Vec<f64>,
     signals: Vec<Signal>,
+    forces: Vec<ForceSignal>,
 }
 
 /// The columns of one driver.
@@ -24,12 +26,26 @@ struct Signal {
     columns: [Option<Vec<f64>>; 3],
 }
 
+/// The column of one input of a force.
+#[derive(Debug)]
+struct ForceSignal {
+    /// Index among all inputs of forces.
+    input: usize,
+    values: Vec<f64>,
+}
+
+/// Place of a column, by the indices of its signal and its order.
+enum Place {
+    Driver(usize, usize),
+    Force(usize),
+}
+
 /// Largest difference of two times that count as one, relative or in seconds.
 const SAME: f64 = 1e-9;
 
 impl Signals {
     /// Reads a file as FMPy does: the first column is `time`, the others are variables of drivers,
-    /// `crank_angle.position` or `crank_angle` for short. Columns are separated as in the tables
+    /// `crank_angle.position` or `crank_angle` for short, and inputs of forces. Columns are separated as in the tables
     /// of a mechanism file.
     pub(super) fn read(path: &Path, mechanism: &Mechanism) -> Result<Self, Error> {
         let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
@@ -53,7 +69,7 @@ impl Signals {
         }
         let mut signals = Self::default();
         let names = header[1..].iter();
-        let places: Vec<(usize, usize)> = names
+        let places: Vec<Place> = names
             .map(|name| signals.add_column(name, mechanism))
             .collect::<Result<_, _>>()?;
         if places.is_empty() {
@@ -81,9 +97,14 @@ impl Signals {
                 return Err(format!("line {line}: time goes back to {}", shown(time)));
             }
             signals.times.push(time);
-            for ((signal, order), value) in places.iter().zip(numbers) {
-                let column = signals.signals[*signal].columns[*order].as_mut();
-                column.expect("the header has made it").push(value?);
+            for (place, value) in places.iter().zip(numbers) {
+                match *place {
+                    Place::Driver(signal, order) => {
+                        let column = signals.signals[signal].columns[order].as_mut();
+                        column.expect("the header has made it").push(value?);
+                    }
+                    Place::Force(signal) => signals.forces[signal].values.push(value?),
+                }
             }
         }
         if signals.times.is_empty() {
@@ -98,8 +119,17 @@ impl Signals {
         Ok(signals)
     }
 
-    /// Adds an empty column; returns the index of its signal, and its order.
-    fn add_column(&mut self, name: &str, mechanism: &Mechanism) -> Result<(usize, usize), String> {
+    /// Adds an empty column; returns its place.
+    fn add_column(&mut self, name: &str, mechanism: &Mechanism) -> Result<Place, String> {
+        let inputs = mechanism.force_inputs();
+        if let Some(input) = inputs.iter().position(|input| input.name == name) {
+            if self.forces.iter().any(|signal| signal.input == input) {
+                return Err(format!("two columns for `{name}`"));
+            }
+            let values = Vec::new();
+            self.forces.push(ForceSignal { input, values });
+            return Ok(Place::Force(self.forces.len() - 1));
+        }
         let split = Order::ALL.into_iter().find_map(|order| {
             let driver = name.strip_suffix(order.suffix())?.strip_suffix('.')?;
             Some((driver, order as usize))
@@ -113,7 +143,7 @@ impl Signals {
             self.signals.len() - 1
         });
         match self.signals[signal].columns[order].replace(Vec::new()) {
-            None => Ok((signal, order)),
+            None => Ok(Place::Driver(signal, order)),
             Some(_) => Err(format!("two columns for `{name}`")),
         }
     }
@@ -126,9 +156,9 @@ impl Signals {
         }
     }
 
-    /// Returns whether there are no signals at all.
-    pub(super) fn is_empty(&self) -> bool {
-        self.signals.is_empty()
+    /// Returns whether some driver follows a signal.
+    pub(super) fn has_drivers(&self) -> bool {
+        !self.signals.is_empty()
     }
 
     /// Returns whether a driver follows a signal.
@@ -158,6 +188,13 @@ impl Signals {
             jet.derivatives[1] = self.interpolate(acceleration, time).value;
         }
         Some(jet)
+    }
+
+    /// Writes the inputs of forces at a time; those without a signal are left as they are.
+    pub(super) fn write_forces(&self, time: f64, inputs: &mut [f64]) {
+        for signal in &self.forces {
+            inputs[signal.input] = self.interpolate(&signal.values, time).value;
+        }
     }
 
     /// Returns the time of the first point after `time`; infinity after the last.
@@ -193,17 +230,38 @@ impl Signal {
     }
 }
 
-/// Says that a column is no variable of a driver, and which one may be meant.
+/// Says that a column is neither a variable of a driver nor an input of a force, and which one may
+/// be meant.
 fn unknown(name: &str, mechanism: &Mechanism) -> String {
+    let given = mechanism.given_forces();
+    if let Some(given) = given.iter().find(|given| given.name == name) {
+        let force = &mechanism.forces[given.force].name;
+        return format!(
+            "column `{name}` is no input: the file or --drive gives `{force}` its size"
+        );
+    }
     let drivers = || mechanism.drivers.iter().map(|driver| driver.name.as_str());
+    let inputs = mechanism.force_inputs();
     let variables = |order: Order| drivers().map(move |d| format!("{d}.{}", order.suffix()));
-    let variables: Vec<String> = Order::ALL.into_iter().flat_map(variables).collect();
-    let variables: Vec<&str> = variables.iter().map(String::as_str).collect();
-    let (positions, rates) = variables.split_at(mechanism.drivers.len());
-    let further: Vec<&str> = drivers().chain(rates.iter().copied()).collect();
-    let help = help(name, positions, &further);
+    let positions: Vec<String> = variables(Order::Position).collect();
+    let main = positions
+        .iter()
+        .chain(inputs.iter().map(|input| &input.name));
+    let main: Vec<&str> = main.map(String::as_str).collect();
+    let rates = [Order::Velocity, Order::Acceleration];
+    let rates: Vec<String> = rates.into_iter().flat_map(variables).collect();
+    let further: Vec<&str> = drivers().chain(rates.iter().map(String::as_str)).collect();
+    let help = help(name, &main, &further);
     let help = help.map_or_else(String::new, |help| format!("; {help}"));
-    format!("column {} is no variable of a driver{help}", quoted(name))
+    let forces = if inputs.is_empty() {
+        ""
+    } else {
+        " and no input of a force"
+    };
+    format!(
+        "column {} is no variable of a driver{forces}{help}",
+        quoted(name)
+    )
 }
 
 /// Returns the fields of a row without the empty ones at its end, which separators leave there,

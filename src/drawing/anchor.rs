@@ -3,7 +3,7 @@
 use nalgebra::{Rotation2, Vector2};
 
 use super::outline::{Point, direction};
-use crate::mechanism::BodyId;
+use crate::mechanism::{BodyId, Expression, MarkerId, Mechanism};
 
 /// A frame on a body or on ground: a point and a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +59,17 @@ impl Anchor {
             body,
             position: [0.0; 2],
             angle: 0.0,
+        }
+    }
+
+    /// Returns the frame of a marker.
+    pub(super) fn of_marker(mechanism: &Mechanism, parameters: &[f64], marker: MarkerId) -> Self {
+        let value = |expression: &Expression| expression.evaluate(&|p| parameters[p.index()], 0.0);
+        let marker = &mechanism.markers[marker.index()];
+        Self {
+            body: marker.body,
+            position: marker.position.each_ref().map(value),
+            angle: value(&marker.angle),
         }
     }
 

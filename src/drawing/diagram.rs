@@ -1,5 +1,6 @@
 //! Diagrams with what is asked for besides the mechanism at its pose.
 
+use super::force_place::{ForcePlace, force_arrows};
 use super::scene::Scene;
 use super::sheet::Sheet;
 use super::sweep::{follow, spread, sweep, usual_driver};
@@ -37,6 +38,8 @@ pub struct Diagram {
     /// Whether the instant centres of bodies and ground are drawn. They are those of the motion, or
     /// where it is at rest, those while the driver followed moves alone.
     pub instant_centres: bool,
+    /// Forces that arrows show, each with its components in ground axes \[N\] and torque \[N m\].
+    pub forces: Vec<(ForcePlace, [f64; 3])>,
 }
 
 /// A driver that a diagram follows, with the others held.
@@ -57,6 +60,7 @@ impl Default for Diagram {
             poses: 0,
             dimensions: false,
             instant_centres: false,
+            forces: Vec::new(),
         }
     }
 }
@@ -84,6 +88,7 @@ impl Diagram {
             scene.notes.extend(note);
             scene.add_instant_centres(&centres, q, mechanism.length_display());
         }
+        scene.symbols.extend(force_arrows(&self.forces));
         let poses = spread(&motion, self.poses);
         Ok(Sheet::with_poses(&scene, q, &poses))
     }

@@ -297,7 +297,7 @@ impl Obstacle {
             Layer::Trace | Layer::Pose => 0.6,
             Layer::Wheel | Layer::Plate | Layer::Bar | Layer::Slot | Layer::Dimension => 1.5,
             Layer::Ground | Layer::Driver | Layer::Scale | Layer::Grid | Layer::Curve => 2.5,
-            Layer::Slider | Layer::Block | Layer::Joint | Layer::Point => 4.0,
+            Layer::Slider | Layer::Block | Layer::Joint | Layer::Point | Layer::Force => 4.0,
         };
         let area = match mark.layer {
             Layer::Wheel if mark.fill.is_some() => ON_WHEEL,

@@ -12,6 +12,7 @@
 //! | `anchor`, `attachment` | frames on bodies, and frames that marks move with |
 //! | `sheet`, `label` | marks and texts on paper, and places of names |
 //! | [`symbol`] | one file per symbol: its joint, its shape, its motion |
+//! | `force_place` | forces that pictures show, and where they act |
 //! | `sweep`, `scene`, `layout` | the motion shown, all symbols, and their fit on a sheet |
 //! | `diagram` | what a diagram shows on demand |
 //!
@@ -37,6 +38,7 @@ pub mod animation;
 mod attachment;
 mod chart;
 mod diagram;
+mod force_place;
 mod label;
 mod layout;
 mod lettering;
@@ -53,6 +55,7 @@ mod ticks;
 pub use anchor::{Anchor, Frame};
 pub use chart::{Axis, COLOURS, Chart, Line, Panel};
 pub use diagram::{Diagram, Followed};
+pub use force_place::ForcePlace;
 pub use palette::Colour;
 pub use scene::Scene;
 pub use sheet::Sheet;

@@ -14,6 +14,9 @@ impl Colour {
     /// Drivers: the vermillion of the palette of Okabe and Ito, which no body has.
     pub const DRIVER: Self = Self([0xd5, 0x5e, 0x00]);
 
+    /// Forces that joints exert: a purple that no body has.
+    pub const REACTION: Self = Self([0x6a, 0x3d, 0x9a]);
+
     /// Returns the colour of a body by its index in the mechanism: the palette of Okabe and Ito
     /// (2008) without vermillion and black, its yellow darkened for white paper, and a slate.
     #[must_use]

@@ -72,13 +72,14 @@ pub(super) enum Layer {
     Joint,
     Driver,
     Point,
+    Force,
     Curve,
     Scale,
 }
 
 impl Layer {
     /// All layers with their names, in the order in which later ones cover earlier ones.
-    pub(super) const ALL: [(Self, &'static str); 16] = [
+    pub(super) const ALL: [(Self, &'static str); 17] = [
         (Self::Grid, "grid"),
         (Self::Ground, "ground"),
         (Self::Pose, "poses"),
@@ -93,6 +94,7 @@ impl Layer {
         (Self::Joint, "joints"),
         (Self::Driver, "drivers"),
         (Self::Point, "points"),
+        (Self::Force, "forces"),
         (Self::Curve, "curves"),
         (Self::Scale, "scale"),
     ];

@@ -42,6 +42,26 @@ fn draw_writes_what_the_extension_says() {
 }
 
 #[test]
+fn draw_shows_forces_with_their_sizes() {
+    let draw = |mechanism: &str, more: &[&str]| {
+        let path = format!("mechanisms/{mechanism}.toml");
+        biela(&[&["draw", &path, "-o", "-"], more].concat())
+    };
+    let without = stdout(&draw("hatch", &[]).success());
+    assert!(!without.contains("class=\"forces\""));
+    let at_rest = stdout(&draw("hatch", &["--forces"]).success());
+    assert!(at_rest.contains("class=\"forces\""));
+    // The hatch turns: its damper takes a part, and the inertia changes the effort.
+    let moving = ["--forces", "--drive", "opening = -40*deg + 2*t"];
+    assert_ne!(at_rest, stdout(&draw("hatch", &moving).success()));
+    let message = stderr(&draw("four_bar", &["--forces"]).code(2));
+    assert!(
+        message.contains("--forces: the mechanism has no forces"),
+        "{message}"
+    );
+}
+
+#[test]
 fn draw_shows_the_pose_that_is_asked_for() {
     let draw = |more: &[&str]| {
         let mut arguments = vec!["draw", "mechanisms/four_bar.toml", "-o", "-"];

@@ -1,4 +1,4 @@
-//! `biela run --input`: drivers that follow the values of a file.
+//! `biela run --input`: drivers and inputs of forces that follow the values of a file.
 
 use crate::program::{altered, biela, column, stderr, stdout};
 
@@ -155,4 +155,76 @@ fn run_follows_the_values_of_a_file() {
     ])
     .success();
     assert!(column(&stdout(&csv), "crank.phi")[0].abs() < 1e-12);
+}
+
+#[test]
+fn run_sets_inputs_of_forces_by_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("loads.csv");
+    let run = |mechanism: &str, content: &str, more: &[&str]| {
+        std::fs::write(&path, content).unwrap();
+        let mut arguments = vec!["run", mechanism, "--input", path.to_str().unwrap()];
+        arguments.extend(["--stop", "2", "--step", "0.5"]);
+        arguments.extend(more);
+        biela(&arguments)
+    };
+    let loader = "mechanisms/loader.toml";
+    // The same loads by --drive: the effort of each cylinder is linear in the load.
+    let drive = [
+        "--drive",
+        "load.fy = -1000*t",
+        "--drive",
+        "load.torque = 30",
+    ];
+    let arguments = ["run", loader, "--stop", "2", "--step", "0.5"];
+    let driven = stdout(&biela(&[&arguments[..], &drive].concat()).success());
+    let content = "time,load.fy,load.torque\n0,0,30\n2,-2000,30\n";
+    let csv = stdout(&run(loader, content, &[]).success());
+    for name in ["lift.effort", "tilt.effort", "bucket_pin.fx"] {
+        for (found, expected) in column(&csv, name).iter().zip(column(&driven, name)) {
+            // Rounding of the numbers that make up forces of the weights.
+            assert!((found - expected).abs() < 1e-9 * expected.abs(), "{name}");
+        }
+    }
+    // A load that is constant before the first time and jumps at 1 s.
+    let content = "time,lift,load.fy\n0.5,1.2,0\n1,1.2,0\n1,1.2,-5000\n";
+    let csv = stdout(&run(loader, content, &[]).success());
+    let effort = column(&csv, "lift.effort");
+    let same = |a: f64, b: f64| (a - b).abs() < 1e-9 * a.abs();
+    assert!(
+        same(effort[0], effort[1]) && same(effort[2], effort[4]),
+        "{effort:?}"
+    );
+    // The load moves further than the cylinder, whose force changes by more.
+    assert!(effort[2] - effort[1] > 5000.0, "{effort:?}");
+    for (mechanism, content, more, expected) in [
+        (
+            loader,
+            "time,load.fz\n0,1\n",
+            &[][..],
+            "column `load.fz` is no variable of a driver and no input of a force; \
+             did you mean `load.fx`?",
+        ),
+        (
+            loader,
+            "time,load.fx,load.fx\n0,1,1\n",
+            &[],
+            "two columns for `load.fx`",
+        ),
+        (
+            loader,
+            "time,load.fx\n0,1\n",
+            &["--drive", "load.fx=1"],
+            "column `load.fx` is no input: the file or --drive gives `load` its size",
+        ),
+        (
+            "mechanisms/hatch.toml",
+            "time,gas_spring.effort\n0,1\n",
+            &[],
+            "column `gas_spring.effort` is no input: the file or --drive gives `gas_spring` its size",
+        ),
+    ] {
+        let message = stderr(&run(mechanism, content, more).code(2));
+        assert!(message.contains(expected), "{message}");
+    }
 }

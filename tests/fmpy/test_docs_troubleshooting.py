@@ -56,6 +56,7 @@ PARTS = {
     "Linux, ARM 64-bit": "likewise",
     "macOS, Apple silicon": "likewise",
     "a table of the mechanism": "nothing is written to …: it is …, `…`",
+    " and no input of a force": "--input: `…`: column `…` is no variable of a driver…",
     "the file of --input": "nothing is written to …: it is …, `…`",
     "a runtime library": "nothing is written to …: it is …, `…`",
     "degree of freedom": "the mechanism has … and …",

@@ -79,7 +79,24 @@ def test_dc_motor(example, tmp_path):
     assert difference < 1e-12
     low, high = map(float, re.search(r"between ([\d.]+) and ([\d.]+) rad/s", printed).groups())
     assert 0 < low < high
+    coupled = re.findall(r"^(\w+) with a step of .* off by ([\d.]+) rad/s", printed, re.MULTILINE)
+    for host in ("FMPy", "Ecos"):
+        coarse, fine = (float(off) for name, off in coupled if name == host)
+        # Inputs held over a step: the next term is a part of the step's size.
+        assert 1.8 < coarse / fine < 2.2, printed
     assert (tmp_path / "dc_motor.png").stat().st_size > 10_000
+
+
+def test_crane(example, tmp_path):
+    printed = example("system/crane.py")
+    rows = re.findall(r"^(\w+ +[a-z =2]+?) +([\d.]+) +([\d.]+) +([\d.]+)$", printed, re.MULTILINE)
+    off = {(host, float(step)): float(stroke) for host, step, stroke, _ in rows}
+    hosts = {host for host, _ in off}
+    assert len(hosts) == 3, printed
+    for host in hosts:
+        # Of first order; the digits shown have an error of 1 % at most.
+        assert 1.8 < off[host, 2.0] / off[host, 1.0] < 2.2, printed
+    assert (tmp_path / "crane.png").stat().st_size > 10_000
 
 
 def test_requirements_are_those_of_the_lock():

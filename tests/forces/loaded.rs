@@ -118,18 +118,21 @@ impl Loaded {
                 solver.motion(biela::mechanism::DriverId(index), solver.pose().time)
             }
         });
-        let driver_rates: Vec<Jet> = driver_rates.collect();
-        let rates = Rates::new(solver.pose().q.len());
-        let forces = solver.forces();
-        let inputs = (0..forces.inputs())
+        let driver_rates = driver_rates.collect();
+        let inputs = (0..solver.forces().inputs())
             .map(|k| 5.0 * spread(k) - 2.0)
             .collect();
+        Self::solved(solver, driver_rates, inputs)
+    }
+
+    /// Solves rates and forces at the solver's pose.
+    pub(crate) fn solved(solver: Solver, driver_rates: Vec<Jet>, inputs: Vec<f64>) -> Self {
         let mut loaded = Self {
+            rates: Rates::new(solver.pose().q.len()),
+            forces: solver.forces(),
             solver,
-            rates,
             driver_rates,
             inputs,
-            forces,
         };
         loaded.solve();
         loaded

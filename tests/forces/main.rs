@@ -10,6 +10,7 @@ mod balance;
 mod cases;
 mod energy;
 mod fmu;
+mod invariance;
 mod loaded;
 mod published;
 mod redundant;

@@ -9,8 +9,12 @@ use super::stage::Stage;
 use super::{Animation, Moment};
 use crate::drawing::anchor::Anchor;
 use crate::drawing::attachment::Placement;
+use crate::drawing::force_place::largest;
 use crate::drawing::outline::across;
 use crate::drawing::sheet::CAPITALS;
+
+/// Part of the largest force that no arrow shows: it would be shorter than a line is wide.
+const INVISIBLE: f64 = 1e-2;
 
 /// Returns everything that the player needs.
 ///
@@ -18,9 +22,11 @@ use crate::drawing::sheet::CAPITALS;
 /// first, per moment; `scales` gives the values of 0 and of 65535. Each attachment has three
 /// channels: x and y on the sheet and the angle in degrees. Each length has one. Each point with
 /// arrows has four: velocity and acceleration as parts of the greatest of their kind, which
-/// `most` gives \[m/s, m/s²\]. Each reading has one.
-pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
+/// `most` gives \[m/s, m/s²\]. Each force has two and each torque one, parts of the greatest as
+/// well, which `most` gives next \[N, N m\]. Each reading has one.
+pub(super) fn film(animation: &Animation, stage: &mut Stage) -> Value {
     let moments = &animation.moments;
+    let acting = Acting::new(animation, stage);
     let mut channels: Vec<Channel> = Vec::new();
     let placements: Vec<Vec<Placement>> = moments.iter().map(|m| stage.placements(&m.q)).collect();
     for attachment in 0..stage.attachments.len() {
@@ -43,11 +49,15 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
     let points = if has_rates { &stage.points[..] } else { &[] };
     let (of_arrows, most) = arrows(points, moments);
     channels.extend(of_arrows);
+    channels.extend(acting.channels(moments));
     for reading in 0..animation.readings.len() {
         let values = moments.iter().map(|moment| moment.readings[reading]);
         channels.push(Channel::new(values.collect()));
     }
 
+    let most = [most, acting.most]
+        .map(|most| most.map(significant))
+        .concat();
     let home = placements.first().map_or(&[][..], Vec::as_slice);
     let clock = animation.clock;
     let scales: Vec<[f64; 2]> = channels.iter().map(|c| c.range.map(significant)).collect();
@@ -62,7 +72,9 @@ pub(super) fn film(animation: &Animation, stage: &Stage) -> Value {
         "labels": labels(stage, home),
         "lengths": stage.lengths.len(),
         "points": tracked(stage, points),
-        "most": most.map(significant),
+        "forces": acting.forces,
+        "torques": acting.torques,
+        "most": most,
         "readings": animation.readings.iter().map(|r| json!({
             "name": r.name,
             "unit": r.unit,
@@ -136,6 +148,65 @@ fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> (Vec<Channel>, [f64
         }
     }
     (channels, most)
+}
+
+/// The forces and torques that an animation shows.
+struct Acting {
+    /// Each with its kind, its attachment, its place there, and its index in the animation.
+    forces: Vec<Value>,
+    torques: Vec<Value>,
+    indices: [Vec<usize>; 2],
+    /// The largest force \[N\] and the largest torque \[N m\], zero if there is none.
+    most: [f64; 2],
+}
+
+impl Acting {
+    /// Finds the forces and torques that are more than rounding at some moment.
+    fn new(animation: &Animation, stage: &mut Stage) -> Self {
+        let moments = &animation.moments;
+        let limits = largest(moments.iter().flat_map(|moment| &moment.forces));
+        let mut acting = Self {
+            forces: Vec::new(),
+            torques: Vec::new(),
+            indices: Default::default(),
+            most: limits.map(|most| if most.is_finite() { most } else { 0.0 }),
+        };
+        for (index, force) in animation.forces.iter().enumerate() {
+            let values = moments.iter().map(|moment| &moment.forces[index]);
+            let own = largest(values).map(|most| if most.is_finite() { most } else { 0.0 });
+            for (component, places) in [&mut acting.forces, &mut acting.torques]
+                .into_iter()
+                .enumerate()
+            {
+                if own[component] > INVISIBLE * limits[component] {
+                    let [x, y] = force.at.position;
+                    places.push(json!({
+                        "kind": force.kind.word(),
+                        "attachment": stage.attach(force.at),
+                        "at": [short(stage.scale * x), short(-stage.scale * y)],
+                    }));
+                    acting.indices[component].push(index);
+                }
+            }
+        }
+        acting
+    }
+
+    /// Returns two channels per force, x to the right and y down, and one per torque.
+    fn channels(&self, moments: &[Moment]) -> Vec<Channel> {
+        let [forces, torques] = &self.indices;
+        let of = |index: usize, component: usize, factor: f64| {
+            let values = moments.iter().map(|m| factor * m.forces[index][component]);
+            Channel::new(values.collect())
+        };
+        let [force, torque] = self.most.map(f64::recip);
+        let forces = forces
+            .iter()
+            .flat_map(|&index| [of(index, 0, force), of(index, 1, -force)]);
+        forces
+            .chain(torques.iter().map(|&index| of(index, 2, torque)))
+            .collect()
+    }
 }
 
 /// Returns velocity and acceleration of a point of a rigid body.

@@ -14,6 +14,7 @@ pub use moving::MovingPicture;
 pub use moving_svg::moving_svg;
 pub use page::{fill, page, page_with, player};
 
+use super::force_place::ForcePlace;
 use super::scene::Scene;
 
 /// A motion to show.
@@ -25,6 +26,8 @@ pub struct Animation {
     pub clock: Clock,
     /// Quantities that stand in numbers beside the picture.
     pub readings: Vec<Reading>,
+    /// Forces that arrows show where the reader asks for them.
+    pub forces: Vec<ForcePlace>,
     /// The poses of the motion; at least one.
     pub moments: Vec<Moment>,
 }
@@ -58,4 +61,6 @@ pub struct Moment {
     pub rates: [Vec<f64>; 2],
     /// One value per reading, in its unit.
     pub readings: Vec<f64>,
+    /// Components in ground axes \[N\] and torque \[N m\] of each force.
+    pub forces: Vec<[f64; 3]>,
 }

@@ -44,9 +44,9 @@ pub fn page_with(title: &str, description: &str, main: &str, style: &str) -> Str
 #[must_use]
 pub fn player(animation: &Animation) -> String {
     let poses: Vec<&[f64]> = animation.moments.iter().map(|m| m.q.as_slice()).collect();
-    let stage = Stage::new(&animation.scene, &poses, None);
+    let mut stage = Stage::new(&animation.scene, &poses, None);
     let q = poses.first().copied().unwrap_or_default();
-    let film = film(animation, &stage).to_string();
+    let film = film(animation, &mut stage).to_string();
     let last = animation.moments.len().saturating_sub(1).to_string();
     fill(
         PLAYER,

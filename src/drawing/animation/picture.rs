@@ -27,7 +27,8 @@ pub(super) fn picture(scene: &Scene, q: &[f64], stage: &Stage) -> String {
     let moving = |attachment| [format!(" data-attachment=\"{attachment}\""), String::new()];
     let changing = |mark: &Mark| [elastic_data(mark, stage), String::new()];
     svg += &groups(q, stage, &moving, &changing);
-    svg += "<g class=\"arrows acceleration\"/><g class=\"arrows velocity\"/>";
+    svg += "<g class=\"arrows force\"/><g class=\"arrows acceleration\"/>\
+            <g class=\"arrows velocity\"/>";
     svg += &names(stage);
     svg + "</svg>"
 }

@@ -5,6 +5,9 @@
   // Length of the longest arrow, and of its tip, in units of the picture.
   const LONGEST = 90;
   const TIP = 7;
+  // Radius of a torque's arc, and the angle of the largest one.
+  const ARC = 18;
+  const WIDEST = (5 / 3) * Math.PI;
   // Height of a line of letters over that of capitals.
   const LINE = 1.4;
   const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
@@ -32,10 +35,12 @@
     };
     const time = () => (moment === last ? film.stop : film.start + moment * film.step);
 
-    // The channels: attachments, lengths, points, readings.
+    // The channels: attachments, lengths, points, forces, torques, readings.
     const lengthsAt = 3 * film.attachments;
     const pointsAt = lengthsAt + film.lengths;
-    const readingsAt = pointsAt + 4 * film.points.length;
+    const forcesAt = pointsAt + 4 * film.points.length;
+    const torquesAt = forcesAt + 2 * film.forces.length;
+    const readingsAt = torquesAt + film.torques.length;
 
     const moving = [...player.querySelectorAll("[data-attachment]")];
     const elastic = [...player.querySelectorAll("[data-length]")].map((path) => ({
@@ -52,6 +57,13 @@
     let boxes = [];
     const arrows = ["velocity", "acceleration"].map((kind) =>
       film.points.map(() => add(find(`.arrows.${kind}`), "path")),
+    );
+    const [forces, torques] = [film.forces, film.torques].map((places) =>
+      places.map(({ kind }) => {
+        const path = add(find(".arrows.force"), "path");
+        path.setAttribute("class", kind);
+        return path;
+      }),
     );
     const readings = film.readings.map((reading, index) => {
       const [low, high] = film.scales[readingsAt + index];
@@ -131,6 +143,15 @@
           paths[index].setAttribute("d", arrow(from, value(channel), value(channel + 1)));
         });
       });
+      film.forces.forEach((force, index) => {
+        const channel = forcesAt + 2 * index;
+        const from = outside(force.attachment, force.at);
+        forces[index].setAttribute("d", arrow(from, value(channel), value(channel + 1)));
+      });
+      film.torques.forEach((torque, index) => {
+        const center = outside(torque.attachment, torque.at);
+        torques[index].setAttribute("d", turn(center, value(torquesAt + index)));
+      });
       readings.forEach((show, index) => show(value(readingsAt + index)));
       const now = `${time().toFixed(digits)} s`;
       clock.textContent = now;
@@ -186,15 +207,17 @@
     }
     const switches = [...player.querySelectorAll(".show")];
     for (const box of switches) {
-      if (box.value !== "names" && film.points.length === 0) {
+      const arrows = { velocity: film.points, acceleration: film.points, force: [...film.forces, ...film.torques] };
+      if (arrows[box.value]?.length === 0) {
         box.parentElement.remove();
         continue;
       }
-      // How long the longest arrow is that there is.
-      const most = film.most[{ velocity: 0, acceleration: 1 }[box.value]];
-      if (most > 0) {
-        const unit = box.value === "velocity" ? "m/s" : "m/s²";
-        box.nextElementSibling.textContent += `, up to ${Number(most.toPrecision(3))} ${unit}`;
+      // How long the longest arrows are that there are.
+      const units = { velocity: ["m/s"], acceleration: ["", "m/s²"], force: ["", "", "N", "N m"] }[box.value] ?? [];
+      const most = units.map((unit, kind) => [film.most[kind], unit]).filter(([size, unit]) => unit && size > 0);
+      if (most.length > 0) {
+        const sizes = most.map(([size, unit]) => `${Number(size.toPrecision(3))} ${unit}`);
+        box.nextElementSibling.append(`, up to ${sizes.join(", ")}`);
       }
       box.addEventListener("change", () => show(box));
       show(box);
@@ -217,6 +240,7 @@
       End: step(Infinity),
       v: toggle("velocity"),
       a: toggle("acceleration"),
+      f: toggle("force"),
       n: toggle("names"),
     };
     player.classList.toggle("still", last < 1);
@@ -272,6 +296,20 @@
     const [along, aside] = [1 - tip, 0.45 * tip];
     const to = (a, b) => `${fix(x + a * u - b * v)} ${fix(y + a * v + b * u)}`;
     return `M${to(0, 0)}L${to(1, 0)}M${to(along, aside)}L${to(1, 0)}L${to(along, -aside)}`;
+  }
+
+  // An arc about a point whose angle is a part of the widest, counter-clockwise from below.
+  function turn([x, y], part) {
+    const angle = WIDEST * part;
+    if (ARC * Math.abs(angle) < 1) {
+      return "";
+    }
+    const sense = Math.sign(angle);
+    const at = (radius, to) => `${fix(x + radius * Math.sin(to))} ${fix(y + radius * Math.cos(to))}`;
+    const back = angle - sense * Math.min(TIP / ARC, Math.abs(angle));
+    const large = Math.abs(angle) > Math.PI ? 1 : 0;
+    const arc = `M${at(ARC, 0)}A${ARC} ${ARC} 0 ${large} ${sense > 0 ? 0 : 1} ${at(ARC, angle)}`;
+    return `${arc}M${at(ARC + 0.45 * TIP, back)}L${at(ARC, angle)}L${at(ARC - 0.45 * TIP, back)}`;
   }
 
   const elements = [...document.querySelectorAll(".player")];

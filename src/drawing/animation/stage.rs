@@ -138,6 +138,11 @@ impl Stage {
         self.view = [bounds.low - margin, bounds.size() + 2.0 * margin];
     }
 
+    /// Returns the index of the frame that an anchor moves with, which is added if it is new.
+    pub(super) fn attach(&mut self, anchor: Anchor) -> usize {
+        index_in(&mut self.attachments, Attachment::of(anchor))
+    }
+
     /// Returns the places of all attachments at q.
     pub(super) fn placements(&self, q: &[f64]) -> Vec<Placement> {
         let attachments = self.attachments.iter();

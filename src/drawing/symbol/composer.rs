@@ -111,12 +111,7 @@ impl<'a> Composer<'a> {
     }
 
     pub(super) fn anchor(&self, marker: MarkerId) -> Anchor {
-        let marker = &self.mechanism.markers[marker.index()];
-        Anchor {
-            body: marker.body,
-            position: [0, 1].map(|k| self.value(&marker.position[k])),
-            angle: self.value(&marker.angle),
-        }
+        Anchor::of_marker(self.mechanism, self.parameters, marker)
     }
 
     /// Adds a symbol unless it is there already.

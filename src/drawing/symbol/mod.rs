@@ -26,6 +26,7 @@ use pen::{
 };
 
 pub(super) use composer::{compose, compose_dimensions};
+pub use force_arrow::ForceKind;
 pub(super) use pen::{OtherPoses, Pen};
 pub use slide_way::{GuideContact, WaySide};
 
@@ -136,6 +137,8 @@ symbols! { composer, ends:
     length_driver: LengthDriver;
     spring: Spring;
     point: InterestPoint;
+    force_arrow: ForceArrow;
+    torque_arrow: TorqueArrow;
     joint_letter: JointLetter;
     dimension: Dimension;
     instant_centre: InstantCentreMark;

@@ -269,11 +269,20 @@ impl<'a> Pen<'a> {
 
     /// Draws the tip of a driver's arrow.
     pub(super) fn arrow(&mut self, tip: Point, along: Point) {
+        self.tip(Layer::Driver, tip, along, Colour::DRIVER);
+    }
+
+    /// Draws the tip of a force's arrow.
+    pub(super) fn force_tip(&mut self, tip: Point, along: Point, colour: Colour) {
+        self.tip(Layer::Force, tip, along, colour);
+    }
+
+    fn tip(&mut self, layer: Layer, tip: Point, along: Point, colour: Colour) {
         let [length, half] = ARROW;
         let base = tip - length * along;
         let aside = half * across(along);
         let outline = Outline::polygon(&[tip, base + aside, base - aside]);
-        self.area(Layer::Driver, outline, (Colour::DRIVER, 1.0), None);
+        self.area(layer, outline, (colour, 1.0), None);
     }
 
     // -- names -------------------------------------------------------------------------------
@@ -282,6 +291,12 @@ impl<'a> Pen<'a> {
     pub(super) fn name_driver(&mut self, name: &str, candidates: Vec<Candidate>) {
         let label = self.label(name, Colour::DRIVER.shade(0.8), candidates);
         self.driver_labels.push(label);
+    }
+
+    /// Gives the size of a force at the best of these places.
+    pub(super) fn name_force(&mut self, size: &str, colour: Colour, candidates: Vec<Candidate>) {
+        let label = self.label(size, colour.shade(0.8), candidates);
+        self.point_labels.push(label);
     }
 
     /// Names a point at the best of these places.

@@ -1,4 +1,4 @@
-"""Excavator arm: three triangles with a variable side and a four-bar linkage."""
+"""Excavator arm: three triangles with a variable side and a four-bar linkage; free bodies."""
 
 from __future__ import annotations
 
@@ -16,6 +16,14 @@ REAR_ON_STICK = -0.75 + 0.25j
 BUCKET_CYLINDER_ON_STICK = 0.50 + 0.50j
 LEVER_ON_STICK = STICK - 0.42
 EAR_ON_BUCKET = -0.34 + 0.29j
+LOAD_ON_BUCKET, LOAD_MASS, G = 0.65 + 0.30j, 1500.0, 9.81
+#: Mass, moment of inertia about the centre of mass, centre of mass in the body's frame.
+MASSES = {
+    "boom": (1800.0, 5200.0, 2.75 + 0.45j),
+    "stick": (900.0, 950.0, 0.95 + 0.15j),
+    "lever": (70.0, 2.5, LEVER / 2),
+    "bucket": (750.0, 180.0, 0.55 + 0.25j),
+}
 
 
 def opening(pin_1: complex, pin_2: complex, cylinder: Taylor) -> Taylor:
@@ -57,8 +65,96 @@ def truth(time: Taylor, drivers: dict[str, Taylor]) -> Truth:
     }
 
 
+class Demand:
+    """Force on a body, or on several together, with its moment about ground's origin."""
+
+    def __init__(self, force=0.0, moment=0.0):
+        self.force, self.moment = force, moment
+
+    def __add__(self, other):
+        return Demand(self.force + other.force, self.moment + other.moment)
+
+    def about(self, pin):
+        """Returns the moment about a point."""
+        return self.moment - cross(pin, self.force)
+
+
+def cross(arm, force):
+    return (np.conj(arm) * force).imag
+
+
+def thrust(foot, head, pin, moment):
+    """Returns the force of a cylinder on its head that has this moment about a pin."""
+    along = (head - foot) / np.abs(head - foot)
+    return moment / cross(head - pin, along), along
+
+
+def properties(motion):
+    """Free bodies, from the bucket to the frame: what lies beyond a pin demands a moment about it
+    for its weight, its load and its acceleration, and one cylinder or rod has to give it."""
+    drivers = {
+        name: Taylor(*(motion[f"{name}.{order}"] for order in ("position", "velocity", "acceleration")))
+        for name in ("boom_cylinder", "stick_cylinder", "bucket_cylinder")
+    }
+    pose = truth(None, drivers)
+    origin = {name: pose[f"{name}.x"] + 1j * pose[f"{name}.y"] for name in MASSES}
+    phi = {name: pose[f"{name}.phi"] for name in MASSES}
+
+    def at(name, place):
+        return (origin[name] + Taylor.polar(1, phi[name]) * place).value
+
+    def demand(name):
+        mass, inertia, center = MASSES[name]
+        place = origin[name] + Taylor.polar(1, phi[name]) * center
+        force = mass * (place.second + 1j * G)
+        return Demand(force, cross(place.value, force) + inertia * phi[name].second)
+
+    weight = -1j * G * LOAD_MASS
+    bucket = demand("bucket") + Demand(-weight, -cross(at("bucket", LOAD_ON_BUCKET), weight))
+    lever, stick, boom = demand("lever"), demand("stick"), demand("boom")
+
+    end, ear = at("lever", LEVER), at("bucket", EAR_ON_BUCKET)
+    bucket_pin, lever_pin, stick_pin = (at(name, 0) for name in ("bucket", "lever", "stick"))
+    rod, along_rod = thrust(end, ear, bucket_pin, bucket.about(bucket_pin))
+    moment = lever.about(lever_pin) + cross(end - lever_pin, rod * along_rod)
+    foot = at("stick", BUCKET_CYLINDER_ON_STICK)
+    bucket_cylinder, along = thrust(foot, end, lever_pin, moment)
+    at_lever_pin = lever.force + rod * along_rod - bucket_cylinder * along
+
+    beyond = stick + lever + bucket
+    foot, head = at("boom", STICK_CYLINDER_ON_BOOM), at("stick", REAR_ON_STICK)
+    stick_cylinder, along = thrust(foot, head, stick_pin, beyond.about(stick_pin))
+    at_stick_pin = beyond.force - stick_cylinder * along
+
+    beyond = beyond + boom
+    head = at("boom", CYLINDER_ON_BOOM)
+    boom_cylinder, along = thrust(CYLINDER_FOOT, head, 0.0, beyond.about(0.0))
+    at_foot = beyond.force - boom_cylinder * along
+
+    forces = {
+        "boom_foot": at_foot,
+        "stick_pin": at_stick_pin,
+        "lever_pin": at_lever_pin,
+        "bucket_pin": bucket.force - rod * along_rod,
+        "rod": rod * along_rod,
+    }
+    largest = np.max(np.abs(boom_cylinder))
+    efforts = {
+        "boom_cylinder": boom_cylinder,
+        "stick_cylinder": stick_cylinder,
+        "bucket_cylinder": bucket_cylinder,
+    }
+    return {
+        f"effort of {name}": (motion[f"{name}.effort"] - effort) / largest
+        for name, effort in efforts.items()
+    } | {
+        f"force in {name}": (motion[f"{name}.fx"] + 1j * motion[f"{name}.fy"] - force) / largest
+        for name, force in forces.items()
+    }
+
+
 CASE = Case(
-    source="closed form: law of cosines in each cylinder's triangle, one dyad",
+    source="closed form: law of cosines in each cylinder's triangle, one dyad; free bodies",
     # Each cylinder through its whole range, at a pace of its own.
     drivers=lambda time: {
         "boom_cylinder": swing(2.225, 0.475)(time),
@@ -66,4 +162,5 @@ CASE = Case(
         "bucket_cylinder": swing(2.025, 0.425)(3 * time),
     },
     truth=truth,
+    properties=properties,
 )

@@ -9,6 +9,7 @@ from .plane import apex, body, point
 from .taylor import Taylor
 
 CRANK, ROD, LINK = 0.05, 0.45, 0.20
+WORK_DEPTH, STIFFNESS = 0.38, 4e6
 PIVOT = -CRANK - ROD - 1j * LINK
 
 
@@ -32,18 +33,31 @@ def truth(_time, drivers):
 
 
 def properties(motion):
-    """At the crank angle 0, here after one half of the turn, the ram stands to third order."""
-    lowest = np.argmin(np.abs(motion["crank_angle.position"] - 2 * np.pi))
+    """At the crank angle 0, here after one half of the turn, the ram stands to third order.
+
+    Virtual work: the crank's torque does what the ram does on the work, and the mechanical
+    advantage is the velocity of the crank's pin by that of the ram. It is infinite at the dead
+    points, so that its reciprocal is compared."""
+    u = motion["crank_angle.position"]
+    lowest = np.argmin(np.abs(u - 2 * np.pi))
     omega = motion["crank_angle.velocity"][lowest]
+    depth = truth(None, {"crank_angle": Taylor.time(u)})["depth"]
+    force = STIFFNESS * np.maximum(depth.value - WORK_DEPTH, 0)
+    largest = STIFFNESS * (2 * LINK - WORK_DEPTH)
+    with np.errstate(divide="ignore"):
+        reciprocal = 1 / motion["advantage"]
     return {
         "the ram is at its lowest": motion["ram.y"][lowest] / (2 * LINK) + 1,
         "with no velocity": motion["ram.vy"][lowest] / (omega * LINK),
         "and no acceleration": motion["ram.ay"][lowest] / (omega**2 * LINK),
+        "work": (motion["work.effort"] + force) / largest,
+        "effort": (motion["crank_angle.effort"] - force * depth.first) / (largest * CRANK),
+        "advantage": reciprocal - depth.first / CRANK,
     }
 
 
 CASE = Case(
-    source="closed form: intersection of two circles; exact dwell of the ram",
+    source="closed form: intersection of two circles; exact dwell of the ram; virtual work",
     drivers=lambda time: {"crank_angle": one_turn(np.pi)(time)},
     truth=truth,
     properties=properties,
