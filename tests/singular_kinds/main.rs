@@ -238,3 +238,59 @@ fn a_lift_at_its_full_height_loses_a_rank_for_each_cell() {
         go(&mut solver, 0.5 * full).expect("the way back is open");
     }
 }
+
+/// Three equal cranks carry a bar, tilted by 0.2 rad: flat at u = 0.2. There the third crank's own
+/// rows are crossed with the others; where it points along x, at u = 0, they are singular again,
+/// just before the end of the first crossing. Cranks stay parallel, the bar keeps its tilt.
+#[test]
+fn a_second_crossing_begins_at_the_end_of_the_first() {
+    let (mut solver, _) = assembled(&parse(
+        r#"
+        format = 1
+        name = "three_cranks"
+        [parameters]
+        tilt = 0.19667499062900618
+        base = 0.57751
+        along = 0.150837
+        across = 0.070084
+        crank = 0.13165
+        [ground.markers]
+        O = [0, 0]
+        D = ["base*cos(tilt)", "base*sin(tilt)"]
+        E = ["along*cos(tilt) - across*sin(tilt)", "along*sin(tilt) + across*cos(tilt)"]
+        [bodies.first]
+        markers = { a = [0, 0], b = ["crank", 0] }
+        estimate = [0, 0, 1.2]
+        [bodies.second]
+        markers = { a = [0, 0], b = ["crank", 0] }
+        estimate = [0.566, 0.113, 1.2]
+        [bodies.third]
+        markers = { a = [0, 0], b = ["crank", 0] }
+        estimate = [0.134, 0.098, 1.2]
+        [bodies.coupler]
+        markers = { a = [0, 0], b = ["base", 0], c = ["along", "across"] }
+        estimate = [0.05, 0.12, 0.2]
+        [joints]
+        O = { type = "revolute", markers = ["ground.O", "first.a"] }
+        D = { type = "revolute", markers = ["ground.D", "second.a"] }
+        E = { type = "revolute", markers = ["ground.E", "third.a"] }
+        A = { type = "revolute", markers = ["first.b", "coupler.a"] }
+        B = { type = "revolute", markers = ["coupler.b", "second.b"] }
+        C = { type = "revolute", markers = ["coupler.c", "third.b"] }
+        [drivers]
+        u = { coordinate = "angle", markers = ["ground.O", "first.a"], start = 1.2145 }
+        "#,
+    ));
+    let step = (1.2145 + 1.253) / 400.0;
+    for k in 0..=400 {
+        // One of them stops 1.5e-6 rad before the second singular position.
+        let u = 1.508e-6 + step * f64::from(197 - k);
+        go(&mut solver, u).unwrap_or_else(|blocked| panic!("at {u}: {blocked:?}"));
+        let q = &solver.pose().q;
+        // Next to a singular position Newton's method leaves eps / 1.5e-6.
+        for phi in [q[5], q[8]] {
+            assert!((phi - u).abs() < 1e-9, "{phi} at {u}");
+        }
+        assert!((q[11] - 0.196_674_990_629_006_18).abs() < 1e-9);
+    }
+}

@@ -57,6 +57,30 @@ impl InterpolatedBlock {
         })
     }
 
+    /// Puts the unknowns near the motion beyond the crossing, ahead of its end. Returns false within
+    /// the crossing.
+    pub(in crate::kinematics) fn start_beyond(&self, state: &mut BlockState<'_>) -> bool {
+        let Crossing {
+            driver,
+            center,
+            half_width,
+            ..
+        } = *self.crossing;
+        let value = state.drivers[driver.index()];
+        let place = self.crossing.place(value);
+        if place.abs() <= SEAM {
+            return false;
+        }
+        let end = center + half_width.copysign(place);
+        let off = value - end;
+        for (local, &column) in self.block.columns().iter().enumerate() {
+            let [position, first, second] = self.crossing.evaluate(local, end);
+            let ahead = position + off * (first + 0.5 * off * second);
+            state.at.set_coordinate(column, ahead);
+        }
+        true
+    }
+
     /// Writes the chord bounds: an eighth of the second derivative times the squared step, plus the
     /// slope times the deviation of the driver.
     fn write_bounds(&self, state: &BlockState<'_>, step: &mut Step<'_>) {

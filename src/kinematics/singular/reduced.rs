@@ -212,7 +212,7 @@ impl<'a> ReducedEquation<'a> {
     }
 
     /// Moves all blocks before it to τ: along tangent and curvature from the start, then by
-    /// Newton–Raphson.
+    /// Newton–Raphson. A block on a crossing follows it, and goes on beyond its end.
     fn move_before(&mut self, tau: f64) -> Option<()> {
         self.line
             .drivers(tau, &self.held, self.motions, &mut self.jets);
@@ -236,6 +236,14 @@ impl<'a> ReducedEquation<'a> {
         let jets = std::mem::take(&mut self.jets);
         let (before, mut state) = self.state();
         let stands = before.iter_mut().all(|block| {
+            let is_beyond = matches!(
+                &*block,
+                BlockSolver::InterpolatedBlock(interpolated) if interpolated.start_beyond(&mut state)
+            );
+            let block = match block {
+                BlockSolver::InterpolatedBlock(interpolated) if is_beyond => &mut interpolated.block,
+                block => block,
+            };
             let closed = block.close(&mut state, MAX_ITERATIONS).is_ok()
                 && block.factorise(&mut state).is_ok();
             if closed {
