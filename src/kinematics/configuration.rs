@@ -214,7 +214,7 @@ impl Configuration {
                 error,
             })?;
         }
-        self.size = size(mechanism, &self.frames);
+        self.size = size(mechanism, &self.frames, &self.profiles);
         Ok(())
     }
 
@@ -350,8 +350,9 @@ impl Configuration {
     /// Returns the mechanism's characteristic length \[m\], which makes metres and radians
     /// comparable.
     ///
-    /// It is the extent of the largest body or the largest length that a joint holds, not the
-    /// extent of the whole, so that a long chain of small loops is measured by its loops.
+    /// It is the extent of the largest body, the radius of the largest cam or the largest length
+    /// that a joint holds, not the extent of the whole, so that a long chain of small loops is
+    /// measured by its loops.
     #[must_use]
     pub fn size(&self) -> f64 {
         if self.size > 0.0 { self.size } else { 1.0 }
@@ -363,8 +364,8 @@ impl Configuration {
     }
 }
 
-/// Returns the extent of the largest body, or of ground's markers; zero if neither has any.
-fn size(mechanism: &Mechanism, frames: &[LocalFrame]) -> f64 {
+/// Returns the extent of the largest body or cam, or of ground's markers; zero if none has any.
+fn size(mechanism: &Mechanism, frames: &[LocalFrame], profiles: &[CamProfile]) -> f64 {
     let extent = |markers: &mut dyn Iterator<Item = &LocalFrame>| {
         let (low, high) = markers.fold(
             (
@@ -384,8 +385,10 @@ fn size(mechanism: &Mechanism, frames: &[LocalFrame]) -> f64 {
         .iter()
         .map(|body| extent(&mut body.markers.iter().map(|m| &frames[m.index()])))
         .fold(0.0, f64::max);
-    if bodies > 0.0 {
-        return bodies;
+    let cams = profiles.iter().map(|p| p.in_force.radius(0.0).value);
+    let largest = cams.fold(bodies, f64::max);
+    if largest > 0.0 {
+        return largest;
     }
     extent(&mut frames.iter().filter(|frame| frame.body.is_none()))
 }

@@ -4,7 +4,7 @@ use petgraph::unionfind::UnionFind;
 
 use super::{Equation, Target};
 use crate::kinematics::constraint::{Dimension, Incidence};
-use crate::mechanism::{MarkerId, Mechanism};
+use crate::mechanism::{JointKind, MarkerId, Mechanism, ProfileInForce};
 
 /// Least part of the mechanism's size that counts: a body of some eps of it is a point.
 const LEAST: f64 = 1e-15;
@@ -41,6 +41,18 @@ pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f
     for (index, body) in mechanism.bodies.iter().enumerate() {
         let part = parts.find(index);
         sizes[part] = sizes[part].max(extent(mechanism, &body.markers, value));
+    }
+    for joint in &mechanism.joints {
+        if let JointKind::Cam { profile, .. } = &joint.kind
+            && let Some(body) = mechanism.markers[joint.from.index()].body
+        {
+            let mut profile = ProfileInForce::new(profile, mechanism.parameters.len());
+            // Parameters that make no contour are refused later.
+            if profile.set_parameters(value).is_ok() {
+                let part = parts.find(body.index());
+                sizes[part] = sizes[part].max(profile.radius(0.0).value);
+            }
+        }
     }
     for (equation, first) in equations.iter().zip(first) {
         if let (Some(first), Target::Constant(target)) = (first, &equation.target)
