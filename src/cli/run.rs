@@ -212,6 +212,10 @@ impl Run {
                     path.display()
                 )))
             }
+            Some(path) if self.forces && extension(path) == "svg" => Err(Error::Usage(
+                "--forces: a moving picture has no arrows of forces; a page has them, .html"
+                    .to_owned(),
+            )),
             _ => Ok(()),
         }
     }

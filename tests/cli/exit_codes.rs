@@ -209,6 +209,16 @@ fn bad_usage_exits_with_2() {
             "`tlv.gif` has none of the extensions .html, .htm and .svg",
         ),
         (
+            &[
+                "run",
+                "mechanisms/hatch.toml",
+                "--animate",
+                "hatch.svg",
+                "--forces",
+            ],
+            "--forces: a moving picture has no arrows of forces; a page has them, .html",
+        ),
+        (
             &["watch", "no_such_file.toml"],
             "cannot read `no_such_file.toml`",
         ),
