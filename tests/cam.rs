@@ -587,3 +587,52 @@ fn a_rough_estimate_keeps_its_side() {
         assert!(off.abs() < 1e-15, "{height}: {off:e}");
     }
 }
+
+/// A cam takes the same sub-steps whatever its size, also where all markers are at its center. The
+/// knife edge runs on the contour: y = R(π/2 − u).
+#[test]
+fn a_cam_of_a_tenth_of_a_millimetre_costs_no_more_than_one_of_a_kilometre() {
+    let radius = |theta: f64| {
+        0.12 + 0.03 * (2.0 * theta).cos() + 0.03 * (((theta - 1.0).cos() - 1.0) / 0.0025).exp()
+    };
+    let runs = [1e-3, 1.0, 1e4].map(|scale: f64| {
+        let (mut solver, mut path) = assembled(&parse(&format!(
+            r#"
+            format = 1
+            name = "cam"
+            [parameters]
+            scale = {scale:e}
+            [ground.markers]
+            O = [0, 0]
+            guide = [0, 0, "90*deg"]
+            [bodies.cam]
+            markers = {{ O = [0, 0] }}
+            estimate = [0, 0, 0]
+            [bodies.follower]
+            markers = {{ A = [0, 0, "90*deg"] }}
+            estimate = [0, "0.1*scale", 0]
+            [joints]
+            O = {{ type = "revolute", markers = ["ground.O", "cam.O"] }}
+            guide = {{ type = "translational", markers = ["ground.guide", "follower.A"] }}
+            [joints.contact]
+            type = "cam"
+            markers = ["cam.O", "follower.A"]
+            follower = "knife"
+            profile = "scale*(0.12 + 0.03*cos(2*theta) + 0.03*exp((cos(theta - 1) - 1)/0.0025))"
+            [drivers]
+            u = {{ coordinate = "angle", markers = ["ground.O", "cam.O"], start = 0 }}
+            "#
+        )));
+        straight_to(&solver, &mut path, 3.0);
+        let progress = solver.track(&path).expect("it turns fully");
+        // The slope of the lobe is below 1 m/rad: an eps of the angle is one of the height.
+        let height = solver.pose().q[4] / scale;
+        assert!((height - radius(0.5 * PI - 3.0)).abs() < 1e-14);
+        progress.substeps
+    });
+    let [small, middle, large] = runs.map(f64::from);
+    for other in [small, large] {
+        let ratio = other / middle;
+        assert!((0.5..=2.0).contains(&ratio), "{runs:?}");
+    }
+}

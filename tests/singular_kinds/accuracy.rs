@@ -173,3 +173,23 @@ proptest! {
         );
     }
 }
+
+/// A step ends 0.02 rad before a change point that is farther in the other unknowns than Newton's
+/// method looks at first: the motion goes on.
+#[test]
+fn a_change_point_is_told_from_a_touch_from_afar() {
+    for turn in [0.3412805743701129, 0.34128057437011333, 0.3412805743701147] {
+        let four_bar = FourBar {
+            lengths: [
+                0.861_014_154_086_361_4,
+                0.967_167_627_060_669_6,
+                1.174_595_102_399_911_7,
+                1.068_441_629_425_603_6,
+            ],
+            turn,
+            change: 0.0,
+        };
+        let [position, velocity, acceleration] = four_bar.errors();
+        assert!(position < 1e-12 && velocity < 1e-10 && acceleration < 1e-10);
+    }
+}

@@ -65,17 +65,13 @@ pub(super) enum Finding {
 /// the motion there.
 pub(super) fn find(equation: &mut ReducedEquation<'_>, reach: f64) -> Finding {
     let start = equation.start;
-    let critical = newton(equation, [0.0, start], reach, |point| {
-        let [aa, at, tt] = point.second;
-        (point.first, [[aa, at], [at, tt]])
-    });
+    let rounding = if equation.reads_crossings() {
+        INTERPOLATED
+    } else {
+        ROUNDING * equation.extent()
+    };
     let mut near = None;
-    if let Some(point) = critical {
-        let rounding = if equation.reads_crossings() {
-            INTERPOLATED
-        } else {
-            ROUNDING * equation.extent()
-        };
+    if let Some(point) = critical(equation, [0.0, start], reach) {
         if point.epsilon.abs() <= rounding {
             return crossing(equation, point);
         }
@@ -95,10 +91,29 @@ pub(super) fn find(equation: &mut ReducedEquation<'_>, reach: f64) -> Finding {
     match fold {
         Some(point) => {
             let kind = end(equation, &point);
+            // Motions that cross seem to touch, too, as far as they can be told apart there.
+            if kind == SingularKind::TangentBranches
+                && let Some(point) = critical(equation, [point.alpha, point.tau], reach)
+                && point.epsilon.abs() <= rounding
+            {
+                return crossing(equation, point);
+            }
             Finding::End(kind, Box::new(point))
         }
         None => Finding::Nothing,
     }
+}
+
+/// Looks for a critical point of ε.
+fn critical(
+    equation: &mut ReducedEquation<'_>,
+    from: [f64; 2],
+    reach: f64,
+) -> Option<ReducedPoint> {
+    newton(equation, from, reach, |point| {
+        let [aa, at, tt] = point.second;
+        (point.first, [[aa, at], [at, tt]])
+    })
 }
 
 /// Solves two equations in the plane of α and τ by Newton's method; `equations` returns their
