@@ -65,10 +65,16 @@ def expected_variables(file):
     for marker in outputs.get("markers", []):
         for suffix, unit in POINT_UNITS.items():
             yield f"{marker}.{suffix}", "Real", "output", "continuous", unit
-    measured = {**file.get("measures", {}), **{n: t for n, t in drivers.items() if "motion" in t}}
+    measures = file.get("measures", {})
+    computed = {name: table for name, table in measures.items() if "value" in table}
+    measured = {name: table for name, table in measures.items() if name not in computed}
+    measured |= {name: table for name, table in drivers.items() if "motion" in table}
     for name, table in measured.items():
         for suffix, unit in coordinate_units(table).items():
             yield f"{name}.{suffix}", "Real", "output", "continuous", unit
+    for name, table in computed.items():
+        unit = None if table.get("unit") == "1" else table.get("unit")
+        yield name, "Real", "output", "continuous", unit
 
     for name, unit in expected_forces(file):
         yield name, "Real", "output", "continuous", unit
