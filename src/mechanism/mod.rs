@@ -64,8 +64,7 @@ pub use spline::{Ends, Spline};
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
 #[cfg(feature = "cli")]
-pub(crate) use wording::quoted;
-pub(crate) use wording::shown;
+pub(crate) use wording::{large_angle, quoted, shown};
 
 /// Planar mechanism as its file describes it. Names, types and units are checked, assembly is not.
 ///
