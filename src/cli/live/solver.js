@@ -46,7 +46,8 @@ export class Solver {
     try {
       return call();
     } catch (error) {
-      if (error instanceof WebAssembly.RuntimeError) {
+      // A stack that overflows is an error of the browser.
+      if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError) {
         const message = this.text(this.exports.biela_output_length());
         throw new Broken(message || String(error));
       }
