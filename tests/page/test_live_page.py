@@ -345,17 +345,21 @@ def test_memory_is_steady(page_of, tmp_path):
         const turn = (from, count) => {
           for (let k = 0; k < count; k += 1) live.solver.drive(driver, from + k * 0.01);
         };
+        // A hand that pulls, and pictures drawn anew as for sliders of parameters.
+        const pull = (count) => {
+          for (let k = 0; k < count; k += 1) {
+            const at = [50 * Math.cos(k / 60), 50 * Math.sin(k / 60)];
+            live.solver.ask({ do: "drag", body: 0, grip: [0.1, 0], at });
+            if (k % 600 === 0) live.solver.ask({ do: "redraw", keep: true });
+          }
+        };
+        pull(601);
         const start = frame()[live.places.drivers + 3 * driver];
         turn(start, 1000);
         const first = size();
         turn(start + 10, 216000);
         const angle = frame()[live.places.drivers + 3 * driver] - start;
-        // A hand that pulls for a minute, and sliders of parameters.
-        const body = 0;
-        for (let k = 0; k < 3600; k += 1) {
-          live.solver.ask({ do: "drag", body, grip: [0.1, 0], at: [50 * Math.cos(k / 60), 50 * Math.sin(k / 60)] });
-          if (k % 600 === 0) live.solver.ask({ do: "redraw", keep: true });
-        }
+        pull(3600);
         return [first, size(), angle];
         """,
     )
