@@ -112,7 +112,7 @@ fn row_of_sliders(count: usize, crank: f64) -> String {
         };
         let [px, py] = place;
         let phi = (py - y).atan2(px - x);
-        let _ = write!(ground, "G{k} = [{px:?}, {py:?}, {tilt:?}]\n");
+        let _ = writeln!(ground, "G{k} = [{px:?}, {py:?}, {tilt:?}]");
         let _ = write!(
             bodies,
             "[bodies.rod_{k}]\nmarkers = {{ A = [0, 0], B = [0.3, 0] }}\n\

@@ -96,7 +96,7 @@ pub struct ProfileInForce {
     valid: bool,
     /// Continuity where pieces of the contour meet.
     joint: Joint,
-    /// What was asked for last. The rows of a contact ask for the same again and again.
+    /// Results of the last calls. The rows of a contact ask for the same again and again.
     last: Last,
 }
 

@@ -317,7 +317,7 @@ impl RrpDyad {
         let (pivot, rest) = self.anchor.pivot_slide(bounds, frames);
         let parts = ratios.map(|ratio| (t - e * ratio).dot(&pivot.direction).abs());
         let ratio = ratios[0].abs().max(ratios[1].abs());
-        // What of the gap the slide of the anchor's body does not explain.
+        // The part of the gap that the slide of the anchor's body does not explain.
         let gap = gap - pivot.along * e.dot(&pivot.direction).abs();
         let turned =
             sagitta(first.phi - before.first.phi) + 0.5 * angle_deviation * angle_deviation;
