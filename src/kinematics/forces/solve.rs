@@ -231,24 +231,26 @@ impl Forces {
 
     /// Evaluates the sizes of forces, what they load bodies with, and the energies.
     fn solve_loads(&mut self, state: &State, motion: KnownMotion<'_>) -> Result<(), Error> {
-        let parameters = &state.pose.parameters;
-        let parameter = |p: ParameterId| parameters[p.index()];
-        let around = Circumstances {
-            parameter: &parameter,
-            time: state.pose.time,
-            inputs: motion.inputs,
-        };
-        self.work.loads.fill(0.0);
         let q_dot = motion.rates.velocity();
         let mut energies = [0.0, 0.0];
-        energies[1] += self.applied.apply(
-            &self.mechanism,
-            &state.at,
-            q_dot,
-            &around,
-            &mut self.results.sizes,
-            &mut self.work.loads,
-        )?;
+        // Without forces the loads stay zero.
+        if !self.applied.list.is_empty() {
+            let parameters = &state.pose.parameters;
+            let around = Circumstances {
+                parameter: &|p: ParameterId| parameters[p.index()],
+                time: state.pose.time,
+                inputs: motion.inputs,
+            };
+            self.work.loads.fill(0.0);
+            energies[1] = self.applied.apply(
+                &self.mechanism,
+                &state.at,
+                q_dot,
+                &around,
+                &mut self.results.sizes,
+                &mut self.work.loads,
+            )?;
+        }
         let gravity = self.masses.gravity;
         for of_body in &mut self.masses.bodies {
             let frame = &state.at.frames()[of_body.body];
