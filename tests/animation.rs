@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use biela::drawing::animation::{Animation, Clock, Moment, Reading, page};
+use biela::drawing::animation::{Animation, Clock, Moment, Reading, moving_svg, page};
 use biela::drawing::symbol::ForceKind;
 use biela::drawing::{ForcePlace, Scene};
 use biela::kinematics::{Curve, ForceParts, ForceQuantity, KnownMotion, Rates};
@@ -358,4 +358,135 @@ fn long_films_stay_small_and_every_mechanism_has_one() {
         }
         assert_eq!(page, biela::drawing::animation::page(&animation));
     }
+}
+
+/// Returns the value of an attribute of an element, `None` if it has none.
+fn attribute<'a>(element: &'a str, name: &str) -> Option<&'a str> {
+    let start = element.find(&format!(" {name}=\""))? + name.len() + 3;
+    element[start..].split('"').next()
+}
+
+/// A name in a picture that moves by itself.
+struct MovingName {
+    /// Left end of the line of letters, and its width.
+    start: [f64; 2],
+    width: f64,
+    /// Shifts at moments of equal distance, one if it rests.
+    shifts: Vec<[f64; 2]>,
+    /// When it is hidden or shown, as a part of the whole time, and whether it is shown then.
+    shown: Vec<(f64, bool)>,
+}
+
+impl MovingName {
+    fn new(element: &str) -> Self {
+        let number = |text: &str| text.parse::<f64>().expect("a number");
+        let of = |name| number(attribute(element, name).expect("it has a place and a width"));
+        let animated = |kind: &str| {
+            let start = element.find(kind)?;
+            let animation = element[start..].split("/>").next()?;
+            let values = attribute(animation, "values")?
+                .split(';')
+                .collect::<Vec<_>>();
+            Some((values, attribute(animation, "keyTimes")))
+        };
+        let (shifts, _) = animated("<animateTransform").unwrap_or((vec!["0 0"], None));
+        let (states, times) = animated("<animate ").unwrap_or((vec!["visible"], Some("0")));
+        let times = times.expect("it has times").split(';').map(number);
+        Self {
+            start: [of("x"), of("y")],
+            width: of("textLength"),
+            shifts: (shifts.iter())
+                .map(|shift| {
+                    let (x, y) = shift.split_once(' ').expect("x and y");
+                    [number(x), number(y)]
+                })
+                .collect(),
+            shown: times
+                .zip(states.iter().map(|state| *state == "visible"))
+                .collect(),
+        }
+    }
+
+    /// Returns the left end at a moment of `last + 1`, `None` while it is hidden.
+    fn at(&self, moment: usize, last: usize) -> Option<[f64; 2]> {
+        // Times have four digits.
+        let now = moment as f64 / last as f64 + 1e-4;
+        let (_, is_shown) = self.shown.iter().rfind(|(time, _)| *time <= now)?;
+        let [x, y] = self.shifts[moment.min(self.shifts.len() - 1)];
+        is_shown.then_some([self.start[0] + x, self.start[1] + y])
+    }
+}
+
+/// Returns how many names of a picture that moves by itself are hidden at times; none may cover
+/// another one.
+fn hidden_names(animation: &Animation) -> usize {
+    const CAPITALS: f64 = 8.6;
+    let name = &animation.scene.name;
+    let picture = moving_svg(animation);
+    let lines = picture.lines().filter(|line| line.starts_with("<text "));
+    let names: Vec<MovingName> = lines.map(MovingName::new).collect();
+    assert!(!names.is_empty(), "{name}");
+    let moments = names.iter().map(|n| n.shifts.len()).max();
+    let last = moments.map_or(1, |moments| (moments - 1).max(1));
+    for moment in 0..=last {
+        let shown: Vec<([f64; 2], f64)> = (names.iter())
+            .filter_map(|n| Some((n.at(moment, last)?, n.width)))
+            .collect();
+        for (index, ([x, y], width)) in shown.iter().enumerate() {
+            for ([other_x, other_y], other_width) in &shown[..index] {
+                let is_apart = x + width <= *other_x
+                    || other_x + other_width <= *x
+                    || (y - other_y).abs() >= CAPITALS;
+                assert!(is_apart, "{name}: two names meet at moment {moment}");
+            }
+        }
+    }
+    names.iter().filter(|n| n.shown.len() > 1).count()
+}
+
+#[test]
+fn names_in_moving_pictures_never_cover_each_other() {
+    for name in stems("mechanisms", "toml") {
+        hidden_names(&animation(&shipped(&name), 24));
+    }
+    // Blocks on one line pass each other in the middle, where their names have no room.
+    const BLOCKS: usize = 8;
+    let text: String = (0..BLOCKS)
+        .map(|k| {
+            format!(
+                "[bodies.block_{k}]\nmarkers = {{ O = [0, 0] }}\n\
+                 [joints.way_{k}]\ntype = 'translational'\nmarkers = ['ground.O', 'block_{k}.O']\n\
+                 [drivers.shift_{k}]\ncoordinate = 'x'\nmarkers = ['ground.O', 'block_{k}.O']\n\
+                 start = 0\n"
+            )
+        })
+        .collect();
+    let mechanism = parse(&format!(
+        "format = 1\nname = 'blocks'\n[ground.markers]\nO = [0, 0]\n{text}"
+    ));
+    let pose = |moment: usize| -> Vec<f64> {
+        let part = 1.0 - moment as f64 / 30.0;
+        let places = (0..BLOCKS).map(|k| part * (k as f64 - 3.5));
+        places.flat_map(|x| [x, 0.0, 0.0]).collect()
+    };
+    let poses: Vec<Vec<f64>> = (0..=60).map(pose).collect();
+    let passing = Animation {
+        scene: Scene::along(&mechanism, &[], &poses[0], &poses, true),
+        clock: Clock {
+            start: 0.0,
+            step: 0.1,
+            stop: 6.0,
+        },
+        readings: Vec::new(),
+        forces: Vec::new(),
+        moments: (poses.iter())
+            .map(|q| Moment {
+                q: q.clone(),
+                rates: Default::default(),
+                readings: Vec::new(),
+                forces: Vec::new(),
+            })
+            .collect(),
+    };
+    assert!(hidden_names(&passing) > 0);
 }

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use biela::page::Host;
+
 use crate::by_hand::{
     FourBarForces, cam_flat, cam_knife, cam_roller, four_bar, four_bar_masses, slider_crank,
 };
@@ -102,6 +104,9 @@ impl Case {
             "lift" => repeat(Moving::new(&scissor_lift(size)), [Sweep::lift(size, sweep)]),
             "set_up_chain" => set_ups(chain(size, ground)),
             "set_up_lift" => set_ups(scissor_lift(size)),
+            "page_four_bar" => page(shipped!("four_bar"), turn),
+            "page_jansen_leg" => page(shipped!("jansen_leg"), turn),
+            "page_cam_roller" => page(shipped!("cam_roller"), turn),
             "c_four_bar" => repeat(four_bar(), turn),
             "c_four_bar_forces" => repeat(FourBarForces::new(), turn),
             "c_slider_crank" => repeat(slider_crank(), turn),
@@ -137,6 +142,20 @@ fn repeat<const DRIVERS: usize>(
             }
         };
         timed(run).1
+    })
+}
+
+/// Moves the first driver as the hand does on a page, with all numbers of its picture.
+fn page(text: &str, [mut sweep]: [Sweep; 1]) -> Run {
+    let mut host = Host::default();
+    let request = serde_json::json!({ "do": "open", "name": "page.toml", "text": text });
+    let answer = host.answer(&request.to_string());
+    assert!(answer["page"].is_object(), "{answer}");
+    Box::new(move |steps| {
+        let run = || (0..steps).all(|_| host.drive(0, sweep.step().value));
+        let (reached, time) = timed(run);
+        assert!(reached, "nothing is in the way");
+        time
     })
 }
 

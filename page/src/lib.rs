@@ -47,13 +47,15 @@ pub extern "C" fn biela_input(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request in the input, JSON in UTF-8; returns the length of the answer.
+/// Answers the request in the input, JSON in UTF-8; returns the length of the answer. The output is
+/// empty until then, so that it has no words of an earlier answer if the instance ends.
 // SAFETY: no other function has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn biela_answer() -> usize {
     std::panic::set_hook(Box::new(|panic| {
         put_out(panic.to_string().as_bytes());
     }));
+    put_out(b"");
     PAGE.with_borrow_mut(|page| {
         let Page { host, input } = page;
         let answer = match std::str::from_utf8(input) {
@@ -78,10 +80,12 @@ pub extern "C" fn biela_output_length() -> usize {
     OUTPUT.with_borrow(Vec::len)
 }
 
-/// Moves a driver to a value \[m or rad\]; returns 1 if it is reached and 0 otherwise.
+/// Moves a driver to a value \[m or rad\]; returns 1 if it is reached and 0 otherwise. The output is
+/// empty then.
 // SAFETY: no other function has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn biela_drive(driver: usize, value: f64) -> u32 {
+    put_out(b"");
     PAGE.with_borrow_mut(|page| u32::from(page.host.drive(driver, value)))
 }
 

@@ -1,6 +1,5 @@
 //! Parameters and motions of drivers as the command line sets them.
 
-use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -14,7 +13,7 @@ use crate::fmi;
 use crate::kinematics::{self, Curve, Solver, Start};
 use crate::mechanism::{
     DriverId, DriverSource, Expression, ExpressionError, ForceLaw, Jet, Load, Mechanism, Motion,
-    Parameter, ParameterId, Unit, Variable, help, not_finite, quoted, shown,
+    Parameter, ParameterId, Unit, Variable, help, large_angle, not_finite, quoted, shown,
 };
 
 /// Options of all commands that move a mechanism away from its file's values.
@@ -159,11 +158,9 @@ pub(super) fn warn_of_degrees(option: &str, text: &str, value: f64) {
     let is_plain = |word: &str| {
         word.is_empty() || word == "t" || word.starts_with(|c: char| c.is_ascii_digit() || c == '.')
     };
-    if value.abs() > TAU && words.all(is_plain) {
-        let (number, degrees) = (shown(value), value.to_degrees());
-        let warning = format!(
-            "{option}: an angle of {number} rad is {degrees:.1} deg; degrees are written `{number}*deg`"
-        );
+    if let Some(message) = large_angle(value).filter(|_| words.all(is_plain)) {
+        let number = shown(value);
+        let warning = format!("{option}: {message}; degrees are written `{number}*deg`");
         Message::Warning(warning).show();
     }
 }

@@ -57,8 +57,8 @@ pub(super) struct Draw {
     driver: Option<String>,
     #[command(flatten)]
     bounds: Bounds,
-    /// Add letters of the joints, and the lengths between the joints and points of interest of each
-    /// body, in the unit in which the file shows lengths.
+    /// Add letters of the joints, the lengths between the joints and points of interest of each body,
+    /// and the offsets of guides, in the unit in which the file shows lengths.
     #[arg(long)]
     dimensions: bool,
     /// Add the instant centre of each body and ground, at the velocities of --drive and of the
@@ -66,8 +66,8 @@ pub(super) struct Draw {
     /// alone.
     #[arg(long)]
     instant_centres: bool,
-    /// Width of the picture in pixels; lines and letters grow with it [default: 640, more where
-    /// many bodies need the room].
+    /// Width of the picture in pixels; lines and letters grow with it [default: 1600 for a PNG; 640
+    /// for an SVG, more where many bodies need the room].
     #[arg(
         long,
         value_name = "PIXELS",
@@ -121,7 +121,7 @@ impl Draw {
         let sheet = diagram
             .sheet(&mut solver)
             .map_err(|error| input.error(error))?;
-        let width = self.width.unwrap_or(sheet.width());
+        let width = self.width.unwrap_or(format.width(sheet.width()));
         format.write(&path, &sheet, width, self.transparent)
     }
 

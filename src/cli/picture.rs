@@ -16,6 +16,8 @@ pub(super) enum Format {
 
 /// Width of a chart in pixels.
 const PLOT_WIDTH: u32 = 800;
+/// Width of a PNG in pixels: sharp on most screens and on paper.
+const PNG_WIDTH: u32 = 1600;
 
 impl Format {
     /// Returns the format of a file; `-` is SVG.
@@ -33,13 +35,17 @@ impl Format {
         }
     }
 
-    /// Writes a chart; as a PNG with twice the pixels, so that it is sharp on most screens.
+    /// Returns the usual width of a picture in pixels: a PNG's, or `of_svg`.
+    pub(super) fn width(self, of_svg: u32) -> u32 {
+        match self {
+            Self::Svg => of_svg,
+            Self::Png => PNG_WIDTH,
+        }
+    }
+
+    /// Writes a chart.
     pub(super) fn write_chart(self, path: &Path, sheet: &Sheet) -> Result<(), Error> {
-        let width = match self {
-            Self::Svg => PLOT_WIDTH,
-            Self::Png => 2 * PLOT_WIDTH,
-        };
-        self.write(path, sheet, width, false)
+        self.write(path, sheet, self.width(PLOT_WIDTH), false)
     }
 
     /// Writes a picture `width` pixels wide, and tells so.

@@ -89,7 +89,7 @@ impl Diagram {
             scene.add_instant_centres(&centres, q, mechanism.length_display());
         }
         scene.symbols.extend(force_arrows(&self.forces));
-        let poses = spread(&motion, self.poses);
+        let poses = spread(&motion, mechanism.bodies.len(), self.poses);
         Ok(Sheet::with_poses(&scene, q, &poses))
     }
 

@@ -63,9 +63,9 @@ pub use spline::{Ends, Spline};
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
-#[cfg(feature = "cli")]
-pub(crate) use wording::quoted;
 pub(crate) use wording::shown;
+#[cfg(feature = "cli")]
+pub(crate) use wording::{large_angle, quoted};
 
 /// Planar mechanism as its file describes it. Names, types and units are checked, assembly is not.
 ///

@@ -1,5 +1,7 @@
 //! Wording of messages: names in back quotes and numbers of few digits.
 
+use std::f64::consts::TAU;
+
 /// Longest piece of the file that a message repeats, in characters.
 const MAX_QUOTED_LENGTH: usize = 60;
 
@@ -24,6 +26,12 @@ pub(super) fn either(candidates: &[&str]) -> String {
 /// Returns a number with six digits at most.
 pub(crate) fn shown(number: f64) -> String {
     shown_with(number, DIGITS)
+}
+
+/// Says that an angle \[rad\] of more than a turn looks like degrees; `None` for any other.
+pub(crate) fn large_angle(angle: f64) -> Option<String> {
+    let (number, degrees) = (shown(angle), angle.to_degrees());
+    (angle.abs() > TAU).then(|| format!("an angle of {number} rad is {degrees:.1} deg"))
 }
 
 /// Returns two numbers with as many digits as tell them apart, six if that is enough.

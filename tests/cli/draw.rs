@@ -26,7 +26,14 @@ fn draw_writes_what_the_extension_says() {
     let bare = String::from_utf8(bare).unwrap();
     assert!(!bare.contains("class=\"traces\"") && !bare.contains("<rect"));
     assert!(bare.contains("width=\"320\"") && bare.contains("viewBox=\"0 0 640 "));
-    assert!(draw("d.png", &[]).starts_with(b"\x89PNG"));
+    // The width stands in the header, after signature, length and name of the chunk.
+    for (name, more, width) in [
+        ("d.png", &[][..], 1600_u32),
+        ("e.png", &["--width", "96"], 96),
+    ] {
+        let png = draw(name, more);
+        assert!(png.starts_with(b"\x89PNG") && png[16..20] == width.to_be_bytes());
+    }
     let printed = biela(&["draw", "mechanisms/four_bar.toml", "-o", "-"]).success();
     assert_eq!(stdout(&printed), text);
     // Without -o, under the mechanism's own name where one is.

@@ -90,6 +90,15 @@ fn dimensions_tell_the_lengths_of_the_file_and_keep_apart() {
         let labels = check_picture(&name, &draw(&name, &diagram));
         check_apart(&name, &labels);
     }
+    // The offset of a guide from the crank's pivot; a guide through the pivot has none.
+    for (name, text, is_told) in [
+        ("slider_crank", "10", true),
+        ("engine", "0", false),
+        ("slotted_lever", "0", false),
+    ] {
+        let labels = check_picture(name, &draw(name, &diagram));
+        assert_eq!(has(&labels, text), is_told, "{name}");
+    }
     // Long names of joints give way to letters, with a key; P and Q are points of interest.
     let labels = check_picture("excavator_arm", &draw("excavator_arm", &diagram));
     for text in ["A", "B", "lengths in m"] {

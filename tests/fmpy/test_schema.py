@@ -34,6 +34,7 @@ WRONG = {
     "unknown-unit",
     "wheel-sizes",
     "wrong-type",
+    "wrong-type_markers",
 }
 
 

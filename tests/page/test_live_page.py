@@ -309,6 +309,31 @@ def test_a_failure_of_the_solver_is_told_and_survived(page_of, tmp_path):
     assert hidden and count > 5
 
 
+def test_a_panic_of_the_solver_is_told_and_survived(page_of, tmp_path):
+    # No request is as long as the memory of a browser: the list that is to hold it panics.
+    text, again, hidden, crank = look(
+        tmp_path,
+        page_of("four_bar"),
+        """
+        const exports = live.solver.exports;
+        live.solver.exports = { ...exports, biela_input: () => exports.biela_input(-1) };
+        const slide = (value) => {
+          live.drivers[0].field.value = value;
+          live.drivers[0].field.dispatchEvent(new Event("change"));
+        };
+        slide("90");
+        const told = find(".broken p").textContent;
+        find(".restart").click();
+        const hidden = find(".broken").hidden;
+        slide("90");
+        return [told, live.solver.exports === exports, hidden, number("crank_angle.position")];
+        """,
+    )
+    assert "defect of biela" in text and "capacity overflow" in text
+    assert not again and hidden
+    assert abs(crank - math.pi / 2) < 1e-12
+
+
 def test_memory_is_steady(page_of, tmp_path):
     # An hour of pictures, sixty a second.
     first, last, angle = look(
@@ -320,11 +345,22 @@ def test_memory_is_steady(page_of, tmp_path):
         const turn = (from, count) => {
           for (let k = 0; k < count; k += 1) live.solver.drive(driver, from + k * 0.01);
         };
+        // A hand that pulls, and pictures drawn anew as for sliders of parameters.
+        const pull = (count) => {
+          for (let k = 0; k < count; k += 1) {
+            const at = [50 * Math.cos(k / 60), 50 * Math.sin(k / 60)];
+            live.solver.ask({ do: "drag", body: 0, grip: [0.1, 0], at });
+            if (k % 600 === 0) live.solver.ask({ do: "redraw", keep: true });
+          }
+        };
+        pull(601);
         const start = frame()[live.places.drivers + 3 * driver];
         turn(start, 1000);
         const first = size();
         turn(start + 10, 216000);
-        return [first, size(), frame()[live.places.drivers + 3 * driver] - start];
+        const angle = frame()[live.places.drivers + 3 * driver] - start;
+        pull(3600);
+        return [first, size(), angle];
         """,
     )
     assert last == first

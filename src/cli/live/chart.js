@@ -1,7 +1,6 @@
 // A chart of variables over time or over a driver, with a cursor at the present pose.
 
 import { shown } from "./controls.js";
-import { SVG } from "./picture.js";
 
 const [WIDTH, HEIGHT] = [560, 150];
 const [LEFT, RIGHT, TOP, BOTTOM] = [64, 10, 20, 22];
@@ -107,13 +106,13 @@ function panel(place, axis, x, { name, unit, y }) {
   const [first, last] = [x[0], x[x.length - 1]];
   const onX = (value) => LEFT + ((value - first) / (last - first)) * (WIDTH - LEFT - RIGHT);
   const onY = (value) => HEIGHT - BOTTOM - ((value - low) / (high - low)) * (HEIGHT - TOP - BOTTOM);
-  const svg = place.appendChild(document.createElementNS(SVG, "svg"));
+  const svg = addTo(place, "svg");
   svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
   svg.setAttribute("role", "img");
   const text = unit ? `${name} [${unit}]` : name;
   svg.setAttribute("aria-label", `${text} over ${axis.name}, from ${shown(low, 4)} to ${shown(high, 4)}`);
   const draw = (element, attributes, content) => {
-    const part = svg.appendChild(document.createElementNS(SVG, element));
+    const part = addTo(svg, element);
     for (const [key, value] of Object.entries(attributes)) {
       part.setAttribute(key, value);
     }

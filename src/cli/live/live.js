@@ -135,6 +135,14 @@ class Live {
     this.chart.move();
   }
 
+  /** Measures names that have another size on the screen, and draws them. */
+  fit() {
+    if (this.frame) {
+      this.picture.fit();
+      this.picture.draw(this.frame, this.places);
+    }
+  }
+
   makeRows() {
     const { page } = this;
     const drivers = this.find(".driver-rows");
@@ -305,10 +313,17 @@ class Live {
     });
     const switches = [...root.querySelectorAll(".show")];
     for (const box of switches) {
-      const show = () => root.classList.toggle(`show-${box.value}`, box.checked);
+      const show = () => {
+        root.classList.toggle(`show-${box.value}`, box.checked);
+        // Only texts on the page have a width.
+        if (box.value === "names" && box.checked) {
+          this.fit();
+        }
+      };
       box.addEventListener("change", show);
       show();
     }
+    addEventListener("resize", () => this.fit());
     find(".chart-part").addEventListener("toggle", () => this.chart.draw());
     find(".licences").addEventListener("toggle", async () => {
       find(".licences pre").textContent = await unpack("live-licences").text();

@@ -1,15 +1,8 @@
-// The moving picture: its parts go where the numbers of a frame say.
+// The moving picture: its parts go where the numbers of a frame say. `Parts`, `addTo`, `arrow` and
+// `fix` are those of all pages with moving pictures.
 
-export const SVG = "http://www.w3.org/2000/svg";
-// Length of the longest arrow and of its tip, in units of the picture.
-const LONGEST = 90;
-const TIP = 7;
-// Height of a line of letters over that of capitals.
-const LINE = 1.4;
 // Distance from the pointer within which a body is found [pixels].
 const NEAR = [0, 6, 12, 20, 28];
-
-const fix = (number) => Math.round(number * 100) / 100;
 
 export class Picture {
   constructor(paper) {
@@ -29,21 +22,10 @@ export class Picture {
     } else {
       this.most = { velocity: 0, acceleration: 0, force: 0 };
     }
-    const all = (selector) => [...this.svg.querySelectorAll(selector)];
-    this.moving = all("[data-attachment]").map((element) => [element, Number(element.dataset.attachment)]);
-    for (const [element, attachment] of this.moving) {
+    this.moving = new Parts(this.svg, parts);
+    for (const [element, attachment] of this.moving.groups) {
       element.classList.toggle("body", parts.bodies[attachment] !== null);
     }
-    this.elastic = all("[data-length]").map((path) => ({
-      path,
-      length: Number(path.dataset.length),
-      points: path.dataset.points.split(" ").map(Number),
-    }));
-    this.names = all(".names text");
-    // On small screens letters are larger, and names that would cover others are left out.
-    const group = this.svg.querySelector(".names");
-    this.larger = group ? parseFloat(getComputedStyle(group).fontSize) / Number(group.getAttribute("font-size")) : 1;
-    this.widths = this.names.map((name) => name.getComputedTextLength());
     this.arrows = {};
     for (const kind of ["force", "acceleration", "velocity"]) {
       const group = this.svg.querySelector(`.arrows.${kind}`) ?? this.add("g", `arrows ${kind}`);
@@ -55,7 +37,7 @@ export class Picture {
   }
 
   add(name, className) {
-    const element = this.svg.appendChild(document.createElementNS(SVG, name));
+    const element = addTo(this.svg, name);
     element.setAttribute("class", className);
     return element;
   }
@@ -68,52 +50,16 @@ export class Picture {
     }
   }
 
+  /** Measures the names anew: they have been shown, or the screen has another size. */
+  fit() {
+    this.moving.fit();
+  }
+
   draw(frame, places) {
-    const place = (attachment) => {
-      const [x, y, degrees] = frame.slice(places.attachments + 3 * attachment);
-      const angle = (degrees * Math.PI) / 180;
-      return { x, y, degrees, cos: Math.cos(angle), sin: Math.sin(angle) };
-    };
-    const outside = (attachment, [x, y]) => {
-      const { x: left, y: top, cos, sin } = place(attachment);
-      return [left + cos * x - sin * y, top + sin * x + cos * y];
-    };
-    for (const [element, attachment] of this.moving) {
-      const { x, y, degrees } = place(attachment);
-      element.setAttribute("transform", `translate(${fix(x)} ${fix(y)}) rotate(${fix(degrees)})`);
-    }
-    for (const { path, length, points } of this.elastic) {
-      const now = frame[places.lengths + length];
-      let line = "";
-      for (let at = 0; at < points.length; at += 4) {
-        const [x, y, alongX, alongY] = points.slice(at, at + 4);
-        line += `${at ? "L" : "M"}${fix(x + now * alongX)} ${fix(y + now * alongY)}`;
-      }
-      path.setAttribute("d", line);
-    }
-    const seen = [];
-    this.parts.labels.forEach((label, index) => {
-      let [x, y] = outside(label.attachment, label.at);
-      const [width, height] = [this.widths[index], this.larger * this.parts.capitals];
-      if (label.side) {
-        const { cos, sin } = place(label.attachment);
-        const [u, v] = label.side.map((part) => part / 100);
-        const side = [cos * u - sin * v, sin * u + cos * v];
-        const reach = 0.5 * (width * Math.abs(side[0]) + height * Math.abs(side[1]));
-        x += (label.gap + reach) * side[0];
-        y += (label.gap + reach) * side[1];
-      }
-      this.names[index].setAttribute("x", fix(x));
-      this.names[index].setAttribute("y", fix(y + 0.5 * height));
-      const covers = (other) =>
-        2 * Math.abs(x - other.x) < width + other.width && 2 * Math.abs(y - other.y) < LINE * (height + other.height);
-      const fits = !(this.larger > 1.01) || !seen.some(covers);
-      this.names[index].style.visibility = fits ? "" : "hidden";
-      if (fits) {
-        seen.push({ x, y, width, height });
-      }
-    });
-    const points = this.parts.points.map(({ attachment, at }) => outside(attachment, at));
+    const { attachments, lengths } = places;
+    const placed = (attachment) => frame.subarray(attachments + 3 * attachment, attachments + 3 * attachment + 3);
+    this.moving.draw(placed, (length) => frame[lengths + length]);
+    const points = this.parts.points.map(({ attachment, at }) => this.moving.outside(attachment, at));
     const rates = (shift) =>
       points.map((from, index) => {
         const first = places.points + 4 * index + shift;
@@ -134,7 +80,7 @@ export class Picture {
   drawArrows(kind, arrows) {
     const [group, paths] = this.arrows[kind];
     while (paths.length < arrows.length) {
-      paths.push(group.appendChild(document.createElementNS(SVG, "path")));
+      paths.push(addTo(group, "path"));
     }
     for (const [, [x, y]] of arrows) {
       const size = Math.hypot(x, y);
@@ -180,22 +126,9 @@ export class Picture {
     const toScreen = this.svg.getScreenCTM();
     const corner = new DOMPoint(x, y).matrixTransform(toScreen);
     const other = new DOMPoint(x + width, y + height).matrixTransform(toScreen);
-    return this.moving.some(([element]) => {
+    return this.moving.groups.some(([element]) => {
       const box = element.getBoundingClientRect();
       return box.left < corner.x - 1 || box.top < corner.y - 1 || box.right > other.x + 1 || box.bottom > other.y + 1;
     });
   }
-}
-
-// An arrow whose length is a part of the longest.
-function arrow([x, y], partX, partY) {
-  const [u, v] = [LONGEST * partX, LONGEST * partY];
-  const length = Math.hypot(u, v);
-  if (!(length >= 1) || length > 4 * LONGEST) {
-    return "";
-  }
-  const tip = Math.min(TIP, length) / length;
-  const [along, aside] = [1 - tip, 0.45 * tip];
-  const to = (a, b) => `${fix(x + a * u - b * v)} ${fix(y + a * v + b * u)}`;
-  return `M${to(0, 0)}L${to(1, 0)}M${to(along, aside)}L${to(1, 0)}L${to(along, -aside)}`;
 }

@@ -43,12 +43,18 @@ export class Solver {
   }
 
   guard(call) {
+    // Whoever asks again gets the reason, not what follows from it.
+    if (this.failure) {
+      throw this.failure;
+    }
     try {
       return call();
     } catch (error) {
-      if (error instanceof WebAssembly.RuntimeError) {
+      // A stack that overflows is an error of the browser.
+      if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError) {
         const message = this.text(this.exports.biela_output_length());
-        throw new Broken(message || String(error));
+        this.failure = new Broken(message || String(error));
+        throw this.failure;
       }
       throw error;
     }

@@ -8,7 +8,7 @@ use crate::drawing::attachment::Placement;
 use crate::drawing::label::Placed;
 use crate::drawing::outline::Point;
 use crate::drawing::palette::Colour;
-use crate::drawing::sheet::{CAPITALS, Mark};
+use crate::drawing::sheet::{Bounds, CAPITALS, Mark};
 use crate::drawing::svg::{FONT_SIZE, FONTS, escape, number, path_data, text_element};
 
 /// Most moments: of more, every second, third and so on is shown.
@@ -17,6 +17,8 @@ const MOST_MOMENTS: usize = 240;
 const SHORTEST: f64 = 2.0;
 /// Distance on the sheet, and angle in degrees, within which the end of a motion is its start.
 const BACK: f64 = 0.5;
+/// Height of a line of letters over that of capitals.
+const LINE: f64 = 1.4;
 /// Usual width of the picture in pixels.
 const WIDTH: f64 = 640.0;
 
@@ -48,12 +50,13 @@ pub fn moving_svg(animation: &Animation) -> String {
         escape(description),
         Colour::WHITE.hex()
     );
+    let covered = film.covered();
     let moving = |attachment| [String::new(), film.transform(attachment)];
     let changing = |mark: &Mark| [String::new(), film.elastic(mark)];
     svg += &groups(home, &stage, &moving, &changing);
     let font = number(CAPITALS * FONT_SIZE);
     svg += &format!("<g font-family=\"{FONTS}\" font-size=\"{font}\">\n");
-    for (attachment, label) in &stage.labels {
+    for ((attachment, label), covered) in stage.labels.iter().zip(&covered) {
         let text = text_element(
             &label.text,
             label.text.start.x,
@@ -61,7 +64,11 @@ pub fn moving_svg(animation: &Animation) -> String {
         );
         svg += &text.replace(
             "</text>",
-            &format!("{}</text>\n", film.label(*attachment, label)),
+            &format!(
+                "{}{}</text>\n",
+                film.label(*attachment, label),
+                film.hiding(covered)
+            ),
         );
     }
     let scale = &stage.scale_text;
@@ -152,18 +159,60 @@ impl<'a> Film<'a> {
         )
     }
 
+    /// Returns the middle of a label at a moment.
+    fn center(&self, attachment: usize, label: &Placed, places: &[Placement]) -> Point {
+        let moved = [&self.placements[0], places].map(|places| places[attachment]);
+        let size = Point::new(label.text.width(), CAPITALS);
+        label.place.moved(moved).center(size)
+    }
+
+    /// Returns for each label whether it would be over an earlier one at each moment.
+    fn covered(&self) -> Vec<Vec<bool>> {
+        let labels = &self.stage.labels;
+        let mut covered = vec![Vec::with_capacity(self.placements.len()); labels.len()];
+        for places in &self.placements {
+            let mut seen: Vec<Bounds> = Vec::with_capacity(labels.len());
+            for ((attachment, label), covered) in labels.iter().zip(&mut covered) {
+                let size = Point::new(label.text.width(), LINE * CAPITALS);
+                let bounds = Bounds::about(self.center(*attachment, label, places), size);
+                let is_covered = seen.iter().any(|other| other.overlap(&bounds) > 0.0);
+                covered.push(is_covered);
+                if !is_covered {
+                    seen.push(bounds);
+                }
+            }
+        }
+        covered
+    }
+
+    /// Returns the animation of a label that is hidden while it is covered.
+    fn hiding(&self, covered: &[bool]) -> String {
+        let changes = covered.iter().enumerate();
+        let changes = changes.filter(|(k, now)| *k == 0 || covered[k - 1] != **now);
+        let (values, times): (Vec<&str>, Vec<String>) = changes
+            .map(|(moment, covered)| {
+                let value = if *covered { "hidden" } else { "visible" };
+                // A place lasts until the next one, the last one for no time.
+                let time = moment as f64 / (self.placements.len().max(2) - 1) as f64;
+                (value, format!("{time:.4}"))
+            })
+            .unzip();
+        if values == ["visible"] {
+            return String::new();
+        }
+        let (values, times) = (values.join(";"), times.join(";"));
+        format!(
+            "<animate attributeName=\"visibility\" calcMode=\"discrete\" values=\"{values}\" \
+             keyTimes=\"{times}\" {}/>",
+            self.clock
+        )
+    }
+
     /// Returns the animation of a label, from its place at the first moment.
     fn label(&self, attachment: usize, label: &Placed) -> String {
-        let size = Point::new(label.text.width(), CAPITALS);
-        let center = |places: &Vec<Placement>| {
-            let moved = [&self.placements[0], places].map(|places| places[attachment]);
-            label.place.moved(moved).center(size)
-        };
-        let home = center(&self.placements[0]);
-        let places = self
-            .placements
-            .iter()
-            .map(|places| pair(center(places) - home));
+        let home = self.center(attachment, label, &self.placements[0]);
+        let places = (self.placements.iter())
+            .map(|places| pair(self.center(attachment, label, places) - home));
         match &changes(places)[..] {
             [_] => String::new(),
             places => self.animate("translate", places, "replace"),

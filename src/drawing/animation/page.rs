@@ -10,7 +10,7 @@ use crate::drawing::svg::escape;
 const PAGE: &str = include_str!("page.html");
 const PLAYER: &str = include_str!("player.html");
 const STYLE: &str = include_str!("player.css");
-const SCRIPT: &str = include_str!("player.js");
+const SCRIPT: &str = concat!(include_str!("parts.js"), include_str!("player.js"));
 
 /// Returns a page that plays an animation: one HTML file that needs no other.
 ///
@@ -24,7 +24,8 @@ pub fn page(animation: &Animation) -> String {
 }
 
 /// Returns a page with [`player`]s in it: one HTML file that needs no other. `main`, HTML with a
-/// `style` of its own, follows the title and the description.
+/// `style` of its own, follows the title and the description; modules in it find `Parts` and
+/// `arrow` of `parts.js`.
 #[must_use]
 pub fn page_with(title: &str, description: &str, main: &str, style: &str) -> String {
     fill(

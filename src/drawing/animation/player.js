@@ -1,15 +1,5 @@
-"use strict";
 // Plays the film that each element of class `player` has with it.
 (() => {
-  const SVG = "http://www.w3.org/2000/svg";
-  // Length of the longest arrow, and of its tip, in units of the picture.
-  const LONGEST = 90;
-  const TIP = 7;
-  // Radius of a torque's arc, and the angle of the largest one.
-  const ARC = 18;
-  const WIDEST = (5 / 3) * Math.PI;
-  // Height of a line of letters over that of capitals.
-  const LINE = 1.4;
   const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
   // How long a film lasts at the speeds that are offered, and at the first one, in seconds.
   const LASTS = [0.5, 120];
@@ -42,25 +32,13 @@
     const torquesAt = forcesAt + 2 * film.forces.length;
     const readingsAt = torquesAt + film.torques.length;
 
-    const moving = [...player.querySelectorAll("[data-attachment]")];
-    const elastic = [...player.querySelectorAll("[data-length]")].map((path) => ({
-      path,
-      length: Number(path.dataset.length),
-      points: path.dataset.points.split(" ").map(Number),
-    }));
-    const names = [...player.querySelectorAll(".names text")];
-    const view = find(".stage").viewBox.baseVal;
-    // On small screens names are larger than in the film, and each font has its own widths.
-    let larger = 1;
-    let widths = [];
-    // Middle and size of each name.
-    let boxes = [];
+    const parts = new Parts(find(".stage"), film);
     const arrows = ["velocity", "acceleration"].map((kind) =>
-      film.points.map(() => add(find(`.arrows.${kind}`), "path")),
+      film.points.map(() => addTo(find(`.arrows.${kind}`), "path")),
     );
     const [forces, torques] = [film.forces, film.torques].map((places) =>
       places.map(({ kind }) => {
-        const path = add(find(".arrows.force"), "path");
+        const path = addTo(find(".arrows.force"), "path");
         path.setAttribute("class", kind);
         return path;
       }),
@@ -84,60 +62,11 @@
     });
     const digits = Math.max(0, Math.min(6, Math.ceil(-Math.log10(film.step || 1)) + 1));
 
-    function place(attachment) {
-      const [x, y, degrees] = [0, 1, 2].map((part) => value(3 * attachment + part));
-      const angle = (degrees * Math.PI) / 180;
-      return { x, y, degrees, cos: Math.cos(angle), sin: Math.sin(angle) };
-    }
-
     function draw() {
-      const places = Array.from({ length: film.attachments }, (_, attachment) => place(attachment));
-      const outside = (attachment, [x, y]) => {
-        const { x: left, y: top, cos, sin } = places[attachment];
-        return [left + cos * x - sin * y, top + sin * x + cos * y];
-      };
-      for (const element of moving) {
-        const { x, y, degrees } = places[element.dataset.attachment];
-        element.setAttribute("transform", `translate(${fix(x)} ${fix(y)}) rotate(${fix(degrees)})`);
-      }
-      for (const { path, length, points } of elastic) {
-        const now = value(lengthsAt + length);
-        let line = "";
-        for (let at = 0; at < points.length; at += 4) {
-          const [x, y, alongX, alongY] = points.slice(at, at + 4);
-          line += `${at ? "L" : "M"}${fix(x + now * alongX)} ${fix(y + now * alongY)}`;
-        }
-        path.setAttribute("d", line);
-      }
-      boxes = film.labels.map((label, index) => {
-        let [x, y] = outside(label.attachment, label.at);
-        const [width, height] = [widths[index], larger * film.capitals];
-        if (label.side) {
-          const { cos, sin } = places[label.attachment];
-          const [u, v] = label.side.map((part) => part / 100);
-          const side = [cos * u - sin * v, sin * u + cos * v];
-          // As far out as the side of the name's box that faces its place.
-          const reach = 0.5 * (width * Math.abs(side[0]) + height * Math.abs(side[1]));
-          x += (label.gap + reach) * side[0];
-          y += (label.gap + reach) * side[1];
-        }
-        x = within(x, 0.5 * width, view.x, view.width);
-        y = within(y, 0.5 * height, view.y, view.height);
-        names[index].setAttribute("x", fix(x));
-        names[index].setAttribute("y", fix(y + 0.5 * height));
-        return { x, y, width, height };
-      });
-      // A name that would be over an earlier one is hidden until there is room.
-      const seen = [];
-      boxes.forEach((box, index) => {
-        const fits = seen.every((other) => apart(box, other));
-        names[index].classList.toggle("covered", !fits);
-        if (fits) {
-          seen.push(box);
-        }
-      });
+      const placed = (attachment) => [0, 1, 2].map((part) => value(3 * attachment + part));
+      parts.draw(placed, (length) => value(lengthsAt + length));
       film.points.forEach((point, index) => {
-        const from = outside(point.attachment, point.at);
+        const from = parts.outside(point.attachment, point.at);
         arrows.forEach((paths, kind) => {
           const channel = pointsAt + 4 * index + 2 * kind;
           paths[index].setAttribute("d", arrow(from, value(channel), value(channel + 1)));
@@ -145,11 +74,11 @@
       });
       film.forces.forEach((force, index) => {
         const channel = forcesAt + 2 * index;
-        const from = outside(force.attachment, force.at);
+        const from = parts.outside(force.attachment, force.at);
         forces[index].setAttribute("d", arrow(from, value(channel), value(channel + 1)));
       });
       film.torques.forEach((torque, index) => {
-        const center = outside(torque.attachment, torque.at);
+        const center = parts.outside(torque.attachment, torque.at);
         torques[index].setAttribute("d", turn(center, value(torquesAt + index)));
       });
       readings.forEach((show, index) => show(value(readingsAt + index)));
@@ -245,11 +174,7 @@
     };
     player.classList.toggle("still", last < 1);
     function fit() {
-      const group = find(".names");
-      larger = parseFloat(getComputedStyle(group).fontSize) / Number(group.getAttribute("font-size"));
-      // Hidden texts have no width.
-      names.forEach((name) => name.classList.remove("covered"));
-      widths = names.map((name) => name.getComputedTextLength());
+      parts.fit();
       draw();
     }
     addEventListener("resize", fit);
@@ -265,51 +190,6 @@
       levels[index] = text.charCodeAt(2 * index) + 256 * text.charCodeAt(2 * index + 1);
     }
     return levels;
-  }
-
-  function add(parent, name) {
-    return parent.appendChild(document.createElementNS(SVG, name));
-  }
-
-  function fix(number) {
-    return Math.round(number * 100) / 100;
-  }
-
-  // The middle of what reaches so far to both sides, moved so that all of it is within.
-  function within(middle, half, start, length) {
-    return Math.max(start + half, Math.min(start + length - half, middle));
-  }
-
-  // Whether two names can be told apart.
-  function apart(a, b) {
-    return 2 * Math.abs(a.x - b.x) >= a.width + b.width || 2 * Math.abs(a.y - b.y) >= LINE * (a.height + b.height);
-  }
-
-  // An arrow whose length is a part of the longest.
-  function arrow([x, y], partX, partY) {
-    const [u, v] = [LONGEST * partX, LONGEST * partY];
-    const length = Math.hypot(u, v);
-    if (length < 1) {
-      return "";
-    }
-    const tip = Math.min(TIP, length) / length;
-    const [along, aside] = [1 - tip, 0.45 * tip];
-    const to = (a, b) => `${fix(x + a * u - b * v)} ${fix(y + a * v + b * u)}`;
-    return `M${to(0, 0)}L${to(1, 0)}M${to(along, aside)}L${to(1, 0)}L${to(along, -aside)}`;
-  }
-
-  // An arc about a point whose angle is a part of the widest, counter-clockwise from below.
-  function turn([x, y], part) {
-    const angle = WIDEST * part;
-    if (ARC * Math.abs(angle) < 1) {
-      return "";
-    }
-    const sense = Math.sign(angle);
-    const at = (radius, to) => `${fix(x + radius * Math.sin(to))} ${fix(y + radius * Math.cos(to))}`;
-    const back = angle - sense * Math.min(TIP / ARC, Math.abs(angle));
-    const large = Math.abs(angle) > Math.PI ? 1 : 0;
-    const arc = `M${at(ARC, 0)}A${ARC} ${ARC} 0 ${large} ${sense > 0 ? 0 : 1} ${at(ARC, angle)}`;
-    return `${arc}M${at(ARC + 0.45 * TIP, back)}L${at(ARC, angle)}L${at(ARC - 0.45 * TIP, back)}`;
   }
 
   const elements = [...document.querySelectorAll(".player")];

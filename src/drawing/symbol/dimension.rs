@@ -1,4 +1,4 @@
-//! Lengths of bodies, and of ground, between their joints.
+//! Lengths of bodies, and of ground, between their joints, and offsets of guides.
 
 use super::joint_letter::{Place, are_one};
 use super::*;
@@ -7,9 +7,9 @@ use crate::mechanism::{DisplayUnit, shown};
 /// The length between two points of a body, or of ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dimension {
-    /// The points; those of a link without mass are on two bodies.
+    /// The points; those of a link without mass, and of the line of a guide, are on two bodies.
     pub ends: [Anchor; 2],
-    /// The length in the file's unit.
+    /// The length in the file's unit, empty for a line alone.
     pub text: String,
     /// The body, `None` for ground and for links without mass.
     pub body: Option<BodyId>,
@@ -38,12 +38,21 @@ pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> 
         }));
     }
     for joint in &composer.mechanism.joints {
-        if let JointKind::Link { length } = &joint.kind {
-            lengths.push(Dimension {
-                ends: [joint.from, joint.to].map(|marker| composer.anchor(marker)),
+        let ends = [joint.from, joint.to].map(|marker| composer.anchor(marker));
+        match &joint.kind {
+            JointKind::Link { length } => lengths.push(Dimension {
+                ends,
                 text: told(composer.value(length), unit),
                 body: None,
-            });
+            }),
+            JointKind::Translational | JointKind::Slot => {
+                lengths.extend(offset(composer, places, ends, 0.0));
+            }
+            JointKind::RevoluteTranslational { offset: aside } => {
+                let aside = composer.value(aside);
+                lengths.extend(offset(composer, places, ends, aside));
+            }
+            _ => {}
         }
     }
     if lengths.is_empty() {
@@ -51,6 +60,41 @@ pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> 
     }
     composer.symbols.extend(lengths.into_iter().map(Into::into));
     vec![format!("lengths in {}", unit.map_or("m", |unit| unit.name))]
+}
+
+/// Returns the distance of a guide's line, `aside` of its x-axis, from the nearest joint of its body,
+/// and this line as far as the point that slides; nothing if the line passes through the joint.
+fn offset(
+    composer: &Composer,
+    places: &[Place],
+    [guide, sliding]: [Anchor; 2],
+    aside: f64,
+) -> Vec<Dimension> {
+    let normal = across(direction(guide.angle));
+    let line = guide.moved_to((guide.on_axis(0.0) + aside * normal).into());
+    let points = places.iter().flat_map(|place| &place.points);
+    let nearest = (points.filter(|point| point.body == guide.body))
+        .map(|point| line.coordinates(point.position.into()))
+        .min_by(|[_, a], [_, b]| a.abs().total_cmp(&b.abs()));
+    // Far more than rounding, far less than any length of a part.
+    let is_offset = |&[along, away]: &[f64; 2]| away.abs() > 1e-6 * along.hypot(aside);
+    let Some([along, away]) = nearest.filter(is_offset) else {
+        return Vec::new();
+    };
+    let foot = line.moved_to(line.on_axis(along).into());
+    let joint = line.moved_to((line.on_axis(along) + away * normal).into());
+    vec![
+        Dimension {
+            ends: [joint, foot],
+            text: told(away.abs(), composer.mechanism.length_display()),
+            body: guide.body,
+        },
+        Dimension {
+            ends: [foot, sliding],
+            text: String::new(),
+            body: None,
+        },
+    ]
 }
 
 /// Returns a length with five digits in a unit.
@@ -112,7 +156,9 @@ impl Shape for Dimension {
         let sides = [(normal, 0.0), (-normal, 0.0)];
         let gaps = [(3.0, 0.0), (BAR + 3.0, 1.0), (BAR + 12.0, 5.0), (BAR + 24.0, 12.0)];
         let places = Candidate::beside(ends, &parts, &sides, &gaps);
-        pen.name_length(&self.text, self.body, places);
+        if !self.text.is_empty() {
+            pen.name_length(&self.text, self.body, places);
+        }
     }
 
     fn extent(&self) -> Vec<Disc> {

@@ -11,19 +11,19 @@ use super::kind::{Array, Entry, Fields, Item, Kind, Text, schema};
 #[cfg(feature = "cli")]
 use super::kind::{Described, NAME};
 use super::number::{ANGLE, LENGTH, NUMBER, Number, POINT, Quantity};
-use super::table::{Field, table};
+use super::table::{Field, Keys, table};
 
 table! {
     /// The body that never moves; its frame is the global one.
     struct GroundKeys<'a> {
         /// Frames fixed on ground.
-        markers: Vec<(Entry<'a>, Option<Frame>)> = Frames,
+        markers: Vec<NamedFrame<'a>> = Frames,
     }
 
     /// A rigid body that moves.
     struct BodyKeys<'a> {
         /// Frames fixed on the body.
-        markers: Vec<(Entry<'a>, Option<Frame>)> = Frames,
+        markers: Vec<NamedFrame<'a>> = Frames,
         /// Start of the search for the assembled pose [m, m, rad]; zeros if left out.
         estimate: [Quantity; 3] = Array::new("[x, y, phi]", [LENGTH, LENGTH, ANGLE]),
         /// Mass.
@@ -52,6 +52,9 @@ table! {
 /// x, y \[m\] and angle \[rad\] of a marker in the frame of its body.
 type Frame = [Expression; 3];
 
+/// A marker's name, and its frame, `None` if it is wrong.
+type NamedFrame<'a> = (Entry<'a>, Option<Frame>);
+
 /// Markers by their names.
 struct Frames;
 
@@ -64,13 +67,12 @@ impl Frames {
 }
 
 impl<'a> Kind<'a> for Frames {
-    type Value = Vec<(Entry<'a>, Option<Frame>)>;
+    type Value = Vec<NamedFrame<'a>>;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Self::Value> {
-        if item.value.get_ref().is_array() {
-            let message = "expected a table of markers with their names, found an array";
+        if !item.value.get_ref().is_table() {
             context
-                .error(code::WRONG_TYPE, item.span(), message)
+                .wrong_type(item.value, "a table of markers with their names")
                 .suggest("write for example `markers = { A = [0, 0], B = [0.1, 0] }`");
             return None;
         }
@@ -115,7 +117,7 @@ impl<'a> Context<'a> {
     /// Reads ground and the bodies; declares their markers, those of ground first.
     pub(super) fn bodies(
         &mut self,
-        ground: Option<&Fields<'a>>,
+        ground: &Field<Fields<'a>>,
         entries: &Field<Vec<Entry<'a>>>,
     ) -> (Vec<Body>, Vec<Marker>) {
         // A value that is no table has been reported.
@@ -126,13 +128,20 @@ impl<'a> Context<'a> {
                 .suggest("add one: `[bodies.crank]`");
         }
         let mut markers = Vec::new();
-        let ground = ground.and_then(|ground| self.table::<GroundKeys<'a>>(ground).markers.value);
+        let ground = match &ground.value {
+            Some(fields) => {
+                let mut keys = self.table::<GroundKeys<'a>>(fields);
+                frames::<GroundKeys<'a>>(&keys.owner, &mut keys.markers)
+            }
+            None => ground.key.is_none().then(Vec::new),
+        };
         self.declare_markers(None, ground, &mut markers);
         let mut bodies = Vec::new();
         for (index, entry) in entries.items().iter().enumerate() {
             let first = self.carriers.len();
             let mut keys = self.entry::<BodyKeys<'a>>(*entry, "body");
-            let frames = keys.as_mut().and_then(|keys| keys.markers.value.take());
+            let frames = (keys.as_mut())
+                .and_then(|keys| frames::<BodyKeys<'a>>(&keys.owner, &mut keys.markers));
             self.declare_markers(Some(BodyId(index)), frames, &mut markers);
             let ids = (first..self.carriers.len()).map(MarkerId).collect();
             bodies.extend(keys.map(|keys| self.body(*entry, keys, ids)));
@@ -174,14 +183,15 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Declares the markers of a body, of ground if it is `None`.
+    /// Declares the markers of a body, of ground if it is `None`; those that cannot be read are
+    /// no reason for further errors.
     fn declare_markers(
         &mut self,
         carrier: Option<BodyId>,
-        frames: Option<Vec<(Entry<'a>, Option<Frame>)>>,
+        frames: Option<Vec<NamedFrame<'a>>>,
         markers: &mut Vec<Marker>,
     ) {
-        let mut table = NameTable::new();
+        let mut table = frames.is_some().then(NameTable::new);
         for (entry, frame) in frames.unwrap_or_default() {
             let name = entry.name();
             self.check_name(entry, "marker");
@@ -189,7 +199,10 @@ impl<'a> Context<'a> {
                 let message = format!("{} is a quantity of the body itself", quoted(name));
                 self.error(code::RESERVED_NAME, entry.key.span(), message);
             }
-            table.insert(name, MarkerId(self.carriers.len()));
+            let marker = MarkerId(self.carriers.len());
+            if let Some(table) = &mut table {
+                table.insert(name, marker);
+            }
             let owner = self.carrier_name(carrier);
             self.owners.entry(name).or_insert(owner);
             self.carriers.push(carrier);
@@ -202,4 +215,17 @@ impl<'a> Context<'a> {
         }
         self.markers.push(table);
     }
+}
+
+/// Takes the markers of a body or of ground, none if they are left out. Returns `None` if they
+/// cannot be read, or may stand under an unknown key.
+fn frames<'a, K: Keys<'a>>(
+    owner: &Fields<'a>,
+    markers: &mut Field<Vec<NamedFrame<'a>>>,
+) -> Option<Vec<NamedFrame<'a>>> {
+    let is_known = |name: &str| K::keys().iter().any(|key| key.name == name);
+    let is_complete =
+        markers.key.is_none() && owner.table.keys().all(|key| is_known(key.get_ref()));
+    let frames = markers.value.take();
+    frames.or_else(|| is_complete.then(Vec::new))
 }

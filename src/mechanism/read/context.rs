@@ -49,8 +49,8 @@ pub(super) struct Context<'a> {
     pub(super) holders: NameTable<'a, usize>,
     /// Numbers of joints and of constraints.
     pub(super) holder_counts: [usize; 2],
-    /// Markers of ground, then of each body.
-    pub(super) markers: Vec<NameTable<'a, MarkerId>>,
+    /// Markers of ground, then of each body; `None` where they cannot be read.
+    pub(super) markers: Vec<Option<NameTable<'a, MarkerId>>>,
     /// Body of each marker, `None` for ground.
     pub(super) carriers: Vec<Option<BodyId>>,
     /// Name of the first body, or `ground`, that has a marker of this name.
@@ -130,7 +130,7 @@ impl<'a> Context<'a> {
         self.problems
     }
 
-    pub(super) fn wrong_type(&mut self, value: &Value<'_>, expected: &str) {
+    pub(super) fn wrong_type(&mut self, value: &Value<'_>, expected: &str) -> &mut Diagnostic {
         let found = match value.get_ref() {
             DeValue::Array(items) if expected.starts_with("an array") => match items.len() {
                 1 => "one of 1 item".to_owned(),
@@ -139,7 +139,7 @@ impl<'a> Context<'a> {
             other => syntax::kind(other).to_owned(),
         };
         let message = format!("expected {expected}, found {found}");
-        self.error(code::WRONG_TYPE, value.span(), message);
+        self.error(code::WRONG_TYPE, value.span(), message)
     }
 
     pub(super) fn text(&mut self, value: &'a Value<'a>) -> Option<&'a str> {

@@ -115,7 +115,7 @@ impl<'a> Context<'a> {
         self.declare(&root);
         let (parameters, derivation_order) = self.parameters(root.parameters.items());
         let simulation = self.simulation(root.simulation.value.as_ref());
-        let (bodies, markers) = self.bodies(root.ground.value.as_ref(), &root.bodies);
+        let (bodies, markers) = self.bodies(&root.ground, &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
         let force = |context: &mut Self, entry| context.force(entry, simulation.start);
         let measure = |context: &mut Self, entry| match is_derived(&entry) {

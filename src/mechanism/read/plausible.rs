@@ -1,9 +1,7 @@
 //! Warnings of values that are legal but probably in another unit than meant.
 
-use std::f64::consts::TAU;
-
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::wording::{quoted, shown};
+use crate::mechanism::wording::{large_angle, quoted, shown};
 use crate::mechanism::{Dimension, DisplayUnit, Span, Unit};
 
 use super::context::{Context, Length};
@@ -78,9 +76,7 @@ impl<'a> Context<'a> {
         let Some((text, value)) = self.bare_text(angle).zip(angle.value) else {
             return;
         };
-        if value.abs() > TAU {
-            let (number, degrees) = (shown(value), value.to_degrees());
-            let message = format!("an angle of {number} rad is {degrees:.1} deg");
+        if let Some(message) = large_angle(value) {
             self.warn(code::LARGE_ANGLE, angle.span.clone(), message)
                 .suggest(format!("degrees are written `\"{text}*deg\"`"));
         }

@@ -40,7 +40,8 @@ impl<'a> Kind<'a> for MarkerName {
         } else {
             context.body_at(body_name, body_span, &[GROUND])?.index() + 1
         };
-        let table = &context.markers[table];
+        // Markers that cannot be read have been reported.
+        let table = context.markers[table].as_ref()?;
         let marker = table.get(marker_name);
         if marker.is_none() {
             let message = format!("no marker {} on {}", quoted(marker_name), quoted(body_name));
