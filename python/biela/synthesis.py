@@ -63,18 +63,6 @@ def points(
     return Target({f"{marker}.x": x, f"{marker}.y": y}, drive or {}, free, weight)
 
 
-def velocity_of(name: str) -> str:
-    """Returns the variable that is the velocity of another.
-
-    >>> velocity_of("coupler.P.x")
-    'coupler.P.vx'
-    """
-    owner, _, last = name.rpartition(".")
-    if last not in VELOCITIES:
-        raise UsageError(f"target: `{name}` is no position, so that its timing cannot be free")
-    return f"{owner}.{VELOCITIES[last]}"
-
-
 @dataclass(frozen=True)
 class Fit:
     """Mechanism that was fitted to targets."""

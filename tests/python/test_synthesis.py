@@ -109,5 +109,21 @@ def test_wrong_targets_are_refused(generator):
     for arguments, message in refused:
         with pytest.raises(biela.UsageError, match=message):
             biela.fit(**{"mechanism": generator, "targets": point, "free": ["r2"], **arguments})
-    with pytest.raises(biela.AssemblyError, match="does not reach all targets"):
-        biela.fit(generator, point, ["r2"], bounds={"r2": (20.0, 21.0)})
+    far = {"mechanism": generator, "targets": point, "free": ["r2"], "bounds": {"r2": (20.0, 21.0)}}
+    with pytest.raises(biela.AssemblyError, match="the mechanism cannot close"):
+        biela.fit(**far)
+    with pytest.raises(biela.AssemblyError, match="no start reaches all targets"):
+        biela.fit(**far, starts=3, samples=20)
+
+
+def test_five_timed_points_are_met_as_published(generator):
+    """The best published sum of squares is 1.924e-6; 7.42e-7 can be attained."""
+    target = biela.points("coupler.P", TIMED, drive={"theta": np.radians([30, 45, 60, 75, 90])})
+    bounds = {name: (0.01, 50.0) for name in ("r1", "r2", "r3", "r4")}
+    bounds |= {name: (-50.0, 50.0) for name in ("px", "py")}
+    found = biela.fit(generator, target, list(bounds), bounds, turns="theta", starts=20, samples=1000)
+    assert found.cost < 7.43e-7
+    run = found.mechanism.run(drive={"theta": np.radians([30, 45, 60, 75, 90])})
+    off = np.transpose([run["coupler.P.x"], run["coupler.P.y"]]) - TIMED
+    # The residuals are of the order of 1e-4; rounding of 1e-14 in them.
+    assert_allclose((off**2).sum(), found.cost, rtol=1e-9)
