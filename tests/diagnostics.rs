@@ -100,6 +100,7 @@ fn slips_of_syntax_are_answered_as_reviewed() {
         "[bodies.crank]\nestimate = [0, 0, 0\nmass = 1",
         "[bodies.crank]\nmarkers = { O = [0, 0],\n  A = [1, 0]\n  B = [2, 0] }",
         "// a comment",
+        "A = { markers = [\"ground.O\", \"crank.O] }\nB = { markers = [\"crank.B\", \"rod.B\"] }",
     ];
     let answers = slips.map(|slip| {
         let source = Source::new(

@@ -9,7 +9,7 @@ use crate::mechanism::ProfileError;
 #[non_exhaustive]
 pub enum Error {
     /// More or less is driven than is free to move.
-    #[error("{}", structure_message(*.freedom, *.drivers, *.free, .loose, .excess))]
+    #[error("{}", structure_message(*.freedom, *.drivers, *.free, .loose, .slots, .excess))]
     Structure {
         /// Degrees of freedom that joints and constraints leave.
         freedom: usize,
@@ -19,6 +19,8 @@ pub enum Error {
         free: usize,
         /// The bodies that can move though no driver does: kind and name of each.
         loose: Vec<String>,
+        /// Slots on whose points one of these bodies may only turn: kind and name of each.
+        slots: Vec<String>,
         /// Drivers of which one is too many, or joints and constraints that hold a coordinate that
         /// a driver drives: kind and name of each.
         excess: Vec<String>,
@@ -277,10 +279,13 @@ fn list(names: &[String], last: &str) -> String {
     }
 }
 
-/// Says that bodies line up, with `almost` before the verb; one alone lines up with its driver.
+/// Says that bodies line up, with `almost` before the verb; one alone lines up with its driver, or
+/// with a link.
 pub(crate) fn in_line(bodies: &[String], almost: &str) -> String {
-    let verb = if bodies.len() == 1 { "lines" } else { "line" };
-    format!("{} {almost}{verb} up", list(bodies, " and "))
+    match bodies {
+        [body] => format!("{body} {almost}lines up with what holds it"),
+        _ => format!("{} {almost}line up", list(bodies, " and ")),
+    }
 }
 
 fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {
@@ -321,6 +326,7 @@ fn structure_message(
     drivers: usize,
     free: usize,
     loose: &[String],
+    slots: &[String],
     excess: &[String],
 ) -> String {
     let count = |number: usize, singular: &str, plural: &str| match number {
@@ -341,6 +347,12 @@ fn structure_message(
         };
         message += &format!("; free to move: {}: {add}", list(loose, ", "));
     }
+    if !slots.is_empty() {
+        message += &format!(
+            "; a `slot` holds a point, `translational` the angle too: {}",
+            list(slots, ", ")
+        );
+    }
     if !excess.is_empty() {
         message += &format!("; too many: remove one of {}", list(excess, ", "));
     }
@@ -356,7 +368,7 @@ mod tests {
         let bodies = ["body `rod`", "body `crank`"].map(str::to_owned);
         assert_eq!(
             in_line(&bodies[..1], "all but "),
-            "body `rod` all but lines up"
+            "body `rod` all but lines up with what holds it"
         );
         assert_eq!(in_line(&bodies, ""), "body `rod` and body `crank` line up");
     }

@@ -17,9 +17,14 @@ type Slip = (Range<usize>, String, Option<String>);
 pub(super) fn syntax_error(text: &str, span: Span, message: &str) -> Diagnostic {
     let at = text.floor_char_boundary(span.start);
     let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let has_long_strings = text.contains("\"\"\"") || text.contains("'''");
+    // A string that a line before does not close is the slip, wherever the parser stopped.
+    let unclosed = (!has_long_strings)
+        .then(|| unclosed_before(text, start))
+        .flatten();
+    let start = unclosed.unwrap_or(start);
     let line = text[start..].split(['\r', '\n']).next().unwrap_or_default();
     let at = (at - start).min(line.len());
-    let has_long_strings = text.contains("\"\"\"") || text.contains("'''");
     if !has_long_strings
         && message.contains("missing comma")
         && line[..at].trim().is_empty()
@@ -68,6 +73,16 @@ fn strings(line: &str) -> (Vec<Range<usize>>, Option<usize>) {
         closed.push(start..end);
     }
     (closed, None)
+}
+
+/// Returns the start of the first line before the one at `start` that has an unclosed string.
+fn unclosed_before(text: &str, start: usize) -> Option<usize> {
+    let mut lines = text[..start].split_inclusive('\n').scan(0, |end, line| {
+        *end += line.len();
+        Some((*end - line.len(), line))
+    });
+    let found = lines.find(|(_, line)| strings(line).1.is_some());
+    found.map(|(start, _)| start)
 }
 
 /// Finds a bracket that is opened before the line at `start` and never closed: the end of the

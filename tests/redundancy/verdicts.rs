@@ -188,6 +188,15 @@ fn each_mechanism_has_its_verdict() {
             ),
         ),
         (
+            "a slot in place of a slider",
+            slider_crank("", "", &crank_angle()).replace("\"translational\"", "\"slot\""),
+            Says(
+                "the mechanism has 2 degrees of freedom and 1 driver; free to move: body \
+                 `slider`: add a driver for one of them; a `slot` holds a point, `translational` \
+                 the angle too: joint `guide`",
+            ),
+        ),
+        (
             "driven where it is held",
             slider_crank(
                 "",

@@ -8,6 +8,8 @@ import { Picture } from "./picture.js";
 import { Play } from "./play.js";
 import { Broken, Solver, unpack } from "./solver.js";
 
+const LENGTHS_AND_ANGLES = ["m", "cm", "mm", "inch", "rad", "deg"];
+
 class Live {
   constructor(root, module, file) {
     this.root = root;
@@ -127,7 +129,10 @@ class Live {
     this.parameters.forEach((row, index) => row.set(frame[places.parameters + index]));
     for (const [output, variable] of this.values) {
       const { unit, factor } = page.variables[variable];
-      const value = shown(frame[places.variables + variable] * factor, 6);
+      const at = frame[places.variables + variable];
+      // Lengths below a picometre and such angles are rounding.
+      const isRounding = Math.abs(at) < 1e-12 && LENGTHS_AND_ANGLES.includes(unit);
+      const value = isRounding ? 0 : shown(at * factor, 6);
       output.textContent = `${value === null ? "–" : value} ${unit}`;
     }
     this.find(".clock").textContent = page.uses_time ? `${frame[0].toFixed(3)} s` : "";

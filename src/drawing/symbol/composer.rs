@@ -140,16 +140,15 @@ impl<'a> Composer<'a> {
     fn driver(&mut self, driver: &Driver) {
         let coordinate = &driver.coordinate;
         let [from, to] = [coordinate.from, coordinate.to].map(|marker| self.anchor(marker));
-        let name = driver.name.clone();
         if coordinate.kind.is_angle() {
-            return angle_driver::compose(self, name, from, to);
+            return angle_driver::compose(self, driver.name.clone(), from, to);
         }
         let axis = self.axis(coordinate);
         let guided = self.mechanism.joints.iter().any(|joint| {
             let pair = (joint.from, joint.to);
             pair == (coordinate.from, coordinate.to) || pair == (coordinate.to, coordinate.from)
         });
-        length_driver::compose(self, name, [from, to], axis, guided);
+        length_driver::compose(self, driver, [from, to], axis, guided);
     }
 
     /// Returns the axis along which a length is measured, `None` for a distance.
@@ -173,7 +172,7 @@ impl<'a> Composer<'a> {
             let law = law.as_ref();
             let is_elastic = law.is_some_and(|law| law.spring.is_some());
             let is_damped = law.is_some_and(|law| law.damping.is_some());
-            // A plain line shows an actuator or a gas spring, which pushes along itself.
+            // A cylinder shows an actuator or a gas spring, which pushes along itself.
             if is_elastic || is_damped || axis.is_none() {
                 spring::compose(self, ends, axis, [is_elastic, is_damped]);
             }

@@ -1,6 +1,7 @@
-//! Drivers of lengths: dimension lines.
+//! Drivers of lengths: cylinders between two points, and dimension lines.
 
 use super::*;
+use crate::mechanism::Driver;
 
 /// A driver of a length.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,16 +14,15 @@ pub struct LengthDriver {
     pub to: Anchor,
     /// The axis along which the length is measured, `None` for the distance.
     pub axis: Option<Anchor>,
-    /// Whether the line is drawn beside the two points, with something else between them.
-    pub beside: bool,
+    /// Length of the barrel of a cylinder between the two points \[m\]; `None` for a dimension line
+    /// beside them, where something else is between them.
+    pub barrel: Option<f64>,
 }
 
 /// Length of a line without room for two arrows.
 const SHORT: f64 = 18.0;
 /// Distance of a dimension line from its points.
 const BESIDE: f64 = 21.0;
-/// Gap between a pin's middle and a dimension line that ends there.
-const INSET: f64 = PIN + 1.0;
 /// Length of an extension line beyond the dimension line, and its gap from the point.
 const EXTENSION: f64 = 4.0;
 const EXTENSION_GAP: f64 = PIN + 2.0;
@@ -32,23 +32,24 @@ const IN_ARROW: f64 = 0.8 * ARROW[0];
 /// Composes the driver of a length between two points; `guided` if a joint lies between them.
 pub(super) fn compose(
     composer: &mut Composer,
-    name: String,
+    driver: &Driver,
     [from, to]: [Anchor; 2],
     axis: Option<Anchor>,
     guided: bool,
 ) {
-    let beside = guided || axis.is_some();
-    if !beside {
+    let is_cylinder = !guided && axis.is_none();
+    let barrel = is_cylinder.then(|| cylinder::barrel(composer, [from, to], driver.min));
+    if is_cylinder {
         for end in [from, to] {
             pin::compose(composer, [end, end]);
         }
     }
     composer.add(LengthDriver {
-        name,
+        name: driver.name.clone(),
         from,
         to,
         axis,
-        beside,
+        barrel,
     });
 }
 
@@ -62,33 +63,19 @@ impl Shape for LengthDriver {
         };
         let ([from, to], along) = line.on_sheet(pen.q, pen.scale);
         let aside = pen.away(across(along), 0.5 * (from + to));
-        if self.beside {
+        let width = if let Some(barrel) = self.barrel {
+            cylinder::draw(pen, Layer::Driver, line, barrel, Colour::DRIVER);
+            cylinder::HALF
+        } else {
             line.offset = BESIDE * aside.dot(&across(along));
-        }
-        let [start, end] = line.ends(pen.q, pen.scale);
-        let inset = if self.beside { 0.0 } else { INSET };
-        let forth = unit(end - start);
-        let is_short = (to - from).dot(&along).abs() < SHORT;
-        if self.beside && (pen.moving || !is_short) {
-            draw_extensions(pen, line);
-        }
-        let [first, second] = [End::First, End::Second].map(|end| Attachment::Line { line, end });
-        pen.attach(first);
-        let (near, far) = (inset + IN_ARROW, -inset - IN_ARROW);
-        let shaft = vec![
-            [Point::new(near, 0.0), Point::zeros()],
-            [Point::new(far, 0.0), Point::x()],
-        ];
-        pen.elastic(Layer::Driver, Measure::Length(line), shaft, Colour::DRIVER, LINE);
-        pen.attach(second);
-        pen.arrow(end - inset * forth, forth);
-        pen.attach(first);
-        pen.arrow(start + inset * forth, -forth);
-
-        let ends = [start + inset * forth, end - inset * forth];
+            let is_short = (to - from).dot(&along).abs() < SHORT;
+            draw_dimension(pen, line, pen.moving || !is_short);
+            0.0
+        };
+        let ends = line.ends(pen.q, pen.scale);
         let parts = [(0.5, 0.0), (0.35, 1.0), (0.65, 1.0), (0.2, 3.0), (0.8, 3.0)];
         let sides = [(aside, 0.0), (-aside, 1.0)];
-        let gaps = [(5.0, 0.0), (14.0, 5.0)];
+        let gaps = [(width + 5.0, 0.0), (width + 14.0, 5.0)];
         let mut candidates = Candidate::beside(ends, &parts, &sides, &gaps);
         candidates.extend(ends.into_iter().flat_map(|tip| Candidate::around(tip, 5.0)));
         pen.attach(Attachment::Point(self.to));
@@ -98,6 +85,26 @@ impl Shape for LengthDriver {
     fn extent(&self) -> Vec<Disc> {
         [self.from, self.to].map(Disc::from).to_vec()
     }
+}
+
+/// Draws a line with arrows at both ends, and the lines from the points to it.
+fn draw_dimension(pen: &mut Pen, line: Line, has_extensions: bool) {
+    if has_extensions {
+        draw_extensions(pen, line);
+    }
+    let [start, end] = line.ends(pen.q, pen.scale);
+    let forth = unit(end - start);
+    let [first, second] = [End::First, End::Second].map(|end| Attachment::Line { line, end });
+    pen.attach(first);
+    let shaft = vec![
+        [Point::new(IN_ARROW, 0.0), Point::zeros()],
+        [Point::new(-IN_ARROW, 0.0), Point::x()],
+    ];
+    pen.elastic(Layer::Driver, Measure::Length(line), shaft, Colour::DRIVER, LINE);
+    pen.attach(second);
+    pen.arrow(end, forth);
+    pen.attach(first);
+    pen.arrow(start, -forth);
 }
 
 /// Draws the lines from both points to the dimension line and a little beyond.

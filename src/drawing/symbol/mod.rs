@@ -6,6 +6,7 @@
 //! file and a line there; a joint without a symbol does not compile.
 
 mod composer;
+mod cylinder;
 mod guide;
 mod pen;
 

@@ -1,8 +1,8 @@
-//! Springs and dampers along a length, and other forces between two points.
+//! Springs and dampers along a length, and cylinders of other forces between two points.
 
 use super::*;
 
-/// A spring, a damper, or both side by side, between two points.
+/// A spring, a damper, both side by side, or a cylinder, between two points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
     /// Markers i and j.
@@ -13,6 +13,8 @@ pub struct Spring {
     pub is_elastic: bool,
     /// Whether the force has a damping.
     pub is_damped: bool,
+    /// Length of the barrel of a force with neither: a gas spring or an actuator \[m\].
+    pub barrel: f64,
 }
 
 /// Shortest length of a symbol.
@@ -37,9 +39,11 @@ pub(super) fn compose(
             pin::compose(composer, [end, end]);
         }
     }
+    let barrel = cylinder::barrel(composer, ends, None);
     composer.add(Spring {
         ends,
         axis,
+        barrel,
         is_elastic,
         is_damped,
     });
@@ -104,8 +108,13 @@ impl Shape for Spring {
             draw(&dashpot(), -ASIDE);
         }
         if !self.is_elastic && !self.is_damped {
-            // An actuator or a gas spring: a plain line.
-            draw(&[vec![at(0.0, 0.0, 0.0), at(0.0, 1.0, 0.0)]], 0.0);
+            let line = Line {
+                points: self.ends,
+                axis: self.axis,
+                offset: 0.0,
+                shortest: SHORT,
+            };
+            cylinder::draw(pen, Layer::Joint, line, self.barrel, Colour::INK);
         }
     }
 

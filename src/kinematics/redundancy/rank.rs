@@ -9,7 +9,7 @@ use crate::kinematics::linear::{Echelon, ReducedRow, Row};
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
-use crate::mechanism::DriverId;
+use crate::mechanism::{DriverId, JointKind, MarkerId, Mechanism};
 
 /// A row of which no more than this is left, scaled, depends on the others. A singular position
 /// is known to the square root of the rounding, 1e-8; a motion of [`AWAY`] from it leaves some
@@ -143,16 +143,35 @@ fn judge(system: &System, ranks: &Ranks) -> Result<(), Error> {
     }
     excess.sort_unstable();
     excess.dedup();
+    let loose = moved_by(system, &ranks.echelon);
     Err(Error::Structure {
         freedom,
         drivers: mechanism.drivers.len(),
         free,
-        loose: moved_by(system, &ranks.echelon),
+        slots: suspect_slots(mechanism, &loose),
+        loose,
         excess: excess
             .into_iter()
             .map(|element| element.describe(mechanism))
             .collect(),
     })
+}
+
+/// Returns the slots between a body that is free to move and one that is not, in a mechanism with
+/// drivers: each may be meant to be `translational`.
+fn suspect_slots(mechanism: &Mechanism, loose: &[String]) -> Vec<String> {
+    let is_loose = |marker: MarkerId| {
+        let body = mechanism.markers[marker.index()].body;
+        let name = body.map(|body| format!("body `{}`", mechanism.bodies[body.index()].name));
+        name.is_some_and(|name| loose.contains(&name))
+    };
+    let joints = mechanism.joints.iter().filter(|joint| {
+        let is_slot = matches!(joint.kind, JointKind::Slot);
+        is_slot && !mechanism.drivers.is_empty() && is_loose(joint.from) != is_loose(joint.to)
+    });
+    joints
+        .map(|joint| format!("joint `{}`", joint.name))
+        .collect()
 }
 
 /// Returns the ranks at the present places of the bodies.
