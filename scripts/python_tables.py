@@ -1,7 +1,7 @@
-"""Writes the tables of docs/python.md: speed of sweeps, errors of gradients, records of synthesis.
+"""Writes the tables of docs/python.md: speed of sweeps, Dask, errors of gradients, records of synthesis.
 
-    python -m venv env && env/bin/pip install biela.whl scipy fmpy mpmath pylinkage numba casadi
-    env/bin/python scripts/python_tables.py [speed] [gradients] [synthesis]
+    python -m venv env && env/bin/pip install biela.whl scipy fmpy mpmath pylinkage numba casadi dask
+    env/bin/python scripts/python_tables.py [speed] [dask] [gradients] [synthesis]
 
 The module must be a release build, such as that of the wheel. Without arguments all tables are
 written. A way whose package is missing has no row. Times are those of all processors together, so
@@ -244,6 +244,66 @@ def speed() -> list[str]:
 
 
 # ---------------------------------------------------------------------------------------------
+# Dask
+
+DASK_CHUNKS = 8
+TASKS = 200
+"""Number of tasks whose share of Dask's own work is measured."""
+
+
+def rocker_of(mechanism, base):
+    """Returns the rocker's angle of variants, for a task of Dask."""
+    return mechanism.sweep({"base": base}, drive={"crank_angle": THETA}, variables=["rocker.phi"])[
+        "rocker.phi"
+    ]
+
+
+def under_dask() -> list[str]:
+    """Returns the rows on one sweep in tasks of Dask."""
+    if importlib.util.find_spec("dask") is None:
+        print("no dask: its table is left out")
+        return []
+    import dask
+
+    four_bar = biela.load(FOUR_BAR)
+    base = bases(5_000)
+
+    def in_tasks(**where):
+        parts = np.array_split(base, DASK_CHUNKS)
+        tasks = [dask.delayed(rocker_of)(four_bar, part) for part in parts]
+        return lambda: np.concatenate(dask.compute(*tasks, **where))
+
+    ways = {
+        "one call of `sweep`": lambda: rocker_of(four_bar, base),
+        "8 tasks, in threads": in_tasks(scheduler="threads"),
+        "8 tasks, in 2 processes": in_tasks(scheduler="processes", num_workers=2),
+    }
+
+    def spent() -> float:
+        """Returns the time of this process and of those that have ended [s]."""
+        return sum(os.times()[:4])
+
+    rows = ["| way | CPU seconds | ratio |", "|---|---|---|"]
+    best = dict.fromkeys(ways, np.inf)
+    expected = rocker_of(four_bar, base)
+    for _ in range(ROUNDS):
+        for way, run in ways.items():
+            started = spent()
+            assert np.array_equal(run(), expected)
+            best[way] = min(best[way], spent() - started)
+    alone = best["one call of `sweep`"]
+    for way, seconds in best.items():
+        rows.append(f"| {way} | {seconds:.2f} | {seconds / alone:.2f} |")
+        print(rows[-1], flush=True)
+    nothing = [dask.delayed(abs)(1)] + [dask.delayed(abs)(n) for n in range(TASKS)]
+    started = spent()
+    dask.compute(*nothing, scheduler="threads")
+    rows.append(f"| a task that does nothing, in threads | {(spent() - started) / TASKS:.1g} | |")
+    print(rows[-1], flush=True)
+    return rows
+
+
+# ---------------------------------------------------------------------------------------------
 # Gradients
 
 
@@ -401,6 +461,8 @@ def synthesis() -> list[str]:
 
 def write(name: str, rows: list[str]) -> None:
     """Puts a table between its marks."""
+    if not rows:
+        return
     page = PAGE.read_text(encoding="utf-8")
     mark = rf"(<!-- {name} -->\n).*?(<!-- end -->)"
     table = "".join(f"{row}\n" for row in rows)
@@ -410,6 +472,6 @@ def write(name: str, rows: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    tables = {"speed": speed, "gradients": gradients, "synthesis": synthesis}
+    tables = {"speed": speed, "dask": under_dask, "gradients": gradients, "synthesis": synthesis}
     for name in sys.argv[1:] or tables:
         write(name, tables[name]())
