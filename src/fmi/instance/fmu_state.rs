@@ -40,6 +40,7 @@ impl<M: Model> Instance<M> {
         let Self {
             quantities: _,
             groups: _,
+            request: _,
             derivatives: _,
             continuous_inputs: _,
             logger: _,

@@ -35,7 +35,7 @@ use super::state::{Allowed, Call, Interface, Phase, State, Version, allowed, is_
 use super::status::Status;
 use super::variable::{Variable, derivatives};
 use step_mode::PendingStep;
-use values::{groups_of, is_continuous_input};
+use values::{Request, groups_of, is_continuous_input};
 
 use std::path::Path;
 
@@ -48,6 +48,8 @@ pub struct Instance<M: Model> {
     quantities: Box<[M::Quantity]>,
     /// Groups of each variable's value, for those that are Reals.
     groups: Box<[Groups]>,
+    /// The Reals that the host asked for last.
+    request: Request,
     /// Value reference of each variable's time derivative.
     derivatives: Box<[Option<u32>]>,
     /// Whether each variable is an input that accepts any finite value at any time.
@@ -148,8 +150,8 @@ impl<M: Model> Instance<M> {
         let interface = model.interface();
         let groups = |v| groups_of(version, &model, v);
         Self {
+            request: Request::new(variables.len()),
             derivatives: derivatives(variables),
-
             quantities: variables.iter().map(|v| v.quantity).collect(),
             groups: variables.iter().map(groups).collect(),
             continuous_inputs: variables.iter().map(is_continuous_input).collect(),

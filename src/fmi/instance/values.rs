@@ -177,26 +177,38 @@ impl<M: Model> Instance<M> {
     /// A variable is unknown or no Real; or it has no value for the values set.
     pub fn reals<'a>(&'a mut self, value_references: &'a [u32]) -> Result<Reals<'a>, Error> {
         self.allow(Call::GetReal)?;
-        let run = consecutive(value_references);
-        let groups = match run.clone().and_then(|run| self.groups.get(run)) {
-            Some(groups) => groups.iter().fold(0, |all, group| all | group),
-            None => value_references.iter().fold(0, |all, &vr| {
-                let group = self.groups.get(vr as usize);
-                all | group.map_or(NO_REAL, |group| *group)
-            }),
-        };
-        if groups & NO_REAL != 0 {
-            return Err(self.why_not_real(value_references));
+        if self.request.references != value_references {
+            self.note_request(value_references)?;
         }
+        let groups = self.request.groups;
         if self.version == Version::Fmi3 {
             self.check_readable(value_references)?;
         }
         self.refresh(Call::GetReal, groups)?;
         let values = self.model.reals();
-        Ok(Reals(match run {
+        Ok(Reals(match self.request.run.clone() {
             Some(run) => Places::Consecutive(values[run].iter()),
             None => Places::Scattered(value_references.iter(), values),
         }))
+    }
+
+    /// Notes a list of Reals that the host asks for.
+    ///
+    /// # Errors
+    ///
+    /// A variable is unknown or no Real.
+    fn note_request(&mut self, value_references: &[u32]) -> Result<(), Error> {
+        let group = |&vr: &u32| self.groups.get(vr as usize).copied().unwrap_or(NO_REAL);
+        let groups = value_references.iter().map(group).fold(0, |a, b| a | b);
+        if groups & NO_REAL != 0 {
+            return Err(self.why_not_real(value_references));
+        }
+        let Request { references, .. } = &mut self.request;
+        references.clear();
+        references.extend_from_slice(value_references);
+        self.request.groups = groups;
+        self.request.run = consecutive(value_references);
+        Ok(())
     }
 
     /// Returns the error for the first reference that is no Real.
@@ -367,16 +379,20 @@ impl<M: Model> Instance<M> {
 }
 
 /// Returns the range of value references that are consecutive, as nearly all hosts ask for them.
-#[inline]
 fn consecutive(value_references: &[u32]) -> Option<Range<usize>> {
-    let first = *value_references.first()?;
-    let last = first.checked_add(u32::try_from(value_references.len()).ok()? - 1)?;
-    // No branch per reference: compilers use vector instructions.
-    let references = value_references.iter().enumerate();
-    let differ = references.fold(0, |differ, (index, given)| {
-        differ | (first.wrapping_add(index as u32) ^ given)
-    });
-    (differ == 0).then_some(first as usize..last as usize + 1)
+    let first = *value_references.first()? as usize;
+    let run = first..first + value_references.len();
+    let given = value_references.iter().map(|&vr| vr as usize);
+    given.eq(run.clone()).then_some(run)
+}
+
+/// The Reals that the host asked for last. Hosts ask for the same ones at every step.
+#[derive(Debug)]
+pub(super) struct Request {
+    references: Vec<u32>,
+    groups: Groups,
+    /// The references as a range, if they are consecutive.
+    run: Option<Range<usize>>,
 }
 
 /// Values of Real variables in the order of their references.
@@ -388,6 +404,17 @@ enum Places<'a> {
     Consecutive(Iter<'a, f64>),
     /// References and the values of all variables.
     Scattered(Iter<'a, u32>, &'a [f64]),
+}
+
+impl Request {
+    /// Makes the storage.
+    pub(super) fn new(variables: usize) -> Self {
+        Self {
+            references: Vec::with_capacity(variables),
+            groups: 0,
+            run: None,
+        }
+    }
 }
 
 impl Reals<'_> {

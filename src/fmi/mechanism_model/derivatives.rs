@@ -84,7 +84,7 @@ impl MechanismModel {
         if phase == Phase::Event && !self.at_committed {
             input.change_at_event(rates, self.time, order)
         } else if self.at_committed && input.has_stepped() {
-            input.change_by_step(rates, self.monitors[driver.index()].sources(), order)
+            input.change_by_step(rates, self.monitors[driver.index()].sources, order)
         } else {
             input.change_by_value(rates, self.time, order)
         }

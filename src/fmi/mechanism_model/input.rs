@@ -253,10 +253,10 @@ impl DriverInput {
         self.history.last_change()
     }
 
-    /// Ends a step of size `h`: records the inputs at its start, and clears the derivatives.
-    pub(super) fn record(&mut self, sample: Sample, rule: Rule, h: f64) {
+    /// Ends a step of size `h` from `start`: records the inputs there, and clears the derivatives.
+    pub(super) fn record(&mut self, rule: Rule, start: f64, h: f64) {
         self.extrapolated_over = if self.is_extrapolated(rule) { h } else { 0.0 };
-        self.history.push(sample, 0.0);
+        self.history.push(self.sample(rule.rates, start), 0.0);
         self.derivatives = [[None; 2]; 3];
     }
 
@@ -320,11 +320,8 @@ mod tests {
         let mut input = DriverInput::new(0.0);
         for (step, &time) in times.iter().enumerate() {
             if step > 0 {
-                input.record(
-                    input.sample(AUTO.rates, times[step - 1]),
-                    AUTO,
-                    time - times[step - 1],
-                );
+                let before = times[step - 1];
+                input.record(AUTO, before, time - before);
             }
             input.set(Order::Position, position(time));
         }
@@ -358,9 +355,9 @@ mod tests {
     #[test]
     fn a_communication_point_is_one_sample_with_any_number_of_values() {
         let mut input = in_steps(&[0.0, 1.0], |t| t);
-        input.record(input.sample(AUTO.rates, 1.0), AUTO, 1.0);
+        input.record(AUTO, 1.0, 1.0);
         input.set(Order::Position, 7.0);
-        input.record(input.sample(AUTO.rates, 1.0), AUTO, 1.0);
+        input.record(AUTO, 1.0, 1.0);
         assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(7.0, 0.0));
     }
 
@@ -431,7 +428,7 @@ mod tests {
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.0), rates(3.0, 0.0));
         assert_eq!(rates_after(&input, AUTO, 0.0, 1.0), rates(0.0, 0.0));
         assert_eq!(rates_after(&input, INPUTS, 0.0, 1.0), rates(3.0, 0.0));
-        input.record(input.sample(AUTO.rates, 0.0), AUTO, 1.0);
+        input.record(AUTO, 0.0, 1.0);
         input.set(Order::Position, 7.0);
         assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(7.0, 0.0));
         input.set(Order::Velocity, 3.0);
@@ -443,7 +440,7 @@ mod tests {
         let mut input = DriverInput::new(0.0);
         input.set(Order::Velocity, 3.0);
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(3.0, 0.0));
-        input.record(input.sample(AUTO.rates, 0.0), AUTO, 1.0);
+        input.record(AUTO, 0.0, 1.0);
         input.set(Order::Velocity, 4.0);
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(4.0, 2.0));
         assert_eq!(rates_after(&input, INPUTS, 0.5, 0.5), rates(4.0, 0.0));
@@ -455,7 +452,7 @@ mod tests {
         let mut input = in_steps(&[0.0, 1.0, 2.0, 3.0], |t| t * t);
         input.set(Order::Velocity, 100.0);
         assert_eq!(rates_after(&input, AUTO, 3.0, 1.0), rates(100.0, 2.0));
-        input.record(input.sample(AUTO.rates, 3.0), AUTO, 1.0);
+        input.record(AUTO, 3.0, 1.0);
         input.set(Order::Velocity, 101.0);
         assert_eq!(rates_after(&input, AUTO, 4.0, 1.0), rates(101.0, 1.0));
     }
@@ -485,7 +482,7 @@ mod tests {
     fn input_derivatives_last_one_step() {
         let mut input = DriverInput::new(1.0);
         input.set_derivative(Order::Position, 1, 2.0);
-        input.record(input.sample(AUTO.rates, 0.0), AUTO, 1.0);
+        input.record(AUTO, 0.0, 1.0);
         assert_eq!(input.path(AUTO, 0.5, 0.5), rates(0.0, 0.0));
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(0.0, 0.0));
     }
@@ -506,7 +503,7 @@ mod tests {
         let mut input = DriverInput::new(1.0);
         input.set_derivative(Order::Position, 1, 2.0);
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(2.0, 0.0));
-        input.record(input.sample(AUTO.rates, 0.0), AUTO, 1.0);
+        input.record(AUTO, 0.0, 1.0);
         input.set_derivative(Order::Position, 1, 3.0);
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(3.0, 2.0));
     }

@@ -88,8 +88,11 @@ impl MechanismModel {
     }
 
     /// Reports once an angle that falls by more than half a turn on the path, as an angle does that
-    /// the host wraps.
+    /// the host wraps. Observes nothing for a host that wants no warnings.
     pub(super) fn report_falls(&mut self, log: &Logger) {
+        if !log.wants(Category::Warning) {
+            return;
+        }
         let drivers = self.mechanism.drivers.iter().zip(&self.path.curves);
         let observed = self.inputs.iter().zip(&mut self.monitors);
         for ((driver, curve), (input, monitor)) in drivers.zip(observed) {
@@ -129,8 +132,25 @@ impl MechanismModel {
                 (rule, "")
             }
         };
+        if log.wants(Category::Warning) || log.wants(Category::Events) {
+            self.report_inputs(rule, advice, start, h, log);
+        }
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            let (input, monitor) = (&mut self.inputs[index], &mut self.monitors[index]);
+            self.monitors[index].sources = self.sources[index];
+            if driver.motion().is_none() {
+                self.inputs[index].record(rule, start, h);
+            }
+        }
+        self.report_contacts(log);
+        self.log_crossings(log);
+        self.log_effort(log);
+    }
+
+    /// Reports excursions of drivers beyond their limits, rates that come from another source than
+    /// before, and given rates that contradict the motion.
+    fn report_inputs(&mut self, rule: Rule, advice: &str, start: f64, h: f64, log: &Logger) {
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            let (input, monitor) = (&self.inputs[index], &mut self.monitors[index]);
             let value = self.solver.pose().drivers[index];
             if monitor.goes_beyond(value, [driver.min, driver.max]) {
                 log.advise(|| describe_excursion(driver, value, start + h));
@@ -149,11 +169,7 @@ impl MechanismModel {
             if let Some(contradiction) = last.and_then(|last| monitor.compare(last, &now)) {
                 log.advise(|| describe_contradiction(driver, contradiction, start, advice));
             }
-            input.record(now, rule, h);
         }
-        self.report_contacts(log);
-        self.log_crossings(log);
-        self.log_effort(log);
     }
 
     /// Logs the change points on the last path.

@@ -1,4 +1,4 @@
-//! Observation of one driver: finds what deserves a message, each once.
+//! Observation of one driver for a host that wants messages: finds what deserves one, each once.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use crate::mechanism::Order;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Monitor {
     /// Sources of velocity and acceleration at the last communication point.
-    sources: [Source; 2],
+    pub(super) sources: [Source; 2],
     /// Consecutive steps in which the motion contradicted velocity and acceleration, up to
     /// [`STEPS`].
     contradictions: [u8; 2],
@@ -92,20 +92,11 @@ impl Monitor {
         beyond && !was_beyond
     }
 
-    /// Returns the sources of velocity and acceleration in the last step.
-    pub(super) fn sources(&self) -> [Source; 2] {
-        self.sources
-    }
-
-    /// Records the sources of the rates. Returns the order and the new source of a rate that
-    /// comes from another one than before.
-    pub(super) fn changes(
-        &mut self,
-        sources: [Source; 2],
-    ) -> impl Iterator<Item = (Order, Source)> {
-        let before = std::mem::replace(&mut self.sources, sources);
+    /// Returns the order and the source of each rate that comes from another one than at the last
+    /// communication point.
+    pub(super) fn changes(&self, sources: [Source; 2]) -> impl Iterator<Item = (Order, Source)> {
         let orders = [Order::Velocity, Order::Acceleration].into_iter();
-        let changed = orders.zip(sources).zip(before);
+        let changed = orders.zip(sources).zip(self.sources);
         changed.filter_map(|((order, now), before)| (now != before).then_some((order, now)))
     }
 

@@ -56,8 +56,8 @@ pub(super) struct Reals {
 /// velocities, then their accelerations.
 #[derive(Clone, Copy, Debug)]
 struct BodyPlace {
-    /// Column of its x in q.
-    column: usize,
+    /// Its index.
+    body: usize,
     /// Value reference of its x.
     reference: usize,
 }
@@ -114,7 +114,7 @@ impl Reals {
             match variable.quantity {
                 Quantity::Output(Signal::Body(body, 0), Order::Position) => {
                     bodies.push(BodyPlace {
-                        column: 3 * body.index(),
+                        body: body.index(),
                         reference: vr as usize,
                     });
                 }
@@ -212,17 +212,17 @@ impl MechanismModel {
     /// Fills in the values of bodies. Most hosts read these at every step: no match per value.
     fn fill_bodies(&mut self, groups: Groups) {
         let Reals { values, bodies, .. } = &mut self.reals;
-        let q = &self.solver.pose().q;
-        let rates = [self.rates.velocity(), self.rates.acceleration()];
-        for &BodyPlace { column, reference } in bodies.iter() {
-            let to = &mut values[reference..reference + 9];
-            let own = column..column + 3;
+        let (q, _) = self.solver.pose().q.as_chunks();
+        let (velocities, _) = self.rates.velocity().as_chunks();
+        let (accelerations, _) = self.rates.acceleration().as_chunks();
+        for &BodyPlace { body, reference } in bodies.iter() {
+            let (to, _) = values[reference..reference + 9].as_chunks_mut::<3>();
             if groups & BODIES != 0 {
-                to[..3].copy_from_slice(&q[own.clone()]);
+                to[0] = q[body];
             }
             if groups & BODIES << 1 != 0 {
-                to[3..6].copy_from_slice(&rates[0][own.clone()]);
-                to[6..].copy_from_slice(&rates[1][own]);
+                to[1] = velocities[body];
+                to[2] = accelerations[body];
             }
         }
     }

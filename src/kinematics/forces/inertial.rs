@@ -12,7 +12,8 @@ pub(super) struct Masses<N> {
     pub(super) gravity: [N; 2],
 }
 
-/// Mass of one body and its distribution.
+/// Mass of one body and its distribution. Motions and forces are about the body's origin, in ground
+/// axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MassProperties<N> {
     /// Index of the body.
@@ -22,20 +23,12 @@ pub(super) struct MassProperties<N> {
     inertia: N,
     /// Centre of mass in the body's frame.
     center: [N; 2],
-}
-
-/// Motion of one body.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BodyMotion<N> {
-    /// x, y \[m\] and phi \[rad\].
-    pub(super) position: [N; 3],
-    /// Cosine and sine of phi.
-    pub(super) direction: [N; 2],
-    pub(super) velocity: [N; 3],
+    /// From the body's origin to the centre of mass.
+    arm: [N; 2],
 }
 
 impl<N: Number> Masses<N> {
-    /// Evaluates the masses of a mechanism.
+    /// Evaluates the masses of a mechanism, of bodies that have not been [turned](MassProperties::turn).
     pub(super) fn new(mechanism: &Mechanism, parameter: &impl Fn(ParameterId) -> N) -> Self {
         let zero = N::constant(0.0);
         let mut masses = Self {
@@ -49,6 +42,7 @@ impl<N: Number> Masses<N> {
                     mass: zero,
                     inertia: zero,
                     center: [zero; 2],
+                    arm: [zero; 2],
                 });
             }
         }
@@ -82,6 +76,27 @@ impl<N: Number> Masses<N> {
 }
 
 impl Masses<f64> {
+    /// Adds M q̈ − Q_v − Q of gravity to `demand`, for these velocities and the accelerations of each
+    /// body. Bodies must be turned.
+    #[inline]
+    pub(super) fn add_demand(
+        &self,
+        q_dot: &[f64],
+        q_ddot: impl Fn(usize) -> [f64; 3],
+        demand: &mut [f64],
+    ) {
+        for of_body in &self.bodies {
+            let [_, _, omega] = of(q_dot, of_body.body);
+            let own = of_body.demand(omega, q_ddot(of_body.body), self.gravity);
+            for (demand, own) in demand.as_chunks_mut::<3>().0[of_body.body]
+                .iter_mut()
+                .zip(own)
+            {
+                *demand += own;
+            }
+        }
+    }
+
     /// Checks that gravity and masses have values that they can have.
     ///
     /// # Errors
@@ -126,46 +141,48 @@ impl Masses<f64> {
 }
 
 impl<N: Number> MassProperties<N> {
-    /// Returns the vector from the body's origin to the centre of mass, in ground axes.
-    fn arm(&self, [cos, sin]: [N; 2]) -> [N; 2] {
+    /// Turns the body to the cosine and sine of phi.
+    #[inline]
+    pub(super) fn turn(&mut self, [cos, sin]: [N; 2]) {
         let [x, y] = self.center;
-        [cos * x - sin * y, sin * x + cos * y]
+        self.arm = [cos * x - sin * y, sin * x + cos * y];
     }
 
-    /// Returns M q̈ − Q_v − Q of gravity for these accelerations: force, and torque about the
-    /// body's origin. With the arm s to the centre of mass the force is m (a − g) with
-    /// a = r̈ + alpha perp(s) − omega² s, the torque J alpha + s × m (a − g).
-    pub(super) fn demand(
-        &self,
-        direction: [N; 2],
-        omega: N,
-        [ax, ay, alpha]: [N; 3],
-        [gx, gy]: [N; 2],
-    ) -> [N; 3] {
-        let [x, y] = self.arm(direction);
+    /// Returns M v: momentum, and angular momentum.
+    #[inline]
+    pub(super) fn momentum(&self, [vx, vy, omega]: [N; 3]) -> [N; 3] {
+        let [x, y] = self.arm;
+        let px = self.mass * (vx - omega * y);
+        let py = self.mass * (vy + omega * x);
+        [px, py, self.inertia * omega + x * py - y * px]
+    }
+
+    /// Returns M q̈ − Q_v − Q of gravity for these accelerations: force and torque. With the arm s
+    /// the force is m (a − g) with a = r̈ + alpha perp(s) − omega² s, the torque
+    /// J alpha + s × m (a − g).
+    #[inline]
+    pub(super) fn demand(&self, omega: N, [ax, ay, alpha]: [N; 3], [gx, gy]: [N; 2]) -> [N; 3] {
+        let [x, y] = self.arm;
         let square = omega * omega;
-        let fx = self.mass * (ax - gx - alpha * y - square * x);
-        let fy = self.mass * (ay - gy + alpha * x - square * y);
-        [fx, fy, self.inertia * alpha + x * fy - y * fx]
-    }
-
-    /// Returns M v.
-    pub(super) fn momentum(&self, direction: [N; 2], velocity: [N; 3]) -> [N; 3] {
-        let zero = N::constant(0.0);
-        self.demand(direction, zero, velocity, [zero; 2])
+        self.momentum([ax - gx - square * x, ay - gy - square * y, alpha])
     }
 
     /// Returns the kinetic energy, and the potential energy of gravity, zero at ground's origin.
-    pub(super) fn energies(&self, motion: BodyMotion<N>, [gx, gy]: [N; 2]) -> [N; 2] {
-        let [x, y] = self.arm(motion.direction);
-        let [px, py, _] = motion.position;
-        let momentum = self.momentum(motion.direction, motion.velocity);
-        let product = momentum[0] * motion.velocity[0]
-            + momentum[1] * motion.velocity[1]
-            + momentum[2] * motion.velocity[2];
+    #[inline]
+    pub(super) fn energies(&self, [px, py]: [N; 2], velocity: [N; 3], [gx, gy]: [N; 2]) -> [N; 2] {
+        let [x, y] = self.arm;
+        let momentum = self.momentum(velocity);
+        let product =
+            momentum[0] * velocity[0] + momentum[1] * velocity[1] + momentum[2] * velocity[2];
         [
             product * 0.5,
             -(self.mass * (gx * (px + x) + gy * (py + y))),
         ]
     }
+}
+
+/// Returns the entries of one body in a list with an entry per unknown.
+#[inline]
+pub(super) fn of(list: &[f64], body: usize) -> [f64; 3] {
+    list.as_chunks().0[body]
 }

@@ -7,7 +7,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::applied::{Circumstances, Place, about_origin};
-use super::inertial::{BodyMotion, Masses};
+use super::inertial::Masses;
 use super::quantity::ForceQuantity;
 use super::solve::{Forces, KnownMotion};
 use super::wrench::{Reported, Wrench};
@@ -92,7 +92,11 @@ impl Forces {
         let mechanism = std::sync::Arc::clone(&self.mechanism);
         let at = sensitivity.motion.configuration();
         let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
-        let masses = Masses::<Dual>::new(&mechanism, &parameter);
+        let mut masses = Masses::<Dual>::new(&mechanism, &parameter);
+        for of_body in &mut masses.bodies {
+            let phi = at.coordinate(3 * of_body.body + 2).value;
+            of_body.turn([phi.cos(), phi.sin()]);
+        }
         let mut probe = Probe {
             at: at.at_rest(),
             gradient: Gradient::new(),
@@ -101,17 +105,14 @@ impl Forces {
             self.varied_loads(state, motion, sensitivity, &mut probe);
         let mut kinetic = Dual::constant(0.0);
         for of_body in &masses.bodies {
-            let moving = BodyInMotion::of(at, of_body.body);
-            let own = of_body.demand(
-                moving.motion.direction,
-                moving.motion.velocity[2],
-                moving.acceleration,
-                masses.gravity,
-            );
+            let q = [0, 1, 2].map(|component| at.coordinate(3 * of_body.body + component));
+            let velocity = q.map(|q| q.first());
+            let own = of_body.demand(velocity[2], q.map(|q| q.second()), masses.gravity);
             for (k, own) in own.into_iter().enumerate() {
                 demand[3 * of_body.body + k] += own;
             }
-            let [own_kinetic, own_potential] = of_body.energies(moving.motion, masses.gravity);
+            let position = [q[0].value, q[1].value];
+            let [own_kinetic, own_potential] = of_body.energies(position, velocity, masses.gravity);
             kinetic += own_kinetic;
             potential += own_potential;
         }
@@ -320,7 +321,6 @@ impl Forces {
         multipliers: &[Dual],
     ) -> Vec<[f64; 4]> {
         let mechanism = std::sync::Arc::clone(&self.mechanism);
-        let at = sensitivity.motion.configuration();
         let drivers = (0..mechanism.drivers.len()).map(DriverId);
         let units: Vec<Vec<Dual>> = drivers
             .clone()
@@ -330,8 +330,7 @@ impl Forces {
             let mut momentum = vec![Dual::constant(0.0); unit.len()];
             for of_body in &masses.bodies {
                 let k = 3 * of_body.body;
-                let direction = BodyInMotion::of(at, of_body.body).motion.direction;
-                let own = of_body.momentum(direction, [unit[k], unit[k + 1], unit[k + 2]]);
+                let own = of_body.momentum([unit[k], unit[k + 1], unit[k + 2]]);
                 momentum[k..k + 3].copy_from_slice(&own);
             }
             momentum
@@ -386,25 +385,4 @@ pub(in crate::kinematics) struct Along<'a> {
     pub(in crate::kinematics) motion: &'a Sensitivity<'a>,
     pub(in crate::kinematics) time: f64,
     pub(in crate::kinematics) inputs: &'a [f64],
-}
-
-/// A body along the direction.
-struct BodyInMotion {
-    motion: BodyMotion<Dual>,
-    acceleration: [Dual; 3],
-}
-
-impl BodyInMotion {
-    fn of(at: &VariedConfiguration, body: usize) -> Self {
-        let q = [0, 1, 2].map(|component| at.coordinate(3 * body + component));
-        let phi = q[2].value;
-        Self {
-            motion: BodyMotion {
-                position: q.map(|q| q.value),
-                direction: [phi.cos(), phi.sin()],
-                velocity: q.map(|q| q.first()),
-            },
-            acceleration: q.map(|q| q.second()),
-        }
-    }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::applied::{AppliedForces, Circumstances};
-use super::inertial::{BodyMotion, Masses};
+use super::inertial::{Masses, of};
 use super::quantity::{ForceQuantity, input_places};
 use super::self_stress::SelfStresses;
 use super::wrench::{Contact, ReactionRows};
@@ -67,8 +67,8 @@ pub(super) struct DriverForces {
 struct Work {
     /// −Q of the forces, one entry per unknown.
     loads: Vec<f64>,
+    /// w, one entry per unknown.
     demand: Vec<f64>,
-    momentum: Vec<f64>,
     /// ∂q/∂u of each driver.
     units: Vec<Vec<f64>>,
     rates: Rates,
@@ -135,7 +135,6 @@ impl Forces {
             work: Work {
                 loads: vec![0.0; unknowns],
                 demand: vec![0.0; unknowns],
-                momentum: vec![0.0; unknowns],
                 units: vec![vec![0.0; unknowns]; drivers],
                 rates: Rates::new(unknowns),
                 driver_rates: vec![Jet::constant(0.0); drivers],
@@ -196,10 +195,20 @@ impl Forces {
         self.set_parameters(state)?;
         self.solve_loads(state, motion)?;
         if parts.efforts {
-            self.solve_efforts(model, state, motion)?;
+            state.refresh(model)?;
+            self.work.solve_units(model, state);
+            self.solve_coasting(model, state, motion);
+            self.solve_efforts(motion.driver_rates)?;
+        } else if parts.reactions {
+            let q_ddot = motion.rates.acceleration();
+            let Work { loads, demand, .. } = &mut self.work;
+            demand.copy_from_slice(loads);
+            let q_dot = motion.rates.velocity();
+            self.masses
+                .add_demand(q_dot, |body| of(q_ddot, body), demand);
         }
         if parts.reactions {
-            self.solve_reactions(model, state, motion)?;
+            self.solve_reactions(model, state)?;
         }
         Ok(())
     }
@@ -240,83 +249,88 @@ impl Forces {
             &mut self.results.sizes,
             &mut self.work.loads,
         )?;
-        for masses in &self.masses.bodies {
-            let frame = &state.at.frames()[masses.body];
-            let k = 3 * masses.body;
-            let motion = BodyMotion {
-                position: [frame.origin.x, frame.origin.y, frame.phi],
-                direction: [frame.cos, frame.sin],
-                velocity: [q_dot[k], q_dot[k + 1], q_dot[k + 2]],
-            };
-            let own = masses.energies(motion, self.masses.gravity);
+        let gravity = self.masses.gravity;
+        for of_body in &mut self.masses.bodies {
+            let frame = &state.at.frames()[of_body.body];
+            of_body.turn([frame.cos, frame.sin]);
+            let velocity = of(q_dot, of_body.body);
+            let own = of_body.energies(frame.origin.into(), velocity, gravity);
             energies = [energies[0] + own[0], energies[1] + own[1]];
         }
         self.results.energies = energies;
         Ok(())
     }
 
-    /// Writes w for these rates.
-    fn demand(&mut self, state: &State, q_dot: &[f64], q_ddot: &[f64]) {
-        let Work { loads, demand, .. } = &mut self.work;
+    /// Writes w for the accelerations that only prescribed motions and velocities cause: those of
+    /// inputs are zero.
+    fn solve_coasting(&mut self, model: &mut Model, state: &mut State, motion: KnownMotion<'_>) {
+        let q_dot = motion.rates.velocity();
+        let drivers = self.mechanism.drivers.iter().zip(motion.driver_rates);
+        let mut coasting = drivers.map(|(driver, rates)| match driver.motion() {
+            Some(_) => *rates,
+            None => Jet::new(0.0, [rates.first(), 0.0]),
+        });
+        let Work {
+            loads,
+            demand,
+            driver_rates,
+            rates,
+            ..
+        } = &mut self.work;
         demand.copy_from_slice(loads);
-        for masses in &self.masses.bodies {
-            let frame = &state.at.frames()[masses.body];
-            let k = 3 * masses.body;
-            let acceleration = [q_ddot[k], q_ddot[k + 1], q_ddot[k + 2]];
-            let direction = [frame.cos, frame.sin];
-            let own = masses.demand(direction, q_dot[k + 2], acceleration, self.masses.gravity);
-            for (demand, own) in demand[k..k + 3].iter_mut().zip(own) {
-                *demand += own;
-            }
+        if state.has_single_driver()
+            && let Some(coasting) = coasting.next()
+        {
+            let [first, second] = coasting.derivatives;
+            let (unit, curvature) = (state.tangent.velocity(), state.tangent.acceleration());
+            let square = first * first;
+            let q_ddot = |body| {
+                let (unit, curvature) = (of(unit, body), of(curvature, body));
+                [0, 1, 2].map(|k| curvature[k] * square + unit[k] * second)
+            };
+            self.masses.add_demand(q_dot, q_ddot, demand);
+        } else {
+            driver_rates.clear();
+            driver_rates.extend(coasting);
+            solve_rates(model, state, driver_rates, rates);
+            let q_ddot = rates.acceleration();
+            self.masses
+                .add_demand(q_dot, |body| of(q_ddot, body), demand);
         }
     }
 
-    /// Solves the efforts by virtual power: bias from accelerations that only prescribed motions
-    /// and velocities cause, then the share of the accelerations of inputs.
-    fn solve_efforts(
-        &mut self,
-        model: &mut Model,
-        state: &mut State,
-        motion: KnownMotion<'_>,
-    ) -> Result<(), Error> {
-        state.refresh(model)?;
-        let mechanism = Arc::clone(&self.mechanism);
-        let is_input = |driver: usize| mechanism.drivers[driver].motion().is_none();
-        let mut rates = std::mem::replace(&mut self.work.rates, Rates::new(0));
-        self.solve_units(model, state, &mut rates);
-        self.solve_coasting(model, state, motion, &mut rates);
-        self.demand(state, motion.rates.velocity(), rates.acceleration());
-        self.work.rates = rates;
-        let Work {
-            demand,
-            momentum,
-            units,
-            ..
-        } = &mut self.work;
+    /// Solves the efforts by virtual power: bias from w without the accelerations of inputs, whose
+    /// share is then added to effort and w.
+    fn solve_efforts(&mut self, driver_rates: &[Jet]) -> Result<(), Error> {
+        let Work { demand, units, .. } = &mut self.work;
         let drivers = &mut self.results.drivers;
         for (forces, unit) in drivers.iter_mut().zip(&*units) {
             forces.bias = dot(unit, demand);
             forces.effort = forces.bias;
         }
-        for input in (0..drivers.len()).filter(|&driver| is_input(driver)) {
-            let acceleration = motion.driver_rates[input].second();
-            momentum.fill(0.0);
-            for masses in &self.masses.bodies {
-                let frame = &state.at.frames()[masses.body];
-                let k = 3 * masses.body;
-                let unit = [0, 1, 2].map(|c| units[input][k + c]);
-                let own = masses.momentum([frame.cos, frame.sin], unit);
-                momentum[k..k + 3].copy_from_slice(&own);
+        for (input, definition) in self.mechanism.drivers.iter().enumerate() {
+            if definition.motion().is_some() {
+                continue;
             }
-            drivers[input].inertia = dot(&units[input], momentum);
-            if acceleration != 0.0 {
-                for (forces, unit) in drivers.iter_mut().zip(&*units) {
-                    forces.effort += dot(unit, momentum) * acceleration;
+            let acceleration = driver_rates[input].second();
+            drivers[input].inertia = 0.0;
+            for of_body in &self.masses.bodies {
+                let body = of_body.body;
+                let momentum = of_body.momentum(of(&units[input], body));
+                drivers[input].inertia += dot(&of(&units[input], body), &momentum);
+                if acceleration != 0.0 {
+                    let force = momentum.map(|momentum| momentum * acceleration);
+                    for (demand, force) in demand[3 * body..3 * body + 3].iter_mut().zip(force) {
+                        *demand += force;
+                    }
+                    for (forces, unit) in drivers.iter_mut().zip(&*units) {
+                        forces.effort += dot(&of(unit, body), &force);
+                    }
                 }
             }
         }
         let mut sum = 0.0;
-        for (forces, rates) in drivers.iter_mut().zip(motion.driver_rates) {
+        for (forces, rates) in drivers.iter_mut().zip(driver_rates) {
             forces.power = forces.effort * rates.first();
             sum += forces.power + forces.inertia + forces.bias;
         }
@@ -327,62 +341,13 @@ impl Forces {
         }
     }
 
-    /// Writes ∂q/∂u of each driver.
-    fn solve_units(&mut self, model: &mut Model, state: &mut State, rates: &mut Rates) {
-        let Work {
-            units,
-            driver_rates,
-            ..
-        } = &mut self.work;
-        if state.has_single_driver() {
-            units[0].copy_from_slice(state.tangent.velocity());
-            return;
-        }
-        for (driver, unit) in units.iter_mut().enumerate() {
-            driver_rates.fill(Jet::constant(0.0));
-            driver_rates[driver].derivatives[0] = 1.0;
-            solve_rates(model, state, driver_rates, rates);
-            unit.copy_from_slice(rates.velocity());
-        }
-    }
-
-    /// Writes the rates of q if the accelerations of all inputs were zero.
-    fn solve_coasting(
-        &mut self,
-        model: &mut Model,
-        state: &mut State,
-        motion: KnownMotion<'_>,
-        rates: &mut Rates,
-    ) {
-        let drivers = self.mechanism.drivers.iter().zip(motion.driver_rates);
-        let coasting = drivers.map(|(driver, rates)| match driver.motion() {
-            Some(_) => *rates,
-            None => Jet::new(0.0, [rates.first(), 0.0]),
-        });
-        for (rates, coasting) in self.work.driver_rates.iter_mut().zip(coasting) {
-            *rates = coasting;
-        }
-        if state.has_single_driver() {
-            let [first, second] = self.work.driver_rates[0].derivatives;
-            state.tangent.scale(first, second, rates);
-        } else {
-            solve_rates(model, state, &self.work.driver_rates, rates);
-        }
-    }
-
-    /// Solves Phi_qᵀ λ = w.
-    fn solve_reactions(
-        &mut self,
-        model: &Model,
-        state: &State,
-        motion: KnownMotion<'_>,
-    ) -> Result<(), Error> {
+    /// Solves Phi_qᵀ λ = w. Uses up w.
+    fn solve_reactions(&mut self, model: &Model, state: &State) -> Result<(), Error> {
         let system = &model.system;
         if self.set_aside != model.redundant.now {
             self.factors = JacobianFactors::new(system, &model.structure, &model.plan);
             self.set_aside.clone_from(&model.redundant.now);
         }
-        self.demand(state, motion.rates.velocity(), motion.rates.acceleration());
         let is_of_least_norm = self.is_of_least_norm();
         let (demand, multipliers) = (&mut self.work.demand, &mut self.results.multipliers);
         if is_of_least_norm {
@@ -404,13 +369,18 @@ impl Forces {
                 .map_err(|Rejected| SINGULAR_HERE)?;
         }
         let mut sum = 0.0;
-        for (joint, reaction) in self.results.reactions.iter_mut().enumerate() {
-            *reaction = self
-                .rows
-                .reaction(system, &state.at, joint, &self.results.multipliers);
-            sum += reaction.iter().sum::<f64>();
+        let Results {
+            multipliers,
+            reactions,
+            ..
+        } = &mut self.results;
+        for (joint, reaction) in reactions.iter_mut().enumerate() {
+            *reaction = self.rows.reaction(system, &state.at, joint, multipliers);
+            sum += reaction[0] + reaction[1] + reaction[2];
         }
-        if sum.is_finite() && self.results.multipliers.iter().all(|l| l.is_finite()) {
+        // Zero unless a multiplier is not finite.
+        let excess: f64 = multipliers.iter().map(|multiplier| 0.0 * multiplier).sum();
+        if (sum + excess).is_finite() {
             Ok(())
         } else {
             Err(SINGULAR_HERE)
@@ -426,6 +396,22 @@ impl Forces {
     /// Returns ∂q/∂u of a driver.
     pub(super) fn unit(&self, driver: DriverId) -> &[f64] {
         &self.work.units[driver.index()]
+    }
+}
+
+impl Work {
+    /// Writes ∂q/∂u of each driver.
+    fn solve_units(&mut self, model: &mut Model, state: &mut State) {
+        if state.has_single_driver() {
+            self.units[0].copy_from_slice(state.tangent.velocity());
+            return;
+        }
+        for (driver, unit) in self.units.iter_mut().enumerate() {
+            self.driver_rates.fill(Jet::constant(0.0));
+            self.driver_rates[driver].derivatives[0] = 1.0;
+            solve_rates(model, state, &self.driver_rates, &mut self.rates);
+            unit.copy_from_slice(self.rates.velocity());
+        }
     }
 }
 

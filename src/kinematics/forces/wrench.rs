@@ -113,6 +113,9 @@ impl<N: Number> Wrench<N> {
 pub(super) struct ReactionRows {
     /// Rows of each joint.
     pub(super) joints: Vec<Vec<usize>>,
+    /// The two rows of each revolute joint, whose λ are its force: their entries at the point of the
+    /// second marker are one.
+    pins: Vec<Option<[usize; 2]>>,
     /// Row of each constraint.
     pub(super) constraints: Vec<usize>,
     /// Row of each driver.
@@ -124,6 +127,7 @@ impl ReactionRows {
         let mechanism = system.mechanism();
         let mut rows = Self {
             joints: vec![Vec::new(); mechanism.joints.len()],
+            pins: Vec::new(),
             constraints: vec![0; mechanism.constraints.len()],
             drivers: vec![0; mechanism.drivers.len()],
         };
@@ -134,6 +138,12 @@ impl ReactionRows {
                 Element::Driver(driver) => rows.drivers[driver.index()] = row,
             }
         }
+        let joints = mechanism.joints.iter().zip(&rows.joints);
+        let pins = joints.map(|(joint, rows)| match (&joint.kind, &rows[..]) {
+            (JointKind::Revolute, &[x, y]) => Some([x, y]),
+            _ => None,
+        });
+        rows.pins = pins.collect();
         rows
     }
 
@@ -143,7 +153,23 @@ impl ReactionRows {
     }
 
     /// Returns the force and the torque that a joint exerts on its second body for these λ.
+    #[inline]
     pub(super) fn reaction(
+        &self,
+        system: &System,
+        at: &Configuration,
+        joint: usize,
+        multipliers: &[f64],
+    ) -> [f64; 3] {
+        match self.pins[joint] {
+            Some([x, y]) => [multipliers[x], multipliers[y], 0.0],
+            None => self.gather_reaction(system, at, joint, multipliers),
+        }
+    }
+
+    /// Returns the reaction of a joint that is no pin.
+    #[inline(never)]
+    fn gather_reaction(
         &self,
         system: &System,
         at: &Configuration,
@@ -153,14 +179,9 @@ impl ReactionRows {
         let mechanism = system.mechanism();
         let Joint { kind, to, .. } = &mechanism.joints[joint];
         let rows = &self.joints[joint];
-        match (kind, &rows[..]) {
-            // The rows have the entry one at the point of the second marker.
-            (JointKind::Revolute, &[x, y]) => return [multipliers[x], multipliers[y], 0.0],
+        if let (JointKind::Gear { .. } | JointKind::Belt { .. }, &[row]) = (kind, &rows[..]) {
             // The row has the entry one at the second wheel.
-            (JointKind::Gear { .. } | JointKind::Belt { .. }, &[row]) => {
-                return [0.0, 0.0, multipliers[row]];
-            }
-            _ => {}
+            return [0.0, 0.0, multipliers[row]];
         }
         let to = at.marker(*to);
         let mut wrench = Wrench::new(to.body);
