@@ -9,6 +9,9 @@ use fuzz::mutation::{Chance, mutate};
 /// A test stops here even on a machine that is busy with other things.
 const TIME: Duration = Duration::from_secs(5);
 
+/// Generated mechanisms of each kind.
+const CASES: u64 = 5;
+
 /// All files of a folder, in order.
 fn files(folder: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
@@ -65,4 +68,16 @@ fn call_sequences() {
         &files("corpus/call_sequence"),
         1500,
     );
+}
+
+/// The law of `make attack` for some mechanisms of each kind: one jump ends where tiny steps end,
+/// and other scales and names change neither verdict nor branch, nor double the sub-steps.
+#[test]
+fn generated_mechanisms_move_alike_in_any_steps_and_at_any_scale() {
+    for (kind, (name, _)) in fuzz::attack::KINDS.iter().enumerate() {
+        let counts = fuzz::attack::run(kind, 1, CASES, |seed, words| {
+            panic!("{name}, seed {seed}: {words}");
+        });
+        assert!(counts.agree > 0, "{name}: {counts:?}");
+    }
 }

@@ -202,37 +202,61 @@ pub(super) fn contains(pieces: impl Iterator<Item = [Point; 2]>, p: Point) -> bo
 }
 
 /// Returns the corners of the convex hull, counter-clockwise from the leftmost, without points
-/// on its edges to within rounding (Jarvis's march).
+/// on its edges to within rounding (Andrew's monotone chains).
 pub(super) fn convex_hull(points: &[Point]) -> Vec<Point> {
-    // The farthest point from any point is a corner.
-    let far = |from: &Point| {
-        let distance = |p: &&Point| (*p - from).norm();
-        let nearer = |a: &&Point, b: &&Point| distance(a).total_cmp(&distance(b));
-        points.iter().max_by(nearer).copied()
-    };
-    let Some(start) = points.first().and_then(far) else {
+    let before = |a: &Point, b: &Point| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+    let mut sorted = points.to_vec();
+    sorted.sort_unstable_by(before);
+    let Some(&start) = sorted.first() else {
         return Vec::new();
     };
-    let extent = far(&start).map_or(0.0, |end| (end - start).norm());
+    let extent = sorted
+        .iter()
+        .fold(0.0, |far: f64, p| far.max((p - start).norm()));
     let near = 1e-9 * extent;
-    let mut hull = vec![start];
-    while hull.len() <= points.len() {
-        let corner = hull[hull.len() - 1];
-        let mut next = corner;
-        for point in points {
-            let (best, offset) = (next - corner, point - corner);
-            let turn = best.perp(&offset);
-            let farther = offset.norm() > best.norm() + near;
-            if turn < -near * extent || turn <= near * extent && farther {
-                next = *point;
+    let turn = |a: Point, b: Point, c: Point| (b - a).perp(&(c - a));
+    let chain = |sorted: &mut dyn Iterator<Item = &Point>| {
+        let mut chain: Vec<Point> = Vec::new();
+        for &point in sorted {
+            loop {
+                match chain[..] {
+                    [only] if (point - only).norm() <= near => break,
+                    [] | [_] => {}
+                    [.., a, b] => {
+                        let turned = turn(a, b, point);
+                        if turned <= near * extent {
+                            let on_edge = turned >= -near * extent;
+                            if on_edge && (point - a).norm() < (b - a).norm() {
+                                break;
+                            }
+                            chain.pop();
+                            continue;
+                        }
+                    }
+                }
+                chain.push(point);
+                break;
             }
         }
-        if (next - start).norm() <= near {
-            break;
-        }
-        hull.push(next);
+        chain
+    };
+    let mut hull = chain(&mut sorted.iter());
+    hull.extend(chain(&mut sorted.iter().rev()).into_iter().skip(1));
+    while hull.len() > 1 && (hull[hull.len() - 1] - hull[0]).norm() <= near {
+        hull.pop();
     }
-    let before = |a: &Point, b: &Point| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+    if hull.len() > 2 {
+        // The ends of the chains may lie on edges.
+        let count = hull.len();
+        let is_corner = |&k: &usize| {
+            turn(
+                hull[(k + count - 1) % count],
+                hull[k],
+                hull[(k + 1) % count],
+            ) > near * extent
+        };
+        hull = (0..count).filter(is_corner).map(|k| hull[k]).collect();
+    }
     let first = (0..hull.len()).min_by(|&i, &j| before(&hull[i], &hull[j]));
     hull.rotate_left(first.unwrap_or(0));
     hull

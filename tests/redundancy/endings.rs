@@ -86,7 +86,8 @@ fn a_redundancy_that_ends_on_the_way_stops_the_mechanism_there() {
 }
 
 /// A follower held on the round part of a cam whose lobe, 5 mm high, passes under it: whatever the
-/// steps, the mechanism stops where the lobe begins, and without a lobe it turns in one sub-step.
+/// steps, the mechanism stops where the lobe begins, and without a lobe it turns in few sub-steps;
+/// also while a parameter moves, of which the cam knows nothing.
 #[test]
 fn a_lobe_between_two_steps_is_found() {
     let cam = |lobe: &str| {
@@ -100,21 +101,25 @@ fn a_lobe_between_two_steps_is_found() {
                  profile = \"0.05{lobe}\" }}\n"
             );
         let driver = angle_driver("u", "ground.O", "cam.O", 0.0);
-        parse(&file(
-            "O = [0, 0]\nH = [0, 0.05]",
-            &bodies,
-            &joints,
-            &driver,
+        let ground = "O = [0, 0]\nH = [0, 0.05]\nK = [\"far\", 0]";
+        parse(&file(ground, &bodies, &joints, &driver).replace(
+            "[ground.markers]",
+            "[parameters]\nfar = { value = 1, tunable = true }\n[ground.markers]",
         ))
     };
     // The contact is at theta = 90° − u. A gap is a thousand millionth of the size, 0.05 m.
     let open = (1e-9_f64 * 0.05 / 5.0).cbrt();
     let begins = TAU / 4.0 - (0.9 + open).acos();
-    for steps in [1, 2, 3, 4, 100] {
+    for (steps, moves) in [1, 2, 3, 4, 100]
+        .into_iter()
+        .flat_map(|n| [(n, 0.0), (n, 0.01)])
+    {
         let (mut solver, mut path) = assembled(&cam(" + 5*max(0, cos(theta) - 0.9)^3"));
         assert_eq!(solver.redundancies()[0].element, "joint `contact`");
         let blocked = (1..=steps).find_map(|step| {
             straight_to(&solver, &mut path, TAU * f64::from(step) / f64::from(steps));
+            path.from.clone_from(&solver.pose().parameters);
+            path.to[0] = path.from[0] + moves;
             solver.track(&path).err()
         });
         let blocked = blocked.expect("the lobe is on the way");
@@ -125,8 +130,12 @@ fn a_lobe_between_two_steps_is_found() {
         let reached = solver.pose().drivers[0];
         assert!((reached - begins).abs() < 1e-3, "{steps}: {reached}");
     }
-    let (mut solver, mut path) = assembled(&cam(""));
-    straight_to(&solver, &mut path, TAU);
-    let progress = solver.track(&path).expect("it is round");
-    assert!(progress.substeps < 20, "{progress:?}");
+    for moves in [0.0, 0.01] {
+        let (mut solver, mut path) = assembled(&cam(""));
+        straight_to(&solver, &mut path, TAU);
+        path.to[0] += moves;
+        let progress = solver.track(&path).expect("it is round");
+        assert!(progress.substeps < 20, "{progress:?}");
+        assert_eq!(progress.checked > 0, moves > 0.0, "{progress:?}");
+    }
 }

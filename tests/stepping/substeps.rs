@@ -1,6 +1,7 @@
 //! The number of sub-steps of a step, and whether they are proved.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::fmt::Write as _;
 
 use biela::kinematics::{Curve, Reason};
 
@@ -91,6 +92,79 @@ fn lifts_driven_from_below_are_proved_at_any_height() {
                 // to cell, those of points once more.
                 let rounding = 32.0 * f64::EPSILON * (cells * cells) as f64;
                 assert!(off < rounding, "{name}, {cells} cells: {off:e}");
+            }
+        }
+    }
+}
+
+/// A row of `count` rods, each of which moves a slider, along x and along y in turn. The crank of
+/// 0.1 m has its pin at the start of the first rod.
+fn row_of_sliders(count: usize, crank: f64) -> String {
+    let (mut ground, mut bodies, mut joints) = (String::new(), String::new(), String::new());
+    let mut pin = ([0.1 * crank.cos(), 0.1 * crank.sin()], "crank.B".to_owned());
+    for k in 0..count {
+        let ([x, y], marker) = &pin;
+        let [along, across] = [(0.3_f64 * 0.3 - 0.2 * 0.2).sqrt(), 0.2];
+        let (place, tilt) = if k.is_multiple_of(2) {
+            ([x + along, y - across], 0.0)
+        } else {
+            ([x + across, y + along], FRAC_PI_2)
+        };
+        let [px, py] = place;
+        let phi = (py - y).atan2(px - x);
+        let _ = writeln!(ground, "G{k} = [{px:?}, {py:?}, {tilt:?}]");
+        let _ = write!(
+            bodies,
+            "[bodies.rod_{k}]\nmarkers = {{ A = [0, 0], B = [0.3, 0] }}\n\
+             estimate = [{x:?}, {y:?}, {phi:?}]\n\
+             [bodies.slider_{k}]\nmarkers = {{ A = [0, 0], G = [0, 0, {tilt:?}] }}\n\
+             estimate = [{px:?}, {py:?}, 0]\n"
+        );
+        let _ = write!(
+            joints,
+            "A{k} = {{ type = 'revolute', markers = ['{marker}', 'rod_{k}.A'] }}\n\
+             B{k} = {{ type = 'revolute', markers = ['rod_{k}.B', 'slider_{k}.A'] }}\n\
+             S{k} = {{ type = 'translational', markers = ['ground.G{k}', 'slider_{k}.G'] }}\n"
+        );
+        pin = (place, format!("slider_{k}.A"));
+    }
+    format!(
+        "format = 1\nname = 'sliders'\n[ground.markers]\nO = [0, 0]\n{ground}\
+         [bodies.crank]\nmarkers = {{ A = [0, 0], B = [0.1, 0] }}\nestimate = [0, 0, {crank:?}]\n\
+         {bodies}[joints]\nO = {{ type = 'revolute', markers = ['ground.O', 'crank.A'] }}\n{joints}\
+         [drivers]\nu = {{ coordinate = 'angle', markers = ['ground.O', 'crank.A'], \
+         start = {crank:?} }}\n"
+    )
+}
+
+/// A slider passes nine tenths of its motion on to the next one, and so much of its uncertainty.
+#[test]
+fn rows_of_sliders_are_proved_at_any_length() {
+    for count in [10, 30, 40, 200] {
+        let mechanism = parse(&row_of_sliders(count, 1.0));
+        let (mut solver, mut path) = assembled(&mechanism);
+        let body = |name: String| 3 * mechanism.body_id(&name).expect("it has it").index();
+        let home = solver.pose().q.clone();
+        for step in 1..=20 {
+            let angle = 1.0 + 1e-3 * f64::from(step);
+            straight_to(&solver, &mut path, angle);
+            let progress = solver.track(&path).expect("nothing is in the way");
+            let steps = (progress.substeps, progress.checked);
+            assert_eq!(steps, (1, 0), "{count} sliders");
+            let mut pin = [0.1 * angle.cos(), 0.1 * angle.sin()];
+            for k in 0..count {
+                let slider = body(format!("slider_{k}"));
+                // Each slider keeps to its line, a rod's length from the pin before it.
+                let (along, across) = if k.is_multiple_of(2) { (0, 1) } else { (1, 0) };
+                let line = home[slider + across];
+                let reach = 0.3 * 0.3 - (line - pin[across]).powi(2);
+                pin[along] += reach.sqrt();
+                pin[across] = line;
+                let found = [0, 1].map(|axis: usize| solver.pose().q[slider + axis]);
+                let off = (found[0] - pin[0]).hypot(found[1] - pin[1]);
+                // Some roundings of a coordinate, of which ten add up, as each passes on nine tenths.
+                let far = 1.0 + pin[0].abs() + pin[1].abs();
+                assert!(off < 128.0 * f64::EPSILON * far, "{count}, {k}: {off:e}");
             }
         }
     }

@@ -1,5 +1,6 @@
 //! From a mechanism to its symbols.
 
+use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
 use super::*;
@@ -27,6 +28,7 @@ pub(in crate::drawing) fn compose(
     for force in &mechanism.forces {
         composer.force(force);
     }
+    composer.note_shown();
     for body in 0..mechanism.bodies.len() {
         link::compose(&mut composer, BodyId(body));
     }
@@ -69,6 +71,11 @@ pub(super) fn point_name(mechanism: &Mechanism, id: MarkerId) -> String {
     }
 }
 
+/// Returns the bits of a point; zeros of either sign are the same.
+pub(super) fn bits(point: [f64; 2]) -> [u64; 2] {
+    point.map(|x| (x + 0.0).to_bits())
+}
+
 /// The symbols so far, and the mechanism that they stand for.
 pub(super) struct Composer<'a> {
     pub(super) mechanism: &'a Mechanism,
@@ -78,6 +85,10 @@ pub(super) struct Composer<'a> {
     /// Poses along the motion.
     pub(super) motion: &'a [Vec<f64>],
     pub(super) symbols: Vec<Symbol>,
+    /// Indices of the symbols that show each body, known once all but the links are there.
+    pub(super) shown_by: Vec<Vec<usize>>,
+    /// Indices of the symbols [added](Self::add) at each place.
+    added: HashMap<(Option<BodyId>, [u64; 2]), Vec<usize>>,
     /// Points that each body reaches besides its markers: the ends of its ways and slots.
     pub(super) spans: Vec<Vec<[f64; 2]>>,
     /// Points of ground that hold a body, with the body.
@@ -97,6 +108,8 @@ impl<'a> Composer<'a> {
             q,
             motion,
             symbols: Vec::new(),
+            shown_by: vec![Vec::new(); mechanism.bodies.len()],
+            added: HashMap::new(),
             spans: vec![Vec::new(); mechanism.bodies.len()],
             pivots: Vec::new(),
         }
@@ -117,8 +130,24 @@ impl<'a> Composer<'a> {
     /// Adds a symbol unless it is there already.
     pub(super) fn add(&mut self, symbol: impl Into<Symbol>) {
         let symbol = symbol.into();
-        if !self.symbols.contains(&symbol) {
+        let place = symbol.shape().extent().first().map_or_else(
+            || (None, [0.0; 2]),
+            |disc| (disc.center.body, disc.center.position),
+        );
+        let place = (place.0, bits(place.1));
+        let added = self.added.entry(place).or_default();
+        if !added.iter().any(|&index| self.symbols[index] == symbol) {
+            added.push(self.symbols.len());
             self.symbols.push(symbol);
+        }
+    }
+
+    /// Notes which symbols show each body.
+    fn note_shown(&mut self) {
+        for (index, symbol) in self.symbols.iter().enumerate() {
+            if let Some(body) = symbol.shape().shows() {
+                self.shown_by[body.index()].push(index);
+            }
         }
     }
 
@@ -226,9 +255,9 @@ impl<'a> Composer<'a> {
     }
 
     /// Returns the symbols that show a body.
-    pub(super) fn showing(&self, body: BodyId) -> impl Iterator<Item = &dyn Shape> {
-        let shapes = self.symbols.iter().map(Symbol::shape);
-        shapes.filter(move |shape| shape.shows() == Some(body))
+    pub(super) fn showing(&self, body: BodyId) -> impl Iterator<Item = &Symbol> {
+        let shown_by = self.shown_by[body.index()].iter();
+        shown_by.map(|&index| &self.symbols[index])
     }
 
     /// Returns the points of all markers on bodies at the present pose, with the bodies.

@@ -122,6 +122,10 @@ impl Shape for Face {
         self.along.has_on_axis(self.range, point)
     }
 
+    fn is_fitted(&self) -> bool {
+        true
+    }
+
     /// Moves the corners of the body that are on the face to the back of the face. A body that is
     /// only a pivot there stays around it.
     fn fit(&self, body: BodyId, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {

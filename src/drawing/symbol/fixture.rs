@@ -50,8 +50,8 @@ pub(super) fn compose(composer: &mut Composer) {
 
 /// Returns the directions in which a body reaches away from a point on ground.
 fn directions_from(composer: &Composer, at: Anchor, body: BodyId) -> Vec<f64> {
-    let points = composer.symbols.iter().find_map(|symbol| match symbol {
-        Symbol::Link(link) if link.body == body => Some(&link.points),
+    let points = composer.showing(body).find_map(|symbol| match symbol {
+        Symbol::Link(link) => Some(&link.points),
         _ => None,
     });
     let offsets = points.into_iter().flatten().map(|&position| {

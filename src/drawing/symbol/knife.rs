@@ -53,6 +53,10 @@ impl Shape for Knife {
         vec![self.at.into()]
     }
 
+    fn is_fitted(&self) -> bool {
+        true
+    }
+
     /// Moves the corner of the body at the edge to where the knife begins.
     fn fit(&self, body: BodyId, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {
         if self.at.body == Some(body) {

@@ -1,5 +1,8 @@
 //! Bodies: discs, bars and plates.
 
+use std::collections::HashSet;
+
+use super::composer::bits;
 use super::*;
 
 /// A body that spans points of its frame. One point is a small disc, two are a bar, more a plate.
@@ -15,15 +18,13 @@ pub struct Link {
 /// all of it.
 pub(super) fn compose(composer: &mut Composer, body: BodyId) {
     let spans = std::mem::take(&mut composer.spans[body.index()]);
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    for point in composer.positions(Some(body)).into_iter().chain(spans) {
-        if !points.contains(&point) {
-            points.push(point);
-        }
-    }
-    let faces: Vec<_> = (composer.symbols.iter())
+    let mut points = composer.positions(Some(body));
+    points.extend(spans);
+    let mut seen = HashSet::new();
+    points.retain(|point| seen.insert(bits(*point)));
+    let faces: Vec<_> = (composer.showing(body))
         .filter_map(|symbol| match symbol {
-            Symbol::Face(face) if face.along.body == Some(body) => Some(*face),
+            Symbol::Face(face) => Some(*face),
             _ => None,
         })
         .collect();
@@ -36,7 +37,7 @@ pub(super) fn compose(composer: &mut Composer, body: BodyId) {
     }
     let covered = |point: &[f64; 2]| {
         let point = Point::from(*point);
-        composer.showing(body).any(|shape| shape.covers(point))
+        (composer.showing(body)).any(|symbol| symbol.shape().covers(point))
     };
     let drawn = if faces.is_empty() {
         // A single point of a body with another symbol needs no link.
@@ -45,6 +46,7 @@ pub(super) fn compose(composer: &mut Composer, body: BodyId) {
         !points.is_empty()
     };
     if drawn {
+        composer.shown_by[body.index()].push(composer.symbols.len());
         composer.symbols.push(Link { body, points }.into());
     }
 }
@@ -59,7 +61,7 @@ impl Shape for Link {
             .map(|&position| pen.place(Anchor::on_body(self.body, position)).0)
             .collect();
         let mut half = BAR;
-        for symbol in pen.symbols {
+        for symbol in &pen.fitting {
             let width = symbol.shape().fit(self.body, pen, &mut corners);
             half = width.unwrap_or(half);
         }

@@ -49,6 +49,11 @@ pub(super) trait Shape {
         self.extent().iter().any(|disc| disc.covers(point))
     }
 
+    /// Returns whether the body that carries the symbol is fitted to it.
+    fn is_fitted(&self) -> bool {
+        false
+    }
+
     /// Fits the corners of the body that carries the symbol to it, and returns half the width of
     /// the body's bar where the symbol needs another one.
     fn fit(&self, _body: BodyId, _pen: &Pen, _corners: &mut Vec<Point>) -> Option<f64> {

@@ -35,7 +35,8 @@ const MOST_NAMES: usize = 60;
 
 /// Draws symbols on a sheet whose origin is the origin of the mechanism.
 pub(in crate::drawing) struct Pen<'a> {
-    pub(super) symbols: &'a [Symbol],
+    /// The symbols to which bodies are fitted.
+    pub(super) fitting: Vec<&'a Symbol>,
     pub(super) q: &'a [f64],
     /// Units of the sheet per metre.
     pub(super) scale: f64,
@@ -79,8 +80,9 @@ impl<'a> Pen<'a> {
             .map(|disc| disc.center.placed(q).point)
             .collect();
         let middle = points.iter().sum::<Point>() / points.len().max(1) as f64;
+        let fitting = symbols.iter().filter(|symbol| symbol.shape().is_fitted());
         let mut pen = Self {
-            symbols,
+            fitting: fitting.collect(),
             q,
             scale,
             middle: on_sheet(middle, scale),

@@ -75,6 +75,10 @@ impl Shape for Slot {
         [start, end, self.at].map(Disc::from).to_vec()
     }
 
+    fn is_fitted(&self) -> bool {
+        true
+    }
+
     fn fit(&self, body: BodyId, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {
         (self.along.body == Some(body)).then(|| {
             corners.extend(self.ends(pen));

@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::load::add_force;
-use crate::kinematics::certificate::{ChordBound, Pivots, StepBounds};
-use crate::kinematics::configuration::{BodyPose, Configuration, perp};
+use crate::kinematics::certificate::{ChordBound, Pivots, Slide, StepBounds, sagitta};
+use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// A marker on ground or on a body that an earlier block has found.
@@ -117,6 +117,58 @@ impl Anchor {
         self.carrier(bounds).map_or(0.0, |(bound, length)| {
             bound.point_deviation + bound.arc_deviation(length) + self.rounding(frames)
         })
+    }
+
+    /// Returns the part of that deviation that is uncertain: of the pivot and of the angle \[m\].
+    #[inline(always)]
+    pub(super) fn uncertainty(&self, bounds: &StepBounds) -> f64 {
+        self.carrier(bounds).map_or(0.0, |(bound, length)| {
+            bound.point_deviation + length * bound.angle_deviation
+        })
+    }
+
+    /// Bounds its deviation from that line along a unit vector that turns by `turn` from `ends[0]`
+    /// to `ends[1]` \[m\].
+    pub(super) fn deviation_along(
+        &self,
+        (ends, turn): ([Vector2<f64>; 2], f64),
+        (bounds, pivots): (&StepBounds, &Pivots),
+        frames: &[BodyPose],
+    ) -> f64 {
+        let Some((bound, length)) = self.carrier(bounds) else {
+            return 0.0;
+        };
+        let body = self.body as usize;
+        let pivot = bounds.slide(body).map_or(bound.point_deviation, |slide| {
+            let parts = ends.map(|e| e.dot(&slide.direction).abs());
+            slide.across + slide.along * (larger(parts[0], parts[1]) + sagitta(turn))
+        });
+        let lever = self.s - pivots.get(body);
+        let arms = [
+            rotate(bound.cos, bound.sin, lever),
+            frames[body].rotate(lever),
+        ];
+        // e · A′l runs as a sine of an angle that runs straight.
+        let swings = [0, 1].map(|end: usize| ends[end].dot(&perp(arms[end])).abs());
+        let swing = larger(swings[0], swings[1]) + length * sagitta(bound.turn - turn);
+        let uncertain = bound.angle_deviation * (swing + 0.5 * length * bound.angle_deviation);
+        pivot + length * sagitta(bound.turn) + uncertain + self.rounding(frames)
+    }
+
+    /// Returns whether it is on ground.
+    pub(super) fn is_ground(&self) -> bool {
+        self.body == GROUND
+    }
+
+    /// Returns the bounds of the pivot of its body if that slides, and of the rest of its
+    /// deviation \[m\].
+    pub(super) fn pivot_slide(&self, bounds: &StepBounds, frames: &[BodyPose]) -> (Slide, f64) {
+        let slide = self.carrier(bounds).and_then(|(bound, length)| {
+            let slide = *bounds.slide(self.body as usize)?;
+            let rest = slide.across + bound.arc_deviation(length) + self.rounding(frames);
+            Some((slide, rest))
+        });
+        slide.unwrap_or_else(|| (Slide::default(), self.deviation(bounds, frames)))
     }
 
     /// Returns the rounding of its body's stored origin \[m\]: half an eps of each coordinate,

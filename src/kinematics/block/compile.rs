@@ -481,6 +481,9 @@ impl Search<'_> {
         let mut graph = RevoluteGraph::new(self.mechanism);
         let mut is_found = vec![false; self.system.equations().len()];
         let mut spread_is_read = vec![false; order.len()];
+        // The groups in whose second bodies later ones of this kind have points.
+        let mut slide_is_read = vec![false; order.len()];
+        let mut slides_in = vec![None; self.mechanism.bodies.len()];
         let mut paths = Vec::new();
         for (index, group) in groups.enumerate() {
             match &group.recipe {
@@ -493,7 +496,19 @@ impl Search<'_> {
                     paths.push(graph.path([a.anchor, b.anchor], &mut spread_is_read));
                     graph.add_dyad(index, [a.body, b.body]);
                 }
-                Recipe::PinnedBody(_) | Recipe::RrpDyad(_) => {}
+                Recipe::RrpDyad(parts) => {
+                    let (i, j) = (parts.projection.from, parts.projection.to);
+                    for marker in [parts.anchor, i, j] {
+                        let body = self.mechanism.markers[marker.index()].body;
+                        if let Some(group) = body.and_then(|body| slides_in[body.index()]) {
+                            slide_is_read[group] = true;
+                        }
+                    }
+                    if let Some(second) = &parts.second {
+                        slides_in[second.body] = Some(index);
+                    }
+                }
+                Recipe::PinnedBody(_) => {}
             }
             let blocks = group.blocks.iter();
             for &row in blocks.flat_map(|&block| &self.structure.blocks()[block].rows) {
@@ -519,8 +534,9 @@ impl Search<'_> {
                 &owners,
             )))
         });
-        let recipes = recipes.into_iter().zip(spread_is_read);
-        let solvers = recipes.map(|(recipe, spread_is_read)| match recipe {
+        let is_read = spread_is_read.into_iter().zip(slide_is_read);
+        let recipes = recipes.into_iter().zip(is_read);
+        let solvers = recipes.map(|(recipe, (spread_is_read, slide_is_read))| match recipe {
             Recipe::PinnedBody(parts) => {
                 BlockSolver::PinnedBody(Box::new(PinnedBody::new(self.mechanism, parts)))
             }
@@ -530,7 +546,7 @@ impl Search<'_> {
                 BlockSolver::RrrDyad(dyad)
             }
             Recipe::RrpDyad(parts) => {
-                BlockSolver::RrpDyad(Box::new(RrpDyad::new(self.mechanism, parts)))
+                BlockSolver::RrpDyad(Box::new(RrpDyad::new(self.mechanism, parts, slide_is_read)))
             }
             Recipe::CoupledBlock => coupled.next().expect("each coupled group has its order"),
         });

@@ -50,6 +50,8 @@ pub(in crate::kinematics) struct RrpDyad {
     scale: f64,
     /// The size of the block's part of the mechanism \[m\].
     size: f64,
+    /// Whether a later block of this kind has a point on b.
+    slide_is_read: bool,
     parts: Box<Parts>,
 }
 
@@ -137,7 +139,7 @@ pub(super) struct SecondParts {
 }
 
 impl RrpDyad {
-    pub(super) fn new(mechanism: &Mechanism, parts: Parts) -> Self {
+    pub(super) fn new(mechanism: &Mechanism, parts: Parts, slide_is_read: bool) -> Self {
         let zero = Vector2::zeros();
         let body_of = |marker: MarkerId| {
             let body = mechanism.markers[marker.index()].body;
@@ -183,6 +185,7 @@ impl RrpDyad {
             still: zero,
             scale: 0.0,
             size: 1.0,
+            slide_is_read,
             parts: Box::new(parts),
         }
     }
@@ -255,7 +258,7 @@ impl SolveBlock for RrpDyad {
             .predict(column, before.first.phi, state.tangent);
         let found = self.correct(state, predicted, MAX_ITERATIONS);
         let found = found.map_err(|_| step.bounds.reject())?;
-        self.certify(state, step.bounds, &before, &found)?;
+        self.certify(state, step, &before, &found)?;
         Ok(Correction {
             regularity: self.regularity(),
             ..found.correction

@@ -49,6 +49,17 @@ pub(super) struct ChordBound {
     pub(super) point_deviation: f64,
 }
 
+/// Bounds of the deviation of a body's pivot from its chord, for a body that slides along a line
+/// that rests.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Slide {
+    /// Unit vector along the line.
+    pub(super) direction: Vector2<f64>,
+    /// Largest deviation along the line, and across it \[m\].
+    pub(super) along: f64,
+    pub(super) across: f64,
+}
+
 /// The pivot of each body, in its frame: its point on the bodies found before. `None` for a body
 /// that straight code does not place.
 #[derive(Clone, Debug, Default)]
@@ -62,6 +73,10 @@ pub(super) struct StepBounds {
     /// Largest deviation of the angle between each body and the other one of its dyad from its
     /// chord, where a later block reads it \[rad\].
     spreads: Vec<f64>,
+    /// Bounds of the pivots of bodies that slide, with the number of their sub-step.
+    slides: Vec<(u64, Slide)>,
+    /// Number of the sub-step.
+    number: u64,
     /// Largest deviation of the origin in x and in y, of bodies without a pivot \[m\].
     origins: Vec<[f64; 2]>,
     /// Largest deviation of each joint unknown \[rad\].
@@ -111,6 +126,8 @@ impl StepBounds {
         Self {
             bodies: vec![ChordBound::default(); bodies],
             spreads: vec![0.0; bodies],
+            slides: vec![(0, Slide::default()); bodies],
+            number: 0,
             origins: vec![[0.0; 2]; bodies],
             joint_unknowns: vec![0.0; unknowns - 3 * bodies],
             drivers: vec![0.0; drivers],
@@ -126,6 +143,7 @@ impl StepBounds {
 
     /// Begins a sub-step; `may_reuse` allows proofs that hold for several steps.
     pub(super) fn begin(&mut self, may_reuse: bool) {
+        self.number += 1;
         self.step_ratio = 0.0;
         self.checked = false;
         self.may_reuse = may_reuse;
@@ -157,6 +175,18 @@ impl StepBounds {
     /// Sets the largest deviation of that angle; infinite where it is not bounded.
     pub(super) fn set_spread(&mut self, body: usize, deviation: f64) {
         self.spreads[body] = deviation;
+    }
+
+    /// Returns the bounds of the pivot of a body that slides; `None` if an earlier block of this
+    /// sub-step has set none.
+    pub(super) fn slide(&self, body: usize) -> Option<&Slide> {
+        let (number, slide) = &self.slides[body];
+        (*number == self.number).then_some(slide)
+    }
+
+    /// Sets the bounds of the pivot of a body that slides.
+    pub(super) fn set_slide(&mut self, body: usize, slide: Slide) {
+        self.slides[body] = (self.number, slide);
     }
 
     /// Returns the largest deviation of q\[column\] from its chord.

@@ -12,7 +12,7 @@ use crate::kinematics::model::Model;
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::kinematics::path::{Path, PathDrivers};
 use crate::kinematics::redundancy;
-use crate::kinematics::singular::{self, CROSSING_END, DriverLimit, NEAR};
+use crate::kinematics::singular::{self, CROSSING_END, DriverLimit, FruitlessSearches, NEAR};
 use crate::kinematics::state::{State, UNIT_RATE};
 use crate::kinematics::system::System;
 use crate::mechanism::{DriverId, Jet};
@@ -60,6 +60,7 @@ pub(in crate::kinematics) struct PathTracker {
     pub(in crate::kinematics) bounds: StepBounds,
     /// The change points passed on the path tracked last.
     crossed: Vec<Arc<Crossing>>,
+    fruitless: FruitlessSearches,
 }
 
 impl PathTracker {
@@ -69,6 +70,7 @@ impl PathTracker {
             drivers: PathDrivers::new(system.mechanism()),
             bounds: StepBounds::new(system),
             crossed: Vec::new(),
+            fruitless: FruitlessSearches::default(),
         }
     }
 
@@ -121,6 +123,7 @@ impl PathTracker {
             drivers: &mut self.drivers,
             bounds: &mut self.bounds,
             crossed: &mut self.crossed,
+            fruitless: &mut self.fruitless,
             path,
             s: 0.0,
             length: 1.0,
@@ -149,6 +152,7 @@ struct Run<'a> {
     drivers: &'a mut PathDrivers,
     bounds: &'a mut StepBounds,
     crossed: &'a mut Vec<Arc<Crossing>>,
+    fruitless: &'a mut FruitlessSearches,
     path: &'a Path,
     /// The place on the path where the mechanism is.
     s: f64,
@@ -226,6 +230,7 @@ impl Run<'_> {
     /// Makes sure that the mechanism is at the start of the path.
     fn set_out(&mut self) -> Result<(), Reason> {
         self.crossed.clear();
+        self.fruitless.clear();
         self.drivers.parameters_move = self.path.moves_parameters();
         if self.drivers.parameters_move && !self.state.pose.crossings.is_empty() {
             // A crossing holds for the parameters of the pose only.
@@ -260,8 +265,8 @@ impl Run<'_> {
             self.model,
             self.state,
             &self.drivers.here,
-            self.path,
-            self.s,
+            (self.path, self.s),
+            self.fruitless,
         );
         limit.map_err(Reason::Singular)
     }
@@ -553,6 +558,8 @@ impl Run<'_> {
             self.opened.get_or_insert_with(|| (end, joint.clone()));
         }
         if redundancy::change_rows(self.model, self.state) {
+            // Blocks are others now.
+            self.fruitless.clear();
             self.return_to_pose();
             return Ok(());
         }

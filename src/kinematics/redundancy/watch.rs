@@ -17,8 +17,8 @@ const OPEN_BETWEEN: f64 = 1e-4;
 const NARROW: f64 = 1e-3;
 
 /// Bounds the rows set aside that depend on a contour over a sub-step, at whose end the mechanism
-/// is and whose blocks are bounded. Allocates nothing. Rows are watched at the ends alone while
-/// parameters move.
+/// is and whose blocks are bounded. Allocates nothing. While parameters move it is bounded for
+/// those at the end, and the sub-step is checked.
 ///
 /// # Errors
 ///
@@ -28,11 +28,9 @@ pub(in crate::kinematics) fn watch_between(
     state: &State,
     bounds: &mut StepBounds,
 ) -> Result<(), Rejected> {
-    if bounds.parameters.moving {
-        return Ok(());
-    }
     let mut rows = model.redundant.contour_rows.iter();
     rows.try_for_each(|row| {
+        bounds.checked |= bounds.parameters.moving;
         let step_ratio = match open_between(model, state, row, bounds) {
             Ok(open) => open / OPEN_BETWEEN,
             Err(largest_move) if largest_move <= NARROW => {

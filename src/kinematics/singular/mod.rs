@@ -39,4 +39,4 @@ pub(super) use crossings::{
     CROSSING_END, admits_crossings, bodies_in_line, describe_crossing, leave_crossings,
 };
 pub(super) use near::NEAR;
-pub(super) use obstacle::{DriverLimit, find_end, look_ahead, settle};
+pub(super) use obstacle::{DriverLimit, FruitlessSearches, find_end, look_ahead, settle};

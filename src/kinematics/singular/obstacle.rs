@@ -64,6 +64,33 @@ pub(in crate::kinematics) struct DriverLimit {
     pub(in crate::kinematics) way: f64,
 }
 
+/// Searches for singular positions that found none: the regularity of each block at its last one,
+/// zero without one. A block is searched again once its regularity has changed by a factor of two;
+/// in a block that is nearly singular all along the motion each search would find nothing again.
+#[derive(Debug, Default)]
+pub(in crate::kinematics) struct FruitlessSearches(Vec<f64>);
+
+impl FruitlessSearches {
+    /// Forgets all searches.
+    pub(in crate::kinematics) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Returns whether a block of this regularity was searched at about the same regularity.
+    fn contain(&self, block: usize, regularity: f64) -> bool {
+        let searched = self.0.get(block).copied().unwrap_or(0.0);
+        regularity > 0.5 * searched && regularity < 2.0 * searched
+    }
+
+    /// Notes a search of a block of this regularity; zero if it was not fruitless.
+    fn note(&mut self, block: usize, regularity: f64) {
+        if self.0.len() <= block {
+            self.0.resize(block + 1, 0.0);
+        }
+        self.0[block] = regularity;
+    }
+}
+
 /// Adds the crossings of change points near the pose. Returns the limit of the next sub-step in
 /// front of a position that cannot be passed; the mechanism is at `s` of the path, with these
 /// derivatives of the drivers along it. Allocates where something may be near.
@@ -75,10 +102,10 @@ pub(in crate::kinematics) fn look_ahead(
     model: &mut Model,
     state: &mut State,
     drivers: &[Jet],
-    path: &Path,
-    s: f64,
+    (path, s): (&Path, f64),
+    fruitless: &mut FruitlessSearches,
 ) -> Result<Option<DriverLimit>, Box<SingularPoint>> {
-    let ahead = enter_near_crossings(model, state, Some(drivers));
+    let ahead = enter_near_crossings(model, state, Some(drivers), fruitless);
     let Some(Ahead {
         block,
         limit,
@@ -100,7 +127,7 @@ pub(in crate::kinematics) fn look_ahead(
 /// Adds the crossings of change points near the pose, at which all blocks are factorised.
 pub(in crate::kinematics) fn settle(model: &mut Model, state: &mut State) {
     if state.regularity < NEAR {
-        enter_near_crossings(model, state, None);
+        enter_near_crossings(model, state, None, &mut FruitlessSearches::default());
     }
 }
 
@@ -118,16 +145,20 @@ fn enter_near_crossings(
     model: &mut Model,
     state: &mut State,
     drivers: Option<&[Jet]>,
+    fruitless: &mut FruitlessSearches,
 ) -> Option<Ahead> {
-    if !may_cross(model, state) {
+    let mut near = near_singular(model);
+    near.retain(|&block| !fruitless.contain(block, model.plan.blocks[block].regularity()));
+    if near.is_empty() || !may_cross(model, state) {
         return None;
     }
-    let near = near_singular(model);
     let mut ahead = None;
     for &block in &near {
         let Some(driver) = model.only_driver(block) else {
             continue;
         };
+        let regularity = model.plan.blocks[block].regularity();
+        fruitless.note(block, regularity);
         let value = state.pose.drivers[driver.index()];
         let direction = drivers.map_or(0.0, |drivers| drivers[driver.index()].first());
         let line = Line::Driver(driver);
@@ -135,6 +166,9 @@ fn enter_near_crossings(
             continue;
         };
         let finding = find(&mut equation, REACH);
+        if !matches!(finding, Finding::Nothing) {
+            fruitless.note(block, 0.0);
+        }
         if let Finding::End(kind, point) = &finding
             && *kind != SingularKind::DeadPoint
             && (point.tau - value) * direction > 0.0
@@ -154,9 +188,7 @@ fn enter_near_crossings(
             enter_crossing(model, state, crossing);
         }
     }
-    if !near.is_empty() {
-        return_to_regular_pose(model, state);
-    }
+    return_to_regular_pose(model, state);
     ahead
 }
 
@@ -257,5 +289,23 @@ fn point_at_pose(
         q: state.pose.q.clone(),
         bodies: bodies_of(&model.system, columns, free.as_slice()),
         free: over_all,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FruitlessSearches;
+
+    #[test]
+    fn blocks_are_searched_again_where_their_regularity_has_changed() {
+        let mut searches = FruitlessSearches::default();
+        assert!(!searches.contain(3, 1e-3));
+        searches.note(3, 1e-3);
+        for (regularity, known) in [(1e-3, true), (6e-4, true), (1.9e-3, true), (4e-4, false)] {
+            assert_eq!(searches.contain(3, regularity), known, "{regularity}");
+        }
+        assert!(!searches.contain(3, 2.1e-3) && !searches.contain(2, 1e-3));
+        searches.note(3, 0.0);
+        assert!(!searches.contain(3, 1e-3));
     }
 }

@@ -2,6 +2,7 @@
 
 mod closed_points;
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 
 use super::{Dual, Expression, Interpolation, Interval, Jet3, ParameterId, Table};
@@ -95,6 +96,15 @@ pub struct ProfileInForce {
     valid: bool,
     /// Continuity where pieces of the contour meet.
     joint: Joint,
+    /// Results of the last calls. The rows of a contact ask for the same again and again.
+    last: Last,
+}
+
+/// The last polar angle with its radius, and the last range with its bounds.
+#[derive(Clone, Debug, Default)]
+struct Last {
+    radius: Cell<Option<(u64, Jet3)>>,
+    bounds: Cell<Option<([u64; 2], Option<ProfileBounds>)>>,
 }
 
 /// Continuity of a contour where pieces of it meet.
@@ -158,6 +168,7 @@ impl ProfileInForce {
             used: profile.parameters().collect(),
             valid: false,
             joint: Joint::Kink,
+            last: Last::default(),
         }
     }
 
@@ -176,6 +187,7 @@ impl ProfileInForce {
             return Ok(());
         }
         self.valid = false;
+        self.last = Last::default();
         for (index, value) in self.parameters.iter_mut().enumerate() {
             *value = parameter(ParameterId(index));
         }
@@ -184,6 +196,7 @@ impl ProfileInForce {
         }
         self.check()?;
         self.joint = Joint::Kink;
+        self.last = Last::default();
         if let Curve::Expression(expression) = &self.curve
             && expression.has_pieces()
         {
@@ -304,9 +317,18 @@ impl ProfileInForce {
     /// The result has no meaning if the parameters make no contour.
     #[must_use]
     pub fn radius(&self, theta: f64) -> Jet3 {
-        match &self.curve {
-            Curve::Expression(expression) => self.evaluate(expression, theta.rem_euclid(TAU)),
-            Curve::Points { points, .. } => points.radius(theta),
+        match self.last.radius.get() {
+            Some((last, radius)) if last == theta.to_bits() => radius,
+            _ => {
+                let radius = match &self.curve {
+                    Curve::Expression(expression) => {
+                        self.evaluate(expression, theta.rem_euclid(TAU))
+                    }
+                    Curve::Points { points, .. } => points.radius(theta),
+                };
+                self.last.radius.set(Some((theta.to_bits(), radius)));
+                radius
+            }
         }
     }
 
@@ -319,6 +341,18 @@ impl ProfileInForce {
     /// `theta`; `None` if the slope may jump there, or the radius. Allocates nothing.
     #[must_use]
     pub fn bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
+        let range = [theta, reach].map(f64::to_bits);
+        match self.last.bounds.get() {
+            Some((last, bounds)) if last == range => bounds,
+            _ => {
+                let bounds = self.new_bounds(theta, reach);
+                self.last.bounds.set(Some((range, bounds)));
+                bounds
+            }
+        }
+    }
+
+    fn new_bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
         if let Some(radius) = self.smooth_bounds(theta, reach) {
             let jumps = match &self.curve {
                 Curve::Expression(_) => false,

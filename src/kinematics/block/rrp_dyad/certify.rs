@@ -12,17 +12,30 @@
 //! The chord leaves f open by M/8, with M = |e″ · D| + 2 |e′ · D′| and, for a known axis, the
 //! second derivative of the cosine in e · A_a g; and by the deviations of the points, the axis and
 //! the target from their own chords.
+//!
+//! An uncertain point opens f by e · δP only. Where it is the pivot of a body that slides along a
+//! line on ground with direction d, δP = τ d, or where its body turns by an uncertain angle ρ,
+//! δP = ρ perp(arm), this is less than |δP|. The pivot of b, which slides along t ⊥ e, deviates by
+//!
+//! > t · δP − κ e · δP, κ = t · perp(A_a l) / (e · perp(A_a l)),
+//!
+//! the cotangent of an angle that runs straight, so that κ lies between its values at the ends. A
+//! row of sliders passes an uncertainty on as it passes on a motion, with its sign.
 
 use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
 use super::{Found, Line, Point, RrpDyad, Second};
-use crate::kinematics::block::step::BlockState;
-use crate::kinematics::certificate::{ChordBound, Gap, StepBounds, sagitta};
-use crate::kinematics::configuration::BodyPose;
+use crate::kinematics::block::anchor::Anchor;
+use crate::kinematics::block::step::{BlockState, Step};
+use crate::kinematics::certificate::{ChordBound, Gap, Pivots, Slide, StepBounds, sagitta};
+use crate::kinematics::configuration::{BodyPose, perp, rotate};
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::system::Target;
+
+/// Uncertain points that open f by no more than this part are added without their directions.
+const NEGLIGIBLE: f64 = 0.01;
 
 /// The start of a sub-step.
 pub(super) struct Before {
@@ -50,6 +63,15 @@ impl Before {
     }
 }
 
+/// All that is known around a block: the bodies at the end of the sub-step, its start, and the
+/// bounds of the blocks before it.
+struct Surroundings<'a> {
+    frames: &'a [BodyPose],
+    before: &'a Before,
+    bounds: &'a StepBounds,
+    pivots: &'a Pivots,
+}
+
 /// Bounds of the change of the numbers in the equations by moving parameters.
 #[derive(Default)]
 struct Slack {
@@ -71,10 +93,11 @@ impl RrpDyad {
     pub(super) fn certify(
         &self,
         state: &BlockState<'_>,
-        bounds: &mut StepBounds,
+        step: &mut Step<'_>,
         before: &Before,
         found: &Found,
     ) -> Result<(), Rejected> {
+        let Step { bounds, pivots, .. } = step;
         let Found { known, open, .. } = found;
         let frames = state.at.frames();
         let turn = frames[self.body as usize].phi - before.first.phi;
@@ -115,7 +138,7 @@ impl RrpDyad {
             Target::Driver(driver) => bounds.drivers[driver.index()],
             Target::Constant(_) => 2.0 * slack.target,
         };
-        let outside = 2.0 * (open + off) + deviations + target;
+        let outside = 2.0 * (open + off) + target + i.1 + j.1;
 
         let axis = match self.axis {
             Line::Known(None, _) => Some((0.0, 0.0)),
@@ -133,7 +156,18 @@ impl RrpDyad {
             }
             let bend =
                 sagitta(axis_turn) * reach + 0.25 * axis_turn.abs() * moved + sagitta(spread) * g;
-            let open = outside + bend + axis_deviation * (reach + g);
+            let open = outside + bend + axis_deviation * (reach + g + deviations);
+            let open = self.opened(
+                open,
+                bases,
+                axis_turn,
+                &Surroundings {
+                    frames,
+                    before,
+                    bounds,
+                    pivots,
+                },
+            );
             let inverse = 1.0 / least;
             let linear = (g * axis_deviation + off) * inverse;
             (Gap::new(open, linear, g * inverse * inverse), least)
@@ -144,10 +178,18 @@ impl RrpDyad {
             let slope = least - bend;
             let inverse = 1.0 / slope;
             let linear = (deviations + off) * inverse;
-            (
-                Gap::new(outside + bend, linear, reach * inverse * inverse),
-                slope,
-            )
+            let open = self.opened(
+                outside + bend,
+                bases,
+                turn,
+                &Surroundings {
+                    frames,
+                    before,
+                    bounds,
+                    pivots,
+                },
+            );
+            (Gap::new(open, linear, reach * inverse * inverse), slope)
         };
         bounds.require(gap.step_ratio)?;
 
@@ -163,7 +205,18 @@ impl RrpDyad {
         match &self.second {
             Second::None => {}
             Second::Carried { body, l, .. } => {
-                let inner = point_deviation + l.norm() * (sagitta(turn) + angle_deviation);
+                let mut inner = point_deviation + l.norm() * (sagitta(turn) + angle_deviation);
+                if self.slide_is_read
+                    && self.slides_on_ground()
+                    && bounds.moving_parameters().is_none()
+                {
+                    let mut slide =
+                        self.slide(before, frames, bounds, [gap.value, angle_deviation]);
+                    slide.along = slide.along.min(inner);
+                    slide.across = outside;
+                    inner = inner.min(slide.along + slide.across);
+                    bounds.set_slide(*body as usize, slide);
+                }
                 *bounds.body_mut(*body as usize) =
                     bound(before.second, second_turn, second_deviation, inner);
             }
@@ -180,6 +233,99 @@ impl RrpDyad {
         *bounds.body_mut(self.body as usize) =
             bound(before.first, turn, angle_deviation, point_deviation);
         Ok(())
+    }
+
+    /// Adds to the gap in f that of the bases of the points, which deviate by no more than `bases`.
+    /// Where this is noticeable their directions count.
+    #[inline(always)]
+    fn opened(&self, open: f64, bases: f64, axis_turn: f64, known: &Surroundings<'_>) -> f64 {
+        let mut uncertain = self.anchor.uncertainty(known.bounds);
+        for point in &self.points {
+            if let Point::Known(anchor) = point {
+                uncertain += anchor.uncertainty(known.bounds);
+            }
+        }
+        if bases == 0.0 || uncertain <= NEGLIGIBLE * open {
+            open + bases
+        } else {
+            open + bases.min(self.deviation_along_axis(axis_turn, known))
+        }
+    }
+
+    /// Bounds the deviations of the bases along the axis, which turns by `axis_turn` \[m\].
+    #[inline(never)]
+    fn deviation_along_axis(&self, axis_turn: f64, known: &Surroundings<'_>) -> f64 {
+        let &Surroundings {
+            frames,
+            before,
+            bounds,
+            pivots,
+        } = known;
+        let ends = match (self.axis, &self.second) {
+            (Line::Known(None, e), _) => [e; 2],
+            (Line::Known(Some(body), e), _) => {
+                let bound = bounds.body(body);
+                [rotate(bound.cos, bound.sin, e), frames[body].rotate(e)]
+            }
+            (Line::Carried(e), Second::Carried { body, .. }) => {
+                [before.second.rotate(e), frames[*body as usize].rotate(e)]
+            }
+            (Line::Carried(e) | Line::Turning(e), _) => {
+                [before.first.rotate(e), frames[self.body as usize].rotate(e)]
+            }
+        };
+        let along =
+            |anchor: &Anchor| anchor.deviation_along((ends, axis_turn), (bounds, pivots), frames);
+        let bases = self.points.iter().map(|point| match point {
+            Point::Known(anchor) => along(anchor),
+            Point::First(_) | Point::Carried(_) => along(&self.anchor),
+            Point::Parallel(_) => self.second_point_deviation(bounds, frames),
+        });
+        bases.sum()
+    }
+
+    /// Returns whether the line rests on ground, and b slides along it.
+    fn slides_on_ground(&self) -> bool {
+        let on_ground = |point: &Point| matches!(point, Point::Known(anchor) if anchor.is_ground());
+        let slides = match &self.points {
+            [i, Point::Carried(_)] => on_ground(i),
+            [Point::Carried(_), j] => on_ground(j),
+            _ => false,
+        };
+        slides && matches!(self.axis, Line::Known(None, _))
+    }
+
+    /// Bounds the deviation of the pivot of a b that slides on ground along its line, for bounds of
+    /// the gap in f and of the deviation of the angle of a.
+    #[inline(never)]
+    fn slide(
+        &self,
+        before: &Before,
+        frames: &[BodyPose],
+        bounds: &StepBounds,
+        [gap, angle_deviation]: [f64; 2],
+    ) -> Slide {
+        let (Line::Known(None, e), Second::Carried { l, .. }) = (self.axis, &self.second) else {
+            return Slide::default();
+        };
+        let first = &frames[self.body as usize];
+        let t = perp(e);
+        let ratios = [&before.first, first].map(|frame| {
+            let moved = perp(frame.rotate(*l));
+            t.dot(&moved) / e.dot(&moved)
+        });
+        let (pivot, rest) = self.anchor.pivot_slide(bounds, frames);
+        let parts = ratios.map(|ratio| (t - e * ratio).dot(&pivot.direction).abs());
+        let ratio = ratios[0].abs().max(ratios[1].abs());
+        // The part of the gap that the slide of the anchor's body does not explain.
+        let gap = gap - pivot.along * e.dot(&pivot.direction).abs();
+        let turned =
+            sagitta(first.phi - before.first.phi) + 0.5 * angle_deviation * angle_deviation;
+        Slide {
+            direction: t,
+            along: pivot.along * parts[0].max(parts[1]) + rest + ratio * gap + l.norm() * turned,
+            across: 0.0,
+        }
     }
 
     /// Returns the deviation of the revolute of a parallel b from its chord.
