@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use biela::cli::check_parameter;
 use biela::kinematics::{Direction, Output, Pose};
@@ -174,8 +174,7 @@ impl Targets {
             follower.runner.return_to(&base);
             let (_, timing) = follower.place().map_err(|Refused| refused())?;
             Ok(Attempt {
-                follower,
-                base,
+                moving: Mutex::new(Moving { follower, base }),
                 timing,
             })
         })
@@ -185,13 +184,18 @@ impl Targets {
 
 /// A mechanism whose unknowns an optimiser changes. It keeps its assembly mode: each evaluation
 /// moves it continuously from where the last one left it.
-#[pyclass]
+#[pyclass(frozen)]
 pub(crate) struct Attempt {
-    follower: Follower,
-    base: Pose,
+    moving: Mutex<Moving>,
     /// Free values of drivers at the beginning.
     #[pyo3(get)]
     timing: Vec<f64>,
+}
+
+/// The mechanism of an attempt, and the pose at the first row of its last evaluation.
+struct Moving {
+    follower: Follower,
+    base: Pose,
 }
 
 /// Residuals by target, then by variable, then by pose; and their derivatives, by residual, then by
@@ -202,9 +206,12 @@ type Linearised<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 impl Attempt {
     /// Returns the residuals and their derivatives; `None` for unknowns that the mechanism does not
     /// reach.
-    fn evaluate<'py>(&mut self, py: Python<'py>, unknowns: Vec<f64>) -> Option<Linearised<'py>> {
-        let Self { follower, base, .. } = self;
-        let (residuals, derivatives) = py.detach(|| follower.evaluate(base, &unknowns)).ok()?;
+    fn evaluate<'py>(&self, py: Python<'py>, unknowns: Vec<f64>) -> Option<Linearised<'py>> {
+        let found = py.detach(|| {
+            let Moving { follower, base } = &mut *self.moving();
+            follower.evaluate(base, &unknowns)
+        });
+        let (residuals, derivatives) = found.ok()?;
         Some((residuals.into_pyarray(py), derivatives.into_pyarray(py)))
     }
 }
@@ -212,8 +219,15 @@ impl Attempt {
 impl Attempt {
     /// Returns the pose of the last evaluation: at the file's start values of the drivers if the
     /// mechanism reaches them, otherwise at the first row.
-    pub(crate) fn home(&mut self) -> Pose {
-        self.follower.at_home(&self.base)
+    pub(crate) fn home(&self) -> Pose {
+        let Moving { follower, base } = &mut *self.moving();
+        follower.at_home(base)
+    }
+
+    /// Returns the mechanism once no other thread moves it. Each evaluation begins anew, also after
+    /// one that has panicked.
+    fn moving(&self) -> MutexGuard<'_, Moving> {
+        self.moving.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
