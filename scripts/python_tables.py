@@ -1,7 +1,7 @@
-"""Writes the tables of docs/python.md: speed of sweeps, errors of gradients, records of synthesis.
+"""Writes the tables of docs/python.md: speed of sweeps, Dask, errors of gradients, records of synthesis.
 
-    python -m venv env && env/bin/pip install biela.whl scipy fmpy mpmath pylinkage numba casadi
-    env/bin/python scripts/python_tables.py [speed] [gradients] [synthesis]
+    python -m venv env && env/bin/pip install biela.whl scipy fmpy mpmath pylinkage numba casadi dask
+    env/bin/python scripts/python_tables.py [speed] [dask] [gradients] [synthesis]
 
 The module must be a release build, such as that of the wheel. Without arguments all tables are
 written. A way whose package is missing has no row. Times are those of all processors together, so
@@ -244,6 +244,66 @@ def speed() -> list[str]:
 
 
 # ---------------------------------------------------------------------------------------------
+# Dask
+
+DASK_CHUNKS = 8
+TASKS = 200
+"""Number of tasks whose share of Dask's own work is measured."""
+
+
+def rocker_of(mechanism, base):
+    """Returns the rocker's angle of variants, for a task of Dask."""
+    return mechanism.sweep({"base": base}, drive={"crank_angle": THETA}, variables=["rocker.phi"])[
+        "rocker.phi"
+    ]
+
+
+def under_dask() -> list[str]:
+    """Returns the rows on one sweep in tasks of Dask."""
+    if importlib.util.find_spec("dask") is None:
+        print("no dask: its table is left out")
+        return []
+    import dask
+
+    four_bar = biela.load(FOUR_BAR)
+    base = bases(5_000)
+
+    def in_tasks(**where):
+        parts = np.array_split(base, DASK_CHUNKS)
+        tasks = [dask.delayed(rocker_of)(four_bar, part) for part in parts]
+        return lambda: np.concatenate(dask.compute(*tasks, **where))
+
+    ways = {
+        "one call of `sweep`": lambda: rocker_of(four_bar, base),
+        "8 tasks, in threads": in_tasks(scheduler="threads"),
+        "8 tasks, in 2 processes": in_tasks(scheduler="processes", num_workers=2),
+    }
+
+    def spent() -> float:
+        """Returns the time of this process and of those that have ended [s]."""
+        return sum(os.times()[:4])
+
+    rows = ["| way | CPU seconds | ratio |", "|---|---|---|"]
+    best = dict.fromkeys(ways, np.inf)
+    expected = rocker_of(four_bar, base)
+    for _ in range(ROUNDS):
+        for way, run in ways.items():
+            started = spent()
+            assert np.array_equal(run(), expected)
+            best[way] = min(best[way], spent() - started)
+    alone = best["one call of `sweep`"]
+    for way, seconds in best.items():
+        rows.append(f"| {way} | {seconds:.2f} | {seconds / alone:.2f} |")
+        print(rows[-1], flush=True)
+    nothing = [dask.delayed(abs)(1)] + [dask.delayed(abs)(n) for n in range(TASKS)]
+    started = spent()
+    dask.compute(*nothing, scheduler="threads")
+    rows.append(f"| a task that does nothing, in threads | {(spent() - started) / TASKS:.1g} | |")
+    print(rows[-1], flush=True)
+    return rows
+
+
+# ---------------------------------------------------------------------------------------------
 # Gradients
 
 
@@ -343,7 +403,8 @@ PLACES = ["px", "py", "x0", "y0"]
 
 
 def cases():
-    """Yields name, target, free parameters, bounds and best published cost of each case."""
+    """Yields name, target, free parameters, bounds, best published cost of each case, and the effort
+    that its fit takes."""
     near = lambda low, high: {name: (low, high) for name in LENGTHS}
     far = lambda names, reach: {name: (-reach, reach) for name in names}
     timed = [[3, 3], [2.759, 3.363], [2.372, 3.663], [1.890, 3.862], [1.355, 3.943]]
@@ -353,6 +414,7 @@ def cases():
         [*LENGTHS, "px", "py"],
         {**near(0.01, 50), **far(["px", "py"], 50)},
         "1.924e-6",
+        {"starts": 20, "samples": 1000},
     )
     line = [[20, y] for y in range(20, 50, 5)]
     yield (
@@ -361,33 +423,34 @@ def cases():
         [*LENGTHS, *PLACES, "tilt"],
         {**near(5, 60), **far(PLACES, 60), "tilt": (0, 2 * np.pi)},
         "–",
+        {"starts": 40, "samples": 3000},
     )
-    circle = [
+    ellipse = [
         [20, 10], [17.66, 15.142], [11.736, 17.878], [5, 16.928], [0.60307, 12.736],
         [0.60307, 7.2638], [5, 3.0718], [11.736, 2.1215], [17.66, 4.8577], [20, 10],
     ]  # fmt: skip
     yield (
-        "ten points on a circle",
-        biela.points("coupler.P", circle, free="theta"),
+        "ten points on an ellipse",
+        biela.points("coupler.P", ellipse, free="theta"),
         [*LENGTHS, *PLACES, "tilt"],
         {**near(5, 80), **far(PLACES, 80), "tilt": (0, 2 * np.pi)},
         "4.02e-4",
+        {"starts": 60, "samples": 5000},
     )
 
 
-def synthesis(starts: int = 40, samples: int = 20_000) -> list[str]:
+def synthesis() -> list[str]:
     """Returns the rows on published cases."""
     generator = biela.load(PATH_GENERATOR)
     rows = [
-        "| case | best published | `fit` | crank turns | CPU seconds | motions |",
+        "| case | best published | `fit` | crank turns | CPU seconds | evaluations |",
         "|---|---|---|---|---|---|",
     ]
-    for (name, target, free, bounds, published), turns in itertools.product(cases(), (None, "theta")):
+    for (name, target, free, bounds, published, effort), turns in itertools.product(
+        cases(), (None, "theta")
+    ):
         started = time.process_time()
-        found = biela.fit(
-            generator, target, free, bounds, turns=turns, starts=starts, samples=samples,
-            stop_at=1e-20,
-        )  # fmt: skip
+        found = biela.fit(generator, target, free, bounds, turns=turns, stop_at=1e-20, **effort)
         seconds = time.process_time() - started
         fully = "asked for" if turns else "yes" if found.mechanism.range("theta").turns else "no"
         cells = name, published, f"{found.cost:.3g}", fully, f"{seconds:.1f}", f"{found.evaluations:,}"
@@ -398,6 +461,8 @@ def synthesis(starts: int = 40, samples: int = 20_000) -> list[str]:
 
 def write(name: str, rows: list[str]) -> None:
     """Puts a table between its marks."""
+    if not rows:
+        return
     page = PAGE.read_text(encoding="utf-8")
     mark = rf"(<!-- {name} -->\n).*?(<!-- end -->)"
     table = "".join(f"{row}\n" for row in rows)
@@ -407,6 +472,6 @@ def write(name: str, rows: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    tables = {"speed": speed, "gradients": gradients, "synthesis": synthesis}
+    tables = {"speed": speed, "dask": under_dask, "gradients": gradients, "synthesis": synthesis}
     for name in sys.argv[1:] or tables:
         write(name, tables[name]())

@@ -5,8 +5,8 @@ mod common;
 #[allow(dead_code, reason = "also used by `benches/`")]
 mod generated;
 
-use biela::kinematics::{Curve, InstantCentre, Rates, Solver};
-use biela::mechanism::{BodyId, DriverId, Jet};
+use biela::kinematics::{Curve, Direction, InstantCentre, Rates, Reason, Solver};
+use biela::mechanism::{BodyId, DriverId, Jet, Order, ParameterId, Signal};
 use common::{EXACT, Errors, assembled, parse, shipped, straight_to};
 use generated::{Ground, chain};
 
@@ -60,6 +60,75 @@ fn the_four_systems_move_as_their_closed_forms_say() {
             );
         }
     }
+}
+
+/// Derivatives along several directions at once are those along each, up to the order asked for.
+#[test]
+fn sensitivities_along_several_directions_are_those_along_each() {
+    let mechanism = shipped("four_bar");
+    let (mut solver, _) = assembled(&mechanism);
+    let driver = Jet::new(solver.pose().drivers[0], [2.0, 3.0]);
+    let mut rates = Rates::new(solver.pose().q.len());
+    solver
+        .solve_rates(|_| driver, &mut rates)
+        .expect("the pose is regular");
+    let parameters = (0..mechanism.parameters.len()).map(ParameterId);
+    let mut directions: Vec<_> = parameters
+        .map(|parameter| Direction::by_parameter(&mechanism, parameter))
+        .collect();
+    let mut by_driver = Direction::zero(&mechanism);
+    by_driver.drivers[0] = Jet::constant(1.0);
+    directions.push(by_driver);
+    let signal = Signal::Body(mechanism.body_id("rocker").expect("it has one"), 2);
+    let each: Vec<Jet> = directions
+        .iter()
+        .map(|direction| {
+            let along = solver.sensitivity(&rates, &[driver], direction);
+            along.expect("the pose is regular").signal(signal)
+        })
+        .collect();
+    assert!(each.iter().all(|change| change.value.abs() > 1e-3));
+    for order in Order::ALL {
+        let mut together = Vec::new();
+        solver
+            .sensitivities(&rates, &[driver], &directions, order, |along| {
+                together.push(along.signal(signal));
+            })
+            .expect("the pose is regular");
+        for (one, other) in each.iter().zip(&together) {
+            for lower in Order::ALL.into_iter().filter(|lower| *lower <= order) {
+                assert_eq!(lower.of(*one).to_bits(), lower.of(*other).to_bits());
+            }
+        }
+    }
+}
+
+/// A motion that gives up early has the bits of one that looks for the cause, and stops at a valid
+/// pose in front of a dead point.
+#[test]
+fn a_motion_that_gives_up_is_the_same_up_to_its_stop() {
+    let (mut solver, mut path) = assembled(&shipped("four_bar"));
+    let mut twin = assembled(&shipped("four_bar")).0;
+    for degrees in (70..420).step_by(10) {
+        straight_to(&solver, &mut path, f64::from(degrees).to_radians());
+        let progress = solver.track(&path).expect("the crank turns");
+        assert_eq!(twin.track_or_give_up(&path), Ok(progress));
+        assert_eq!(solver.pose(), twin.pose());
+    }
+    // The cylinder is as long as base and arm together at 0.65 m.
+    let (mut solver, mut path) = assembled(&shipped("tlv"));
+    straight_to(&solver, &mut path, 0.7);
+    let blocked = solver
+        .track_or_give_up(&path)
+        .expect_err("the arm is stretched");
+    assert!(matches!(blocked.reason, Reason::Lost));
+    let [reached] = solver.pose().drivers[..] else {
+        panic!("there is one driver")
+    };
+    // It stops where sub-steps of a ten-thousandth of the path are refused: the certificate takes
+    // steps of up to a part of the distance from the dead point, some hundredths at the least.
+    assert!((0.64..0.65).contains(&reached), "{reached}");
+    assert!(solver.residual() < 1e-14);
 }
 
 /// Every rocker of a chain turns like the first, whether the chain stays where it is or goes away

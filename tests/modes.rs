@@ -72,6 +72,45 @@ fn meet(a: [f64; 2], radius_a: f64, b: [f64; 2], radius_b: f64) -> Option<[[f64;
     })
 }
 
+/// The poses that a search for many variants finds are the assembled one and the other modes.
+#[test]
+fn poses_are_those_of_all_modes() {
+    for name in ["four_bar", "slider_crank", "jansen_leg"] {
+        let mechanism = parse(&shipped_text(name));
+        let (mut solver, _) = assembled(&mechanism);
+        let mut expected = vec![solver.pose().q.clone()];
+        let others = solver.modes().expect("the estimates are numbers").others;
+        expected.extend(others.into_iter().map(|mode| mode.q));
+        let path = Path::new(solver.mechanism());
+        let poses = solver.poses(&path).expect("the values are valid");
+        assert_eq!(poses.len(), expected.len(), "{name}");
+        for q in &expected {
+            let nearest = poses.iter().map(|pose| apart(&pose.q, q));
+            assert!(nearest.fold(f64::INFINITY, f64::min) < 1e-12, "{name}");
+        }
+        for pose in &poses {
+            solver.restore(pose);
+            assert!(solver.residual() < 1e-14, "{name}");
+        }
+    }
+}
+
+/// A crank that is too long has no pose.
+#[test]
+fn a_mechanism_that_does_not_close_has_no_poses() {
+    let mechanism = parse(&shipped_text("four_bar"));
+    let (mut solver, _) = assembled(&mechanism);
+    let mut path = Path::new(solver.mechanism());
+    let crank = mechanism.parameter_id("crank_length").expect("it has one");
+    path.to[crank.index()] = 1.0;
+    assert!(
+        solver
+            .poses(&path)
+            .expect("the values are valid")
+            .is_empty()
+    );
+}
+
 #[test]
 fn loops_of_dyads_and_slides_have_all_their_modes() {
     for (name, others) in [

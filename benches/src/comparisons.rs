@@ -90,6 +90,13 @@ pub fn comparisons() -> Vec<Comparison> {
         let what = format!("FMI cycle of the four-bar, outputs {order}");
         add(what, "3", biela.to_owned(), yardstick.to_owned(), 1);
     }
+    add(
+        "FMI cycle of the four-bar, FMI 3.0 / 2.0 of biela".to_owned(),
+        "1.05",
+        "fmu_of_fmi_3".to_owned(),
+        "fmu".to_owned(),
+        1,
+    );
     for loops in sizes::chain() {
         for (also, mark, yardstick) in [
             ("each loop", "1.75", "c_chain"),

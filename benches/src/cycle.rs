@@ -3,7 +3,7 @@
 #![allow(unsafe_code, reason = "calls into C")]
 
 use std::array;
-use std::ffi::{CString, c_char, c_longlong, c_uint, c_ulonglong};
+use std::ffi::{CString, c_char, c_int, c_longlong, c_uint, c_ulonglong};
 use std::path::Path;
 use std::ptr::NonNull;
 use std::slice;
@@ -25,7 +25,8 @@ struct RawCycle {
 unsafe extern "C" {
     fn cycle_open(
         library: *const c_char,
-        guid: *const c_char,
+        version: c_int,
+        token: *const c_char,
         resources: *const c_char,
         turn: c_uint,
         order: *const c_uint,
@@ -92,23 +93,29 @@ impl Cycle {
     #[must_use]
     pub fn yardstick(turn: u32, order: Order) -> Self {
         let library = Path::new(env!("YARDSTICK_FMU"));
-        Self::open(library, "", "", None, turn, order)
+        Self::open((library, 2), "", "", None, turn, order)
     }
 
-    /// Runs biela's [`runtime_library`], `turn` steps per turn of the crank.
+    /// Runs biela's [`runtime_library`] by the functions of version 2 or 3 of FMI, `turn` steps per
+    /// turn of the crank.
     ///
     /// # Panics
     ///
     /// If it cannot be run.
     #[must_use]
-    pub fn biela(turn: u32, order: Order) -> Self {
+    pub fn biela(version: c_int, turn: u32, order: Order) -> Self {
         let text = shipped!("four_bar");
         let guid = biela::fmi::guid(&parse(text));
         let folder = tempfile::tempdir().expect("there is room for temporary files");
         std::fs::write(folder.path().join(biela::fmi::RESOURCE), text).expect("it is ours");
-        let resources = format!("file://{}", folder.path().display());
+        // FMI 2.0 asks for a URI, FMI 3.0 for a path.
+        let folder_path = folder.path().display();
+        let resources = match version {
+            2 => format!("file://{folder_path}"),
+            _ => format!("{folder_path}/"),
+        };
         Self::open(
-            &runtime_library(),
+            (&runtime_library(), version),
             &guid,
             &resources,
             Some(folder),
@@ -118,7 +125,7 @@ impl Cycle {
     }
 
     fn open(
-        library: &Path,
+        (library, version): (&Path, c_int),
         guid: &str,
         resources: &str,
         folder: Option<TempDir>,
@@ -132,6 +139,7 @@ impl Cycle {
         let raw = unsafe {
             cycle_open(
                 path.as_ptr(),
+                version,
                 guid.as_ptr(),
                 resources.as_ptr(),
                 turn,

@@ -289,10 +289,14 @@ fn biela_moves_a_scissor_lift_as_its_closed_form() {
 }
 
 #[test]
-fn both_fmus_give_the_closed_form_in_every_order() {
+fn all_fmus_give_the_closed_form_in_every_order() {
     for order in Order::ALL {
         for turn in [360, 10_000] {
-            for mut cycle in [Cycle::yardstick(turn, order), Cycle::biela(turn, order)] {
+            for mut cycle in [
+                Cycle::yardstick(turn, order),
+                Cycle::biela(2, turn, order),
+                Cycle::biela(3, turn, order),
+            ] {
                 for cycles in [1, 2, 1_000] {
                     cycle.run(cycles);
                     let truth = *four_bar().at(cycle.inputs());

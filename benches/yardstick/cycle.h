@@ -7,11 +7,12 @@
 
 struct cycle;
 
-/* Loads a library, makes an instance and initializes it. A cycle gets the body outputs in a given
+/* Loads a library, makes an instance of version 2 or 3 of FMI, for co-simulation without event mode
+ * and intermediate update, and initializes it. A cycle gets the body outputs in a given
  * order: numbers from 0, 0 being the first output of the first body. The crank does `turn` steps
  * per turn. Returns a null pointer if anything fails, with the reason on stderr. */
-struct cycle *cycle_open(const char *library, const char *guid, const char *resources,
-                         unsigned turn, const unsigned order[OUTPUTS]);
+struct cycle *cycle_open(const char *library, int version, const char *token,
+                         const char *resources, unsigned turn, const unsigned order[OUTPUTS]);
 void cycle_close(struct cycle *);
 
 /* Does a number of cycles: each sets the crank's angle and its rates, steps, and gets all outputs

@@ -69,6 +69,14 @@ class Mechanism:
         variants: int,
         columns: Sequence[int],
     ) -> Sweep: ...
+    def targets(
+        self,
+        motions: _Motions,
+        targets: Sequence[tuple[int, str | None, Sequence[int], Sequence[float], float]],
+        free: Sequence[str],
+        turns: str | None,
+    ) -> Targets: ...
+    def fitted(self, attempt: Attempt, names: Sequence[str]) -> str: ...
     def range(
         self, driver: str, motions: _Motions, parameters: _Values
     ) -> tuple[
@@ -89,7 +97,7 @@ class Mechanism:
         parameters: _Values,
         width: int | None,
         transparent: bool,
-        contents: tuple[bool, int, str | None, bool, bool],
+        contents: tuple[bool, int, str | None, bool, bool, bool],
     ) -> str: ...
     def edited(
         self, motions: _Motions, parameters: _Values, estimates: Sequence[float] | None
@@ -104,10 +112,20 @@ class Run:
     notices: list[str]
     def values(self) -> _Floats: ...
     def gradient(self) -> _Floats: ...
-    def page(self) -> str | None: ...
+    @property
+    def has_forces(self) -> bool: ...
+    def page(self, forces: bool) -> str | None: ...
 
 class Sweep:
     rows: list[int]
     reasons: list[tuple[int, str]]
     reassembled: list[int]
     def take_values(self) -> _Floats: ...
+
+class Targets:
+    def costs(self, values: Any) -> list[tuple[int, int, float]]: ...
+    def attempt(self, values: Sequence[float], mode: int | None = None) -> Attempt: ...
+
+class Attempt:
+    timing: list[float]
+    def evaluate(self, unknowns: Sequence[float]) -> tuple[_Floats, _Floats] | None: ...

@@ -325,12 +325,14 @@ class Mechanism:
         driver: str | None = None,
         dimensions: bool = False,
         instant_centres: bool = False,
+        forces: bool = False,
     ) -> Drawing:
         """Draws the mechanism at the start values, as SVG that notebooks show.
 
         `poses` further poses stand as faint outlines along the motion that the traces cover, or
         along the range of `driver`. `dimensions` adds letters of joints and lengths of bodies,
-        `instant_centres` the instant centre of each body and ground.
+        `instant_centres` the instant centre of each body and ground, `forces` arrows for what joints
+        and drivers exert, and for springs, dampers and loads.
         """
         parameters = list((parameters or {}).items())
         start = self._start(drive)
@@ -340,7 +342,7 @@ class Mechanism:
                 parameters,
                 width,
                 transparent,
-                (traces, poses, driver, dimensions, instant_centres),
+                (traces, poses, driver, dimensions, instant_centres, forces),
             )
         )
 

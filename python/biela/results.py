@@ -73,9 +73,17 @@ class Result(Mapping):
             self._values, index=pandas.Index(self.t, name="time"), columns=list(self.units)
         )
 
-    def to_html(self) -> str:
-        """Returns a page on which the mechanism moves: one HTML file that needs no other."""
-        return self._raw.page()
+    def to_html(self, forces: bool = False) -> str:
+        """Returns a page on which the mechanism moves: one HTML file that needs no other.
+
+        `forces` adds arrows for what joints and drivers exert, and for springs, dampers and loads.
+        """
+        if forces and not self._raw.has_forces:
+            raise UsageError(
+                "forces: this run has none; they are among the variables of mechanisms with masses "
+                "or `[forces]`"
+            )
+        return self._raw.page(forces)
 
     def _repr_html_(self) -> str:
         page = html.escape(self.to_html(), quote=True)

@@ -1,30 +1,25 @@
 """Synthesis: parameters with which a mechanism goes through given values.
 
-The optimiser is `scipy.optimize.least_squares` with exact gradients. Starts come from a sweep over
-random variants; the best of them are improved one after another.
+The optimiser is `scipy.optimize.least_squares` on exact residuals and derivatives of all targets,
+which one call computes. It starts from random variants, assembled in all their assembly modes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _biela
 from .errors import AssemblyError, Error, UsageError
-from .mechanism import Mechanism
+from .mechanism import Drive, Mechanism, _orders, _reread
 
-TURN = 2 * np.pi
-VELOCITIES = {"x": "vx", "y": "vy", "phi": "omega", "position": "velocity"}
-"""Last parts of the names of velocities by those of positions."""
-CURVE = 72
-"""Number of poses per turn among which the nearest to each target is taken at the start."""
-CHECKED = 24
-"""Number of poses per turn at which a full turn is checked."""
 REFUSED = 1e6
 """Residual of a mechanism that does not reach a target: the optimiser steps back from it."""
+ROUNDS = ((12, 0.25), (30, 0.25), (100, 0.25), (400, 0.0))
+"""Evaluations of each attempt in a round, and the part of the attempts that goes on to the next."""
 
 
 @dataclass(frozen=True)
@@ -68,18 +63,6 @@ def points(
     return Target({f"{marker}.x": x, f"{marker}.y": y}, drive or {}, free, weight)
 
 
-def velocity_of(name: str) -> str:
-    """Returns the variable that is the velocity of another.
-
-    >>> velocity_of("coupler.P.x")
-    'coupler.P.vx'
-    """
-    owner, _, last = name.rpartition(".")
-    if last not in VELOCITIES:
-        raise UsageError(f"target: `{name}` is no position, so that its timing cannot be free")
-    return f"{owner}.{VELOCITIES[last]}"
-
-
 @dataclass(frozen=True)
 class Fit:
     """Mechanism that was fitted to targets."""
@@ -95,9 +78,9 @@ class Fit:
     timing: tuple[NDArray | None, ...]
     """Values of the free driver of each target; `None` for prescribed timing."""
     costs: NDArray
-    """Costs of all starts that were improved, ascending."""
+    """Costs of all starts where they were left, ascending."""
     evaluations: int
-    """Number of motions that the optimiser has asked for."""
+    """Number of times that the optimiser has asked for the residuals of all targets."""
 
     def __repr__(self) -> str:
         return f"<biela.Fit: cost {self.cost:.3e} from {len(self.costs)} starts>"
@@ -110,7 +93,7 @@ def fit(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     turns: str | None = None,
     starts: int = 1,
-    samples: int = 5000,
+    samples: int = 2000,
     seed: int = 0,
     tolerance: float = 1e-15,
     stop_at: float = 0.0,
@@ -118,9 +101,9 @@ def fit(
     """Finds values of the free parameters with which the mechanism meets the targets.
 
     Minimises the sum of squared residuals. With `starts = 1` it improves the file's own values.
-    With more, the best of `samples` random variants within `bounds` are improved too, in both
-    their own assembly mode and that of the file; `seed` chooses the variants. It stops early at a
-    cost of `stop_at`.
+    With more, the best of `samples` random variants within `bounds` are improved too, in any of
+    their assembly modes; `seed` chooses the variants. Starts that fall behind are given up. It stops
+    early at a cost of `stop_at`.
 
     `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused.
 
@@ -135,29 +118,18 @@ def fit(
     (0.11, 0.29)
     """
     problem = Problem(mechanism, targets, free, bounds or {}, turns)
-    best = None
-    costs = []
-    for start in problem.starts(starts, samples, np.random.default_rng(seed)):
-        try:
-            found = problem.improve(*start, tolerance)
-        except Error:
-            continue
-        costs.append(found.cost)
-        if best is None or found.cost < best.cost:
-            best = found
-        if best.cost <= stop_at:
+    attempts = problem.attempts(starts, samples, np.random.default_rng(seed))
+    going_on = attempts
+    for evaluations, part in ROUNDS if len(attempts) > 1 else ROUNDS[-1:]:
+        for attempt in going_on:
+            attempt.improve(evaluations, tolerance)
+            if attempt.cost <= stop_at:
+                break
+        attempts.sort(key=lambda attempt: attempt.cost)
+        if attempts[0].cost <= stop_at:
             break
-    if best is None:
-        raise AssemblyError("fit: no start reaches all targets; give wider bounds or more starts")
-    return Fit(
-        best.mechanism,
-        best.parameters,
-        best.cost,
-        best.residuals,
-        best.timing,
-        np.sort(costs),
-        problem.evaluations,
-    )
+        going_on = attempts[: max(1, round(part * len(going_on)))]
+    return problem.fit(attempts)
 
 
 class Problem:
@@ -176,209 +148,174 @@ class Problem:
     ):
         self.mechanism = mechanism
         self.targets = [targets] if isinstance(targets, Target) else list(targets)
-        self.arrays = [target.arrays() for target in self.targets]
         self.free = list(free)
-        self.turns = turns
-        self.evaluations = 0
         known = mechanism.parameters
         for name in [*self.free, *bounds]:
             if name not in known:
-                # The message has the name that may be meant.
-                mechanism.run(t=[0.0], parameters={name: 0.0})
+                meant = _biela.unknown_name("parameter", name, list(known))
+                raise UsageError(f"parameters: {meant}")
         self.own = np.array([known[name].value for name in self.free])
         limits = [bounds.get(name, (known[name].min, known[name].max)) for name in self.free]
         self.low = np.array([-np.inf if low is None else low for low, _ in limits], dtype=float)
         self.high = np.array([np.inf if high is None else high for _, high in limits], dtype=float)
-        # The sizes of the unknowns, by which the optimiser scales them.
+        # The sizes of the parameters, by which the optimiser scales them.
         width = self.high - self.low
         size = np.maximum(np.abs(self.own), np.abs(self.own).max(initial=0.0) * 1e-3)
         self.size = np.where(np.isfinite(width), width, np.where(size > 0, size, 1.0))
+        arrays = [target.arrays() for target in self.targets]
+        self.poses = [values.shape[1] for _, values in arrays]
+        self.residuals = sum(values.size for _, values in arrays)
+        columns = list(mechanism.variables)
+        rows = []
+        for target, (names, values) in zip(self.targets, arrays):
+            for name in names:
+                if name not in columns:
+                    meant = _biela.unknown_name("variable", name, columns)
+                    raise UsageError(f"target: {meant}")
+            indices = [columns.index(name) for name in names]
+            poses, wanted = values.shape[1], values.ravel().tolist()
+            rows.append((poses, target.free, indices, wanted, target.weight))
+        drive = self.drive()
+        if turns is not None:
+            driver = self.driver(turns)
+            if driver.unit != "rad" or (driver.start is None and turns not in drive):
+                raise UsageError(f"turns: `{turns}` is no driver of an angle that is an input")
+        times = np.full(sum(self.poses), mechanism._inner.simulation[0])
+        motions = mechanism._motions(times, drive)
+        self._inner = mechanism._inner.targets(motions, rows, self.free, turns)
 
-    def starts(self, count: int, samples: int, random: np.random.Generator):
-        """Yields mechanisms at start values, and the timing of each target there."""
-        own = np.clip(self.own, self.low, self.high)
+    def driver(self, name: str):
+        """Returns the driver of a name."""
+        drivers = self.mechanism.drivers
+        if name not in drivers:
+            raise UsageError(f"target: {_biela.unknown_name('driver', name, list(drivers))}")
+        return drivers[name]
+
+    def drive(self) -> Drive:
+        """Returns the motions of the drivers through the poses of all targets. Free values are
+        those at which the search for them begins."""
+        names = {name for target in self.targets for name in target.drive}
+        names |= {target.free for target in self.targets if target.free is not None}
+        drive = {}
+        for name in sorted(names):
+            start = self.driver(name).start
+            parts = []
+            for target, poses in zip(self.targets, self.poses):
+                if target.free == name:
+                    # With unit velocity, velocities are derivatives by the driver's value.
+                    given = _orders(name, (start or 0.0, 1.0))
+                elif name in target.drive:
+                    given = _orders(name, target.drive[name])
+                elif start is not None:
+                    given = _orders(name, start)
+                else:
+                    raise UsageError(
+                        f"target: driver `{name}` has a prescribed motion; "
+                        "give its values in all targets or in none"
+                    )
+                given += [np.array(0.0)] * (3 - len(given))
+                for order in given:
+                    if order.ndim and len(order) != poses:
+                        raise UsageError(
+                            f"target: driver `{name}` has {len(order)} values for {poses} poses"
+                        )
+                parts.append([np.broadcast_to(order, poses) for order in given])
+            drive[name] = tuple(np.concatenate(orders) for orders in zip(*parts))
+        return drive
+
+    def attempts(self, count: int, samples: int, random: np.random.Generator) -> list[Attempt]:
+        """Returns attempts at the file's own values and at the best of random ones."""
+        found = []
         try:
-            yield self.placed(self.mechanism, own)
+            found.append(Attempt(self, np.clip(self.own, self.low, self.high), None))
         except Error:
             if count == 1:
                 raise
-        if count == 1:
-            return
-        if not np.all(np.isfinite(self.high - self.low)):
-            unbounded = [n for n, w in zip(self.free, self.high - self.low) if not np.isfinite(w)]
-            raise UsageError(f"bounds: random starts need limits of {', '.join(unbounded)}")
-        candidates = []
-        for mode in self.modes():
+        if count > 1:
+            infinite = ~np.isfinite(self.high - self.low)
+            if infinite.any():
+                unbounded = ", ".join(np.array(self.free)[infinite])
+                raise UsageError(f"bounds: random starts need limits of {unbounded}")
             values = random.uniform(self.low, self.high, (samples, len(self.free)))
-            costs = self.rough_costs(mode, values)
-            candidates += [(cost, mode, value) for cost, value in zip(costs, values)]
-        candidates = [candidate for candidate in candidates if np.isfinite(candidate[0])]
-        candidates.sort(key=lambda candidate: candidate[0])
-        for _, mode, value in candidates[: count - 1]:
-            try:
-                yield self.placed(mode, value)
-            except Error:
-                continue
-
-    def modes(self) -> list[Mechanism]:
-        """Returns the mechanism in each of its assembly modes."""
-        found = [self.mechanism]
-        for mode in self.mechanism.modes().others:
-            found.append(self.mechanism.posed(mode))
+            costs = sorted(self._inner.costs(values.ravel()), key=lambda cost: cost[2])
+            chosen = costs[: count - 1]
+            found += [Attempt(self, values[variant], mode) for variant, mode, _ in chosen]
+        if not found:
+            raise AssemblyError(
+                "fit: no start reaches all targets; give wider bounds or more starts"
+            )
         return found
 
-    def rough_costs(self, mechanism: Mechanism, values: NDArray) -> NDArray:
-        """Returns the costs of variants; without timing those of the nearest poses of a turn."""
-        series = dict(zip(self.free, values.T))
-        total = np.zeros(len(values))
-        for target, (names, wanted) in zip(self.targets, self.arrays):
-            if target.free is None:
-                sweep = mechanism.sweep(series, drive=target.drive, variables=names)
-                found = np.stack([sweep[name] for name in names], axis=1)
-                total += target.weight**2 * ((found - wanted) ** 2).sum(axis=(1, 2))
-            else:
-                drive = {**self.held(target), target.free: self.turn(target.free, CURVE)}
-                sweep = mechanism.sweep(series, drive=drive, variables=names)
-                found = np.stack([sweep[name] for name in names], axis=1)
-                # By variant, pose of the turn and target; a part of the turn may be out of reach.
-                gaps = ((found[:, :, :, None] - wanted[None, :, None, :]) ** 2).sum(axis=1)
-                gaps = np.where(np.isnan(gaps), np.inf, gaps)
-                total += target.weight**2 * gaps.min(axis=1).sum(axis=1)
-        if self.turns is not None:
-            sweep = mechanism.sweep(
-                series, drive={self.turns: self.turn(self.turns, CHECKED)}, variables=[self.turns]
-            )
-            total[~sweep.ok] = np.inf
-        return np.where(np.isnan(total), np.inf, total)
+    def fit(self, attempts: Sequence[Attempt]) -> Fit:
+        """Returns the mechanism of the first of these attempts."""
+        best = attempts[0]
+        # The mechanism goes to the unknowns once more: the last ones tried may be worse.
+        residuals, _ = best.evaluate(best.unknowns)
+        inner = self.mechanism._inner
+        text = inner.fitted(best._inner, self.free)
+        places = np.cumsum([len(self.free)] + [
+            poses if target.free is not None else 0
+            for target, poses in zip(self.targets, self.poses)
+        ])  # fmt: skip
+        timing = [
+            best.unknowns[first:last] if target.free is not None else None
+            for target, first, last in zip(self.targets, places, places[1:])
+        ]
+        return Fit(
+            _reread(text, self.mechanism._path, inner.has_tables),
+            dict(zip(self.free, best.unknowns.tolist())),
+            float(residuals @ residuals),
+            residuals,
+            tuple(timing),
+            np.array([attempt.cost for attempt in attempts]),
+            sum(attempt.evaluations for attempt in attempts),
+        )
 
-    def turn(self, driver: str, count: int) -> NDArray:
-        """Returns values of a driver over a full turn from its start."""
-        start = self.mechanism.drivers[driver].start or 0.0
-        return start + TURN * np.arange(count + 1) / count
 
-    def held(self, target: Target) -> dict[str, Any]:
-        """Returns the drivers of a target that are held, for motions of any length."""
-        return {n: float(v) for n, v in target.drive.items() if np.ndim(v) == 0}
+class Attempt:
+    """Unknowns that the optimiser improves from one start, in one assembly mode."""
 
-    def placed(self, mechanism: Mechanism, values: NDArray):
-        """Returns the mechanism assembled at values, the values, and the timing nearest the
-        targets."""
-        placed = mechanism.changed(dict(zip(self.free, values)))
-        timing: list[NDArray] = []
-        for target, (names, wanted) in zip(self.targets, self.arrays):
-            if target.free is None:
-                continue
-            angles = self.turn(target.free, CURVE)
-            drive = {**self.held(target), target.free: angles}
-            curve = placed.run(drive=drive, variables=names, stop="keep")
-            found = np.stack([curve[name] for name in names])
-            gaps = ((found[:, :, None] - wanted[:, None, :]) ** 2).sum(axis=0)
-            timing.append(angles[gaps.argmin(axis=0)])
-        return placed, values, timing
+    def __init__(self, problem: Problem, values: NDArray, mode: int | None):
+        self._inner = problem._inner.attempt(values.tolist(), mode)
+        self.unknowns = np.concatenate([values, self._inner.timing])
+        self.cost = np.inf
+        self.evaluations = 0
+        self.residuals = problem.residuals
+        count = len(values)
+        self.low = np.full(len(self.unknowns), -np.inf)
+        self.high = np.full(len(self.unknowns), np.inf)
+        self.low[:count], self.high[:count] = problem.low, problem.high
+        self.scale = np.ones(len(self.unknowns))
+        self.scale[:count] = problem.size
+        self.last: tuple[bytes, tuple[NDArray, NDArray]] | None = None
 
-    def improve(
-        self, mechanism: Mechanism, values: NDArray, timing: list[NDArray], tolerance: float
-    ) -> Fit:
-        """Improves a start by least squares."""
+    def evaluate(self, unknowns: NDArray) -> tuple[NDArray, NDArray]:
+        """Returns the residuals and their derivatives by the unknowns."""
+        key = unknowns.tobytes()
+        if self.last is None or self.last[0] != key:
+            self.evaluations += 1
+            found = self._inner.evaluate(unknowns.tolist())
+            if found is None:
+                refused = np.full(self.residuals, REFUSED)
+                return refused, np.zeros((self.residuals, len(unknowns)))
+            residuals, derivatives = found
+            self.last = key, (residuals, derivatives.reshape(len(residuals), -1))
+        return self.last[1]
+
+    def improve(self, evaluations: int, tolerance: float) -> None:
+        """Improves the unknowns by least squares."""
         from scipy.optimize import least_squares
 
-        count = len(self.free)
-        unknowns = np.concatenate([values, *timing])
-        low = np.full(len(unknowns), -np.inf)
-        high = np.full(len(unknowns), np.inf)
-        low[:count], high[:count] = self.low, self.high
-        scale = np.ones(len(unknowns))
-        scale[:count] = self.size
-        evaluate = self.evaluator(mechanism)
-        evaluate(unknowns, raises=True)
-        # The optimiser starts inside the bounds.
-        inside = np.clip(unknowns, low, high)
         solution = least_squares(
-            lambda z: evaluate(z)[0],
-            inside,
-            jac=lambda z: evaluate(z)[1],
-            bounds=(low, high),
-            x_scale=scale,
+            lambda z: self.evaluate(z)[0],
+            # The optimiser starts inside the bounds.
+            np.clip(self.unknowns, self.low, self.high),
+            jac=lambda z: self.evaluate(z)[1],
+            bounds=(self.low, self.high),
+            x_scale=self.scale,
             xtol=tolerance,
             ftol=tolerance,
             gtol=tolerance,
-            max_nfev=400,
+            max_nfev=evaluations,
         )
-        residuals = evaluate(solution.x, raises=True)[0]
-        parameters = {name: float(v) for name, v in zip(self.free, solution.x)}
-        return Fit(
-            mechanism.changed(parameters),
-            parameters,
-            float(residuals @ residuals),
-            residuals,
-            tuple(self.timings(solution.x)),
-            np.array([]),
-            self.evaluations,
-        )
-
-    def timings(self, unknowns: NDArray) -> list[NDArray | None]:
-        """Returns the free timing of each target."""
-        place = len(self.free)
-        found: list[NDArray | None] = []
-        for target, (_, wanted) in zip(self.targets, self.arrays):
-            if target.free is None:
-                found.append(None)
-            else:
-                found.append(unknowns[place : place + wanted.shape[1]])
-                place += wanted.shape[1]
-        return found
-
-    def evaluator(self, mechanism: Mechanism) -> Callable[..., tuple[NDArray, NDArray]]:
-        """Returns the function of residuals and their derivatives; it keeps the last result."""
-        last: tuple[bytes, tuple[NDArray, NDArray]] | None = None
-
-        def evaluate(unknowns: NDArray, raises: bool = False) -> tuple[NDArray, NDArray]:
-            nonlocal last
-            key = unknowns.tobytes()
-            if last is None or last[0] != key:
-                try:
-                    last = key, self.evaluate(mechanism, unknowns)
-                except Error:
-                    if raises:
-                        raise
-                    size = sum(wanted.size for _, wanted in self.arrays)
-                    return np.full(size, REFUSED), np.zeros((size, len(unknowns)))
-            return last[1]
-
-        return evaluate
-
-    def evaluate(self, mechanism: Mechanism, unknowns: NDArray) -> tuple[NDArray, NDArray]:
-        """Returns the residuals and their derivatives by the unknowns."""
-        self.evaluations += 1
-        count = len(self.free)
-        parameters = dict(zip(self.free, unknowns[:count].tolist()))
-        residuals, rows = [], []
-        place = count
-        for target, (names, wanted), timing in zip(
-            self.targets, self.arrays, self.timings(unknowns)
-        ):
-            variables = names
-            drive: dict[str, Any] = dict(target.drive)
-            if timing is not None:
-                drive[target.free] = (timing, 1.0, 0.0)
-                # With a driver of unit velocity, velocities are derivatives by its value.
-                variables = names + [velocity_of(name) for name in names]
-            result = mechanism.run(
-                drive=drive, parameters=parameters, variables=variables, gradient=self.free
-            )
-            poses = wanted.shape[1]
-            for name, values in zip(names, wanted):
-                residuals.append(target.weight * (result[name] - values))
-                row = np.zeros((poses, len(unknowns)))
-                for column, parameter in enumerate(self.free):
-                    row[:, column] = target.weight * result.gradient[name, parameter]
-                if timing is not None:
-                    speed = target.weight * result[velocity_of(name)]
-                    row[np.arange(poses), place + np.arange(poses)] = speed
-                rows.append(row)
-            if timing is not None:
-                place += poses
-        if self.turns is not None:
-            drive = {self.turns: self.turn(self.turns, CHECKED)}
-            mechanism.run(drive=drive, parameters=parameters, variables=[self.turns])
-        return np.concatenate(residuals), np.concatenate(rows)
+        self.unknowns, self.cost = solution.x, 2 * solution.cost

@@ -1,11 +1,12 @@
 //! The animation of a run.
 
-use biela::drawing::Scene;
 use biela::drawing::animation::{Animation, Clock, Moment, Reading, page};
+use biela::drawing::{ForcePlace, Scene};
 use biela::kinematics::Output;
 use biela::mechanism::Mechanism;
 
 use crate::runner::Runner;
+use crate::scenario::Scenario;
 
 /// Largest number of moments of a film; of more rows it has every second, third and so on.
 const MOST_MOMENTS: usize = 10_000;
@@ -19,6 +20,8 @@ const SAME: f64 = 1e-6;
 /// The poses of a run.
 pub(crate) struct Film {
     columns: Vec<Output>,
+    /// Forces that arrows can show.
+    forces: Vec<ForcePlace>,
     parameters: Vec<f64>,
     stride: usize,
     times: Vec<f64>,
@@ -26,10 +29,17 @@ pub(crate) struct Film {
 }
 
 impl Film {
-    /// Returns an empty film of a run of so many rows, which tells the columns in numbers.
-    pub(crate) fn new(columns: Vec<Output>, rows: usize, parameters: &[f64]) -> Self {
+    /// Returns an empty film of a run of so many rows, which tells the columns in numbers and can
+    /// show forces by arrows.
+    pub(crate) fn new(
+        columns: Vec<Output>,
+        forces: Vec<ForcePlace>,
+        rows: usize,
+        parameters: &[f64],
+    ) -> Self {
         Self {
             columns,
+            forces,
             parameters: parameters.to_vec(),
             stride: rows.div_ceil(MOST_MOMENTS).max(1),
             times: Vec::new(),
@@ -38,7 +48,7 @@ impl Film {
     }
 
     /// Adds a row, if it is one to show.
-    pub(crate) fn add(&mut self, row: usize, runner: &Runner<'_>) {
+    pub(crate) fn add(&mut self, row: usize, runner: &Runner<&Scenario>) {
         if !row.is_multiple_of(self.stride) {
             return;
         }
@@ -51,20 +61,31 @@ impl Film {
             q: runner.solver.pose().q.clone(),
             rates: rates.map(<[f64]>::to_vec),
             readings: readings.collect(),
-            forces: Vec::new(),
+            forces: runner.force_values(&self.forces),
         });
         self.times.push(runner.solver.pose().time);
     }
 
-    /// Returns the page on which the mechanism moves; `None` without a pose.
-    pub(crate) fn page(&self, mechanism: &Mechanism) -> Option<String> {
+    /// Returns whether there are forces that arrows can show.
+    pub(crate) fn has_forces(&self) -> bool {
+        !self.forces.is_empty()
+    }
+
+    /// Returns the page on which the mechanism moves, with arrows for forces if wanted; `None`
+    /// without a pose.
+    pub(crate) fn page(&self, mechanism: &Mechanism, with_forces: bool) -> Option<String> {
         let home = &self.moments.first()?.q;
         let stride = self.moments.len().div_ceil(MOST_POSES);
         let poses: Vec<Vec<f64>> = (self.moments.iter().step_by(stride))
             .chain(self.moments.last())
             .map(|moment| moment.q.clone())
             .collect();
-        let (clock, moments) = self.paced();
+        let (clock, mut moments) = self.paced();
+        let mut forces = self.forces.clone();
+        if !with_forces {
+            forces.clear();
+            moments.iter_mut().for_each(|moment| moment.forces.clear());
+        }
         Some(page(&Animation {
             scene: Scene::along(mechanism, &self.parameters, home, &poses, true),
             clock,
@@ -76,7 +97,7 @@ impl Film {
                         .replace('2', "²"),
                 })
                 .collect(),
-            forces: Vec::new(),
+            forces,
             moments,
         }))
     }

@@ -7,12 +7,14 @@
 //! | `runner` | a mechanism that moves along samples |
 //! | `run`, `film` | one motion with its gradients; its animation |
 //! | `sweep` | the same motion of many variants, on all cores |
+//! | `fit` | residuals of targets, with derivatives; costs of many variants |
 //! | `mechanism` | the class `Mechanism` |
 //!
 //! Shapes, units and names of Python are the package's business; here arrays are flat.
 
 mod error;
 mod film;
+mod fit;
 mod mechanism;
 mod run;
 mod runner;
@@ -43,5 +45,7 @@ fn _biela(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(unknown_name, module)?)?;
     module.add_class::<mechanism::Mechanism>()?;
     module.add_class::<run::Run>()?;
-    module.add_class::<sweep::Sweep>()
+    module.add_class::<sweep::Sweep>()?;
+    module.add_class::<fit::Targets>()?;
+    module.add_class::<fit::Attempt>()
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use biela::cli;
 use biela::drawing::{Diagram, Followed, svg};
 use biela::kinematics::Output;
-use biela::kinematics::{Carryover, End, Mode, Path, RangeSettings, Solver};
+use biela::kinematics::{Carryover, End, Mode, Path, Pose, RangeSettings, Solver};
 use biela::mechanism::{
     Diagnostic, DriverId, DriverSource, Mechanism as Model, ParameterId, Source, Unit,
 };
@@ -15,6 +15,7 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
 use crate::error::{Failure, exception};
+use crate::fit::{Attempt, Fit, FreeDriver, Target, Targets};
 use crate::run::{Run, run};
 use crate::runner::Runner;
 use crate::scenario::{Drive, Home, Scenario, Value, parameter};
@@ -75,8 +76,13 @@ type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
 /// Times, and motions of drivers.
 type Motions = (Vec<f64>, Vec<(String, Drive)>);
 
-/// Contents of a drawing: traces, number of poses, driver that moves, dimensions, instant centres.
-type Contents = (bool, usize, Option<String>, bool, bool);
+/// A target of a fit: number of poses, driver whose values are free, columns, values wanted by
+/// column, then by pose, and the factor of its residuals.
+type TargetRow = (usize, Option<String>, Vec<usize>, Vec<f64>, f64);
+
+/// Contents of a drawing: traces, number of poses, driver that moves, dimensions, instant centres,
+/// forces.
+type Contents = (bool, usize, Option<String>, bool, bool, bool);
 
 /// A mechanism file that has no errors.
 #[pyclass(frozen)]
@@ -276,6 +282,51 @@ impl Mechanism {
         .map_err(|failure: Failure| failure.raise(py))
     }
 
+    /// Prepares a fit of the parameters `free`. The rows of the motion are those of the targets, one
+    /// after the other; the driver `turns` shall turn fully.
+    fn targets(
+        &self,
+        py: Python<'_>,
+        motions: Motions,
+        targets: Vec<TargetRow>,
+        free: Vec<String>,
+        turns: Option<String>,
+    ) -> PyResult<Targets> {
+        py.detach(|| {
+            let mut rows = 0;
+            let targets = targets.into_iter();
+            let targets = targets.map(|(poses, timing, columns, wanted, weight)| {
+                let timing =
+                    timing.map(|name| FreeDriver::new(&self.model, self.driver_named(&name)?));
+                rows += poses;
+                Ok(Target {
+                    rows: rows - poses..rows,
+                    timing: timing.transpose()?,
+                    columns: self.chosen(&columns),
+                    wanted,
+                    weight,
+                })
+            });
+            let targets = targets.collect::<Result<_, Failure>>()?;
+            let free = free.iter().map(|name| self.free(name));
+            Ok(Targets::new(Fit::new(
+                self.scenario(motions)?,
+                targets,
+                free.collect::<Result<_, _>>()?,
+                turns.map(|name| self.driver_named(&name)).transpose()?,
+            )))
+        })
+        .map_err(|failure: Failure| failure.raise(py))
+    }
+
+    /// Returns the text of the file with the parameters of these names at their values in an
+    /// attempt, and its pose as estimates.
+    fn fitted(&self, py: Python<'_>, attempt: &Attempt, names: Vec<String>) -> PyResult<String> {
+        let pose = attempt.home();
+        self.text_at(&names, &pose)
+            .map_err(|failure| failure.raise(py))
+    }
+
     /// Finds the range of a driver from the start of a motion.
     fn range<'py>(
         &self,
@@ -345,23 +396,35 @@ impl Mechanism {
         transparent: bool,
         contents: Contents,
     ) -> PyResult<String> {
-        let (traces, poses, driver, dimensions, instant_centres) = contents;
+        let (traces, poses, driver, dimensions, instant_centres, forces) = contents;
         py.detach(|| {
             let scenario = self.scenario(motions)?;
-            let mut runner = Runner::new(&scenario, &[])?;
+            let columns = self.all_columns().iter();
+            let columns: Vec<Output> = columns
+                .filter(|c| forces && c.is_force())
+                .cloned()
+                .collect();
+            if forces && columns.is_empty() {
+                let message = "forces: the mechanism has no forces; \
+                               give bodies a `mass` or add `[forces]`";
+                return Err(Failure::Usage(message.to_owned()));
+            }
+            let mut runner = Runner::new(&scenario, &columns)?;
             runner.start(&scenario.parameters(parameters)?)?;
             let driver = driver.map(|name| self.driver_named(&name)).transpose()?;
             let followed = driver.map(|driver| Followed {
                 driver,
                 bounds: [None; 2],
             });
+            let places = runner.force_places();
+            let values = runner.force_values(&places);
             let diagram = Diagram {
                 traces,
                 followed,
                 poses,
                 dimensions,
                 instant_centres,
-                ..Diagram::default()
+                forces: places.into_iter().zip(values).collect(),
             };
             let sheet = diagram.sheet(&mut runner.solver)?;
             let width = width.unwrap_or(sheet.width());
@@ -392,8 +455,7 @@ impl Mechanism {
                     pose = runner.solver.pose().clone();
                 }
             }
-            edit(self.source.text(), &self.model, &names, &pose, Place::Whole)
-                .map_err(|error| Failure::File(error.to_string()))
+            self.text_at(&names, &pose)
         })
         .map_err(|failure: Failure| failure.raise(py))
     }
@@ -444,6 +506,18 @@ impl Mechanism {
         solver.carry_over(&mut carryover);
         let home = Arc::new((solver.pose().clone(), carryover));
         Ok(Arc::clone(self.home.get_or_init(|| home)))
+    }
+
+    /// Returns the text of the file with parameters, start values and estimates of a pose.
+    fn text_at(&self, parameters: &[String], pose: &Pose) -> Result<String, Failure> {
+        edit(
+            self.source.text(),
+            &self.model,
+            parameters,
+            pose,
+            Place::Whole,
+        )
+        .map_err(|error| Failure::File(error.to_string()))
     }
 
     /// Returns a parameter that does not follow from others.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use biela::kinematics::Direction;
 use biela::kinematics::Output;
-use biela::mechanism::{Jet, Mechanism, ParameterId};
+use biela::mechanism::{Mechanism, ParameterId};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -45,9 +45,15 @@ impl Run {
         self.gradient.clone().into_pyarray(py)
     }
 
+    /// Whether the run has forces that arrows can show.
+    #[getter]
+    fn has_forces(&self) -> bool {
+        self.film.has_forces()
+    }
+
     /// Returns the page on which the mechanism moves; `None` for a run without rows.
-    fn page(&self, py: Python<'_>) -> Option<String> {
-        py.detach(|| self.film.page(&self.mechanism))
+    fn page(&self, py: Python<'_>, forces: bool) -> Option<String> {
+        py.detach(|| self.film.page(&self.mechanism, forces))
     }
 }
 
@@ -71,11 +77,12 @@ pub(crate) fn run(
     let mut runner = Runner::new(scenario, columns)?;
     let rows = scenario.times.len();
     let began = runner.start(parameters)?;
+    let arrows = runner.force_places();
     let mut result = Run {
         mechanism: scenario.driven.clone(),
         values: Vec::with_capacity(rows * columns.len()),
         gradient: Vec::with_capacity(rows * columns.len() * by.len()),
-        film: Film::new(told, rows, parameters),
+        film: Film::new(told, arrows, rows, parameters),
         rows: 0,
         stop: None,
         notices: Vec::new(),
@@ -83,11 +90,10 @@ pub(crate) fn run(
     if began == Beginning::Reassembled {
         result.notices.push(REASSEMBLED.to_owned());
     }
-    let mut direction = Direction {
-        drivers: vec![Jet::constant(0.0); scenario.own.drivers.len()],
-        parameters: vec![0.0; parameters.len()],
-        time: 0.0,
-    };
+    let directions: Vec<_> = by
+        .iter()
+        .map(|p| Direction::by_parameter(&scenario.own, *p))
+        .collect();
     for row in 0..rows {
         if row > 0 {
             if let Err(stop) = runner.advance(row) {
@@ -99,11 +105,7 @@ pub(crate) fn run(
         result.notices.extend(runner.lift_offs());
         let values = columns.iter().map(|column| runner.value(column));
         result.values.extend(values);
-        for parameter in by {
-            direction.parameters[parameter.index()] = 1.0;
-            runner.differentiate(columns, &direction, &mut result.gradient)?;
-            direction.parameters[parameter.index()] = 0.0;
-        }
+        runner.differentiate(columns, &directions, &mut result.gradient)?;
         result.film.add(row, &runner);
         result.rows += 1;
     }

@@ -1,18 +1,22 @@
 //! A mechanism that moves along the samples and motions of its drivers.
 
+use std::f64::consts::TAU;
+use std::ops::Deref;
+
+use biela::drawing::ForcePlace;
 use biela::kinematics::{
-    Carryover, Curve, Direction, Error, ForceParts, ForceQuantity, ForceSensitivity, Forces,
-    KnownMotion, Path, Rates, Solver, Start,
+    Blocked, Carryover, Curve, Direction, Error, ForceParts, ForceQuantity, ForceSensitivity,
+    Forces, KnownMotion, Path, Pose, Rates, Solver, Start,
 };
 use biela::kinematics::{Output, OutputSource};
-use biela::mechanism::{DriverId, Jet, Motion, ParameterId};
+use biela::mechanism::{DriverId, Jet, Motion, Order, ParameterId};
 
 use crate::error::Failure;
 use crate::scenario::Scenario;
 
 /// A mechanism that moves from one time to the next.
-pub(crate) struct Runner<'a> {
-    scenario: &'a Scenario,
+pub(crate) struct Runner<S> {
+    pub(crate) scenario: S,
     /// At the file's own values, from which each motion starts.
     home: Solver,
     pub(crate) solver: Solver,
@@ -23,6 +27,8 @@ pub(crate) struct Runner<'a> {
     path: Path,
     carryover: Carryover,
     near_singular: bool,
+    /// Whether motions that stop do so without a reason, which is cheaper.
+    pub(crate) gives_up: bool,
 }
 
 /// Forces of a motion. Those that are inputs of the FMU are zero.
@@ -42,9 +48,9 @@ pub(crate) enum Beginning {
     Reassembled,
 }
 
-impl<'a> Runner<'a> {
+impl<S: Deref<Target = Scenario>> Runner<S> {
     /// Makes a runner; with a column of forces it solves them too.
-    pub(crate) fn new(scenario: &'a Scenario, columns: &[Output]) -> Result<Self, Failure> {
+    pub(crate) fn new(scenario: S, columns: &[Output]) -> Result<Self, Failure> {
         let home = Solver::new(scenario.own.clone())?;
         let solver = Solver::new(scenario.driven.clone())?;
         let forces = columns.iter().any(Output::is_force).then(|| {
@@ -57,14 +63,15 @@ impl<'a> Runner<'a> {
         });
         Ok(Self {
             forces,
-            scenario,
             home,
             rates: Rates::new(scenario.home.0.q.len()),
             driver_rates: vec![Jet::constant(0.0); scenario.own.drivers.len()],
+            scenario,
             path: Path::new(solver.mechanism()),
             carryover: Carryover::default(),
             solver,
             near_singular: false,
+            gives_up: false,
         })
     }
 
@@ -77,7 +84,7 @@ impl<'a> Runner<'a> {
     pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<Beginning, Failure> {
         let Scenario {
             own, driven, home, ..
-        } = self.scenario;
+        } = &*self.scenario;
         self.home.resume(&home.0, &home.1);
         let home = &home.0;
         let start = self.scenario.times[0];
@@ -118,10 +125,84 @@ impl<'a> Runner<'a> {
     ///
     /// Cause of the mechanism's stop, and its place.
     pub(crate) fn advance(&mut self, row: usize) -> Result<(), String> {
-        let time = self.scenario.times[row];
+        self.advance_to(row).map_err(|blocked| {
+            let mechanism = self.solver.mechanism();
+            blocked.describe(mechanism, self.solver.pose(), |driver| {
+                mechanism.drivers[driver.index()].motion().is_some()
+                    || self.sample(driver, row).is_some()
+            })
+        })?;
+        self.solve(row).map_err(|error| {
+            let time = self.scenario.times[row];
+            format!("at t = {time} s: {error}")
+        })
+    }
+
+    /// Moves on to a row's time, without rates.
+    ///
+    /// # Errors
+    ///
+    /// The motion cannot go on; the pose is the last one reached.
+    pub(crate) fn advance_to(&mut self, row: usize) -> Result<(), Blocked> {
+        self.head_for(row);
+        self.track()
+    }
+
+    fn track(&mut self) -> Result<(), Blocked> {
+        let tracked = if self.gives_up {
+            self.solver.track_or_give_up(&self.path)
+        } else {
+            self.solver.track(&self.path)
+        };
+        tracked.map(|_| ())
+    }
+
+    /// Moves on to a row's time and to other parameters, without rates.
+    ///
+    /// # Errors
+    ///
+    /// The motion cannot go on; the pose is the last one reached.
+    pub(crate) fn change(&mut self, row: usize, parameters: &[f64]) -> Result<(), Blocked> {
+        self.path.to.copy_from_slice(parameters);
+        let changed = self.advance_to(row);
+        self.path.from.copy_from_slice(parameters);
+        changed
+    }
+
+    /// Returns whether a driver can go on by one turn while the others stay; moves there.
+    pub(crate) fn turns(&mut self, driver: DriverId) -> bool {
+        let pose = self.solver.pose();
+        self.path.duration = 0.0;
+        for (curve, now) in self.path.curves.iter_mut().zip(&pose.drivers) {
+            if *curve != Curve::Motion {
+                *curve = Curve::held(*now, *now);
+            }
+        }
+        let now = pose.drivers[driver.index()];
+        self.path.curves[driver.index()] = Curve::held(now + TAU, now);
+        self.track().is_ok()
+    }
+
+    /// Returns to a pose.
+    pub(crate) fn return_to(&mut self, pose: &Pose) {
+        self.solver.restore(pose);
+        self.path.from.copy_from_slice(&pose.parameters);
+        self.path.to.copy_from_slice(&pose.parameters);
+    }
+
+    /// Returns poses at a row's time with these parameters, in any assembly mode. The runner is
+    /// then without a valid pose until it [returns](Self::return_to) to one.
+    pub(crate) fn poses(&mut self, row: usize, parameters: &[f64]) -> Vec<Pose> {
+        self.head_for(row);
+        self.path.to.copy_from_slice(parameters);
+        self.solver.poses(&self.path).unwrap_or_default()
+    }
+
+    /// Leads the path from the present pose to a row's time.
+    fn head_for(&mut self, row: usize) {
         let pose = self.solver.pose();
         self.path.start = pose.time;
-        self.path.duration = time - pose.time;
+        self.path.duration = self.scenario.times[row] - pose.time;
         for (index, curve) in self.path.curves.iter_mut().enumerate() {
             if *curve == Curve::Motion {
                 continue;
@@ -132,15 +213,6 @@ impl<'a> Runner<'a> {
             let value = samples.map_or(now, |samples| samples.at(row).value);
             *curve = Curve::held(value, now);
         }
-        if let Err(blocked) = self.solver.track(&self.path) {
-            let mechanism = self.solver.mechanism();
-            return Err(blocked.describe(mechanism, self.solver.pose(), |driver| {
-                mechanism.drivers[driver.index()].motion().is_some()
-                    || self.sample(driver, row).is_some()
-            }));
-        }
-        self.solve(row)
-            .map_err(|error| format!("at t = {time} s: {error}"))
     }
 
     /// Returns what is worth knowing of the last [`advance`](Self::advance): singular positions
@@ -155,6 +227,27 @@ impl<'a> Runner<'a> {
             .chain(crossed)
             .map(|text| format!("t = {time} s: {text}"))
             .collect()
+    }
+
+    /// Returns the forces that a picture shows; none unless the runner solves forces. The mechanism
+    /// is at its start.
+    pub(crate) fn force_places(&mut self) -> Vec<ForcePlace> {
+        if self.forces.is_none() {
+            return Vec::new();
+        }
+        let indeterminate = self.solver.indeterminate();
+        let parameters = &self.solver.pose().parameters;
+        ForcePlace::all(self.solver.mechanism(), parameters, &indeterminate)
+    }
+
+    /// Returns components in ground axes \[N\] and torque \[N m\] of forces at the pose.
+    pub(crate) fn force_values(&self, places: &[ForcePlace]) -> Vec<[f64; 3]> {
+        let Some(acting) = &self.forces else {
+            return Vec::new();
+        };
+        let q = &self.solver.pose().q;
+        let values = places.iter().map(|place| place.value(&acting.forces, q));
+        values.collect()
     }
 
     /// Returns what is worth knowing of the forces at the pose: contacts that begin to pull.
@@ -192,12 +285,39 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Adds the derivatives of columns along a direction.
+    /// Adds the derivatives of columns along directions, by direction, then by column.
     ///
     /// # Errors
     ///
     /// They do not exist at a singular position.
     pub(crate) fn differentiate(
+        &mut self,
+        columns: &[Output],
+        directions: &[Direction],
+        derivatives: &mut Vec<f64>,
+    ) -> Result<(), Error> {
+        if columns.iter().any(Output::is_force) {
+            let mut all = directions.iter();
+            return all
+                .try_for_each(|along| self.differentiate_forces(columns, along, derivatives));
+        }
+        let orders = columns.iter().map(|column| match column.source {
+            OutputSource::Signal(_, order) => order,
+            OutputSource::Derived(_) | OutputSource::Force(_) => Order::Acceleration,
+        });
+        let highest = orders.max();
+        let own = &self.scenario.own;
+        self.solver.sensitivities(
+            &self.rates,
+            &self.driver_rates,
+            directions,
+            highest.unwrap_or(Order::Position),
+            |change| derivatives.extend(columns.iter().map(|column| column.change(own, change))),
+        )
+    }
+
+    /// Adds the derivatives of columns, forces among them, along a direction.
+    fn differentiate_forces(
         &mut self,
         columns: &[Output],
         direction: &Direction,
@@ -242,7 +362,11 @@ impl<'a> Runner<'a> {
     }
 
     /// Solves rates and forces at the pose of a row.
-    fn solve(&mut self, row: usize) -> Result<(), Error> {
+    ///
+    /// # Errors
+    ///
+    /// They do not exist at a singular position.
+    pub(crate) fn solve(&mut self, row: usize) -> Result<(), Error> {
         let time = self.solver.pose().time;
         for index in 0..self.driver_rates.len() {
             let driver = DriverId(index);

@@ -24,7 +24,7 @@ pub(crate) enum Drive {
 }
 
 /// Values of a driver at the times of a run.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Samples {
     pub(crate) driver: DriverId,
     orders: [Vec<f64>; 3],
@@ -36,13 +36,18 @@ impl Samples {
         let [position, velocity, acceleration] = &self.orders;
         Jet::new(position[row], [velocity[row], acceleration[row]])
     }
+
+    /// Sets the value at a time, by its index.
+    pub(crate) fn set(&mut self, row: usize, value: f64) {
+        self.orders[0][row] = value;
+    }
 }
 
 /// The pose of the file's own values, with the solver's choices there.
 pub(crate) type Home = (Pose, Carryover);
 
 /// A mechanism with the motions of its drivers.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Scenario {
     /// The mechanism as its file has it.
     pub(crate) own: Arc<Mechanism>,

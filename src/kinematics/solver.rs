@@ -19,7 +19,7 @@ use super::singular::{self, Approach};
 use super::state::{Carryover, Pose, State};
 use super::structure::Structure;
 use super::system::System;
-use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism};
+use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism, Order};
 
 /// Solves position, velocity and acceleration of one mechanism.
 ///
@@ -137,6 +137,18 @@ impl Solver {
     /// one reached, which is a valid one.
     pub fn track(&mut self, path: &Path) -> Result<Progress, Blocked> {
         self.tracker.track(&mut self.model, &mut self.state, path)
+    }
+
+    /// Moves the mechanism along `path` as [`track`](Self::track) does, and gives up early where it
+    /// cannot go on: singular positions are neither located nor crossed. For searches over many
+    /// mechanisms, of which most stop somewhere.
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] as for [`track`](Self::track); the reason is not looked for.
+    pub fn track_or_give_up(&mut self, path: &Path) -> Result<Progress, Blocked> {
+        self.tracker
+            .track_or_give_up(&mut self.model, &mut self.state, path)
     }
 
     /// Returns the change points that the last call of [`track`](Self::track) passed, in order.
@@ -295,6 +307,25 @@ impl Solver {
             .sensitivity(&self.model, rates, driver_rates, direction)
     }
 
+    /// Gives the derivatives of the motion at the present pose along each of some directions to
+    /// `each`, in order: those of signals up to `order`, which saves the work on higher ones. The
+    /// Jacobian is factorised once. See [`sensitivity`](Self::sensitivity).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where the pose is singular.
+    pub fn sensitivities(
+        &mut self,
+        rates: &Rates,
+        driver_rates: &[Jet],
+        directions: &[Direction],
+        order: Order,
+        each: impl FnMut(&Sensitivity<'_>),
+    ) -> Result<(), Error> {
+        let Self { model, state, .. } = self;
+        state.sensitivities(model, rates, driver_rates, (directions, order), each)
+    }
+
     /// Makes the storage for forces of this mechanism.
     #[must_use]
     pub fn forces(&self) -> Forces {
@@ -400,5 +431,18 @@ impl Solver {
     /// [`Error::NotFinite`] for estimates that have no value with the parameters in force.
     pub fn modes(&mut self) -> Result<Modes, Error> {
         analysis::modes(&mut self.model, &mut self.state)
+    }
+    /// Finds poses at the end of `path`, in any assembly mode, in the same order for the same
+    /// branches: both branches of each dyad, of other blocks those found from starts near the
+    /// estimates. There are none if the mechanism does not close; [`assemble`](Self::assemble) says
+    /// why. The solver is then without a valid pose until it is [restored](Self::restore) to one of
+    /// these.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`], [`Error::NotPositive`] and [`Error::NoMotion`] for values without a
+    /// mechanism.
+    pub fn poses(&mut self, path: &Path) -> Result<Vec<Pose>, Error> {
+        analysis::poses(&mut self.model, &mut self.state, path)
     }
 }

@@ -87,3 +87,19 @@ def test_a_contact_that_pulls_is_told(mechanism):
         train.run(drive=turn(1.0))
     with pytest.warns(biela.MechanismWarning, match="would lift off: .* keeps them together"):
         train.run(drive=turn(1000.0))
+
+
+def test_arrows_show_the_forces_of_drawings_and_pages(mechanism, four_bar):
+    lid = mechanism("hatch")
+    place = {"opening": -1.2}
+    plain, arrows = lid.draw(drive=place), lid.draw(drive=place, forces=True)
+    # The holding torque, with three digits, is that of virtual work.
+    torque = abs(hatch(-1.2)[0])
+    assert 1 < torque < 10
+    assert f"{torque:.2f} N m" in arrows and "N m" not in plain
+    result = lid.run(drive={"opening": [0.1, 0.2]})
+    assert len(result.to_html(forces=True)) > len(result.to_html())
+    with pytest.raises(biela.UsageError, match="the mechanism has no forces"):
+        four_bar.draw(forces=True)
+    with pytest.raises(biela.UsageError, match="this run has none"):
+        four_bar.run(drive={"crank_angle": [1.0, 1.1]}).to_html(forces=True)

@@ -270,9 +270,13 @@ impl<M: Model> Instance<M> {
             }
         };
         self.pending_step = None;
-        let time = self.model.time();
+        let mut time = self.model.time();
         let progressed = time > start + TIME_ROUNDING * start.abs().max(h);
         let was_at_dead_point = std::mem::replace(&mut self.at_dead_point, true);
+        if was_at_dead_point && !progressed {
+            // The pose went the rest of its way to the same dead point.
+            time = start;
+        }
         let event_mode_used = self.co_simulation.event_mode_used;
         self.logger.warn(&format!("fmi3DoStep: {reason}"));
         self.set_since_step = false;

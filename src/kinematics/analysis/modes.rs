@@ -1,14 +1,15 @@
 //! Assembly modes: the poses in which a mechanism closes for the same values of its drivers.
 
 use crate::kinematics::assembly::branches::SearchEffort;
-use crate::kinematics::assembly::estimate::{distance, estimate};
+use crate::kinematics::assembly::estimate::{distance, estimate, go_to_estimate};
 use crate::kinematics::assembly::part::is_same;
 use crate::kinematics::assembly::search::BranchSearch;
 use crate::kinematics::assembly::turns::choose_turns;
 use crate::kinematics::error::Error;
 use crate::kinematics::model::Model;
+use crate::kinematics::path::Path;
 use crate::kinematics::redundancy::opened;
-use crate::kinematics::state::State;
+use crate::kinematics::state::{Pose, State};
 use crate::kinematics::system::System;
 
 /// The assembly modes of a mechanism besides the one of its pose.
@@ -54,28 +55,22 @@ pub(in crate::kinematics) fn modes(model: &mut Model, state: &mut State) -> Resu
     let home = state.pose.clone();
     state.release_crossings(model);
     let effort = SearchEffort::Anywhere(STARTS);
-    let mut search = BranchSearch::new(model, state, &estimate, effort, MOST_WORK);
-    let mut poses = Vec::new();
-    while poses.len() < MOST_MODES && search.next() {
-        poses.push(search.pose());
-    }
-    let complete = search.is_complete && poses.len() < MOST_MODES;
-    let starts = search.starts;
+    let Closed {
+        poses,
+        starts,
+        complete,
+    } = close_all(model, state, &estimate, effort);
     let mut others: Vec<Mode> = Vec::new();
-    for q in poses {
-        state.pose.q.copy_from_slice(&q);
-        choose_turns(&model.system, state, &estimate);
-        if opened(model, state).is_some() {
-            continue;
-        }
-        let mut known = std::iter::once(&home.q).chain(others.iter().map(|mode| &mode.q));
-        if known.any(|known| is_at(&model.system, state, known)) {
+    for pose in poses {
+        state.pose.q.copy_from_slice(&pose.q);
+        state.move_to_pose(&model.system);
+        if is_at(&model.system, state, &home.q) {
             continue;
         }
         others.push(Mode {
             rcond: state.rcond(model),
             distance: distance(&model.system, state, &estimate),
-            q: state.pose.q.clone(),
+            q: pose.q,
         });
     }
     others.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -85,6 +80,62 @@ pub(in crate::kinematics) fn modes(model: &mut Model, state: &mut State) -> Resu
         starts,
         complete,
     })
+}
+
+/// Finds poses at the end of `path`, in any assembly mode. See
+/// [`Solver::poses`](crate::kinematics::Solver::poses).
+///
+/// # Errors
+///
+/// [`Error::NotFinite`], [`Error::NotPositive`] and [`Error::NoMotion`] for values without a
+/// mechanism.
+pub(in crate::kinematics) fn poses(
+    model: &mut Model,
+    state: &mut State,
+    path: &Path,
+) -> Result<Vec<Pose>, Error> {
+    let estimate = go_to_estimate(model, state, path)?;
+    Ok(close_all(model, state, &estimate, SearchEffort::Quick).poses)
+}
+
+/// The poses that a search finds.
+struct Closed {
+    /// Poses, no two of which are the same.
+    poses: Vec<Pose>,
+    /// As in [`Modes`].
+    starts: usize,
+    /// As in [`Modes`].
+    complete: bool,
+}
+
+/// Searches for poses with the time, the parameters and the drivers of the present one.
+fn close_all(
+    model: &mut Model,
+    state: &mut State,
+    estimate: &[f64],
+    effort: SearchEffort,
+) -> Closed {
+    let mut search = BranchSearch::new(model, state, estimate, effort, MOST_WORK);
+    let mut found = Vec::new();
+    while found.len() < MOST_MODES && search.next() {
+        found.push(search.pose());
+    }
+    let complete = search.is_complete && found.len() < MOST_MODES;
+    let starts = search.starts;
+    let mut poses: Vec<Pose> = Vec::new();
+    for q in found {
+        state.pose.q.copy_from_slice(&q);
+        choose_turns(&model.system, state, estimate);
+        let is_known = |known: &Pose| is_at(&model.system, state, &known.q);
+        if opened(model, state).is_none() && !poses.iter().any(is_known) {
+            poses.push(state.pose.clone());
+        }
+    }
+    Closed {
+        poses,
+        starts,
+        complete,
+    }
 }
 
 /// Returns whether the pose is the same as another, whole turns of the angles apart.

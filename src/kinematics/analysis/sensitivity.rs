@@ -11,6 +11,7 @@
 //!
 //! The relations on [`Varied`] numbers give Φ, Φ̇ and Φ̈ with their changes.
 
+use crate::kinematics::block::JacobianFactors;
 use crate::kinematics::constraint::Constraint;
 use crate::kinematics::error::Error;
 use crate::kinematics::model::Model;
@@ -20,7 +21,7 @@ use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::Target;
 use crate::kinematics::variation::{Varied, VariedConfiguration, evaluate};
 use crate::mechanism::{
-    DerivedMeasure, DriverId, Dual, Jet, MotionInForce, Order, ParameterId, Signal,
+    DerivedMeasure, DriverId, Dual, Jet, Mechanism, MotionInForce, Order, ParameterId, Signal,
 };
 
 /// A direction in the space of drivers and parameters.
@@ -33,6 +34,26 @@ pub struct Direction {
     pub parameters: Vec<f64>,
     /// Change of the time, for prescribed motions.
     pub time: f64,
+}
+
+impl Direction {
+    /// Returns the direction in which nothing changes.
+    #[must_use]
+    pub fn zero(mechanism: &Mechanism) -> Self {
+        Self {
+            drivers: vec![Jet::constant(0.0); mechanism.drivers.len()],
+            parameters: vec![0.0; mechanism.parameters.len()],
+            time: 0.0,
+        }
+    }
+
+    /// Returns the direction in which one parameter grows.
+    #[must_use]
+    pub fn by_parameter(mechanism: &Mechanism, parameter: ParameterId) -> Self {
+        let mut direction = Self::zero(mechanism);
+        direction.parameters[parameter.index()] = 1.0;
+        direction
+    }
 }
 
 /// The derivative of a motion along a direction.
@@ -115,6 +136,56 @@ impl State {
         driver_rates: &[Jet],
         direction: &Direction,
     ) -> Result<Sensitivity<'a>, Error> {
+        let mut factors = self.factorised(model)?;
+        let order = Order::Acceleration;
+        let along = self.along(model, &mut factors, rates, driver_rates, direction, order);
+        self.keep_factors(model, factors);
+        along
+    }
+
+    /// Gives the derivatives of the motion at the pose along each of some directions to `each`. See
+    /// [`Solver::sensitivities`](crate::kinematics::Solver::sensitivities).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] where the pose is singular.
+    pub(in crate::kinematics) fn sensitivities(
+        &mut self,
+        model: &Model,
+        rates: &Rates,
+        driver_rates: &[Jet],
+        (directions, order): (&[Direction], Order),
+        mut each: impl FnMut(&Sensitivity<'_>),
+    ) -> Result<(), Error> {
+        let mut factors = self.factorised(model)?;
+        let mut all = directions.iter();
+        let done = all.try_for_each(|direction| {
+            let along = self.along(model, &mut factors, rates, driver_rates, direction, order);
+            along.map(|along| each(&along))
+        });
+        self.keep_factors(model, factors);
+        done
+    }
+
+    /// Factorises the Jacobian at the pose.
+    fn factorised(&mut self, model: &Model) -> Result<JacobianFactors, Error> {
+        let mut factors = self.take_factors(model);
+        factors
+            .factorise(&model.system, &self.at)
+            .map_err(|Rejected| SINGULAR_HERE)?;
+        Ok(factors)
+    }
+
+    /// Returns the derivative of the motion along a direction, up to an order.
+    fn along<'a>(
+        &self,
+        model: &'a Model,
+        factors: &mut JacobianFactors,
+        rates: &Rates,
+        driver_rates: &[Jet],
+        direction: &Direction,
+        highest: Order,
+    ) -> Result<Sensitivity<'a>, Error> {
         let system = &model.system;
         let mechanism = system.mechanism();
         let changes = self.pose.parameters.iter().zip(&direction.parameters);
@@ -153,10 +224,6 @@ impl State {
             .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
         let mut at = system.varied(parameter, motion, self.at.profiles());
 
-        let mut factors = self.take_factors(model);
-        factors
-            .factorise(system, &self.at)
-            .map_err(|Rejected| SINGULAR_HERE)?;
         let targets: Vec<_> = system
             .equations()
             .iter()
@@ -167,7 +234,7 @@ impl State {
             .collect();
         let mut side = vec![0.0; targets.len()];
         let mut change = vec![0.0; system.unknowns()];
-        for order in 0..3 {
+        for order in 0..=highest as usize {
             let rows = system.equations().iter().zip(&targets);
             for (side, (equation, target)) in side.iter_mut().zip(rows) {
                 let error = *target - equation.constraint.along(&at);
@@ -176,7 +243,6 @@ impl State {
             factors.solve(system, &self.at, &side, &mut change);
             at.change(order, &change);
         }
-        self.keep_factors(model, factors);
         if !change.iter().all(|change| change.is_finite()) {
             return Err(SINGULAR_HERE);
         }

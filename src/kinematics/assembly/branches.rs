@@ -9,7 +9,9 @@ use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS, Rejected};
 /// The effort of the search where neither a closed form nor bounds list all branches.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::kinematics) enum SearchEffort {
-    /// Starts at and near the estimates.
+    /// Starts at and near the estimates, without bounds.
+    Quick,
+    /// Starts at and near the estimates, then bounds.
     Near,
     /// This many starts anywhere as well.
     Anywhere(usize),
@@ -45,6 +47,8 @@ enum Source {
 struct Starts {
     part: Part,
     most: usize,
+    /// Whether bounds are asked for branches that no start has found.
+    bounded: bool,
     /// Whether the rows are linear, once another branch has been asked for.
     is_linear: Option<bool>,
     found: Vec<Vec<f64>>,
@@ -66,8 +70,9 @@ impl Branches {
             BlockBranches::None(gap) => Source::Gap(gap),
             BlockBranches::Unlisted => Source::Starts(Box::new(Starts {
                 part: Part::new(state.system, block.rows(), block.columns()),
+                bounded: !matches!(effort, SearchEffort::Quick),
                 most: match effort {
-                    SearchEffort::Near => ATTEMPTS,
+                    SearchEffort::Quick | SearchEffort::Near => ATTEMPTS,
                     SearchEffort::Anywhere(starts) => ATTEMPTS + starts,
                 },
                 is_linear: None,
@@ -135,7 +140,7 @@ impl Branches {
                     if self.given > 0 && starts.is_linear(state) {
                         return None;
                     }
-                    if attempt == ATTEMPTS {
+                    if attempt == ATTEMPTS && starts.bounded {
                         starts.list_all(state, estimate);
                         // From here on a failure is one to close where a branch was promised.
                         self.failures = 0;

@@ -53,7 +53,23 @@ pub struct Blocked {
     pub progress: Progress,
 }
 
+/// Most of the path between the place reached and a singular position that stops the motion there:
+/// the tracker stops nearer.
+const AT_THE_END: f64 = 1e-9;
+
 impl Blocked {
+    /// Returns the place on the path at which the motion ends: that of the singular position in
+    /// front of which it has stopped, which is known to rounding, otherwise the place reached.
+    #[must_use]
+    pub fn place(&self) -> f64 {
+        match &self.reason {
+            Reason::Singular(point) if (point.s - self.s).abs() <= AT_THE_END => {
+                point.s.clamp(0.0, 1.0)
+            }
+            _ => self.s,
+        }
+    }
+
     /// Returns the cause of the stop, its time, and the values of the drivers that move; `pose` is
     /// the last one reached.
     #[must_use]

@@ -49,6 +49,9 @@ const SMALLEST_SUBSTEP: f64 = 1e-12;
 /// The same for the first sub-step, which may lead away from a dead point, from as near as the
 /// motion came to it. The motion slows down there as it has come on.
 const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
+/// The same where the search is given up early: a pose that needs shorter ones is next to a singular
+/// position.
+const SMALLEST_WITHOUT_SEARCH: f64 = 1e-4;
 
 /// The storage for tracking paths.
 #[derive(Debug)]
@@ -89,6 +92,31 @@ impl PathTracker {
         state: &mut State,
         path: &Path,
     ) -> Result<Progress, Blocked> {
+        self.run(model, state, path, false)
+    }
+
+    /// Moves the mechanism along `path`. See
+    /// [`Solver::track_or_give_up`](crate::kinematics::Solver::track_or_give_up).
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] for the reason [`Reason::Lost`] or one that needs no search.
+    pub(in crate::kinematics) fn track_or_give_up(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        path: &Path,
+    ) -> Result<Progress, Blocked> {
+        self.run(model, state, path, true)
+    }
+
+    fn run(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        path: &Path,
+        gives_up: bool,
+    ) -> Result<Progress, Blocked> {
         let mut run = Run {
             model,
             state,
@@ -102,6 +130,7 @@ impl PathTracker {
             limit: None,
             opened: None,
             is_last_attempt: false,
+            gives_up,
             judged: (0, 0.0),
             progress: Progress::default(),
         };
@@ -135,6 +164,8 @@ struct Run<'a> {
     opened: Option<(f64, OpenJoint)>,
     /// Whether the last sub-step had the smallest length.
     is_last_attempt: bool,
+    /// Whether it stops in front of singular positions without looking for them.
+    gives_up: bool,
     /// The number of sub-steps at which their pace was judged last, and the place on the path.
     judged: (u32, f64),
     progress: Progress,
@@ -170,7 +201,7 @@ impl Run<'_> {
         self.set_out()?;
         self.look_ahead()?;
         while self.s < 1.0 {
-            let smallest = (0.01 * self.s).clamp(SMALLEST_FIRST_SUBSTEP, SMALLEST_SUBSTEP);
+            let smallest = self.smallest();
             self.prepare(smallest)?;
             let start = self.s;
             let cut_short = self.step(smallest)?;
@@ -184,6 +215,16 @@ impl Run<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Returns the smallest length of the next sub-step.
+    #[inline]
+    fn smallest(&self) -> f64 {
+        if self.gives_up {
+            SMALLEST_WITHOUT_SEARCH
+        } else {
+            (0.01 * self.s).clamp(SMALLEST_FIRST_SUBSTEP, SMALLEST_SUBSTEP)
+        }
     }
 
     /// Makes sure that the mechanism is at the start of the path.
@@ -211,7 +252,7 @@ impl Run<'_> {
     #[inline]
     fn look_ahead(&mut self) -> Result<(), Reason> {
         self.limit = None;
-        if self.state.regularity < NEAR && !self.drivers.parameters_move {
+        if self.state.regularity < NEAR && !self.drivers.parameters_move && !self.gives_up {
             self.limit = self.limit_near()?;
         }
         Ok(())
@@ -548,6 +589,9 @@ impl Run<'_> {
 
     /// Returns the cause of a stop at the pose.
     fn reason_to_stop(&mut self) -> Reason {
+        if self.gives_up {
+            return Reason::Lost;
+        }
         if !self.drivers.parameters_move
             && let Some(end) = singular::find_end(self.model, self.state, self.path, self.s)
         {
