@@ -309,6 +309,9 @@ pub trait Model: Sized {
     /// Restores the model as it was before the step was begun.
     fn abandon_step(&mut self) {}
 
+    /// Moves the time on to the dead point in front of which the step has stopped.
+    fn meet_dead_point(&mut self) {}
+
     /// Returns a copy of the state. This model, or another one with the same GUID, goes on from it
     /// with the same bits.
     fn save(&mut self) -> Self::State;

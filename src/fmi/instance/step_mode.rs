@@ -270,6 +270,7 @@ impl<M: Model> Instance<M> {
             }
         };
         self.pending_step = None;
+        self.model.meet_dead_point();
         let mut time = self.model.time();
         let progressed = time > start + TIME_ROUNDING * start.abs().max(h);
         let was_at_dead_point = std::mem::replace(&mut self.at_dead_point, true);

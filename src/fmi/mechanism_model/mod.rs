@@ -112,6 +112,8 @@ pub struct MechanismModel {
     time: f64,
     /// The step that is being taken in parts.
     parts: Option<Box<Parts>>,
+    /// Time of the dead point in front of which the last step has stopped.
+    dead_point: Option<f64>,
     /// Whether the host has been warned of the singular position nearby.
     near_singular: bool,
 }
@@ -174,6 +176,7 @@ impl MechanismModel {
             progress: Progress::default(),
             time: file_pose.time,
             parts: None,
+            dead_point: None,
             near_singular: false,
             start_pose: Arc::clone(&file_pose),
             file_pose,
@@ -394,6 +397,12 @@ impl Model for MechanismModel {
 
     fn abandon_step(&mut self) {
         self.abandon_parts();
+    }
+
+    fn meet_dead_point(&mut self) {
+        if let Some(time) = self.dead_point.take() {
+            self.time = time;
+        }
     }
 
     fn save(&mut self) -> MechanismState {

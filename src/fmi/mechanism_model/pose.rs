@@ -270,7 +270,7 @@ impl MechanismModel {
         self.at_committed = true;
     }
 
-    /// Commits the last pose before a dead point at which a step ends.
+    /// Commits the last pose before a dead point at the part `blocked.s` of a step.
     pub(super) fn fail_step(
         &mut self,
         blocked: Blocked,
@@ -294,20 +294,16 @@ impl MechanismModel {
                 } => jump.abs() > SEAM * (h * (velocity + 0.5 * h * acceleration)).abs(),
                 Curve::Motion => false,
             });
-        // The motion ends a little before a dead point, whose own place is known to rounding. A
-        // prescribed motion would be ahead of the pose there.
-        let end = if self.path.has_motions() {
-            blocked.s
-        } else {
-            blocked.place()
-        };
-        self.advance_forces(if jumped { 0.0 } else { end * h });
+        self.advance_forces(if jumped { 0.0 } else { blocked.s * h });
         if jumped {
             self.restore_committed();
         } else {
-            self.time = start + end * h;
-            self.set_driver_rates(start, h, end);
+            self.time = start + blocked.s * h;
+            self.set_driver_rates(start, h, blocked.s);
         }
+        // A prescribed motion would be ahead of the pose at the dead point itself.
+        let known = !jumped && !self.path.has_motions();
+        self.dead_point = known.then(|| start + blocked.place() * h);
         self.commit_pose();
         Failure::Discarded(message)
     }

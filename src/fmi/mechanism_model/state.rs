@@ -65,6 +65,8 @@ impl MechanismModel {
             path: _,
             // No state is saved during a step.
             parts: _,
+            // Used within the call that sets it.
+            dead_point: _,
             // Computed with the rates of the drivers.
             sources: _,
             // Computed from the pose.
