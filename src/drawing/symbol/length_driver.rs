@@ -26,8 +26,6 @@ const BESIDE: f64 = 21.0;
 /// Length of an extension line beyond the dimension line, and its gap from the point.
 const EXTENSION: f64 = 4.0;
 const EXTENSION_GAP: f64 = PIN + 2.0;
-/// Distance from the tip of an arrow to the line's end inside it.
-const IN_ARROW: f64 = 0.8 * ARROW[0];
 
 /// Composes the driver of a length between two points; `guided` if a joint lies between them.
 pub(super) fn compose(
