@@ -44,7 +44,13 @@ impl Shape for AngleDriver {
         } else {
             (towards - 0.5 * SMALL_ARC, SMALL_ARC)
         };
-        pen.arc_arrow(Layer::Driver, (center, ARC), [start, turn], Colour::DRIVER, LINE);
+        pen.arc_arrow(
+            Layer::Driver,
+            (center, ARC),
+            [start, turn],
+            Colour::DRIVER,
+            LINE,
+        );
         let mut candidates = Vec::new();
         for (part, cost) in [(0.5, 0.0), (0.7, 1.0), (0.3, 1.0), (0.9, 3.0), (0.1, 3.0)] {
             let side = on_sheet_direction(start + part * turn);

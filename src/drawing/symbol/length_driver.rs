@@ -98,7 +98,13 @@ fn draw_dimension(pen: &mut Pen, line: Line, has_extensions: bool) {
         [Point::new(IN_ARROW, 0.0), Point::zeros()],
         [Point::new(-IN_ARROW, 0.0), Point::x()],
     ];
-    pen.elastic(Layer::Driver, Measure::Length(line), shaft, Colour::DRIVER, LINE);
+    pen.elastic(
+        Layer::Driver,
+        Measure::Length(line),
+        shaft,
+        Colour::DRIVER,
+        LINE,
+    );
     pen.attach(second);
     pen.arrow(end, forth);
     pen.attach(first);

@@ -28,7 +28,7 @@ const ARC: f64 = 4.0;
 const QUARTER: f64 = 1.3;
 
 /// Composes a force and torque at a marker, along the axes of an anchor, with the sizes that `law`
-/// gives at a time [N, N, N m]; inputs without it.
+/// gives at a time \[N, N, N m\]; inputs without it.
 pub(super) fn compose_at(
     composer: &mut Composer,
     name: &str,
@@ -45,7 +45,11 @@ pub(super) fn compose_at(
             let is_seen = |sizes: &&[f64; 3]| sizes.iter().any(|size| *size != 0.0);
             let [x, y, torque] = sizes.iter().find(is_seen).copied().unwrap_or_default();
             let size = x.hypot(y);
-            let arrows = if size > 0.0 { vec![[x / size, y / size]] } else { Vec::new() };
+            let arrows = if size > 0.0 {
+                vec![[x / size, y / size]]
+            } else {
+                Vec::new()
+            };
             (arrows, if torque == 0.0 { 0.0 } else { torque.signum() })
         }
     };
@@ -128,7 +132,11 @@ impl Shape for LoadArrow {
                 along
             };
             let [near, far] = [GAP, GAP + LENGTH].map(|length| point + length * outwards);
-            let ends = if outwards == along { [near, far] } else { [far, near] };
+            let ends = if outwards == along {
+                [near, far]
+            } else {
+                [far, near]
+            };
             pen.straight_arrow(Layer::Force, ends, Colour::INK, LINE);
             let sides = [(outwards, 0.0), (across(along), 1.0), (-across(along), 1.0)];
             places.extend(Candidate::beside([near, far], &parts, &sides, &gaps));
@@ -140,7 +148,13 @@ impl Shape for LoadArrow {
                 2 => (0.5 * (std::f64::consts::FRAC_PI_2 - QUARTER) - x, QUARTER),
                 _ => (-0.5 * self.turn * ARC - x, self.turn * ARC),
             };
-            pen.arc_arrow(Layer::Force, (point, RADIUS), [start, turn], Colour::INK, LINE);
+            pen.arc_arrow(
+                Layer::Force,
+                (point, RADIUS),
+                [start, turn],
+                Colour::INK,
+                LINE,
+            );
             places.extend(Candidate::around(point, RADIUS + 2.0));
         }
         pen.name_load(&self.name, places);
