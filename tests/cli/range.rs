@@ -163,7 +163,7 @@ fn a_dead_point_of_one_body_names_its_link_or_cylinder() {
     "#;
     let told = range("linked.toml", linked);
     let limit = ((0.25 + 4.0 - 1.8_f64.powi(2)) / 2.0).acos().to_degrees();
-    let line = format!("{limit:.8}");
+    let line = format!("{limit:.10} deg");
     assert!(told.contains(&line), "{line}: {told}");
     let line = "dead point, where body `lever` and joint `rod` line up\n";
     assert_eq!(told.matches(line).count(), 2, "{told}");
