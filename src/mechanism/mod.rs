@@ -44,6 +44,8 @@ pub use crate::unit::{Dimension, DisplayUnit, Unit};
 pub use coordinate::{Coordinate, CoordinateKind};
 pub use derived::DerivedMeasure;
 pub use diagnostic::{Diagnostic, Label, Severity};
+#[cfg(feature = "page")]
+pub(crate) use expression::constant;
 pub use expression::{Expression, ExpressionError, Variable};
 pub use force::{Force, ForceComponent, ForceLaw, Load, Spring};
 pub use id::{BodyId, DriverId, MarkerId, ParameterId};

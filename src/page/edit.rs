@@ -3,7 +3,7 @@
 use toml_edit::{Array, DocumentMut, Item, TableLike, TomlError, Value};
 
 use crate::kinematics::Pose;
-use crate::mechanism::{DriverSource, Mechanism};
+use crate::mechanism::{DriverSource, Mechanism, constant};
 
 /// A text that is no mechanism file.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -78,12 +78,29 @@ fn table(item: Option<&mut Item>) -> Result<&mut dyn TableLike, EditError> {
         .ok_or(EditError::Table)
 }
 
-/// Sets a value of a table; a comment behind the old one stays.
-fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
+/// Sets a value of a table; a comment behind the old one stays, and its unit.
+fn set(table: &mut dyn TableLike, key: &str, value: Value) {
     if let Some(Item::Value(old)) = table.get_mut(key) {
+        let in_unit = value.as_float().and_then(|number| in_unit_of(old, number));
+        let mut value = in_unit.unwrap_or(value);
         *value.decor_mut() = old.decor().clone();
         *old = value;
     } else {
         table.insert(key, Item::Value(value));
     }
+}
+
+/// Returns a number in the unit of an old value, if that has one: `"50*mm"` after `"40*mm"`. It is
+/// rounded to twelve digits where these are enough.
+fn in_unit_of(old: &Value, value: f64) -> Option<Value> {
+    /// Units in the last place of the value by which product and quotient can miss it.
+    const NEAR: f64 = 4.0 * f64::EPSILON;
+    let (number, unit) = old.as_str()?.split_once('*')?;
+    number.trim().parse::<f64>().ok()?;
+    let factor = constant(unit.trim())?;
+    let number = value / factor;
+    let round = format!("{number:.11e}").parse().ok()?;
+    let is_near = |number: &f64| (number * factor - value).abs() <= NEAR * value.abs();
+    let shown = Some(round).filter(is_near).unwrap_or(number);
+    Some(format!("{shown}*{}", unit.trim()).into())
 }

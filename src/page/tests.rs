@@ -192,6 +192,28 @@ fn a_saved_file_assembles_at_the_pose() {
 }
 
 #[test]
+fn values_keep_their_units() {
+    let text = FOUR_BAR.replace(
+        "base           = { value = 0.40,",
+        "base = { value = \"40 * cm\",",
+    );
+    assert_ne!(text, FOUR_BAR);
+    let mut session = open(&text);
+    session.set(parameter(&session, "base"), 0.3825, false);
+    session.drive(DriverId(0), 81.3_f64.to_radians());
+    let text = session.text().expect("the file was read");
+    assert!(text.contains("value = \"38.25*cm\","), "{text}");
+    assert!(text.contains("start = \"81.3*deg\""), "{text}");
+    // Digits that no unit rounds stay.
+    session.set(parameter(&session, "base"), 0.4 + 1e-15, false);
+    let text = session.text_with_parameters().expect("the file was read");
+    let again = open(&text);
+    let base = parameter(&again, "base");
+    let [set, read] = [&session, &again].map(|s| s.pose().parameters[base.index()]);
+    assert!((set - read).abs() <= 4.0 * f64::EPSILON * 0.4, "{text}");
+}
+
+#[test]
 fn time_runs_both_ways() {
     let text = FOUR_BAR.replace("start = \"60*deg\"", "motion = \"60*deg + 2*t\"");
     let mut session = open(&text);

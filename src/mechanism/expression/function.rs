@@ -14,6 +14,12 @@ pub(in crate::mechanism) const CONSTANTS: [(&str, f64); 6] = [
     ("inch", 0.0254),
 ];
 
+/// Returns the value of a constant.
+pub(crate) fn constant(name: &str) -> Option<f64> {
+    let known = CONSTANTS.iter().find(|(constant, _)| *constant == name);
+    known.map(|(_, value)| *value)
+}
+
 /// Function of two arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Binary {

@@ -21,6 +21,8 @@ mod tests;
 
 pub use error::ExpressionError;
 use function::Binary;
+#[cfg(feature = "page")]
+pub(crate) use function::constant;
 pub(super) use function::{CONSTANTS, function_names};
 pub(super) use parse::{Parsed, Scope};
 

@@ -2,7 +2,7 @@
 
 use super::dimension::{Clash, Dimensions};
 use super::error::ExpressionError;
-use super::function::{CONSTANTS, FUNCTIONS, Function};
+use super::function::{CONSTANTS, FUNCTIONS, Function, constant};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::{self, NameTable};
@@ -193,7 +193,7 @@ impl<'a> Parser<'a> {
     /// Parses a constant, a parameter, the variable, or a function with its arguments.
     fn parse_name(&mut self, name: &str, span: Span) -> Result<Span, ExpressionError> {
         let called = self.token.kind == TokenKind::Symbol(b'(');
-        let constant = CONSTANTS.iter().find(|(constant, _)| *constant == name);
+        let constant = constant(name);
         let operation = if let Some(function) = Function::by_name(name) {
             if called {
                 return self.parse_call(function, span);
@@ -202,8 +202,8 @@ impl<'a> Parser<'a> {
                 ExpressionError::new(span, format!("`{name}` is a function"))
                     .help(format!("write `{name}(…)`")),
             );
-        } else if let Some((_, value)) = constant {
-            Operation::Number(*value)
+        } else if let Some(value) = constant {
+            Operation::Number(value)
         } else if let Some(variable) = self.variable(name) {
             if self.scope.parameters.get(name).is_some() {
                 let message = format!("`{name}` is both a parameter and the variable here");
