@@ -200,7 +200,7 @@ impl CoupledBlock {
             equations, test, ..
         } = self;
         for (local, &row) in equations.rows.iter().enumerate() {
-            let Some(bend) = equations.bend(local, state, bounds) else {
+            let Some(bend) = equations.bend(local, state, bounds, false) else {
                 return false;
             };
             let (mut own, mut known) = (0.0, 0.0);
