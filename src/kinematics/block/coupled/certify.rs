@@ -70,7 +70,7 @@ impl CoupledBlock {
         step: &mut Step<'_>,
     ) -> Result<(), Rejected> {
         let holds = step.bounds.may_reuse
-            && (self.certify_in_box(state, step) || self.certify_in_segment(state, step));
+            && (self.certify_in_tube(state, step) || self.certify_in_segment(state, step));
         if holds {
             self.write_bounds(state, step);
             return Ok(());
@@ -100,7 +100,7 @@ impl CoupledBlock {
             if self.test.inverse.is_empty() {
                 self.lay_segment(state, step, contraction);
             } else {
-                self.make_box(state, step, contraction);
+                self.make_tube(state, step, contraction);
             }
         }
         step.bounds.require(step_ratio(contraction).min(1.0))
