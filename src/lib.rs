@@ -32,7 +32,7 @@
 //! | `cli` | the commands of the program `biela` |
 //!
 //! Each layer uses only layers above it in this table. `drawing`, `page`, `fmi` and `cli` are
-//! features of these names.
+//! features of these names; `png` adds pictures in this format to `drawing`.
 //!
 //! # Motion
 //!

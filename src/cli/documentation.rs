@@ -70,7 +70,8 @@ pub(super) fn documents(
     solver.restore(home.pose());
     let scene = Scene::new(&mut solver, true);
     let sheet = Sheet::small(&scene, &solver.pose().q);
-    let picture = png::write(&sheet, ICON_WIDTH, false)
+    // In strokes, so that the archive is the same whatever the machine's fonts.
+    let picture = png::write(&sheet, ICON_WIDTH, false, None)
         .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
     let shown = show(&mut solver).map_err(refuse)?;
     let mut documents = vec![

@@ -26,7 +26,7 @@ use crate::mechanism::Mechanism;
 /// it can reach and its `min` and `max` permit. With --driver, --from or --to they cover the range
 /// of one driver.
 ///
-/// The same file gives the same picture.
+/// The same file gives the same picture; a PNG has its texts in the machine's sans-serif font.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:\n  \
         biela draw four_bar.toml --drive 'crank_angle = 120*deg' -o four_bar.svg\n  \

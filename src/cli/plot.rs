@@ -9,7 +9,7 @@ use super::motion::Motion;
 use super::picture::Format;
 use super::recorder::Recorder;
 use crate::drawing::{Axis, COLOURS, Chart, Line, Panel, Sheet};
-use crate::mechanism::{BodyId, Mechanism, Unit};
+use crate::mechanism::{BodyId, Dimension, Mechanism, Unit};
 use crate::mechanism::{Order, Signal};
 
 /// Largest number of bodies whose lines can be told apart.
@@ -236,18 +236,21 @@ pub(super) fn varies(values: &[f64]) -> bool {
 
 /// Returns the axis for quantities of a unit, with its display unit.
 pub(super) fn axis(unit: Unit) -> Axis {
-    let label = match (unit.dimension.rad, unit.dimension.s) {
+    let Dimension { kg, m, s, rad } = unit.dimension;
+    let label = match (kg, m, s, rad) {
         _ if unit == Unit::NEWTON => "force",
         _ if unit == Unit::NEWTON_METRE => "torque",
         _ if unit == Unit::WATT => "power",
         _ if unit == Unit::JOULE => "energy",
-        _ if unit.dimension.kg > 0 => "inertia",
-        (0, 0) => "position",
-        (0, -1) => "velocity",
-        (0, _) => "acceleration",
-        (_, 0) => "angle",
-        (_, -1) => "angular velocity",
-        _ => "angular acceleration",
+        (1, _, 0, _) => "inertia",
+        (0, 1, 0, 0) => "position",
+        (0, 1, -1, 0) => "velocity",
+        (0, 1, -2, 0) => "acceleration",
+        (0, 0, 0, 1) => "angle",
+        (0, 0, -1, 1) => "angular velocity",
+        (0, 0, -2, 1) => "angular acceleration",
+        // A computed measure, such as a ratio.
+        _ => "value",
     };
     let shown = unit.display.map_or(unit.name, |display| display.name);
     Axis {

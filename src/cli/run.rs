@@ -250,25 +250,43 @@ fn note_of_rest(mechanism: &Mechanism, scenario: &Scenario) -> Option<Message> {
     if scenario.signals.has_drivers() || scenario.mechanism.drivers.iter().any(moves) {
         return None;
     }
-    let mut examples = mechanism.drivers.iter().filter_map(example);
+    let duration = mechanism.simulation.stop - mechanism.simulation.start;
+    let mut examples = mechanism
+        .drivers
+        .iter()
+        .filter_map(|driver| example(driver, duration));
     let example = examples.next().unwrap_or_default();
     let note = format!("nothing moves; --drive or --input say how drivers move{example}");
     Some(Message::Note(note))
 }
 
-/// Returns an example of a motion of a driver that is an input.
-fn example(driver: &Driver) -> Option<String> {
+/// Returns an example of a motion of a driver that is an input: to its farther limit within a
+/// duration \[s\], away from its only one, or a turn per second.
+fn example(driver: &Driver, duration: f64) -> Option<String> {
     let DriverSource::Input { start } = driver.source else {
         return None;
     };
-    let motion = if driver.coordinate.kind.is_angle() {
-        format!("{}*deg + 2*pi*t", round(start.to_degrees()))
+    let (value, usual): (fn(f64) -> String, _) = if driver.coordinate.kind.is_angle() {
+        (
+            |angle| format!("{}*deg", round(angle.to_degrees())),
+            "2*pi".to_owned(),
+        )
     } else {
         let velocity = round(0.1 * start.abs().max(0.01));
-        format!("{} + {velocity}*t", round(start))
+        (|length| round(length).to_string(), velocity.to_string())
     };
-    let name = &driver.name;
-    Some(format!(", for example --drive '{name} = {motion}'"))
+    let (sign, speed) = match (driver.min, driver.max) {
+        (Some(min), Some(max)) if start - min > max - start => {
+            ('-', value((start - min) / duration))
+        }
+        (Some(_), Some(max)) => ('+', value((max - start) / duration)),
+        (None, Some(_)) => ('-', usual),
+        (_, None) => ('+', usual),
+    };
+    let (name, start) = (&driver.name, value(start));
+    Some(format!(
+        ", for example --drive '{name} = {start} {sign} {speed}*t'"
+    ))
 }
 
 /// Rounds to six digits.

@@ -4,6 +4,7 @@ use super::force_place::{ForcePlace, force_arrows};
 use super::scene::Scene;
 use super::sheet::Sheet;
 use super::sweep::{follow, spread, sweep, usual_driver};
+use super::symbol::Symbol;
 use crate::kinematics::{Error, InstantCentre, Rates, Solver};
 use crate::mechanism::{BodyId, DriverId, Jet};
 
@@ -88,7 +89,12 @@ impl Diagram {
             scene.notes.extend(note);
             scene.add_instant_centres(&centres, q, mechanism.length_display());
         }
-        scene.symbols.extend(force_arrows(&self.forces));
+        if !self.forces.is_empty() {
+            // Arrows of the forces' sizes take the place of their symbols.
+            let is_load = |symbol: &Symbol| matches!(symbol, Symbol::LoadArrow(_));
+            scene.symbols.retain(|symbol| !is_load(symbol));
+            scene.symbols.extend(force_arrows(&self.forces));
+        }
         let poses = spread(&motion, mechanism.bodies.len(), self.poses);
         Ok(Sheet::with_poses(&scene, q, &poses))
     }

@@ -1,4 +1,5 @@
-//! Letters made of strokes, as a plotter or a stencil draws them: no font is needed.
+//! Letters made of strokes, as a plotter or a stencil draws them: no font is needed. Their widths
+//! are those of all texts, whatever the font.
 //!
 //! The proportions are about those of lettering on technical drawings: capitals 10 units high,
 //! small letters 7, descenders 3. Two digits are a point, the first its x, the second
@@ -156,12 +157,7 @@ fn curve(stroke: &str) -> Outline {
         segments.push(match control {
             _ if segments.is_empty() => Segment::Move(end),
             None => Segment::Line(end),
-            // A quadratic curve as a cubic one.
-            Some(control) => Segment::Curve([
-                at + 2.0 / 3.0 * (control - at),
-                end + 2.0 / 3.0 * (control - end),
-                end,
-            ]),
+            Some(control) => Segment::quadratic(at, control, end),
         });
         at = end;
         control = is_control.then_some(point);

@@ -44,6 +44,7 @@ mod layout;
 mod lettering;
 mod outline;
 mod palette;
+#[cfg(feature = "png")]
 pub mod png;
 mod scene;
 mod sheet;
@@ -51,6 +52,8 @@ pub mod svg;
 mod sweep;
 pub mod symbol;
 mod ticks;
+#[cfg(feature = "png")]
+mod typeface;
 
 pub use anchor::{Anchor, Frame};
 pub use chart::{Axis, COLOURS, Chart, Line, Panel};
@@ -61,3 +64,5 @@ pub use scene::Scene;
 pub use sheet::Sheet;
 pub use sweep::usual_driver;
 pub use symbol::Symbol;
+#[cfg(feature = "png")]
+pub use typeface::Typeface;

@@ -18,6 +18,14 @@ pub(super) enum Segment {
     Close,
 }
 
+impl Segment {
+    /// Returns a quadratic Bézier curve.
+    pub(super) fn quadratic(start: Point, control: Point, end: Point) -> Self {
+        let towards = |from: Point| from + 2.0 / 3.0 * (control - from);
+        Self::Curve([towards(start), towards(end), end])
+    }
+}
+
 /// One or several lines, open or closed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outline(pub(super) Vec<Segment>);

@@ -12,6 +12,7 @@ use super::lettering;
 use super::outline::{Outline, Segment};
 use super::palette::Colour;
 use super::sheet::{CAPITALS, Sheet};
+use super::typeface::{Typeface, letters};
 
 /// Width of the strokes of letters.
 const LETTER_STROKE: f64 = 1.15;
@@ -22,9 +23,15 @@ pub const MOST_PIXELS: u32 = 16_384;
 /// Returns the drawing as a PNG file `width` pixels wide, on white or transparent; `None` for a
 /// picture without pixels or with more than [`MOST_PIXELS`] along a side.
 ///
-/// Letters are made of strokes: no font is needed.
+/// Texts are in the typeface given, each as wide as in an SVG. Without one their letters are made
+/// of strokes, and the same drawing gives the same bytes on all machines.
 #[must_use]
-pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
+pub fn write(
+    sheet: &Sheet,
+    width: u32,
+    transparent: bool,
+    typeface: Option<&Typeface>,
+) -> Option<Vec<u8>> {
     let scale = f64::from(width) / sheet.width;
     let height = (scale * sheet.height).round() as u32;
     if width.max(height) > MOST_PIXELS {
@@ -65,17 +72,26 @@ pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> Option<Vec<u8>> {
             pixels.stroke_path(&path, &paint, &stroke_style, transform, None);
         }
     }
-    let letters = tiny_skia::Stroke {
+    let face = typeface.and_then(Typeface::face);
+    let stroke = tiny_skia::Stroke {
         width: LETTER_STROKE as f32,
         line_cap: LineCap::Round,
         line_join: LineJoin::Round,
         ..tiny_skia::Stroke::default()
     };
     for text in &sheet.texts {
-        let strokes = lettering::strokes(&text.content, text.start, CAPITALS);
-        if let Some(path) = path(&strokes) {
-            let paint = paint(text.colour, 1.0);
-            pixels.stroke_path(&path, &paint, &letters, transform, None);
+        let paint = paint(text.colour, 1.0);
+        let outline = match &face {
+            Some(face) => letters(face, text),
+            None => lettering::strokes(&text.content, text.start, CAPITALS),
+        };
+        let Some(path) = path(&outline) else {
+            continue;
+        };
+        if face.is_some() {
+            pixels.fill_path(&path, &paint, FillRule::Winding, transform, None);
+        } else {
+            pixels.stroke_path(&path, &paint, &stroke, transform, None);
         }
     }
     Some(encode(&pixels))

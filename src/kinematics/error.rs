@@ -279,8 +279,7 @@ fn list(names: &[String], last: &str) -> String {
     }
 }
 
-/// Says that bodies line up, with `almost` before the verb; one alone lines up with its driver, or
-/// with a link.
+/// Says that bodies, and what holds one of them, line up, with `almost` before the verb.
 pub(crate) fn in_line(bodies: &[String], almost: &str) -> String {
     match bodies {
         [body] => format!("{body} {almost}lines up with what holds it"),

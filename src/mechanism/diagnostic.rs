@@ -123,6 +123,7 @@ codes! {
     BAD_EXPRESSION = "bad-expression",
     BAD_PROFILE = "bad-profile",
     BAD_TABLE = "bad-table",
+    DECIMAL_COMMA = "decimal-comma",
     DRIVER_SOURCE = "driver-source",
     DUPLICATE_KEY = "duplicate-key",
     DUPLICATE_NAME = "duplicate-name",

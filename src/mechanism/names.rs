@@ -85,12 +85,21 @@ impl<'a, T: Copy> NameTable<'a, T> {
     /// Returns help for a name that is neither in the table nor among `further` legal ones: the
     /// nearest of all these, otherwise the table's names if they are few.
     pub(super) fn help(&self, name: &str, further: &[&str]) -> Option<String> {
+        help(name, &self.candidates()?, further)
+    }
+
+    /// Returns help for such a name, if one of the table or of `further` is near.
+    pub(super) fn near(&self, name: &str, further: &[&str]) -> Option<String> {
+        did_you_mean(name, &[&self.candidates()?, further].concat())
+    }
+
+    /// Returns the names in order, `None` after too many suggestions.
+    fn candidates(&self) -> Option<Vec<&'a str>> {
         let left = self.suggestions_left.get().checked_sub(1)?;
         self.suggestions_left.set(left);
         let mut candidates: Vec<&str> = self.meanings.keys().copied().collect();
-        // A hash map has no order of its own; the help must have one.
         candidates.sort_unstable();
-        help(name, &candidates, further)
+        Some(candidates)
     }
 }
 

@@ -224,3 +224,14 @@ fn the_readme_shows_what_its_command_writes() {
     );
     assert!(kept.len() < 60_000, "{}", kept.len());
 }
+
+#[test]
+fn plots_name_what_a_computed_measure_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("advantage.svg");
+    let arguments = ["run", "mechanisms/toggle_press.toml", "--plot"];
+    let more = ["--drive", "crank_angle = pi - t", "-v", "advantage"];
+    biela(&[&arguments[..], &[path.to_str().unwrap()], &more].concat()).success();
+    let svg = std::fs::read_to_string(path).unwrap();
+    assert!(svg.contains(">value [1]<"));
+}

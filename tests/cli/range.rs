@@ -124,3 +124,47 @@ fn bounds_that_look_like_degrees_are_warned_of() {
     let arguments = ["draw", "mechanisms/four_bar.toml", "-o", "-", "--to", "90"];
     assert_eq!(stderr(&biela(&arguments).success()), warning("--to"));
 }
+
+/// The cylinder reaches from the difference to the sum of the distances 2 m and 0.5 m of its ends
+/// from the pin. The link of 1.5 m cannot reach a lever of 0.3 m on the other side of its pin at
+/// 2 m once the crank of 0.5 m has its end 1.8 m away: cos u = (0.25 + 4 - 1.8²)/2.
+#[test]
+fn a_dead_point_of_one_body_names_its_link_or_cylinder() {
+    let folder = tempfile::tempdir().unwrap();
+    let range = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        stdout(&biela(&["range", path.to_str().unwrap()]).success())
+    };
+    let tipper = r#"
+        format = 1
+        name = "tipper"
+        ground = { markers = { hinge = [0, 0], foot = [2, 0] } }
+        bodies.bed.markers = { hinge = [0, 0], end = [0, 0.5] }
+        joints.hinge = { type = "revolute", markers = ["ground.hinge", "bed.hinge"] }
+        drivers.cylinder = { coordinate = "distance", markers = ["ground.foot", "bed.end"], start = 2.1 }
+    "#;
+    let told = range("tipper.toml", tipper);
+    for limit in ["1.5", "2.5"] {
+        let line =
+            format!("{limit} m: dead point, where body `bed` and driver `cylinder` line up\n");
+        assert!(told.contains(&line), "{told}");
+    }
+    let linked = r#"
+        format = 1
+        name = "linked"
+        ground = { markers = { A = [0, 0], D = [2, 0] } }
+        bodies.crank.markers = { A = [0, 0], B = [0.5, 0] }
+        bodies.lever = { markers = { D = [0, 0], C = [0.3, 0] }, estimate = [2, 0, 1.5] }
+        joints.A = { type = "revolute", markers = ["ground.A", "crank.A"] }
+        joints.D = { type = "revolute", markers = ["ground.D", "lever.D"] }
+        joints.rod = { type = "link", markers = ["crank.B", "lever.C"], length = 1.5 }
+        drivers.turn = { coordinate = "angle", markers = ["ground.A", "crank.A"], start = 0 }
+    "#;
+    let told = range("linked.toml", linked);
+    let limit = ((0.25 + 4.0 - 1.8_f64.powi(2)) / 2.0).acos().to_degrees();
+    let line = format!("{limit:.10} deg");
+    assert!(told.contains(&line), "{line}: {told}");
+    let line = "dead point, where body `lever` and joint `rod` line up\n";
+    assert_eq!(told.matches(line).count(), 2, "{told}");
+}

@@ -245,3 +245,17 @@ fn plain_angles_of_more_than_a_turn_are_warned_of() {
         assert_eq!(run("--drive", drive), "", "{drive}");
     }
 }
+
+#[test]
+fn the_motion_proposed_for_a_driver_with_limits_keeps_to_them() {
+    for (name, proposal) in [
+        ("bicycle_suspension", "travel = -0.04 + 0.06*t"),
+        ("excavator_arm", "boom_cylinder = 2.3 - 0.3*t"),
+        ("hatch", "opening = -40*deg + 32.5*deg*t"),
+        ("four_bar", "crank_angle = 60*deg + 2*pi*t"),
+    ] {
+        let file = format!("mechanisms/{name}.toml");
+        let still = stderr(&biela(&["run", &file, "-o", "-"]).success());
+        assert!(still.contains(&format!("--drive '{proposal}'")), "{still}");
+    }
+}

@@ -11,6 +11,7 @@ mod charts;
 mod diagrams;
 mod gallery;
 mod links;
+mod loads;
 mod pictures;
 mod scenes;
 mod sheets;

@@ -11,6 +11,10 @@ use crate::mechanism::{DriverId, Jet, shown};
 /// A largest value and the driver's value there.
 type Largest = Option<(f64, f64)>;
 
+/// Part of the largest effort that a reaction of rounding alone has at most, such as that of a pin
+/// beside the one that a spring and its driver load.
+const ROUNDING: f64 = 1e-12;
+
 /// Adds the largest effort of a driver that moves at a constant speed \[m/s or rad/s\] over its
 /// range, and the largest force in a joint. The pose is restored. Poses without forces, such as
 /// dead points, are left out.
@@ -72,12 +76,15 @@ pub(super) fn describe_largest(
         let unit = if kind.is_angle() { "rad/s" } else { "m/s" };
         format!("at {} {unit}", shown(speed))
     };
+    let most = effort.map_or(0.0, |(effort, _)| effort.abs());
     if let Some((effort, at)) = effort {
         let (effort, unit) = (shown(effort), kind.effort_unit().name);
         let at = with_unit(kind, at);
         let _ = writeln!(text, "  {moving}, largest effort {effort} {unit}, at {at}");
     }
-    if let Some((force, at, joint)) = reaction {
+    if let Some((force, at, joint)) = reaction
+        && force > ROUNDING * most
+    {
         let (force, at) = (shown(force), with_unit(kind, at));
         let joint = &mechanism.joints[joint].name;
         let _ = writeln!(

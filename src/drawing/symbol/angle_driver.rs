@@ -1,6 +1,6 @@
 //! Drivers of angles: arcs with an arrow.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 use super::*;
 
@@ -32,7 +32,7 @@ impl Shape for AngleDriver {
         pen.attach(Attachment::of(self.to));
         let reference = self.from.placed(pen.q).angle;
         let towards = self.to.placed(pen.q).angle;
-        let (center, axis) = pen.place(self.to);
+        let (center, _) = pen.place(self.to);
         let turn = (towards - reference) % TAU;
         // The arrow alone can turn with its body.
         let seen = !pen.moving && (SEEN..=TAU - SEEN).contains(&turn.abs());
@@ -44,18 +44,13 @@ impl Shape for AngleDriver {
         } else {
             (towards - 0.5 * SMALL_ARC, SMALL_ARC)
         };
-        // The arrow's length belongs to the arc; on the sheet angles count clockwise.
-        let tip = if seen {
-            axis
-        } else {
-            on_sheet_direction(start + turn)
-        };
-        let ahead = turn.signum();
-        let shaft = turn - ahead * ARROW[0] / ARC;
-        let arc = Outline::arc(center, ARC, -start, -shaft);
-        pen.line(Layer::Driver, arc, Colour::DRIVER, LINE);
-        let chord = on_sheet_direction(start + turn + ahead * (FRAC_PI_2 - 0.5 * ARROW[0] / ARC));
-        pen.arrow(center + ARC * tip, chord);
+        pen.arc_arrow(
+            Layer::Driver,
+            (center, ARC),
+            [start, turn],
+            Colour::DRIVER,
+            LINE,
+        );
         let mut candidates = Vec::new();
         for (part, cost) in [(0.5, 0.0), (0.7, 1.0), (0.3, 1.0), (0.9, 3.0), (0.1, 3.0)] {
             let side = on_sheet_direction(start + part * turn);

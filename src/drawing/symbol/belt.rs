@@ -67,6 +67,8 @@ impl Shape for Belt {
 
     fn extent(&self) -> Vec<Disc> {
         let wheels = self.centers.into_iter().zip(self.radii);
-        wheels.map(|(center, radius)| Disc::new(center, radius)).collect()
+        wheels
+            .map(|(center, radius)| Disc::new(center, radius))
+            .collect()
     }
 }

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
 use super::*;
-use crate::mechanism::{Coordinate, CoordinateKind, Driver, Force, Load, MarkerId, Mechanism};
+use crate::mechanism::{
+    Coordinate, CoordinateKind, Driver, Force, Load, MarkerId, Mechanism, ParameterId,
+};
 
 /// Returns the symbols of a mechanism at the pose q, for a motion through this pose.
 pub(in crate::drawing) fn compose(
@@ -190,20 +192,45 @@ impl<'a> Composer<'a> {
         }
     }
 
-    /// Composes a force along a length; torques, loads and forces at markers have no
-    /// symbol.
+    /// Composes the symbol of a force: a spring, a damper, a cylinder, or an arrow.
     fn force(&mut self, force: &Force) {
-        if let Load::Coordinate { coordinate, law } = &force.load
-            && !coordinate.kind.is_angle()
-        {
-            let ends = [coordinate.from, coordinate.to].map(|marker| self.anchor(marker));
-            let axis = self.axis(coordinate);
-            let law = law.as_ref();
-            let is_elastic = law.is_some_and(|law| law.spring.is_some());
-            let is_damped = law.is_some_and(|law| law.damping.is_some());
+        let parameters = self.parameters;
+        let parameter = |p: ParameterId| parameters[p.index()];
+        let (coordinate, law) = match &force.load {
+            Load::Coordinate { coordinate, law } => (coordinate, law.as_ref()),
+            Load::Marker { marker, axes, law } => {
+                let at = self.anchor(*marker);
+                let axes = axes.map_or(Anchor::origin(None), |axes| self.anchor(axes));
+                let sizes = law.as_ref().map(|law| {
+                    let law = law.each_ref();
+                    move |time| law.map(|size| size.evaluate(&parameter, time))
+                });
+                let sizes = sizes
+                    .as_ref()
+                    .map(|sizes| sizes as &dyn Fn(f64) -> [f64; 3]);
+                return load::compose_at(self, &force.name, [at, axes], sizes);
+            }
+        };
+        let ends = [coordinate.from, coordinate.to].map(|marker| self.anchor(marker));
+        let axis = self.axis(coordinate);
+        let is_elastic = law.is_some_and(|law| law.spring.is_some());
+        let is_damped = law.is_some_and(|law| law.damping.is_some());
+        let start = self.mechanism.simulation.start;
+        match coordinate.kind {
+            CoordinateKind::Angle if is_elastic || is_damped => self.add(Torsion {
+                at: ends[1],
+                is_elastic,
+                is_damped,
+            }),
             // A cylinder shows an actuator or a gas spring, which pushes along itself.
-            if is_elastic || is_damped || axis.is_none() {
+            CoordinateKind::Distance => spring::compose(self, ends, axis, [is_elastic, is_damped]),
+            CoordinateKind::X | CoordinateKind::Y if is_elastic || is_damped => {
                 spring::compose(self, ends, axis, [is_elastic, is_damped]);
+            }
+            CoordinateKind::Angle | CoordinateKind::X | CoordinateKind::Y => {
+                let size = law.map(|law| move |c| law.evaluate(&parameter, start, c));
+                let size = size.as_ref().map(|size| size as &dyn Fn([f64; 2]) -> f64);
+                load::compose_along(self, &force.name, ends, axis, size);
             }
         }
     }

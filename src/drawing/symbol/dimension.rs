@@ -154,7 +154,12 @@ impl Shape for Dimension {
         ];
         let normal = across(unit(ends[1] - ends[0]));
         let sides = [(normal, 0.0), (-normal, 0.0)];
-        let gaps = [(3.0, 0.0), (BAR + 3.0, 1.0), (BAR + 12.0, 5.0), (BAR + 24.0, 12.0)];
+        let gaps = [
+            (3.0, 0.0),
+            (BAR + 3.0, 1.0),
+            (BAR + 12.0, 5.0),
+            (BAR + 24.0, 12.0),
+        ];
         let places = Candidate::beside(ends, &parts, &sides, &gaps);
         if !self.text.is_empty() {
             pen.name_length(&self.text, self.body, places);

@@ -68,7 +68,9 @@ pub(super) fn behind(composer: &Composer, face: &Face, points: &[[f64; 2]]) -> V
         composer.mechanism.joints.iter().any(|joint| {
             let ends = [joint.from, joint.to].map(|marker| composer.anchor(marker));
             matches!(joint.kind, JointKind::Revolute | JointKind::Link { .. })
-                && ends.iter().any(|end| end.body == along.body && end.is_at(&point))
+                && ends
+                    .iter()
+                    .any(|end| end.body == along.body && end.is_at(&point))
         })
     };
     let on_face = |point: &[f64; 2]| along.has_on_axis(range, Point::from(*point));

@@ -59,9 +59,7 @@ impl Shape for ForceArrow {
         let way = LONGEST * Point::new(x, -y);
         let (tip, along) = (from + way, unit(way));
         let colour = self.kind.colour();
-        let shaft = Outline::line(&[from, tip - 0.8 * ARROW[0].min(way.norm()) * along]);
-        pen.line(Layer::Force, shaft, colour, WIDTH);
-        pen.force_tip(tip, along, colour);
+        pen.straight_arrow(Layer::Force, [from, tip], colour, WIDTH);
         let sides = [(along, 0.0), (across(along), 1.0), (-across(along), 1.0)];
         let gaps = [(4.0, 0.0), (12.0, 4.0), (24.0, 10.0)];
         let parts = [(1.0, 0.0), (0.6, 3.0)];

@@ -59,7 +59,9 @@ pub(super) fn places(composer: &Composer) -> Vec<Place> {
         places.insert(index, place);
     }
     let outputs = composer.mechanism.outputs.markers.iter();
-    let taken: Vec<String> = outputs.map(|m| point_name(composer.mechanism, *m)).collect();
+    let taken: Vec<String> = outputs
+        .map(|m| point_name(composer.mechanism, *m))
+        .collect();
     let short = |place: &Place| {
         let mut names = place.joints.iter();
         names.find(|name| name.len() <= SHORT).cloned()
@@ -97,7 +99,9 @@ pub(super) fn compose(composer: &mut Composer, places: &[Place]) -> Vec<String> 
     if places.iter().all(is_own) {
         return Vec::new();
     }
-    let key = places.iter().map(|place| format!("{}: {}", place.name, place.joints.join(", ")));
+    let key = places
+        .iter()
+        .map(|place| format!("{}: {}", place.name, place.joints.join(", ")));
     vec![key.collect::<Vec<_>>().join("; ")]
 }
 

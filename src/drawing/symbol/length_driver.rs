@@ -26,8 +26,6 @@ const BESIDE: f64 = 21.0;
 /// Length of an extension line beyond the dimension line, and its gap from the point.
 const EXTENSION: f64 = 4.0;
 const EXTENSION_GAP: f64 = PIN + 2.0;
-/// Distance from the tip of an arrow to the line's end inside it.
-const IN_ARROW: f64 = 0.8 * ARROW[0];
 
 /// Composes the driver of a length between two points; `guided` if a joint lies between them.
 pub(super) fn compose(
@@ -100,7 +98,13 @@ fn draw_dimension(pen: &mut Pen, line: Line, has_extensions: bool) {
         [Point::new(IN_ARROW, 0.0), Point::zeros()],
         [Point::new(-IN_ARROW, 0.0), Point::x()],
     ];
-    pen.elastic(Layer::Driver, Measure::Length(line), shaft, Colour::DRIVER, LINE);
+    pen.elastic(
+        Layer::Driver,
+        Measure::Length(line),
+        shaft,
+        Colour::DRIVER,
+        LINE,
+    );
     pen.attach(second);
     pen.arrow(end, forth);
     pen.attach(first);

@@ -78,7 +78,9 @@ impl Shape for Link {
 
     fn extent(&self) -> Vec<Disc> {
         let points = self.points.iter();
-        points.map(|&p| Anchor::on_body(self.body, p).into()).collect()
+        points
+            .map(|&p| Anchor::on_body(self.body, p).into())
+            .collect()
     }
 
     fn shows(&self) -> Option<BodyId> {
@@ -126,7 +128,12 @@ fn places(hull: &[Point]) -> Vec<Candidate> {
         } else {
             normal
         };
-        places.extend(Candidate::beside([*start, end], &parts, &[(out, 0.0)], &gaps));
+        places.extend(Candidate::beside(
+            [*start, end],
+            &parts,
+            &[(out, 0.0)],
+            &gaps,
+        ));
     }
     places
 }

@@ -23,7 +23,7 @@ use crate::mechanism::{
 };
 use composer::Composer;
 use pen::{
-    ARROW, BAR, BLOCK, DASH_DOTS, DASHES, HATCH, LINE, PIN, THIN, colour_of, on_sheet_direction,
+    BAR, BLOCK, DASH_DOTS, DASHES, HATCH, IN_ARROW, LINE, PIN, THIN, colour_of, on_sheet_direction,
 };
 
 pub(super) use composer::{compose, compose_dimensions};
@@ -142,6 +142,8 @@ symbols! { composer, ends:
     angle_driver: AngleDriver;
     length_driver: LengthDriver;
     spring: Spring;
+    torsion: Torsion;
+    load: LoadArrow;
     point: InterestPoint;
     force_arrow: ForceArrow;
     torque_arrow: TorqueArrow;

@@ -1,5 +1,7 @@
 //! The pen that symbols are drawn with.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::*;
 use crate::drawing::anchor::Frame;
 use crate::drawing::attachment::on_sheet;
@@ -14,6 +16,8 @@ pub(super) const PIN: f64 = 4.2;
 pub(super) const BLOCK: [f64; 2] = [34.0, 22.0];
 /// Length and half the width of an arrow.
 pub(super) const ARROW: [f64; 2] = [8.0, 2.9];
+/// Distance from the tip of an arrow to the line's end inside it.
+pub(super) const IN_ARROW: f64 = 0.8 * ARROW[0];
 /// Spacing and depth of hatching.
 pub(super) const HATCH: f64 = 6.0;
 /// Width of a thin line.
@@ -274,9 +278,44 @@ impl<'a> Pen<'a> {
         self.tip(Layer::Driver, tip, along, Colour::DRIVER);
     }
 
-    /// Draws the tip of a force's arrow.
-    pub(super) fn force_tip(&mut self, tip: Point, along: Point, colour: Colour) {
-        self.tip(Layer::Force, tip, along, colour);
+    /// Draws a line from a point to another one, with an arrow there.
+    pub(super) fn straight_arrow(
+        &mut self,
+        layer: Layer,
+        [from, to]: [Point; 2],
+        colour: Colour,
+        width: f64,
+    ) {
+        let way = to - from;
+        let along = unit(way);
+        let shaft = Outline::line(&[from, to - IN_ARROW.min(way.norm()) * along]);
+        self.line(layer, shaft, colour, width);
+        self.tip(layer, to, along, colour);
+    }
+
+    /// Draws an arc about a point, from a direction by an angle, both counter-clockwise, with an
+    /// arrow at its end.
+    pub(super) fn arc_arrow(
+        &mut self,
+        layer: Layer,
+        (center, radius): (Point, f64),
+        [start, turn]: [f64; 2],
+        colour: Colour,
+        width: f64,
+    ) {
+        let ahead = turn.signum();
+        let shaft = turn - ahead * (ARROW[0] / radius).min(turn.abs());
+        // On the sheet angles count clockwise.
+        let arc = Outline::arc(center, radius, -start, -shaft);
+        self.line(layer, arc, colour, width);
+        let end = start + turn;
+        let chord = on_sheet_direction(end + ahead * (FRAC_PI_2 - 0.5 * ARROW[0] / radius));
+        self.tip(
+            layer,
+            center + radius * on_sheet_direction(end),
+            chord,
+            colour,
+        );
     }
 
     fn tip(&mut self, layer: Layer, tip: Point, along: Point, colour: Colour) {
@@ -299,6 +338,15 @@ impl<'a> Pen<'a> {
     pub(super) fn name_force(&mut self, size: &str, colour: Colour, candidates: Vec<Candidate>) {
         let label = self.label(size, colour.shade(0.8), candidates);
         self.point_labels.push(label);
+    }
+
+    /// Names a load at the best of these places, if there is room.
+    pub(super) fn name_load(&mut self, name: &str, candidates: Vec<Candidate>) {
+        let label = self.label(name, Colour::INK, candidates);
+        self.point_labels.push(Label {
+            optional: true,
+            ..label
+        });
     }
 
     /// Names a point at the best of these places.

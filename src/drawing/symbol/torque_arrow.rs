@@ -29,16 +29,9 @@ impl Shape for TorqueArrow {
         pen.attach(Attachment::of(self.at));
         let (center, _) = pen.place(self.at);
         let colour = self.kind.colour();
-        let turn = WIDEST * self.part;
-        let ahead = turn.signum();
-        // From below; on the sheet angles count clockwise.
-        let start = -FRAC_PI_2;
-        let shaft = turn - ahead * (0.8 * ARROW[0] / ARC).min(turn.abs());
-        let arc = Outline::arc(center, ARC, -start, -shaft);
-        pen.line(Layer::Force, arc, colour, WIDTH);
-        let tip = center + ARC * on_sheet_direction(start + turn);
-        let chord = on_sheet_direction(start + turn + ahead * (FRAC_PI_2 - 0.5 * ARROW[0] / ARC));
-        pen.force_tip(tip, chord, colour);
+        // From below.
+        let arc = [-FRAC_PI_2, WIDEST * self.part];
+        pen.arc_arrow(Layer::Force, (center, ARC), arc, colour, WIDTH);
         let places = Candidate::around(center, ARC + 2.0).collect();
         pen.name_force(&self.size, colour, places);
     }

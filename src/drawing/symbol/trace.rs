@@ -118,6 +118,8 @@ impl Shape for Trace {
 
     fn extent(&self) -> Vec<Disc> {
         let points = self.points.iter();
-        points.map(|&p| Anchor::origin(None).moved_to(p).into()).collect()
+        points
+            .map(|&p| Anchor::origin(None).moved_to(p).into())
+            .collect()
     }
 }

@@ -48,9 +48,7 @@ pub(super) fn compose(
 pub(super) fn add(composer: &mut Composer, at: Anchor, radius: f64, ring: bool) {
     let known = composer.symbols.iter().any(|symbol| match symbol {
         Symbol::Wheel(other) => {
-            other.at == at
-                && (other.radius - radius).abs() < 1e-9 * radius
-                && other.ring == ring
+            other.at == at && (other.radius - radius).abs() < 1e-9 * radius && other.ring == ring
         }
         _ => false,
     });

@@ -6,7 +6,7 @@ use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve, Progress, Start};
-use crate::mechanism::{DriverId, DriverSource, Jet};
+use crate::mechanism::{DriverId, DriverSource};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
 /// input counts as continuous: a host's polynomials do not meet exactly.
@@ -152,25 +152,25 @@ impl MechanismModel {
             ..
         } = self;
         for (index, driver) in mechanism.drivers.iter().enumerate() {
-            driver_rates[index] = match &driver.source {
+            let rates = &mut driver_rates[index];
+            match &driver.source {
                 DriverSource::Input { .. } => {
                     let input = &inputs[index];
-                    let DriverRates {
-                        velocity,
-                        acceleration,
-                    } = match interface {
+                    let given = match interface {
                         Interface::ModelExchange => input.given_rates(),
                         Interface::CoSimulation => {
-                            let (rates, sources_now) =
-                                input.rates_after(settings.rule, start, s * h);
-                            sources[index] = sources_now;
-                            rates
+                            let (given, from) = input.rates_after(settings.rule, start, s * h);
+                            sources[index] = from;
+                            given
                         }
                     };
-                    Jet::new(0.0, [velocity, acceleration])
+                    rates.value = 0.0;
+                    rates.derivatives = [given.velocity, given.acceleration];
                 }
-                DriverSource::Motion(_) => solver.motion(DriverId(index), start + s * h),
-            };
+                DriverSource::Motion(_) => {
+                    *rates = solver.motion(DriverId(index), start + s * h);
+                }
+            }
         }
     }
 

@@ -76,27 +76,6 @@ impl<N: Number> Masses<N> {
 }
 
 impl Masses<f64> {
-    /// Adds M q̈ − Q_v − Q of gravity to `demand`, for these velocities and the accelerations of each
-    /// body. Bodies must be turned.
-    #[inline]
-    pub(super) fn add_demand(
-        &self,
-        q_dot: &[f64],
-        q_ddot: impl Fn(usize) -> [f64; 3],
-        demand: &mut [f64],
-    ) {
-        for of_body in &self.bodies {
-            let [_, _, omega] = of(q_dot, of_body.body);
-            let own = of_body.demand(omega, q_ddot(of_body.body), self.gravity);
-            for (demand, own) in demand.as_chunks_mut::<3>().0[of_body.body]
-                .iter_mut()
-                .zip(own)
-            {
-                *demand += own;
-            }
-        }
-    }
-
     /// Checks that gravity and masses have values that they can have.
     ///
     /// # Errors

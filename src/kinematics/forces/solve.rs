@@ -1,5 +1,6 @@
 //! All forces at a pose.
 
+use std::mem;
 use std::sync::Arc;
 
 use super::applied::{AppliedForces, Circumstances};
@@ -8,6 +9,7 @@ use super::quantity::{ForceQuantity, input_places};
 use super::self_stress::SelfStresses;
 use super::wrench::{Contact, ReactionRows};
 use crate::kinematics::block::{BlockState, JacobianFactors};
+use crate::kinematics::configuration::Configuration;
 use crate::kinematics::error::Error;
 use crate::kinematics::model::Model;
 use crate::kinematics::newton::Rejected;
@@ -35,6 +37,8 @@ pub struct Forces {
     pub(super) rows: ReactionRows,
     pub(super) contacts: Vec<Contact>,
     self_stresses: SelfStresses,
+    /// Drivers that are inputs.
+    input_drivers: Vec<usize>,
     pub(super) results: Results,
     work: Work,
 }
@@ -65,8 +69,6 @@ pub(super) struct DriverForces {
 
 #[derive(Debug)]
 struct Work {
-    /// −Q of the forces, one entry per unknown.
-    loads: Vec<f64>,
     /// w, one entry per unknown.
     demand: Vec<f64>,
     /// ∂q/∂u of each driver.
@@ -125,6 +127,9 @@ impl Forces {
             contacts: Contact::all(&mechanism, &rows),
             rows,
             self_stresses: SelfStresses::default(),
+            input_drivers: (0..drivers)
+                .filter(|&driver| mechanism.drivers[driver].motion().is_none())
+                .collect(),
             results: Results {
                 drivers: vec![DriverForces::default(); drivers],
                 multipliers: vec![0.0; system.equations().len()],
@@ -133,7 +138,6 @@ impl Forces {
                 energies: [0.0; 2],
             },
             work: Work {
-                loads: vec![0.0; unknowns],
                 demand: vec![0.0; unknowns],
                 units: vec![vec![0.0; unknowns]; drivers],
                 rates: Rates::new(unknowns),
@@ -193,19 +197,16 @@ impl Forces {
         parts: ForceParts,
     ) -> Result<(), Error> {
         self.set_parameters(state)?;
-        self.solve_loads(state, motion)?;
+        self.apply_forces(state, motion)?;
         if parts.efforts {
             state.refresh(model)?;
             self.work.solve_units(model, state);
-            self.solve_coasting(model, state, motion);
-            self.solve_efforts(motion.driver_rates)?;
-        } else if parts.reactions {
+            self.begin_efforts();
+            self.load_coasting_bodies(model, state, motion);
+            self.end_efforts(motion.driver_rates)?;
+        } else {
             let q_ddot = motion.rates.acceleration();
-            let Work { loads, demand, .. } = &mut self.work;
-            demand.copy_from_slice(loads);
-            let q_dot = motion.rates.velocity();
-            self.masses
-                .add_demand(q_dot, |body| of(q_ddot, body), demand);
+            self.load_bodies(&state.at, motion, |body| of(q_ddot, body), false);
         }
         if parts.reactions {
             self.solve_reactions(model, state)?;
@@ -229,57 +230,54 @@ impl Forces {
         Ok(())
     }
 
-    /// Evaluates the sizes of forces, what they load bodies with, and the energies.
-    fn solve_loads(&mut self, state: &State, motion: KnownMotion<'_>) -> Result<(), Error> {
-        let q_dot = motion.rates.velocity();
-        let mut energies = [0.0, 0.0];
-        // Without forces the loads stay zero.
-        if !self.applied.list.is_empty() {
-            let parameters = &state.pose.parameters;
-            let around = Circumstances {
-                parameter: &|p: ParameterId| parameters[p.index()],
-                time: state.pose.time,
-                inputs: motion.inputs,
-            };
-            self.work.loads.fill(0.0);
-            energies[1] = self.applied.apply(
-                &self.mechanism,
-                &state.at,
-                q_dot,
-                &around,
-                &mut self.results.sizes,
-                &mut self.work.loads,
-            )?;
+    /// Evaluates the sizes of forces, and with them begins w and the energies.
+    fn apply_forces(&mut self, state: &State, motion: KnownMotion<'_>) -> Result<(), Error> {
+        self.work.demand.fill(0.0);
+        self.results.energies = [0.0; 2];
+        if self.applied.list.is_empty() {
+            return Ok(());
         }
-        let gravity = self.masses.gravity;
-        for of_body in &mut self.masses.bodies {
-            let frame = &state.at.frames()[of_body.body];
-            of_body.turn([frame.cos, frame.sin]);
-            let velocity = of(q_dot, of_body.body);
-            let own = of_body.energies(frame.origin.into(), velocity, gravity);
-            energies = [energies[0] + own[0], energies[1] + own[1]];
-        }
-        self.results.energies = energies;
+        let parameters = &state.pose.parameters;
+        let around = Circumstances {
+            parameter: &|p: ParameterId| parameters[p.index()],
+            time: state.pose.time,
+            inputs: motion.inputs,
+        };
+        self.results.energies[1] = self.applied.apply(
+            &self.mechanism,
+            &state.at,
+            motion.rates.velocity(),
+            &around,
+            &mut self.results.sizes,
+            &mut self.work.demand,
+        )?;
         Ok(())
     }
 
-    /// Writes w for the accelerations that only prescribed motions and velocities cause: those of
-    /// inputs are zero.
-    fn solve_coasting(&mut self, model: &mut Model, state: &mut State, motion: KnownMotion<'_>) {
-        let q_dot = motion.rates.velocity();
+    /// Begins the biases, by virtual power, with the share of forces.
+    fn begin_efforts(&mut self) {
+        let Work { demand, units, .. } = &self.work;
+        self.results.drivers.fill(DriverForces::default());
+        if !self.applied.list.is_empty() {
+            for (forces, unit) in self.results.drivers.iter_mut().zip(units) {
+                forces.bias = dot(unit, demand);
+            }
+        }
+    }
+
+    /// Loads the bodies by the accelerations that only prescribed motions and velocities cause, and
+    /// by those of inputs.
+    fn load_coasting_bodies(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        motion: KnownMotion<'_>,
+    ) {
         let drivers = self.mechanism.drivers.iter().zip(motion.driver_rates);
         let mut coasting = drivers.map(|(driver, rates)| match driver.motion() {
             Some(_) => *rates,
             None => Jet::new(0.0, [rates.first(), 0.0]),
         });
-        let Work {
-            loads,
-            demand,
-            driver_rates,
-            rates,
-            ..
-        } = &mut self.work;
-        demand.copy_from_slice(loads);
         if state.has_single_driver()
             && let Some(coasting) = coasting.next()
         {
@@ -290,49 +288,73 @@ impl Forces {
                 let (unit, curvature) = (of(unit, body), of(curvature, body));
                 [0, 1, 2].map(|k| curvature[k] * square + unit[k] * second)
             };
-            self.masses.add_demand(q_dot, q_ddot, demand);
+            self.load_bodies(&state.at, motion, q_ddot, true);
         } else {
-            driver_rates.clear();
-            driver_rates.extend(coasting);
-            solve_rates(model, state, driver_rates, rates);
+            self.work.driver_rates.clear();
+            self.work.driver_rates.extend(coasting);
+            let mut rates = mem::take(&mut self.work.rates);
+            solve_rates(model, state, &self.work.driver_rates, &mut rates);
             let q_ddot = rates.acceleration();
-            self.masses
-                .add_demand(q_dot, |body| of(q_ddot, body), demand);
+            let q_ddot = |body| of(q_ddot, body);
+            self.load_bodies(&state.at, motion, q_ddot, true);
+            self.work.rates = rates;
         }
     }
 
-    /// Solves the efforts by virtual power: bias from w without the accelerations of inputs, whose
-    /// share is then added to effort and w.
-    fn solve_efforts(&mut self, driver_rates: &[Jet]) -> Result<(), Error> {
+    /// Adds the demand of masses to w and the energies, for these accelerations of each body. With
+    /// `efforts`, adds it to the drivers' forces, and to w that for the accelerations of inputs.
+    fn load_bodies(
+        &mut self,
+        at: &Configuration,
+        motion: KnownMotion<'_>,
+        q_ddot: impl Fn(usize) -> [f64; 3],
+        efforts: bool,
+    ) {
         let Work { demand, units, .. } = &mut self.work;
-        let drivers = &mut self.results.drivers;
-        for (forces, unit) in drivers.iter_mut().zip(&*units) {
-            forces.bias = dot(unit, demand);
-            forces.effort = forces.bias;
-        }
-        for (input, definition) in self.mechanism.drivers.iter().enumerate() {
-            if definition.motion().is_some() {
-                continue;
-            }
-            let acceleration = driver_rates[input].second();
-            drivers[input].inertia = 0.0;
-            for of_body in &self.masses.bodies {
-                let body = of_body.body;
-                let momentum = of_body.momentum(of(&units[input], body));
-                drivers[input].inertia += dot(&of(&units[input], body), &momentum);
-                if acceleration != 0.0 {
-                    let force = momentum.map(|momentum| momentum * acceleration);
-                    for (demand, force) in demand[3 * body..3 * body + 3].iter_mut().zip(force) {
-                        *demand += force;
-                    }
-                    for (forces, unit) in drivers.iter_mut().zip(&*units) {
-                        forces.effort += dot(&of(unit, body), &force);
+        let (demand, _) = demand.as_chunks_mut();
+        let Results {
+            drivers, energies, ..
+        } = &mut self.results;
+        let gravity = self.masses.gravity;
+        for of_body in &mut self.masses.bodies {
+            let body = of_body.body;
+            let frame = &at.frames()[body];
+            of_body.turn([frame.cos, frame.sin]);
+            let velocity = of(motion.rates.velocity(), body);
+            let own = of_body.energies(frame.origin.into(), velocity, gravity);
+            *energies = [energies[0] + own[0], energies[1] + own[1]];
+            let mut force = of_body.demand(velocity[2], q_ddot(body), gravity);
+            if efforts {
+                for (forces, unit) in drivers.iter_mut().zip(&*units) {
+                    forces.bias += dot(&of(unit, body), &force);
+                }
+                for &input in &self.input_drivers {
+                    let unit = of(&units[input], body);
+                    let momentum = of_body.momentum(unit);
+                    drivers[input].inertia += dot(&unit, &momentum);
+                    let acceleration = motion.driver_rates[input].second();
+                    if acceleration != 0.0 {
+                        let share = momentum.map(|momentum| momentum * acceleration);
+                        force = add(force, share);
+                        for (forces, unit) in drivers.iter_mut().zip(&*units) {
+                            forces.effort += dot(&of(unit, body), &share);
+                        }
                     }
                 }
             }
+            demand[body] = add(demand[body], force);
         }
+    }
+
+    /// Ends the efforts, which so far are those that accelerations of inputs demand.
+    ///
+    /// # Errors
+    ///
+    /// [`SINGULAR_HERE`] for values that are not finite.
+    fn end_efforts(&mut self, driver_rates: &[Jet]) -> Result<(), Error> {
         let mut sum = 0.0;
-        for (forces, rates) in drivers.iter_mut().zip(driver_rates) {
+        for (forces, rates) in self.results.drivers.iter_mut().zip(driver_rates) {
+            forces.effort += forces.bias;
             forces.power = forces.effort * rates.first();
             sum += forces.power + forces.inertia + forces.bias;
         }
@@ -346,7 +368,8 @@ impl Forces {
     /// Solves Phi_qᵀ λ = w. Uses up w.
     fn solve_reactions(&mut self, model: &Model, state: &State) -> Result<(), Error> {
         let system = &model.system;
-        if self.set_aside != model.redundant.now {
+        // Item by item: `memcmp` of two empty lists takes as long as a dyad.
+        if !self.set_aside.iter().eq(&model.redundant.now) {
             self.factors = JacobianFactors::new(system, &model.structure, &model.plan);
             self.set_aside.clone_from(&model.redundant.now);
         }
@@ -377,7 +400,8 @@ impl Forces {
             ..
         } = &mut self.results;
         for (joint, reaction) in reactions.iter_mut().enumerate() {
-            *reaction = self.rows.reaction(system, &state.at, joint, multipliers);
+            self.rows
+                .write_reaction(system, &state.at, joint, multipliers, reaction);
             sum += reaction[0] + reaction[1] + reaction[2];
         }
         // Zero unless a multiplier is not finite.
@@ -428,6 +452,10 @@ fn solve_rates(model: &mut Model, state: &mut State, driver_rates: &[Jet], rates
         tangent: rates,
     };
     model.plan.solve_rates(&mut block_state, driver_rates);
+}
+
+fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

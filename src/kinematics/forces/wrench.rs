@@ -152,18 +152,23 @@ impl ReactionRows {
         3 * self.joints.len() + self.constraints.len()
     }
 
-    /// Returns the force and the torque that a joint exerts on its second body for these λ.
+    /// Writes the force and the torque that a joint exerts on its second body for these λ.
     #[inline]
-    pub(super) fn reaction(
+    pub(super) fn write_reaction(
         &self,
         system: &System,
         at: &Configuration,
         joint: usize,
         multipliers: &[f64],
-    ) -> [f64; 3] {
+        to: &mut [f64; 3],
+    ) {
         match self.pins[joint] {
-            Some([x, y]) => [multipliers[x], multipliers[y], 0.0],
-            None => self.gather_reaction(system, at, joint, multipliers),
+            Some([x, y]) => {
+                to[0] = multipliers[x];
+                to[1] = multipliers[y];
+                to[2] = 0.0;
+            }
+            None => *to = self.gather_reaction(system, at, joint, multipliers),
         }
     }
 
@@ -209,11 +214,13 @@ impl ReactionRows {
         to: &mut [f64],
     ) {
         let (of_joints, of_constraints) = to.split_at_mut(3 * self.joints.len());
-        for (joint, to) in of_joints.chunks_exact_mut(3).enumerate() {
+        for (joint, to) in of_joints.as_chunks_mut().0.iter_mut().enumerate() {
             let reported = Reported::of(&system.mechanism().joints[joint].kind);
-            let reaction = self.reaction(system, at, joint, multipliers);
-            for (component, value) in reaction.into_iter().enumerate() {
-                to[component] = if reported.has(component) { value } else { 0.0 };
+            self.write_reaction(system, at, joint, multipliers, to);
+            for (component, value) in to.iter_mut().enumerate() {
+                if !reported.has(component) {
+                    *value = 0.0;
+                }
             }
         }
         for (to, row) in of_constraints.iter_mut().zip(&self.constraints) {

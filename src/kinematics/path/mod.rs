@@ -134,8 +134,9 @@ impl Path {
         let h = self.duration;
         let t = Jet::linear(self.time(s), h);
         for ((driver, curve), out) in self.curves.iter().enumerate().zip(out) {
-            *out = match *curve {
-                Curve::Motion => motions.evaluate(DriverId(driver), t),
+            // Written in place: a value that is copied on waits for its parts.
+            match *curve {
+                Curve::Motion => *out = motions.evaluate(DriverId(driver), t),
                 Curve::Input {
                     position,
                     velocity,
@@ -145,10 +146,10 @@ impl Path {
                     let tau = s * h;
                     let travel = tau * (velocity + 0.5 * tau * acceleration);
                     let rate = h * (velocity + tau * acceleration) - jump;
-                    let value = position + travel + (1.0 - s) * jump;
-                    Jet::new(value, [rate, h * h * acceleration])
+                    out.value = position + travel + (1.0 - s) * jump;
+                    out.derivatives = [rate, h * h * acceleration];
                 }
-            };
+            }
         }
     }
 }

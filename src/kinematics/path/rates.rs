@@ -1,7 +1,7 @@
 //! First and second derivatives of the generalized coordinates.
 
 /// First and second derivative of q: with respect to time, or along a path.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Rates {
     velocity: Vec<f64>,
     acceleration: Vec<f64>,

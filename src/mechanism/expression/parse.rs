@@ -418,13 +418,18 @@ impl<'a> Parser<'a> {
             ));
         }
         let constants = CONSTANTS.map(|(constant, _)| constant);
-        let help = self
-            .unit_help(name)
-            .or_else(|| self.scope.parameters.help(name, &constants));
-        match help {
-            Some(help) => error.help(help),
-            None => error,
-        }
+        // A measure, a driver or a body without its quantity.
+        let moving = || {
+            let signals = self.scope.signals?;
+            let mut full = ["position", "phi"]
+                .map(|part| format!("{name}.{part}"))
+                .into_iter();
+            let full = full.find(|full| signals.get(full).is_some())?;
+            Some(format!("did you mean `{full}`?"))
+        };
+        let near = || self.scope.parameters.near(name, &constants);
+        let help = self.unit_help(name).or_else(moving).or_else(near);
+        error.help(help.unwrap_or_else(|| "give it a value in `[parameters]`".to_owned()))
     }
 
     /// Returns help for a unit's symbol after a number.

@@ -93,6 +93,7 @@ impl<'a> Kind<'a> for Frames {
                 .map_or(0, |items| items.len());
             if length == 3 {
                 let frame = Self::LONG.read(context, &marker)?;
+                context.warn_of_decimal_comma(entry.value.span());
                 return Some(frame.map(|q| q.expression));
             }
             let [x, y] = Self::SHORT.read(context, &marker)?.map(|q| q.expression);

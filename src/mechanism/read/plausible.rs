@@ -99,6 +99,32 @@ impl<'a> Context<'a> {
         is_suspect
     }
 
+    /// Warns of a marker `[0,1, 0]`: a comma between whole numbers, beside one with a blank, looks
+    /// like a decimal one.
+    pub(super) fn warn_of_decimal_comma(&mut self, marker: Span) {
+        let text = self.source.text().get(marker.clone()).unwrap_or_default();
+        let is_part = |c: char| c.is_ascii_digit() || c == '.';
+        let pairs = text.match_indices(',').filter_map(|(comma, _)| {
+            let start = text[..comma].trim_end_matches(is_part).len();
+            let end = text.len() - text[comma + 1..].trim_start_matches(is_part).len();
+            (start < comma && end > comma + 1).then_some(start..end)
+        });
+        let [pair] = &pairs.collect::<Vec<_>>()[..] else {
+            return;
+        };
+        let number = text[pair.clone()].replacen(',', ".", 1);
+        // Two points, as in `[0.1,0.2, 0]`, or a second number that is zero are no slip.
+        if number.matches('.').count() == 1 && !number.ends_with(".0") {
+            let span = marker.start + pair.start..marker.start + pair.end;
+            self.warn(
+                code::DECIMAL_COMMA,
+                span,
+                "a marker's third number is its angle",
+            )
+            .suggest(format!("the decimal mark is a point: `{number}`"));
+        }
+    }
+
     /// Warns of bare lengths that are far larger than all others: they look like millimetres.
     pub(super) fn warn_of_large_lengths(&mut self) {
         let mut lengths = std::mem::take(&mut self.lengths);
