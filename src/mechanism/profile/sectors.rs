@@ -83,7 +83,10 @@ struct Cover<'a> {
 
 /// The sectors bounded last.
 #[derive(Clone, Debug)]
-pub(super) struct Sectors(Box<[Cell<Option<(Sector, SectorBounds)>>]>);
+pub(super) struct Sectors(Box<[Kept]>);
+
+/// Place of a sector that is kept.
+type Kept = Cell<Option<(Sector, SectorBounds)>>;
 
 impl Sector {
     fn width(self) -> f64 {
