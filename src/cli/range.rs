@@ -241,6 +241,9 @@ pub(super) fn end_text(end: &End, driver: &Driver, id: DriverId) -> String {
             let reason = match reason {
                 Reason::Value(error) => error.to_string(),
                 Reason::TooLong => "it takes too many sub-steps".to_owned(),
+                Reason::NearSingular => {
+                    "it takes too many sub-steps next to a singular position".to_owned()
+                }
                 _ => "no continuous motion leads on".to_owned(),
             };
             format!("{}: {reason}", value(*at))

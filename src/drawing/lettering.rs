@@ -6,7 +6,9 @@
 //! (hexadecimal) its y above the descenders, so that the baseline is at 3. A point after `~` is
 //! a control point of quadratic curves; between two of them the curve passes their middle.
 
-use super::outline::{Outline, Point, Segment};
+use super::outline::Point;
+#[cfg(feature = "png")]
+use super::outline::{Outline, Segment};
 
 /// Height of capitals over the baseline, in units.
 pub(super) const CAPITALS: f64 = 10.0;
@@ -104,6 +106,7 @@ pub(super) fn width(text: &str, height: f64) -> f64 {
 
 /// The strokes of a text whose baseline starts at a point of a sheet, where y points down, and
 /// whose capitals are `height` high.
+#[cfg(feature = "png")]
 pub(super) fn strokes(text: &str, start: Point, height: f64) -> Outline {
     let unit = height / CAPITALS;
     let mut outline = Outline::default();
@@ -141,6 +144,7 @@ fn points(stroke: &str) -> impl Iterator<Item = (Point, bool)> {
     })
 }
 
+#[cfg(feature = "png")]
 fn curve(stroke: &str) -> Outline {
     let mut segments = Vec::new();
     let mut at = Point::zeros();
@@ -183,6 +187,7 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "png")]
     #[test]
     fn a_text_is_as_wide_as_its_strokes() {
         let text = "AmZ_9";

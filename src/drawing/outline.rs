@@ -18,6 +18,7 @@ pub(super) enum Segment {
     Close,
 }
 
+#[cfg(feature = "png")]
 impl Segment {
     /// Returns a quadratic Bézier curve.
     pub(super) fn quadratic(start: Point, control: Point, end: Point) -> Self {

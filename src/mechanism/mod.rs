@@ -55,7 +55,9 @@ pub(crate) use names::help;
 pub use names::is_identifier;
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::{DerivedParameter, Parameter};
-pub use profile::{Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce};
+pub use profile::{
+    ContourPoint, Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce,
+};
 pub(crate) use signal::{COMPONENTS, SUFFIXES};
 pub use signal::{Order, Signal};
 pub use source::{Position, Source, Span};

@@ -115,20 +115,28 @@ def test_a_dead_point_stops_the_hand(page_of, tmp_path):
     reach = CRANK + COUPLER
     inner = math.acos((BASE**2 + ROCKER**2 - reach**2) / (2 * BASE * ROCKER))
     limit = math.pi - inner
-    value, text, marked, back = look(
+    value, text, marked, back, slid = look(
         tmp_path,
         page_of(file),
         """
+        // The reason stays when the slider is let go.
+        const { slider } = live.drivers[0];
+        slider.value = slider.min;
+        const slid = ["input", "change"].map((event) => {
+          slider.dispatchEvent(new Event(event));
+          return message();
+        });
         live.move({ do: "drive", driver: 0, value: 0.5 });
         const stopped = [number("rocker_angle.position"), message(), live.picture.marker.style.display === ""];
         live.move({ do: "drive", driver: 0, value: stopped[0] + 0.1 });
-        return [...stopped, number("rocker_angle.position") - stopped[0]];
+        return [...stopped, number("rocker_angle.position") - stopped[0], slid];
         """,
     )
     assert abs(value - limit) < 1e-9
     assert "dead point" in text and "`rocker_angle`" in text
     assert marked
     assert abs(back - 0.1) < 1e-9
+    assert "dead point" in slid[0] and slid[1] == slid[0]
 
 
 def test_a_geometry_that_does_not_close_is_refused(page_of, tmp_path):

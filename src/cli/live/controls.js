@@ -30,9 +30,9 @@ export class Row {
     this.slider.setAttribute("aria-label", `${item.name}, slider`);
     this.field = add(row, "input", { type: "number", step: "any", id });
     this.bound(low, high);
-    const slide = (done) => () => change(this.unwrapped(Number(this.slider.value)), done);
-    this.slider.addEventListener("input", slide(false));
-    this.slider.addEventListener("change", slide(true));
+    this.slider.addEventListener("input", () => change(this.unwrapped(Number(this.slider.value)), false));
+    // The slider shows the value that was reached.
+    this.slider.addEventListener("change", () => change(this.value, true));
     this.field.addEventListener("change", () => {
       if (this.field.value !== "" && Number.isFinite(this.field.valueAsNumber)) {
         change(this.field.valueAsNumber / item.factor, true);

@@ -240,7 +240,9 @@ class Live {
       this.keep();
       this.sliding = true;
     }
-    const reached = this.move(request);
+    const row = request.do === "set" ? this.parameters[request.parameter] : this.drivers[request.driver];
+    // The end of a slide is no move: what stopped it remains to be read.
+    const reached = request.value === row.value || this.move(request);
     if (request.do === "set" && reached) {
       this.redraw(!done);
     }

@@ -54,6 +54,14 @@ impl MechanismModel {
                 parts.push("the step needs more sub-steps than the solver takes".to_owned());
                 "given up"
             }
+            Reason::NearSingular => {
+                parts.push(
+                    "next to a singular position the step needs more sub-steps than the solver \
+                     takes"
+                        .to_owned(),
+                );
+                "given up"
+            }
             Reason::Singular(point) => &point.to_string(),
             Reason::Jump(driver) => {
                 let driver = &self.mechanism.drivers[driver.index()];

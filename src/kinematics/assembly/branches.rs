@@ -218,7 +218,7 @@ impl Starts {
                 let scale = state.system.column_scale(column, size);
                 (radii[column], direction[column]) = (scale, scale);
             }
-            let region = Region { radii: &radii };
+            let region = Region::around(&radii);
             problem.rows.iter().all(|&row| {
                 let constraint = &state.system.equations()[row].constraint;
                 let bend = constraint.bend(state.at, &region, &direction, &mut Gradient::new());

@@ -1,6 +1,6 @@
 //! Any block of equations that have to be solved together.
 
-mod certified_box;
+mod certified_tube;
 mod certify;
 mod checked_segment;
 mod contraction;
@@ -11,7 +11,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use certified_box::CertifiedBox;
+use certified_tube::CertifiedTube;
 use contraction::ContractionTest;
 use equations::{BlockEquations, ColumnOwner, Jacobian};
 
@@ -39,7 +39,7 @@ pub(in crate::kinematics) struct CoupledBlock {
     excess: f64,
     correction: Vec<f64>,
     test: Box<ContractionTest>,
-    certified_box: CertifiedBox,
+    tube: CertifiedTube,
     segment: CheckedSegment,
     /// The markers of its bodies.
     markers: Vec<MarkerId>,
@@ -79,7 +79,7 @@ impl CoupledBlock {
             residual: vec![0.0; order],
             excess: 0.0,
             correction: vec![0.0; order],
-            certified_box: CertifiedBox::new(order + test.known.len()),
+            tube: CertifiedTube::new(order + test.known.len()),
             segment: CheckedSegment::new(order, test.known.len()),
             test,
             markers,
@@ -299,7 +299,7 @@ impl SolveBlock for CoupledBlock {
     }
 
     fn forget_proofs(&mut self) {
-        self.certified_box.forget();
+        self.tube.forget();
         self.segment.forget();
     }
 }

@@ -68,6 +68,12 @@ pub trait Constraint: Any + std::fmt::Debug + Send + Sync {
     /// Adds ∂c/∂q, a row of the Jacobian (Eq. 3.6.4), to `row`.
     fn gradient(&self, at: &Configuration, row: &mut Gradient);
 
+    /// Adds ∂c/∂q to `row` and returns c(q).
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
+        self.gradient(at, row);
+        self.value(at)
+    }
+
     /// Returns q̇ᵀ (∂²c/∂q²) q̇, which is c̈ for q̈ = 0; Eq. 3.6.11 has it with the opposite sign.
     /// `q_dot` is as long as q.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;

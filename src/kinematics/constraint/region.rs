@@ -5,19 +5,38 @@ use nalgebra::Vector2;
 use super::point::angular_velocity;
 use crate::kinematics::configuration::MarkerPose;
 
-/// A neighbourhood of a pose: each unknown differs from the pose by at most its radius.
+/// A neighbourhood of a pose: each unknown differs by at most its radius from the pose, or else
+/// from one place, the same for all unknowns, on a line through it.
 #[derive(Clone, Copy, Debug)]
 pub struct Region<'a> {
     /// One radius per unknown: \[m, m, rad\] for each body, then the joint unknowns.
     pub radii: &'a [f64],
+    /// The line from one end to the other, with the pose in its middle.
+    pub line: Option<&'a [f64]>,
 }
 
-impl Region<'_> {
+impl<'a> Region<'a> {
+    /// Makes the region of these radii around the pose.
+    pub fn around(radii: &'a [f64]) -> Self {
+        Self { radii, line: None }
+    }
+
+    /// Returns the region of the same radii around the pose alone.
+    pub(super) fn off_line(self) -> Self {
+        Self::around(self.radii)
+    }
+
+    /// Returns the largest change of an unknown.
+    pub(super) fn radius(&self, column: usize) -> f64 {
+        let half = self.line.map_or(0.0, |line| 0.5 * line[column].abs());
+        self.radii[column] + half
+    }
+
     /// Returns the largest turn of a marker \[rad\].
     pub(super) fn turn(&self, marker: MarkerPose) -> f64 {
         marker
             .body
-            .map_or(0.0, |body| self.radii[3 * body.index() + 2])
+            .map_or(0.0, |body| self.radius(3 * body.index() + 2))
     }
 
     /// Returns the largest move of a unit vector fixed to a marker's body: the chord of the turn.
@@ -29,7 +48,7 @@ impl Region<'_> {
     pub(super) fn reach(&self, marker: MarkerPose) -> f64 {
         marker.body.map_or(0.0, |body| {
             let k = 3 * body.index();
-            self.radii[k].hypot(self.radii[k + 1]) + marker.arm.norm() * self.sway(marker)
+            self.radius(k).hypot(self.radius(k + 1)) + marker.arm.norm() * self.sway(marker)
         })
     }
 }

@@ -256,8 +256,14 @@ proptest! {
     fn bend_bounds_hold_in_their_region(
         (q, v) in pose_and_velocity(),
         radii in prop::collection::vec(0.0..0.4_f64, UNKNOWNS),
+        line in prop::option::of(0.0..0.4_f64),
+        width in prop::sample::select(vec![1.0, 0.1]),
         places in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, UNKNOWNS), 10),
+        along in prop::collection::vec(-0.5..0.5_f64, 10),
     ) {
+        let radii: Vec<_> = radii.iter().map(|radius| width * radius).collect();
+        let v = moved(&[0.0; UNKNOWNS], &v, line.unwrap_or(1.0));
+        let region = Region { radii: &radii, line: line.map(|_| &v[..]) };
         let mechanism = mechanism();
         let mut at = configuration(&mechanism);
         let dense = |row: &Gradient| {
@@ -271,13 +277,14 @@ proptest! {
             constraint.gradient(&at, &mut row);
             let centre = dense(&row);
             row.clear();
-            let Some(bound) = constraint.bend(&at, &Region { radii: &radii }, &v, &mut row) else {
+            let Some(bound) = constraint.bend(&at, &region, &v, &mut row) else {
                 continue;
             };
             let change = dense(&row);
-            for place in &places {
+            for (place, along) in places.iter().zip(&along) {
                 let off: Vec<_> = place.iter().zip(&radii).map(|(p, r)| p * r).collect();
-                at.set_pose(&mechanism, &moved(&q, &off, 1.0));
+                let here = line.map_or(q.clone(), |_| moved(&q, &v, *along));
+                at.set_pose(&mechanism, &moved(&here, &off, 1.0));
                 row.clear();
                 constraint.gradient(&at, &mut row);
                 let here = dense(&row);

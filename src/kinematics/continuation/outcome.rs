@@ -25,6 +25,8 @@ pub enum Reason {
     Contradiction(OpenJoint),
     /// The path needs more sub-steps than anyone would wait for.
     TooLong,
+    /// It needs as many because the mechanism stays next to a singular position.
+    NearSingular,
 }
 
 /// The work spent on a path.
@@ -82,7 +84,11 @@ impl Blocked {
         let reason = match &self.reason {
             Reason::Value(error) => error.to_string(),
             Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
-            Reason::TooLong => "the motion is too fast for the steps".to_owned(),
+            Reason::TooLong => "the motion needs more sub-steps than the solver takes".to_owned(),
+            Reason::NearSingular => {
+                "next to a singular position the motion needs more sub-steps than the solver takes"
+                    .to_owned()
+            }
             Reason::Singular(point) => point.to_string(),
             Reason::Jump(driver) => {
                 let driver = &mechanism.drivers[driver.index()];

@@ -282,7 +282,11 @@ impl Run<'_> {
         }
         self.solve_tangent();
         if self.is_too_long() {
-            return Err(Reason::TooLong);
+            return Err(if self.state.regularity < NEAR {
+                Reason::NearSingular
+            } else {
+                Reason::TooLong
+            });
         }
         let too_small = self.length < smallest;
         if too_small {

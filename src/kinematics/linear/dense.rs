@@ -1,8 +1,5 @@
 //! A dense matrix and its LU factorisation.
 
-use nalgebra::linalg::{gauss_step, gauss_step_swap};
-use nalgebra::{DMatrix, DVectorViewMut};
-
 use super::factors::{Factors, Singular};
 
 /// A dense matrix and its LU factorisation with partial pivoting.
@@ -11,7 +8,8 @@ use super::factors::{Factors, Singular};
 /// then solve any number of times.
 #[derive(Clone, Debug)]
 pub struct DenseLu {
-    matrix: DMatrix<f64>,
+    /// The matrix or its factors, column by column.
+    entries: Vec<f64>,
     /// Row exchanged with row k at step k.
     pivots: Vec<usize>,
     /// Number of leading pivots that are taken from the diagonal in order.
@@ -28,7 +26,7 @@ impl DenseLu {
     pub fn new(order: usize, fixed: usize) -> Self {
         Self {
             fixed,
-            matrix: DMatrix::zeros(order, order),
+            entries: vec![0.0; order * order],
             pivots: vec![0; order],
             norm: 0.0,
         }
@@ -36,12 +34,12 @@ impl DenseLu {
 
     /// Sets the matrix to zero.
     pub fn clear(&mut self) {
-        self.matrix.fill(0.0);
+        self.entries.fill(0.0);
     }
 
     /// Adds to an entry.
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
-        self.matrix[(row, column)] += value;
+        self.entries[column * self.pivots.len() + row] += value;
     }
 
     /// Replaces the matrix by its factors. Its norm counts as at least `least_norm`.
@@ -51,57 +49,57 @@ impl DenseLu {
     /// [`Singular`] on a pivot that is zero or not finite. A matrix that is singular up to rounding
     /// passes; its condition is then near zero.
     pub fn factorise(&mut self, least_norm: f64) -> Result<(), Singular> {
-        self.norm = self
-            .matrix
-            .column_iter()
-            .map(|column| column.lp_norm(1))
-            .fold(least_norm, f64::max);
-        for k in 0..self.fixed {
-            self.eliminate(k)?;
+        let order = self.pivots.len();
+        if order == 0 {
+            return Ok(());
         }
-        for k in self.fixed..self.matrix.nrows() {
-            let pivot_row = k + self.matrix.view_range(k.., k).icamax();
-            let pivot = self.matrix[(pivot_row, k)];
+        let columns = self.entries.chunks_exact(order);
+        let norms = columns.map(|column| column.iter().map(|entry| entry.abs()).sum());
+        self.norm = norms.fold(least_norm, f64::max);
+        for k in 0..order {
+            let column = &self.entries[k * order..(k + 1) * order];
+            let mut pivot_row = k;
+            if k >= self.fixed {
+                for row in k + 1..order {
+                    if column[row].abs() > column[pivot_row].abs() {
+                        pivot_row = row;
+                    }
+                }
+            }
+            let pivot = column[pivot_row];
             if pivot == 0.0 || !pivot.is_finite() {
                 return Err(Singular);
             }
             self.pivots[k] = pivot_row;
-            if pivot_row == k {
-                gauss_step(&mut self.matrix, pivot, k);
-            } else {
-                self.matrix.columns_range_mut(..k).swap_rows(k, pivot_row);
-                gauss_step_swap(&mut self.matrix, pivot, k, pivot_row);
+            if pivot_row != k {
+                for column in self.entries.chunks_exact_mut(order) {
+                    column.swap(k, pivot_row);
+                }
+            }
+            let (left, right) = self.entries.split_at_mut((k + 1) * order);
+            let factors = &mut left[k * order + k + 1..];
+            let per_pivot = 1.0 / pivot;
+            factors.iter_mut().for_each(|factor| *factor *= per_pivot);
+            for column in right.chunks_exact_mut(order) {
+                let above = column[k];
+                if above != 0.0 {
+                    subtract(&mut column[k + 1..], above, factors);
+                }
             }
         }
         Ok(())
     }
 
-    /// Does step k of the elimination with the pivot on the diagonal, without the zeros.
-    fn eliminate(&mut self, k: usize) -> Result<(), Singular> {
-        let pivot = self.matrix[(k, k)];
-        if pivot == 0.0 || !pivot.is_finite() {
-            return Err(Singular);
-        }
-        self.pivots[k] = k;
-        let order = self.matrix.nrows();
-        let (mut left, mut right) = self.matrix.columns_range_pair_mut(0..k + 1, k + 1..);
-        let mut factors = left.view_range_mut(k + 1.., k);
-        factors /= pivot;
-        for mut column in right.column_iter_mut() {
-            let above = column[k];
-            if above != 0.0 {
-                column
-                    .rows_range_mut(k + 1..order)
-                    .axpy(-above, &factors, 1.0);
-            }
-        }
-        Ok(())
+    /// Returns column k of the factors.
+    fn column(&self, k: usize) -> &[f64] {
+        let order = self.pivots.len();
+        &self.entries[k * order..(k + 1) * order]
     }
 
     /// Returns the magnitudes of the smallest and the largest pivot.
     #[must_use]
     pub fn pivot_range(&self) -> (f64, f64) {
-        let pivots = (0..self.pivots.len()).map(|k| self.matrix[(k, k)].abs());
+        let pivots = (0..self.pivots.len()).map(|k| self.column(k)[k].abs());
         pivots.fold((f64::INFINITY, 0.0_f64), |(low, high), pivot| {
             (low.min(pivot), high.max(pivot))
         })
@@ -110,7 +108,7 @@ impl DenseLu {
 
 impl Factors for DenseLu {
     fn order(&self) -> usize {
-        self.matrix.nrows()
+        self.pivots.len()
     }
 
     fn norm(&self) -> f64 {
@@ -118,36 +116,51 @@ impl Factors for DenseLu {
     }
 
     fn solve(&mut self, b: &mut [f64]) {
-        let order = b.len();
-        let mut b = DVectorViewMut::from_slice(b, order);
         for (k, &pivot_row) in self.pivots.iter().enumerate() {
-            b.swap_rows(k, pivot_row);
+            b.swap(k, pivot_row);
         }
-        self.matrix
-            .solve_lower_triangular_with_diag_mut(&mut b, 1.0);
-        self.matrix.solve_upper_triangular_mut(&mut b);
+        for k in 0..b.len() {
+            let (known, below) = b.split_at_mut(k + 1);
+            subtract(below, known[k], &self.column(k)[k + 1..]);
+        }
+        for k in (0..b.len()).rev() {
+            let column = self.column(k);
+            b[k] /= column[k];
+            let (above, known) = b.split_at_mut(k);
+            subtract(above, known[0], &column[..k]);
+        }
     }
 
     fn solve_transposed(&mut self, b: &mut [f64]) {
-        let order = b.len();
-        let mut b = DVectorViewMut::from_slice(b, order);
-        self.matrix.tr_solve_upper_triangular_mut(&mut b);
-        for k in (0..order).rev() {
-            let below = self.matrix.view_range(k + 1.., k);
-            let known = below.dot(&b.rows_range(k + 1..));
-            b[k] -= known;
+        for k in 0..b.len() {
+            let column = self.column(k);
+            b[k] = (b[k] - dot(&column[..k], &b[..k])) / column[k];
+        }
+        for k in (0..b.len()).rev() {
+            b[k] -= dot(&self.column(k)[k + 1..], &b[k + 1..]);
         }
         for (k, &pivot_row) in self.pivots.iter().enumerate().rev() {
-            b.swap_rows(k, pivot_row);
+            b.swap(k, pivot_row);
         }
     }
+}
+
+/// Subtracts `factor` · `column` from `from`.
+fn subtract(from: &mut [f64], factor: f64, column: &[f64]) {
+    for (value, entry) in from.iter_mut().zip(column) {
+        *value -= factor * entry;
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::kinematics::linear::Condition;
-    use nalgebra::DVector;
+    use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
     fn filled(order: usize, values: &[f64]) -> (DenseLu, DMatrix<f64>) {

@@ -69,9 +69,7 @@ fn open_between(
     let constraint = &equation.constraint;
     let (mut gradient, mut change) = (Gradient::new(), Gradient::new());
     constraint.gradient(at, &mut gradient);
-    let region = Region {
-        radii: &bounds.region,
-    };
+    let region = Region::around(&bounds.region);
     let along = constraint.bend(at, &region, &bounds.chord, &mut change);
     let steepest = gradient.entries().chain(change.entries());
     let off_chord = steepest.map(|(column, slope)| {

@@ -46,12 +46,12 @@ impl System {
         let size = at.size();
         let row_scale = equation.row_scale(at);
         let target = self.target(row, targets, drivers);
-        let value = (equation.constraint.value(at) - target) * row_scale;
         // To first order each coordinate's own rounding moves the value by gradient times
         // q eps; the sines and products inside add some eps of the size.
         let mut magnitude = target.abs() * row_scale + 1.0;
         let mut gradient = Gradient::new();
-        equation.constraint.gradient(at, &mut gradient);
+        let value = equation.constraint.value_and_gradient(at, &mut gradient);
+        let value = (value - target) * row_scale;
         for (column, partial) in gradient.entries() {
             magnitude += (partial * at.coordinate(column)).abs() * row_scale;
             entry(

@@ -59,6 +59,8 @@ impl Variable {
 /// Capacity of the stack of operands that wait for their operator: far more than anyone writes by
 /// hand.
 const MAX_STACK: usize = 32;
+/// The same for most expressions.
+const USUAL_STACK: usize = 6;
 
 /// A number as a function of the parameters, and where its place has them of [`Variable`]s.
 ///
@@ -68,6 +70,8 @@ const MAX_STACK: usize = 32;
 pub struct Expression {
     /// Leaves one operand; the parser has checked that never more than [`MAX_STACK`] wait.
     program: Box<[Operation]>,
+    /// Most operands that wait.
+    height: usize,
     /// Parameters used, ascending, each once.
     parameters: Box<[ParameterId]>,
 }
@@ -106,7 +110,7 @@ impl Operation {
     /// Takes the operands from the top of `stack` and leaves the result there.
     fn apply<N: Number>(
         self,
-        stack: &mut [N; MAX_STACK],
+        stack: &mut [N],
         height: &mut usize,
         parameter: &impl Fn(ParameterId) -> N,
         variable: &impl Fn(Variable) -> N,
@@ -147,7 +151,12 @@ impl Expression {
             .collect();
         parameters.sort_unstable();
         parameters.dedup();
+        let heights = program.iter().scan(0, |height, operation| {
+            *height = *height + 1 - operation.arity();
+            Some(*height)
+        });
         Self {
+            height: heights.max().unwrap_or(0),
             program: program.into(),
             parameters: parameters.into(),
         }
@@ -172,7 +181,10 @@ impl Expression {
             // Most numbers of a mechanism are one of these two.
             [Operation::Number(value)] => N::constant(value),
             [Operation::Parameter(id)] => parameter(id),
-            _ => run(&self.program, parameter, variable),
+            _ if self.height <= USUAL_STACK => {
+                run::<N, USUAL_STACK>(&self.program, parameter, variable)
+            }
+            _ => run::<N, MAX_STACK>(&self.program, parameter, variable),
         }
     }
 
@@ -191,6 +203,22 @@ impl Expression {
     ) -> Option<Jet3<Interval>> {
         let parameter = |id| Jet3::constant(parameter(id));
         number::enclose(|variable| self.evaluate(&parameter, variable), variable)
+    }
+
+    /// Encloses the value and its first three derivatives at one value of the variable and, less
+    /// narrowly than [`enclose`](Self::enclose), over a range; `None` as there.
+    pub fn expand(
+        &self,
+        parameter: &impl Fn(ParameterId) -> f64,
+        variable: Interval,
+        point: f64,
+    ) -> Option<[Jet3<Interval>; 2]> {
+        let parameter = |id| Jet3::constant(parameter(id));
+        number::expand(
+            |variable| self.evaluate(&parameter, variable),
+            variable,
+            point,
+        )
     }
 
     /// Whether it is made of pieces: it has a kink or a jump where it switches from one to the
@@ -236,13 +264,13 @@ impl Expression {
     }
 }
 
-/// Runs a program that leaves one operand and never has more than [`MAX_STACK`] waiting.
-fn run<N: Number>(
+/// Runs a program that leaves one operand and never has more than `STACK` waiting.
+fn run<N: Number, const STACK: usize>(
     program: &[Operation],
     parameter: &impl Fn(ParameterId) -> N,
     variable: &impl Fn(Variable) -> N,
 ) -> N {
-    let mut stack = [N::constant(0.0); MAX_STACK];
+    let mut stack = [N::constant(0.0); STACK];
     let mut height = 0;
     for operation in program {
         operation.apply(&mut stack, &mut height, parameter, variable);

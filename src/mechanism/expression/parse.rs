@@ -291,7 +291,8 @@ impl<'a> Parser<'a> {
             return Err(self.nested_too_deeply());
         }
         if arity > 0 && constant {
-            let value: f64 = run(&self.program[operands..], &|_| f64::NAN, &|_| f64::NAN);
+            let value =
+                run::<f64, MAX_STACK>(&self.program[operands..], &|_| f64::NAN, &|_| f64::NAN);
             if !value.is_finite() {
                 let text = quoted(&self.text[span.clone()]);
                 return Err(ExpressionError::new(

@@ -13,6 +13,19 @@ pub(in crate::mechanism) fn enclose(
     f: impl Fn(Jet3<Interval>) -> Jet3<Interval>,
     range: Interval,
 ) -> Option<Jet3<Interval>> {
+    let middle = range.midpoint();
+    let [there, parts] = expand(f, range, middle)?;
+    let narrowed = parts.narrowed(there, range - Interval::point(middle));
+    Some(narrowed).filter(|bounds| bounds.is_finite())
+}
+
+/// Encloses a function and its first three derivatives in one point and, less narrowly than
+/// [`enclose`], over a range; `None` as there.
+pub(in crate::mechanism) fn expand(
+    f: impl Fn(Jet3<Interval>) -> Jet3<Interval>,
+    range: Interval,
+    point: f64,
+) -> Option<[Jet3<Interval>; 2]> {
     let bounds = |range| Some(f(Jet3::variable(range))).filter(|bounds| bounds.is_finite());
     // Only the whole range shows a kink between two parts.
     bounds(range)?;
@@ -28,9 +41,7 @@ pub(in crate::mechanism) fn enclose(
     for pair in ends[1..].windows(2) {
         parts = parts.hull(bounds(Interval::new(pair[0], pair[1]))?);
     }
-    let middle = Interval::point(middle);
-    let narrowed = parts.narrowed(bounds(middle)?, range - middle);
-    Some(narrowed).filter(|bounds| bounds.is_finite())
+    Some([bounds(Interval::point(point))?, parts])
 }
 
 impl Jet3<Interval> {

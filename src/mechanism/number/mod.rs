@@ -20,7 +20,7 @@ mod taylor;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-pub(super) use enclosure::enclose;
+pub(super) use enclosure::{enclose, expand};
 pub(super) use function::Unary;
 pub use interval::Interval;
 pub use taylor::Taylor;

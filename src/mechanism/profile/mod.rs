@@ -1,12 +1,14 @@
 //! Profiles of cams: the polar radius of a contour as a function of the polar angle.
 
 mod closed_points;
+mod sectors;
 
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
 use super::{Dual, Expression, Interpolation, Interval, Jet3, ParameterId, Table};
 use closed_points::ClosedPoints;
+use sectors::{Contour, Sectors, overlapping};
 
 /// A closed contour R(θ), θ counter-clockwise from the cam marker's x-axis \[rad, m\].
 #[derive(Clone, Debug)]
@@ -100,10 +102,11 @@ pub struct ProfileInForce {
     last: Last,
 }
 
-/// The last polar angle with its radius, and the last range with its bounds.
+/// The last polar angle with its radius and its point, and the last range with its bounds.
 #[derive(Clone, Debug, Default)]
 struct Last {
     radius: Cell<Option<(u64, Jet3)>>,
+    point: Cell<Option<(u64, ContourPoint)>>,
     bounds: Cell<Option<([u64; 2], Option<ProfileBounds>)>>,
 }
 
@@ -118,6 +121,41 @@ enum Joint {
     Curvature,
 }
 
+/// A contour at one polar angle, in the frame of the cam's marker.
+#[derive(Clone, Copy, Debug)]
+pub struct ContourPoint {
+    /// Vector from the pole \[m\].
+    pub arm: [f64; 2],
+    /// Unit tangent, counter-clockwise round the cam.
+    pub tangent: [f64; 2],
+    /// Arc length per angle, v = √(R² + R′²), and its derivative \[m/rad, m/rad²\].
+    pub speed: [f64; 2],
+    /// First and second derivative of the tangent's direction: v times the curvature, positive
+    /// where the contour is convex.
+    pub turn: [f64; 2],
+}
+
+impl ContourPoint {
+    /// Makes the point from R and its derivatives.
+    fn new(theta: f64, radius: Jet3) -> Self {
+        let (r, [r1, r2, r3]) = (radius.value, radius.derivatives);
+        let (sin, cos) = theta.sin_cos();
+        let square = r * r + r1 * r1;
+        let v = square.sqrt();
+        // The angle from the radial direction to the tangent is atan(R/R′): the derivative of the
+        // tangent's direction is (R² + 2R′² − R R″)/(R² + R′²).
+        let turn = (square + r1 * r1 - r * r2) / square;
+        let numerator_rate = 2.0 * r * r1 + 3.0 * r1 * r2 - r * r3;
+        let turn_rate = (numerator_rate - 2.0 * turn * (r * r1 + r1 * r2)) / square;
+        Self {
+            arm: [r * cos, r * sin],
+            tangent: [(r1 * cos - r * sin) / v, (r1 * sin + r * cos) / v],
+            speed: [v, (r * r1 + r1 * r2) / v],
+            turn: [turn, turn_rate],
+        }
+    }
+}
+
 /// Bounds of a contour over a range of polar angles.
 #[derive(Clone, Copy, Debug)]
 pub struct ProfileBounds {
@@ -127,9 +165,22 @@ pub struct ProfileBounds {
     pub jumps: bool,
 }
 
+impl ProfileBounds {
+    /// Returns bounds over both ranges.
+    fn hull(self, other: Self) -> Self {
+        Self {
+            radius: self.radius.hull(other.radius),
+            jumps: self.jumps || other.jumps,
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 enum Curve {
-    Expression(Expression),
+    Expression {
+        expression: Expression,
+        sectors: Sectors,
+    },
     Points {
         table: Table,
         points: ClosedPoints<f64>,
@@ -153,7 +204,10 @@ impl ProfileInForce {
     #[must_use]
     pub fn new(profile: &Profile, parameters: usize) -> Self {
         let curve = match profile {
-            Profile::Expression(expression) => Curve::Expression(expression.clone()),
+            Profile::Expression(expression) => Curve::Expression {
+                expression: expression.clone(),
+                sectors: Sectors::new(),
+            },
             Profile::Table {
                 table,
                 interpolation,
@@ -191,13 +245,13 @@ impl ProfileInForce {
         for (index, value) in self.parameters.iter_mut().enumerate() {
             *value = parameter(ParameterId(index));
         }
-        if let Curve::Points { table, points } = &mut self.curve {
-            points.set(table, &parameter)?;
+        match &mut self.curve {
+            Curve::Points { table, points } => points.set(table, &parameter)?,
+            Curve::Expression { sectors, .. } => sectors.forget(),
         }
         self.check()?;
         self.joint = Joint::Kink;
-        self.last = Last::default();
-        if let Curve::Expression(expression) = &self.curve
+        if let Curve::Expression { expression, .. } = &self.curve
             && expression.has_pieces()
         {
             self.joint = self.examine_joints();
@@ -220,7 +274,7 @@ impl ProfileInForce {
                 });
             }
         }
-        let Curve::Expression(expression) = &self.curve else {
+        let Curve::Expression { expression, .. } = &self.curve else {
             return Ok(());
         };
         let [start, end] = [0.0, TAU].map(|theta| self.evaluate(expression, theta));
@@ -287,8 +341,12 @@ impl ProfileInForce {
         visited.map_or(Joint::Kink, |()| joint)
     }
 
-    /// Visits the narrow ranges in which the contour cannot be shown to be smooth.
+    /// Visits the narrow ranges in which the contour cannot be shown to be smooth. They overlap.
     fn visit_seams<E>(&self, mut visit: impl FnMut([f64; 2]) -> Result<(), E>) -> Result<(), E> {
+        let Curve::Expression { expression, .. } = &self.curve else {
+            return Ok(());
+        };
+        let parameter = |p: ParameterId| self.parameters[p.index()];
         let mut looks = MOST_LOOKS;
         let sixteenth = TAU / 16.0;
         // Ranges still to be divided, the last one first.
@@ -297,15 +355,17 @@ impl ProfileInForce {
             .map(|part| [part, part + 1].map(|k| f64::from(k) * sixteenth))
             .collect();
         while let Some([low, high]) = open.pop() {
-            let middle = low.midpoint(high);
-            if self.smooth_bounds(middle, 0.5 * (high - low)).is_some() {
+            // A kink between two ranges is in both.
+            let range = overlapping([low, high]);
+            if expression.enclose(&parameter, range).is_some() {
                 continue;
             }
             looks = looks.saturating_sub(1);
             if high - low > CORNER_WIDTH && looks > 0 {
+                let middle = low.midpoint(high);
                 open.extend([[middle, high], [low, middle]]);
             } else {
-                visit([low, high])?;
+                visit([range.low, range.high])?;
             }
         }
         Ok(())
@@ -321,13 +381,26 @@ impl ProfileInForce {
             Some((last, radius)) if last == theta.to_bits() => radius,
             _ => {
                 let radius = match &self.curve {
-                    Curve::Expression(expression) => {
+                    Curve::Expression { expression, .. } => {
                         self.evaluate(expression, theta.rem_euclid(TAU))
                     }
                     Curve::Points { points, .. } => points.radius(theta),
                 };
                 self.last.radius.set(Some((theta.to_bits(), radius)));
                 radius
+            }
+        }
+    }
+
+    /// Returns the contour at a polar angle, of any number of turns. Allocates nothing.
+    #[must_use]
+    pub fn point(&self, theta: f64) -> ContourPoint {
+        match self.last.point.get() {
+            Some((last, point)) if last == theta.to_bits() => point,
+            _ => {
+                let point = ContourPoint::new(theta, self.radius(theta));
+                self.last.point.set(Some((theta.to_bits(), point)));
+                point
             }
         }
     }
@@ -353,35 +426,22 @@ impl ProfileInForce {
     }
 
     fn new_bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
-        if let Some(radius) = self.smooth_bounds(theta, reach) {
-            let jumps = match &self.curve {
-                Curve::Expression(_) => false,
-                Curve::Points { points, .. } => points.jumps(),
-            };
-            return Some(ProfileBounds { radius, jumps });
-        }
-        let Curve::Expression(expression) = &self.curve else {
-            return None;
-        };
-        if self.joint == Joint::Kink {
-            return None;
-        }
-        let enclose =
-            |range: Interval| expression.enclose_pieces(&|p| self.parameters[p.index()], range);
-        Some(ProfileBounds {
-            radius: over_turn(theta, reach, enclose)?,
-            jumps: self.joint == Joint::Slope,
-        })
-    }
-
-    /// Returns bounds where an expression is three times differentiable in the whole range, and of
-    /// a contour through points, whose slope is continuous.
-    fn smooth_bounds(&self, theta: f64, reach: f64) -> Option<Jet3<Interval>> {
         match &self.curve {
-            Curve::Expression(expression) => over_turn(theta, reach, |range| {
-                expression.enclose(&|p| self.parameters[p.index()], range)
+            Curve::Expression {
+                expression,
+                sectors,
+            } => {
+                let contour = Contour {
+                    expression,
+                    parameters: &self.parameters,
+                    joint: self.joint,
+                };
+                sectors.bounds(contour, theta, reach)
+            }
+            Curve::Points { points, .. } => Some(ProfileBounds {
+                radius: points.bounds(theta, reach),
+                jumps: points.jumps(),
             }),
-            Curve::Points { points, .. } => Some(points.bounds(theta, reach)),
         }
     }
 
@@ -400,24 +460,6 @@ impl ProfileInForce {
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
             .map_or(0.0, |(theta, _)| theta)
     }
-}
-
-/// Returns bounds for polar angles up to `reach` from `theta` by those of ranges within one turn.
-fn over_turn(
-    theta: f64,
-    reach: f64,
-    enclose: impl Fn(Interval) -> Option<Jet3<Interval>>,
-) -> Option<Jet3<Interval>> {
-    if 2.0 * reach >= TAU {
-        return enclose(Interval::new(0.0, TAU));
-    }
-    let low = (theta - reach).rem_euclid(TAU);
-    let high = low + 2.0 * reach;
-    if high <= TAU {
-        return enclose(Interval::new(low, high));
-    }
-    let [before, after] = [Interval::new(low, TAU), Interval::new(0.0, high - TAU)];
-    Some(enclose(before)?.hull(enclose(after)?))
 }
 
 /// Profile whose parameters change along a direction.
@@ -441,7 +483,7 @@ impl ProfileInForce {
         let parameter =
             |p: ParameterId| Jet3::fixed(Dual::new(self.parameters[p.index()], [change(p)]));
         ProfileAlong(match &self.curve {
-            Curve::Expression(expression) => CurveAlong::Expression {
+            Curve::Expression { expression, .. } => CurveAlong::Expression {
                 expression: expression.clone(),
                 parameters: (0..self.parameters.len())
                     .map(|p| parameter(ParameterId(p)))

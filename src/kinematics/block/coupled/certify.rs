@@ -70,7 +70,7 @@ impl CoupledBlock {
         step: &mut Step<'_>,
     ) -> Result<(), Rejected> {
         let holds = step.bounds.may_reuse
-            && (self.certify_in_box(state, step) || self.certify_in_segment(state, step));
+            && (self.certify_in_tube(state, step) || self.certify_in_segment(state, step));
         if holds {
             self.write_bounds(state, step);
             return Ok(());
@@ -100,7 +100,7 @@ impl CoupledBlock {
             if self.test.inverse.is_empty() {
                 self.lay_segment(state, step, contraction);
             } else {
-                self.make_box(state, step, contraction);
+                self.make_tube(state, step, contraction);
             }
         }
         step.bounds.require(step_ratio(contraction).min(1.0))
@@ -210,7 +210,7 @@ impl CoupledBlock {
         Ok(())
     }
 
-    /// Bounds the bend of the rows in the region of the chord and the radii.
+    /// Bounds the bend of the rows in the region of the radii around the chord.
     fn bend_rows(&mut self, state: &BlockState<'_>, step: &mut Step<'_>) -> Option<()> {
         let Self {
             equations, test, ..
@@ -221,11 +221,11 @@ impl CoupledBlock {
         let own = equations.columns.iter().zip(&test.radii);
         let known = test.known.iter().zip(&test.known_radii);
         for (&column, radius) in own.chain(known) {
-            bounds.region[column] = 0.5 * bounds.chord[column].abs() + radius * scale(column);
+            bounds.region[column] = radius * scale(column);
         }
         test.changes.clear();
         for (local, &row) in equations.rows.iter().enumerate() {
-            let bend = equations.bend(local, state, bounds)?;
+            let bend = equations.bend(local, state, bounds, true)?;
             let mut open = 0.125 * bend.along;
             if let Target::Driver(driver) = state.system.equations()[row].target {
                 open += bounds.drivers[driver.index()] * bend.row_scale;

@@ -113,8 +113,9 @@ impl BlockEquations {
         }
     }
 
-    /// Bounds the bend of a row in the region of `bounds` around the pose in `state`, and along
-    /// their chord ([`Constraint::bend`]). `None` if the row is not smooth there.
+    /// Bounds the bend of a row along the chord of `bounds` ([`Constraint::bend`]) in the region of
+    /// their radii around the pose in `state` or, `on_chord`, around all of the chord, whose middle
+    /// the pose is. `None` if the row is not smooth there.
     ///
     /// [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
     pub(super) fn bend(
@@ -122,11 +123,13 @@ impl BlockEquations {
         local: usize,
         state: &BlockState<'_>,
         bounds: &StepBounds,
+        on_chord: bool,
     ) -> Option<Bend> {
         let equation = &state.system.equations()[self.rows[local]];
         let row_scale = equation.row_scale(state.at);
         let region = Region {
             radii: &bounds.region,
+            line: on_chord.then_some(&bounds.chord),
         };
         let mut change = Gradient::new();
         let along = equation

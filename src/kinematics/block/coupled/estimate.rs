@@ -199,12 +199,12 @@ impl CoupledBlock {
             let contour = contours.next_if(|(row, _)| *row == local);
             let (mut open, mut change) = (test.slack[local], 0.0);
             let bend = match contour {
-                None => equations.bend(local, state, bounds)?,
+                None => equations.bend(local, state, bounds, false)?,
                 Some((_, columns)) => {
                     for &column in columns {
                         bounds.region[column] = around(column) + 0.5 * bounds.chord[column].abs();
                     }
-                    let bend = equations.bend(local, state, bounds);
+                    let bend = equations.bend(local, state, bounds, false);
                     for &column in columns {
                         bounds.region[column] = around(column);
                     }

@@ -3,7 +3,8 @@
 use nalgebra::{Rotation2, Vector2};
 
 use super::super::definition::Incidence;
-use super::super::region::Region;
+use super::super::point::{angular_velocity, point_velocity};
+use super::super::region::{Region, centripetal_bound};
 use crate::kinematics::configuration::{
     Configuration, JointUnknownId, MarkerPose, ProfileId, perp,
 };
@@ -51,6 +52,8 @@ pub(super) struct ContourBounds {
     pub(super) arm: f64,
     /// Bound of the turn of the tangent \[rad\].
     pub(super) tangent: f64,
+    /// The same for places off the line of the region only.
+    pub(super) off_line: [f64; 2],
     /// Bound of the jumps in the first derivative of the tangent's direction.
     pub(super) turn_jump: f64,
 }
@@ -81,21 +84,13 @@ impl Contour {
         theta: f64,
         axis: Vector2<f64>,
     ) -> Shape {
-        let radius = profile.radius(theta);
-        let (r, [r1, r2, r3]) = (radius.value, radius.derivatives);
-        let radial = Rotation2::new(theta) * axis;
-        let square = r * r + r1 * r1;
-        let v = square.sqrt();
-        // The angle from the radial direction to the tangent is atan(R/R′): the derivative of the
-        // tangent's direction is (R² + 2R′² − R R″)/(R² + R′²).
-        let turn = (square + r1 * r1 - r * r2) / square;
-        let numerator_rate = 2.0 * r * r1 + 3.0 * r1 * r2 - r * r3;
-        let turn_rate = (numerator_rate - 2.0 * turn * (r * r1 + r1 * r2)) / square;
+        let point = profile.point(theta);
+        let global = |[x, y]: [f64; 2]| x * axis + y * perp(axis);
         Shape {
-            arm: r * radial,
-            tangent: (r1 * radial + r * perp(radial)) / v,
-            speed: [v, (r * r1 + r1 * r2) / v],
-            turn: [turn, turn_rate],
+            arm: global(point.arm),
+            tangent: global(point.tangent),
+            speed: point.speed,
+            turn: point.turn,
         }
     }
 
@@ -130,7 +125,7 @@ impl Contour {
     /// Returns the bounds in a region, `None` if the contour is not smooth there.
     pub(super) fn bounds(&self, at: &Configuration, region: &Region<'_>) -> Option<ContourBounds> {
         let theta = at.joint_unknown(self.contact);
-        let slide = region.radii[self.column(at)];
+        let slide = region.radius(self.column(at));
         let ProfileBounds { radius, jumps } = at.profile(self.profile).bounds(theta, slide)?;
         let lowest = radius.value.low;
         if lowest <= 0.0 {
@@ -151,15 +146,68 @@ impl Contour {
         let numerator_rate = 2.0 * radius * r1 + 3.0 * r1 * r2 + radius * r3;
         let turn_rate = (numerator_rate + 2.0 * turn * r1 * (radius + r2)) / least_square;
         let cam = at.marker(self.cam);
+        let changes = |region: &Region<'_>| {
+            let slide = region.radius(self.column(at));
+            [
+                radius * region.sway(cam) + v * slide,
+                region.turn(cam) + turn * slide,
+            ]
+        };
+        let [arm, tangent] = changes(region);
         Some(ContourBounds {
             radius,
             speed: [v, v1],
             turn: [turn, turn_rate],
             slide,
-            arm: radius * region.sway(cam) + v * slide,
-            tangent: region.turn(cam) + turn * slide,
+            arm,
+            tangent,
+            off_line: changes(&region.off_line()),
             turn_jump,
         })
+    }
+
+    /// Bounds the turn of the tangent relative to the follower, or to ground if this does not
+    /// turn `with` it, and the change of the vector from the contact to the follower's point, for a
+    /// contact of this `shape`.
+    ///
+    /// On a line both change by the rates in its middle, whose terms cancel where the contact goes
+    /// round the cam as this turns, and by an eighth of the bound of the second derivatives.
+    pub(super) fn changes(
+        &self,
+        at: &Configuration,
+        region: &Region<'_>,
+        bounds: &ContourBounds,
+        (cam, shape): (MarkerPose, &Shape),
+        (follower, with): (MarkerPose, bool),
+    ) -> [f64; 2] {
+        let anywhere = |region: &Region<'_>, [arm, tangent]: [f64; 2]| {
+            let turn = if with { region.turn(follower) } else { 0.0 };
+            [
+                tangent + turn,
+                region.reach(follower) + region.reach(cam) + arm,
+            ]
+        };
+        let [turn, gap] = anywhere(region, [bounds.arm, bounds.tangent]);
+        let Some(line) = region.line else {
+            return [turn, gap];
+        };
+        let (omega, rate) = (angular_velocity(cam, line), line[self.column(at)]);
+        let motion = shape.motion(omega, rate);
+        let [_, arm_bend, _, turn_bend] = bounds.motion(omega, rate);
+        let bend = centripetal_bound(cam, follower, line) + arm_bend;
+        let swing = if with {
+            angular_velocity(follower, line)
+        } else {
+            0.0
+        };
+        let velocity = point_velocity(follower, line) - point_velocity(cam, line) - motion.arm[0];
+        let turning = (motion.tangent[0] - swing).abs() + bounds.turn_jump * rate.abs();
+        let [off_turn, off_gap] = anywhere(&region.off_line(), bounds.off_line);
+        // Without a third derivative some of these are not finite.
+        [
+            turn.min(0.5 * turning + 0.125 * turn_bend + off_turn),
+            gap.min(0.5 * velocity.norm() + 0.125 * bend + off_gap),
+        ]
     }
 
     /// Notes the unknowns in the components of the contact's point that `components` selects, and

@@ -53,12 +53,17 @@ impl Constraint for FlatContact {
     }
 
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        self.value_and_gradient(at, row);
+    }
+
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let follower = at.marker(self.follower);
         let (cam, contact) = self.contour.at(at);
-        let (_, cosine) = lean(follower, &contact);
+        let (sine, cosine) = lean(follower, &contact);
         row.add_direction(cam, cosine);
         row.add_direction(follower, -cosine);
         row.add_joint_unknown(self.contour.column(at), cosine * contact.turn[0]);
+        sine
     }
 
     /// Returns cos δ δ̈ − sin δ δ̇².
@@ -90,7 +95,8 @@ impl Constraint for FlatContact {
         let bounds = self.contour.bounds(at, region)?;
         // |cos(δ + a) − cos δ| ≤ |sin δ| |a| + a²/2, at most two; of second order while the contour
         // touches the face.
-        let angle = bounds.tangent + region.turn(follower);
+        let pair = ((cam, &contact), (follower, true));
+        let [angle, _] = self.contour.changes(at, region, &bounds, pair.0, pair.1);
         let cosine = (sine.abs() * angle + 0.5 * angle * angle).min(2.0);
         row.add_direction(cam, cosine);
         row.add_direction(follower, cosine);
@@ -151,6 +157,10 @@ impl Constraint for FlatFace {
     }
 
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        self.value_and_gradient(at, row);
+    }
+
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let Face {
             cam,
             follower,
@@ -164,6 +174,7 @@ impl Constraint for FlatFace {
         row.add_direction(follower, -g.dot(&follower.axis));
         let along = contact.speed[0] * contact.tangent.dot(&normal);
         row.add_joint_unknown(self.contour.column(at), along);
+        g.dot(&normal)
     }
 
     /// Returns g̈ · n − 2 omega ġ · u − omega² g · n with the follower's omega.
@@ -212,11 +223,12 @@ impl Constraint for FlatFace {
             let swing = marker.arm.norm() * (sway + region.sway(marker));
             row.add_point_bound(marker, sway, swing);
         }
-        let moved = region.reach(follower) + region.reach(cam) + bounds.arm;
+        let pair = ((cam, &contact), (follower, true));
+        let [turn, moved] = self.contour.changes(at, region, &bounds, pair.0, pair.1);
         row.add_direction(cam, bounds.arm + contact.arm.norm() * sway);
         row.add_direction(follower, moved + g.norm() * sway);
         let column = self.contour.column(at);
-        let leaned = (bounds.tangent + region.turn(follower)).min(2.0);
+        let leaned = turn.min(2.0);
         let along = bounds.speed[1] * bounds.slide + contact.speed[0] * leaned;
         row.add_joint_unknown(column, along);
 

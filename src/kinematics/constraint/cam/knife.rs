@@ -81,11 +81,16 @@ impl Constraint for KnifeEdge {
     }
 
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        self.value_and_gradient(at, row);
+    }
+
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let polar = self.polar(at);
         let direction = polar.direction();
         row.add_point(at.marker(self.follower), direction);
         row.add_point(at.marker(self.cam), -direction);
         row.add_direction(at.marker(self.cam), polar.contour.first());
+        polar.distance - polar.contour.value
     }
 
     /// Returns ρ̈ − R″ θ̇² − R′ θ̈ with ρ̈ and θ̈ for q̈ = 0.

@@ -75,6 +75,10 @@ impl Constraint for Roller {
     }
 
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        self.value_and_gradient(at, row);
+    }
+
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let Touch {
             cam,
             follower,
@@ -88,6 +92,7 @@ impl Constraint for Roller {
         row.add_direction(cam, e.dot(&across) - perp(contact.arm).dot(&w));
         let along = e.dot(&across) * contact.turn[0] - contact.speed[0] * contact.tangent.dot(&w);
         row.add_joint_unknown(self.contour.column(at), along);
+        e.dot(&w)
     }
 
     /// Returns ë · w + 2 Ω ė · w⊥ + Ω̇ e · w⊥ − Ω² e · w with the rate Ω of w's direction.
@@ -143,12 +148,13 @@ impl Constraint for Roller {
             ..
         } = self.touch(at);
         let bounds = self.contour.bounds(at, region)?;
-        let turned = chord(bounds.tangent);
+        let pair = ((cam, &contact), (follower, false));
+        let [turn, moved] = self.contour.changes(at, region, &bounds, pair.0, pair.1);
+        let turned = chord(turn);
         for marker in [follower, cam] {
             let swing = marker.arm.norm() * (turned + region.sway(marker));
             row.add_point_bound(marker, turned, swing);
         }
-        let moved = region.reach(follower) + region.reach(cam) + bounds.arm;
         let e_change = moved + e.norm() * turned;
         let arm_change = bounds.arm + contact.arm.norm() * turned;
         row.add_direction(cam, e_change + arm_change);
