@@ -1,9 +1,10 @@
 # Cargo for other systems, for the scripts in this folder, which source it from the project's root.
 # shellcheck shell=bash
 #
-# The standard library of a target comes from rustup where it is installed (`rustup target add`),
-# otherwise from Debian's rustc-web, which builds it from rust-web-src. The linker is zig's, from
-# the Python package index, or mingw's for Windows.
+# The standard library of a target is built from Debian's rust-web-src by its rustc-web where both
+# are installed, without the symbols of backtraces, which makes a library an eighth smaller; otherwise
+# it is that of rustup (`rustup target add`). The linker is zig's, from the Python package index, or
+# mingw's for Windows.
 
 CROSS_TOOLS=.tools/cross
 # Versions that are known to build the same bytes.
@@ -33,12 +34,20 @@ apt_install() { # PACKAGE...
         fail "cannot install $*" "Install them with apt-get, or \`rustup target add\` instead."
 }
 
+# Prints the folder of the sources of Debian's standard library, nothing if they or its cargo are
+# not there.
+std_sources() {
+    local folder
+    folder=$(echo /usr/src/rustc-*)
+    [ ! -x /usr/bin/cargo ] || [ ! -f "$folder/library/Cargo.lock" ] || printf '%s\n' "$folder"
+}
+
 # Whether rustup's compiler has the standard library of a target.
 has_target() { [ -d "$(rustc --print sysroot)/lib/rustlib/$1/lib" ]; }
 
-# Prints cargo's folder for a target: that of rustup's compiler or that of Debian's.
-cross_folder() { # TARGET
-    if has_target "$1"; then echo "$CARGO_TARGET_DIR/portable"; else echo "$CARGO_TARGET_DIR/cross"; fi
+# Prints cargo's folder: that of Debian's compiler or that of rustup's.
+cross_folder() {
+    if [ -n "$(std_sources)" ]; then echo "$CARGO_TARGET_DIR/cross"; else echo "$CARGO_TARGET_DIR/portable"; fi
 }
 
 # Runs a builder, `cargo zigbuild` or `maturin build --zig`, for a target, such that what it builds
@@ -49,17 +58,18 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
     unset RUSTFLAGS CARGO_ENCODED_RUSTFLAGS
     # Only tests need the standard's headers.
     export BIELA_FMI_HEADERS=
-    local rustc=rustc sources='' build_std=() directory
-    directory=$(cross_folder "$target")
-    if ! has_target "$target"; then
+    local rustc=rustc sources build_std=() directory
+    directory=$(cross_folder)
+    sources=$(std_sources)
+    if [ -n "$sources" ]; then
         rustc=/usr/bin/rustc
-        sources=$(echo /usr/src/rustc-*)
-        [ -x /usr/bin/cargo ] && [ -f "$sources/library/Cargo.lock" ] ||
-            fail "no Rust standard library for $target" "Run: rustup target add $target" \
-                "or install Debian's ${DEBIAN_PACKAGES[*]}"
         export RUSTC=$rustc RUSTDOC=/usr/bin/rustdoc RUSTC_BOOTSTRAP=1
         PATH=/usr/bin:$PATH
-        build_std=("-Zbuild-std=std,panic_unwind")
+        build_std=(-Zbuild-std=std,panic_unwind
+            -Zbuild-std-features=panic-unwind,optimize_for_size)
+    elif ! has_target "$target"; then
+        fail "no Rust standard library for $target" "Run: rustup target add $target" \
+            "or install Debian's ${DEBIAN_PACKAGES[*]}"
     fi
     export CARGO_TARGET_DIR=$directory PATH=$PWD/$CROSS_TOOLS/bin:$PATH
     flag() { flags+="${flags:+,}\"$1\""; }
@@ -104,5 +114,5 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
 
 # Prints the path of what cross_build has built for a target.
 cross_built() { # TARGET FILE
-    printf '%s\n' "$(cross_folder "$1")/$1/release/$2"
+    printf '%s\n' "$(cross_folder)/$1/release/$2"
 }

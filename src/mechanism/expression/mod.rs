@@ -110,6 +110,7 @@ impl Operation {
     }
 
     /// Takes the operands from the top of `stack` and leaves the result there.
+    #[inline]
     fn apply<N: Number>(
         self,
         stack: &mut [N],

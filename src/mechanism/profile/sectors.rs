@@ -24,7 +24,7 @@ const LAST_LEVEL: u32 = 40;
 /// Number of sectors that are kept: all up to level 8.
 const KEPT: usize = 512;
 /// Largest width of the bounds of R‴ in a sector that is fine enough for any range \[radii\].
-const RESOLVED: f64 = 0.02;
+const RESOLVED: f64 = 0.1;
 /// Width of a sector that is fine enough in any case, as a part of the range.
 const NARROW: f64 = 0.125;
 /// Overlap of a sector with its neighbours, as a part of its width: a kink between two of them is
@@ -244,15 +244,20 @@ impl Sectors {
         } = cover;
         let is_narrow = sector.width() <= narrow || sector.level == LAST_LEVEL;
         let place = &self.0[sector.place()];
+        let keep = |bounds| {
+            place.set(Some((sector, bounds)));
+            bounds
+        };
         let bounds = match place.get() {
             Some((kept, bounds)) if kept == sector => bounds,
-            _ => contour.in_sector(sector),
+            _ => keep(contour.in_sector(sector)),
         };
         let bounds = match bounds {
-            SectorBounds::Seam if is_narrow => SectorBounds::Pieces(contour.pieces(sector.range())),
+            SectorBounds::Seam if is_narrow => {
+                keep(SectorBounds::Pieces(contour.pieces(sector.range())))
+            }
             bounds => bounds,
         };
-        place.set(Some((sector, bounds)));
         match bounds {
             SectorBounds::Smooth(expansion) if is_narrow || expansion.is_resolved() => {
                 let Interval { low, high } = sector.range();

@@ -24,7 +24,7 @@ use crate::kinematics::newton::STALLED;
 use crate::kinematics::system::Target;
 
 /// Largest norm of K of a single step after which a tube is made: it then serves several steps.
-const WORTH_A_TUBE: f64 = 0.1;
+const WORTH_A_TUBE: f64 = 0.05;
 /// The h that a tube is made for.
 const GOOD_CONTRACTION: f64 = 0.2;
 /// Largest h of a tube.
