@@ -44,8 +44,20 @@ SECONDS = 120
 """More than any block may take, in a debug build on a busy machine."""
 
 
+@pytest.fixture(scope="module")
+def programs(tmp_path_factory):
+    """A folder with the program and its library alone, whatever else has been built."""
+    folder = tmp_path_factory.mktemp("bin")
+    built = program()
+    for file in (built, *built.parent.glob("*biela_runtime.*")):
+        if file.suffix != ".d":
+            shutil.copy2(file, folder)
+    return folder
+
+
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
-def test_page(page, tmp_path):
+def test_page(page, tmp_path, monkeypatch, programs):
+    monkeypatch.setenv("PATH", str(programs), prepend=os.pathsep)
     checkout(tmp_path)
     folder = tmp_path / "examples" if page.parent.name == "examples" else tmp_path
     previous, printed = None, []
@@ -87,9 +99,7 @@ def run_console(at, block: Block, folder):
 
 
 def run(at, command, folder, *, may_fail=False) -> list[str]:
-    path = os.pathsep.join(
-        [str(program().parent), str(Path(sys.executable).parent), os.environ["PATH"]]
-    )
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     environment = {
         **os.environ,
         "PATH": path,
