@@ -94,7 +94,7 @@ impl DriverInput {
     /// Returns the derivatives of position, velocity and acceleration in force at an event by one of
     /// the three inputs: rates that are not given stay those of the last step.
     pub(super) fn change_at_event(&self, rates: RateSource, time: f64, order: Order) -> [f64; 3] {
-        let (_, sources) = self.rates(rates, time, 0.0, 0.0);
+        let sources = self.sources(rates, time);
         History::default().change(rates, sources, order)
     }
 
@@ -110,7 +110,7 @@ impl DriverInput {
     /// from `time`.
     pub(super) fn path(&self, rule: Rule, time: f64, h: f64) -> DriverRates {
         if self.is_extrapolated(rule) {
-            return self.rates(rule.rates, time, h, 0.0).0;
+            return self.rates(rule.rates, time, h, 0.0, &mut Default::default());
         }
         let [velocity, acceleration] = self.derivatives[0].map(Option::unwrap_or_default);
         DriverRates {
@@ -124,30 +124,44 @@ impl DriverInput {
         rule.extrapolation == Extrapolation::Taylor && self.derivatives[0] == [None, None]
     }
 
-    /// Returns the rates in force at the end of a step of size `h` from `time`, and their sources;
-    /// with `h = 0` those at `time` itself.
-    pub(super) fn rates_after(&self, rule: Rule, time: f64, h: f64) -> (DriverRates, [Source; 2]) {
+    /// Returns the rates in force at the end of a step of size `h` from `time`, and writes their
+    /// sources; with `h = 0` those at `time` itself.
+    pub(super) fn rates_after(
+        &self,
+        rule: Rule,
+        time: f64,
+        h: f64,
+        sources: &mut [Source; 2],
+    ) -> DriverRates {
         if self.is_extrapolated(rule) {
-            let (mut rates, sources) = self.rates(rule.rates, time, h, 0.0);
+            let mut rates = self.rates(rule.rates, time, h, 0.0, sources);
             rates.velocity += h * rates.acceleration;
-            (rates, sources)
+            rates
         } else {
-            self.rates(rule.rates, time, h, h)
+            self.rates(rule.rates, time, h, h, sources)
         }
     }
 
-    /// Returns the rates by the table above, at `at` in a step of size `h` from `time`.
-    fn rates(&self, rates: RateSource, time: f64, h: f64, at: f64) -> (DriverRates, [Source; 2]) {
+    /// Returns the rates by the table above, at `at` in a step of size `h` from `time`, and writes
+    /// their sources.
+    fn rates(
+        &self,
+        rates: RateSource,
+        time: f64,
+        h: f64,
+        at: f64,
+        sources: &mut [Source; 2],
+    ) -> DriverRates {
         let velocity = self.given_velocity(rates, at);
         let acceleration = self.given_acceleration(rates, at);
         if let (Some((velocity, of_velocity)), Some((acceleration, of_acceleration))) =
             (velocity, acceleration)
         {
-            let rates = DriverRates {
+            *sources = [of_velocity, of_acceleration];
+            return DriverRates {
                 velocity,
                 acceleration,
             };
-            return (rates, [of_velocity, of_acceleration]);
         }
         let mut history = self.history;
         history.push(self.sample(rates, time), h);
@@ -157,11 +171,18 @@ impl DriverInput {
         let (acceleration, of_acceleration) = acceleration
             .or_else(difference)
             .unwrap_or((estimate.acceleration, Source::Estimate));
-        let rates = DriverRates {
+        *sources = [of_velocity, of_acceleration];
+        DriverRates {
             velocity,
             acceleration,
-        };
-        (rates, [of_velocity, of_acceleration])
+        }
+    }
+
+    /// Returns the sources of the rates at `time`.
+    fn sources(&self, rates: RateSource, time: f64) -> [Source; 2] {
+        let mut sources = [Source::default(); 2];
+        self.rates(rates, time, 0.0, 0.0, &mut sources);
+        sources
     }
 
     fn given_velocity(&self, rates: RateSource, h: f64) -> Option<(f64, Source)> {
@@ -237,7 +258,7 @@ impl DriverInput {
     /// Returns the derivatives of position, velocity and acceleration in force at `time`, before a
     /// step, by one of the three inputs.
     pub(super) fn change_by_value(&self, rates: RateSource, time: f64, order: Order) -> [f64; 3] {
-        let (_, sources) = self.rates(rates, time, 0.0, 0.0);
+        let sources = self.sources(rates, time);
         let mut history = self.history;
         history.push(self.sample(rates, time), 0.0);
         history.change(rates, sources, order)
@@ -329,7 +350,7 @@ mod tests {
     }
 
     fn rates_after(input: &DriverInput, rule: Rule, time: f64, h: f64) -> DriverRates {
-        input.rates_after(rule, time, h).0
+        input.rates_after(rule, time, h, &mut Default::default())
     }
 
     // Numbers whose sums and quotients are exact in binary throughout.

@@ -158,10 +158,9 @@ impl MechanismModel {
                     let input = &inputs[index];
                     let given = match interface {
                         Interface::ModelExchange => input.given_rates(),
+                        // Writes the sources in place: copied on, they would be waited for.
                         Interface::CoSimulation => {
-                            let (given, from) = input.rates_after(settings.rule, start, s * h);
-                            sources[index] = from;
-                            given
+                            input.rates_after(settings.rule, start, s * h, &mut sources[index])
                         }
                     };
                     rates.value = 0.0;

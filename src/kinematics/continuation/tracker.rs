@@ -411,6 +411,10 @@ impl Run<'_> {
 
     /// Makes the end of a sub-step the pose.
     fn accept(&mut self, end: f64, correction: Correction) {
+        // Written first: the caller copies it as a whole, which waits for parts written just before.
+        let progress = &mut self.progress;
+        progress.iterations = progress.iterations.saturating_add(correction.iterations);
+        progress.checked = progress.checked.saturating_add(self.bounds.checked.into());
         let pose = &mut self.state.pose;
         pose.time = self.path.time(end);
         std::mem::swap(&mut pose.drivers, &mut self.drivers.values);
@@ -422,9 +426,6 @@ impl Run<'_> {
         self.note_crossings();
         self.drivers.arrive();
         self.s = end;
-        let progress = &mut self.progress;
-        progress.iterations = progress.iterations.saturating_add(correction.iterations);
-        progress.checked = progress.checked.saturating_add(self.bounds.checked.into());
     }
 
     /// Derives bodies, parameters and tangent from the pose again.
