@@ -11,7 +11,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use certified_tube::CertifiedTube;
+use certified_tube::CertifiedTubes;
 use contraction::ContractionTest;
 use equations::{BlockEquations, ColumnOwner, Jacobian};
 
@@ -39,7 +39,7 @@ pub(in crate::kinematics) struct CoupledBlock {
     excess: f64,
     correction: Vec<f64>,
     test: Box<ContractionTest>,
-    tube: CertifiedTube,
+    tubes: CertifiedTubes,
     segment: CheckedSegment,
     /// The markers of its bodies.
     markers: Vec<MarkerId>,
@@ -79,7 +79,7 @@ impl CoupledBlock {
             residual: vec![0.0; order],
             excess: 0.0,
             correction: vec![0.0; order],
-            tube: CertifiedTube::new(order + test.known.len()),
+            tubes: CertifiedTubes::new(order + test.known.len()),
             segment: CheckedSegment::new(order, test.known.len()),
             test,
             markers,
@@ -299,7 +299,7 @@ impl SolveBlock for CoupledBlock {
     }
 
     fn forget_proofs(&mut self) {
-        self.tube.forget();
+        self.tubes.forget();
         self.segment.forget();
     }
 }

@@ -95,6 +95,8 @@ pub(super) struct StepBounds {
     /// zero between uses.
     pub(super) region: Vec<f64>,
     pub(super) chord: Vec<f64>,
+    /// Largest deviation of each unknown from its chord in a step that a tube of its block serves.
+    pub(super) tube_radii: Vec<f64>,
 }
 
 /// A test is accepted up to this part of the largest step that it allows.
@@ -138,6 +140,7 @@ impl StepBounds {
             reused: false,
             region: vec![0.0; unknowns],
             chord: vec![0.0; unknowns],
+            tube_radii: vec![0.0; unknowns],
         }
     }
 

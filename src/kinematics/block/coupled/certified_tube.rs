@@ -16,6 +16,12 @@
 //! Its radii are of first order in the step, those of `certify` of second order. A step that fails
 //! here is tested there, and a step that passes here, no longer than twice the one that the tube
 //! was made after, passes there too: the accepted steps do not depend on the tube.
+//!
+//! Tubes are kept, so that a motion that comes back, or goes on turn by turn, is proved once. Rows
+//! contain angles in sines, cosines and contours, or linearly: a gradient does not change when an
+//! angle changes by a whole turn, and a tube holds at every such angle.
+
+use std::f64::consts::TAU;
 
 use super::CoupledBlock;
 use crate::kinematics::block::step::{BlockState, Step};
@@ -25,7 +31,9 @@ use crate::kinematics::system::Target;
 
 /// Largest norm of K of a single step after which a tube is made: it then serves several steps.
 const WORTH_A_TUBE: f64 = 0.05;
-/// The h that a tube is made for.
+/// Norm of K of a single step times the steps that a tube is tried for, and the h that one is made
+/// for.
+const FIRST_CONTRACTION: f64 = 0.1;
 const GOOD_CONTRACTION: f64 = 0.2;
 /// Largest h of a tube.
 const LARGEST_CONTRACTION: f64 = 0.4;
@@ -33,20 +41,41 @@ const LARGEST_CONTRACTION: f64 = 0.4;
 const LARGEST_RADIUS: f64 = 0.5;
 /// Largest move along half of a tube, in radians and lengths of the block.
 const LARGEST_MOVE: f64 = 0.2;
-/// Ratio of the least width to that move, which counts as at least the second number: a block at
-/// rest has a tube too.
+/// Ratios of the least widths to that move, of a block's own unknowns and of upstream ones. The
+/// move counts as at least the third number: a block at rest has a tube too.
 const LEAST_WIDTH: f64 = 0.04;
+const LEAST_UPSTREAM_WIDTH: f64 = 0.02;
 const LEAST_MOVE: f64 = 0.01;
+/// Ratio of the width of an upstream unknown to its largest radius in a tube of its own block.
+const UPSTREAM_ROOM: f64 = 1.2;
+/// Weight of an upstream unknown's move in the choice of the one that measures the place on the
+/// line: upstream ones run more evenly.
+const UPSTREAM_LEADS: f64 = 10.0;
 /// Most steps that half of a tube is made for.
 const MOST_STEPS: f64 = 1e4;
 /// Ratio of a width to the deviation of the motion from the line.
 const ROOM: f64 = 2.0;
 /// Length of a step that a tube may serve, in steps like the one that it was made after.
 const LONGEST_STEP: f64 = 2.0;
+/// Most tubes that a block keeps, and most unknowns of all of them: a turn of a cam takes about a
+/// hundred.
+const MOST_KEPT: usize = 128;
+const MOST_UNKNOWNS: usize = 2048;
+
+/// The tubes that a block keeps.
+#[derive(Debug)]
+pub(super) struct CertifiedTubes {
+    /// In the order in which they were made, from `next` on.
+    kept: Box<[CertifiedTube]>,
+    /// The tube that served last.
+    last: usize,
+    /// The place of the next one.
+    next: usize,
+}
 
 /// A tube along a line in which a block is proved regular.
-#[derive(Debug, Default)]
-pub(super) struct CertifiedTube {
+#[derive(Clone, Debug, Default)]
+struct CertifiedTube {
     holds: bool,
     /// c, t, 1/B and 1/V of the block's own unknowns, then of the upstream ones.
     unknowns: Vec<Reach>,
@@ -69,26 +98,67 @@ pub(super) struct CertifiedTube {
 /// Reach of one unknown in a tube.
 #[derive(Clone, Copy, Debug, Default)]
 struct Reach {
+    /// c where the tube was made.
+    origin: f64,
+    /// c where the motion was last, whole turns away.
     centre: f64,
     way: f64,
     inverse_width: f64,
     inverse_move: f64,
 }
 
-impl CertifiedTube {
+impl CertifiedTubes {
     /// Makes the storage for this number of unknowns, own and upstream.
     pub(super) fn new(unknowns: usize) -> Self {
-        Self {
+        let tube = CertifiedTube {
             unknowns: vec![Reach::default(); unknowns],
-            ..Self::default()
+            ..CertifiedTube::default()
+        };
+        let count = (MOST_UNKNOWNS / unknowns.max(1)).clamp(1, MOST_KEPT);
+        Self {
+            kept: vec![tube; count].into(),
+            last: 0,
+            next: 0,
         }
     }
 
-    /// Forgets the tube.
+    /// Forgets all tubes.
     pub(super) fn forget(&mut self) {
-        self.holds = false;
+        for tube in &mut self.kept {
+            tube.holds = false;
+        }
     }
 
+    /// Returns the number of tubes.
+    #[cfg(test)]
+    pub(super) fn count(&self) -> usize {
+        self.kept.iter().filter(|tube| tube.holds).count()
+    }
+
+    /// Returns the tube to be made next, in the place of the oldest one.
+    fn next(&mut self) -> &mut CertifiedTube {
+        &mut self.kept[self.next]
+    }
+
+    /// Keeps the tube that was made.
+    fn keep_next(&mut self) {
+        self.kept[self.next].holds = true;
+        self.last = self.next;
+        self.next = (self.next + 1) % self.kept.len();
+    }
+
+    /// Returns the places of the other tubes, those made shortly after or before the last one first.
+    fn others(&self) -> impl Iterator<Item = usize> + use<> {
+        let (last, count) = (self.last, self.kept.len());
+        (1..count).map(move |k| {
+            let apart = k.div_ceil(2);
+            let apart = if k % 2 == 1 { apart } else { count - apart };
+            (last + apart) % count
+        })
+    }
+}
+
+impl CertifiedTube {
     /// Returns the place on the line for a value of the leading unknown. A block at rest has a line
     /// of length zero.
     fn place(&self, leading: f64) -> f64 {
@@ -101,8 +171,15 @@ impl CertifiedTube {
     }
 }
 
+/// Returns the whole turns from one angle to another \[rad\].
+fn whole_turns(from: f64, to: f64) -> f64 {
+    let turns = (to - from) / TAU;
+    // Rounded to the nearest.
+    (turns + 0.5_f64.copysign(turns)) as i64 as f64 * TAU
+}
+
 impl CoupledBlock {
-    /// Returns the unknown with this place in the tube.
+    /// Returns the unknown with this place in a tube.
     fn tube_column(&self, place: usize) -> usize {
         let own = &self.equations.columns;
         own.get(place)
@@ -110,16 +187,60 @@ impl CoupledBlock {
             .unwrap_or_else(|| self.test.known[place - own.len()])
     }
 
-    /// Proves by the tube that one motion joins the two ends of a sub-step, and writes its bound to
+    /// Proves by one of the tubes that one motion joins the two ends of a sub-step, and writes its
+    /// bound to `next`. Returns false without a proof.
+    pub(super) fn certify_in_tubes(&mut self, state: &BlockState<'_>, step: &mut Step<'_>) -> bool {
+        self.certify_in_tube(self.tubes.last, state, step)
+            || self.tubes.others().any(|tube| {
+                self.reaches(tube, state, step) && self.certify_in_tube(tube, state, step)
+            })
+    }
+
+    /// Returns whether the leading unknown passes through a tube, which is turned to where the
+    /// sub-step starts.
+    fn reaches(&mut self, tube: usize, state: &BlockState<'_>, step: &Step<'_>) -> bool {
+        let CertifiedTube { holds, leading, .. } = self.tubes.kept[tube];
+        let leading = self.tube_column(leading);
+        if !holds {
+            return false;
+        }
+        let columns = self.equations.columns.iter().chain(&self.test.known);
+        let tube = &mut self.tubes.kept[tube];
+        let reach = &tube.unknowns[tube.leading];
+        let turns = if state.system.is_angle(leading) {
+            whole_turns(reach.centre, step.from[leading])
+        } else {
+            0.0
+        };
+        let inside = |end: f64| tube.place(end - turns).abs() <= 1.0;
+        if !inside(step.from[leading]) || !inside(state.at.coordinate(leading)) {
+            return false;
+        }
+        for (reach, &column) in tube.unknowns.iter_mut().zip(columns) {
+            if state.system.is_angle(column) {
+                reach.centre = reach.origin + whole_turns(reach.origin, step.from[column]);
+            }
+        }
+        true
+    }
+
+    /// Proves by a tube that one motion joins the two ends of a sub-step, and writes its bound to
     /// `next`. Returns false without a proof.
-    pub(super) fn certify_in_tube(&mut self, state: &BlockState<'_>, step: &mut Step<'_>) -> bool {
-        let leading = self.tube_column(self.tube.leading);
+    fn certify_in_tube(
+        &mut self,
+        tube: usize,
+        state: &BlockState<'_>,
+        step: &mut Step<'_>,
+    ) -> bool {
+        let leading = self.tube_column(self.tubes.kept[tube].leading);
         let Self {
             equations,
             test,
-            tube,
+            tubes,
             ..
         } = self;
+        let index = tube;
+        let tube = &tubes.kept[index];
         if !tube.holds {
             return false;
         }
@@ -156,6 +277,7 @@ impl CoupledBlock {
             let scale = state.system.column_scale(column, size);
             *next = radius / (reach.inverse_width * scale);
         }
+        tubes.last = index;
         step.bounds.reused = true;
         true
     }
@@ -168,34 +290,45 @@ impl CoupledBlock {
         step: &mut Step<'_>,
         contraction: f64,
     ) {
-        self.tube.holds = false;
         if contraction > WORTH_A_TUBE {
             return;
         }
+        self.tubes.next().holds = false;
         let length = self.length * state.at.size();
         let all = || self.equations.columns.iter().chain(&self.test.known);
-        let mut largest = f64::EPSILON;
+        let own = self.equations.columns.len();
+        let (mut largest, mut leading) = (f64::EPSILON, (0.0, 0));
         for (place, &column) in all().enumerate() {
             let moved = (state.at.coordinate(column) - step.from[column]).abs();
             let moved = moved / state.system.column_scale(column, length);
-            if moved > largest {
-                (largest, self.tube.leading) = (moved, place);
+            largest = largest.max(moved);
+            let leads = if place < own {
+                moved
+            } else {
+                UPSTREAM_LEADS * moved
+            };
+            if leads > leading.0 {
+                leading = (leads, place);
             }
         }
         let test = &mut *self.test;
         self.jacobian.invert(&mut test.inverse, &mut test.row);
         let furthest = (LARGEST_MOVE / largest).min(MOST_STEPS);
-        let mut steps = (GOOD_CONTRACTION / contraction).min(furthest);
+        let mut steps = (FIRST_CONTRACTION / contraction).min(furthest);
         for _ in 0..3 {
-            // Discard a tube of less than two steps.
-            if steps < 2.0 || !self.measure_tube(state, step, largest, steps) {
+            // Discard a tube of less than one step.
+            if steps < 1.0 || !self.measure_tube(state, step, largest, steps) {
                 return;
             }
-            let tube = &mut self.tube;
+            let tube = self.tubes.next();
             let radius = 0.5 * tube.opening / (steps * (1.0 - tube.contraction));
             if tube.contraction <= LARGEST_CONTRACTION && radius <= LARGEST_RADIUS {
                 tube.longest = LONGEST_STEP / steps;
-                tube.holds = true;
+                tube.leading = leading.1;
+                for (&column, reach) in self.equations.columns.iter().zip(&tube.unknowns) {
+                    step.bounds.tube_radii[column] = radius / reach.inverse_width;
+                }
+                self.tubes.keep_next();
                 return;
             }
             let excess = tube.contraction / GOOD_CONTRACTION;
@@ -221,17 +354,27 @@ impl CoupledBlock {
             ..
         } = *step;
         let bounds = &mut *step.bounds;
-        for (reach, &column) in self.tube.unknowns.iter_mut().zip(all) {
+        let own = self.equations.columns.len();
+        let unknowns = self.tubes.next().unknowns.iter_mut();
+        for (place, (reach, &column)) in unknowns.zip(all).enumerate() {
             let end = state.at.coordinate(column);
             // The change from one step to the next.
             let second = 2.0 * extrapolation.second * state.tangent.acceleration()[column];
             let way = steps * (end - from[column]) + 0.5 * steps * (steps + 1.0) * second;
             let off = ROOM * 0.125 * steps * steps * second.abs();
             let scale = state.system.column_scale(column, length);
-            let width = off + LEAST_WIDTH * (steps * largest).max(LEAST_MOVE) * scale;
+            let (least, uncertain) = if place < own {
+                // A step has room for radii of first order.
+                (LEAST_WIDTH.max(1.0 / steps), 0.0)
+            } else {
+                (LEAST_UPSTREAM_WIDTH, bounds.tube_radii[column])
+            };
+            let least = least * (steps * largest).max(LEAST_MOVE) * scale;
+            let width = off + UPSTREAM_ROOM * uncertain + least;
             bounds.region[column] = width;
             bounds.chord[column] = 2.0 * way;
             *reach = Reach {
+                origin: end,
                 centre: end,
                 way,
                 inverse_width: 1.0 / width,
@@ -290,9 +433,10 @@ impl CoupledBlock {
             equations,
             jacobian,
             test,
-            tube,
+            tubes,
             ..
         } = self;
+        let tube = tubes.next();
         let size = state.at.size();
         let scaled =
             |column: usize| bounds.region[column] / state.system.column_scale(column, size);

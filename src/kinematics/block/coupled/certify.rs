@@ -70,7 +70,7 @@ impl CoupledBlock {
         step: &mut Step<'_>,
     ) -> Result<(), Rejected> {
         let holds = step.bounds.may_reuse
-            && (self.certify_in_tube(state, step) || self.certify_in_segment(state, step));
+            && (self.certify_in_tubes(state, step) || self.certify_in_segment(state, step));
         if holds {
             self.write_bounds(state, step);
             return Ok(());

@@ -1,9 +1,11 @@
-//! The estimate for large blocks accepts no step onto another branch.
+//! The estimate for large blocks accepts no step onto another branch; tubes serve turn by turn.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::fs;
 
 use crate::kinematics::block::{BlockSolver, BlockState, Extrapolation, SolveBlock, Step};
 use crate::kinematics::certificate::{Pivots, StepBounds};
+use crate::kinematics::path::{Curve, Path};
 use crate::kinematics::reference::assembled;
 use crate::kinematics::reference::generated::{BAR, scissor_lift};
 use crate::kinematics::solver::Solver;
@@ -125,4 +127,44 @@ fn no_step_leads_onto_another_branch() {
     }
     // Short steps on the branch itself are accepted.
     assert!(right >= 8 && wrong > 200, "{right} {wrong}");
+}
+
+/// Returns the number of tubes that all blocks keep.
+fn kept_tubes(solver: &Solver) -> usize {
+    let blocks = solver.model.plan.blocks.iter();
+    let coupled = blocks.filter_map(|block| match block {
+        BlockSolver::CoupledBlock(block) => Some(block.tubes.count()),
+        _ => None,
+    });
+    coupled.sum()
+}
+
+#[test]
+fn later_turns_take_the_tubes_of_the_first_one() {
+    for name in ["cam_roller", "cam_flat", "cam_knife"] {
+        let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = fs::read_to_string(path).expect("the mechanism is there");
+        let (mut solver, _) = assembled(&Source::new(name, text));
+        let mut path = Path::new(solver.mechanism());
+        let start = solver.pose().drivers[0];
+        let mut turn = |degrees: &mut dyn Iterator<Item = u32>| {
+            for degree in degrees {
+                let now = solver.pose().drivers[0];
+                let angle = start + f64::from(degree).to_radians();
+                path.curves[0] = Curve::held(angle, now);
+                let progress = solver.track(&path).expect("a cam turns");
+                assert_eq!(
+                    (progress.substeps, progress.checked),
+                    (1, 0),
+                    "{name} at {degree}"
+                );
+            }
+            kept_tubes(&solver)
+        };
+        // The last tube of the first turn reaches into the second one.
+        let first = turn(&mut (1..=380));
+        assert!((20..200).contains(&first), "{name}: {first} tubes");
+        assert_eq!(turn(&mut (381..3600)), first, "{name} goes on");
+        assert_eq!(turn(&mut (0..3599).rev()), first, "{name} comes back");
+    }
 }
