@@ -127,7 +127,8 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
     pub(crate) fn advance(&mut self, row: usize) -> Result<(), String> {
         self.advance_to(row).map_err(|blocked| {
             let mechanism = self.solver.mechanism();
-            blocked.describe(mechanism, self.solver.pose(), |driver| {
+            let pose = self.solver.pose();
+            blocked.describe(mechanism, pose, Some(pose.time), |driver| {
                 mechanism.drivers[driver.index()].motion().is_some()
                     || self.sample(driver, row).is_some()
             })

@@ -185,7 +185,8 @@ impl Motion {
     /// Says what stops the mechanism, when, and at which values of the moving drivers.
     fn describe(&self, blocked: &Blocked) -> String {
         let mechanism = self.solver.mechanism();
-        blocked.describe(mechanism, self.solver.pose(), |driver| {
+        let pose = self.solver.pose();
+        blocked.describe(mechanism, pose, Some(pose.time), |driver| {
             mechanism.drivers[driver.index()].motion().is_some() || self.signals.has(driver)
         })
     }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::kinematics::{Blocked, Error, Rates, Reason, Solver};
+use crate::kinematics::{Blocked, Error, Path, Rates, Reason, Solver};
 use crate::mechanism::{DriverId, Mechanism};
 
 /// The outcome of a move.
@@ -54,20 +54,23 @@ impl Obstacle {
         }
     }
 
-    /// Returns what stopped the solver, which is at the last pose reached; `moves` tells which
-    /// drivers move.
+    /// Returns what stopped the solver on a path, which is at the last pose reached; `moves` tells
+    /// which drivers move.
     pub(super) fn of_stop(
         blocked: &Blocked,
         solver: &Solver,
+        path: &Path,
         moves: impl Fn(DriverId) -> bool,
     ) -> Self {
+        let pose = solver.pose();
+        let time = (path.duration > 0.0).then_some(pose.time);
         let names: Vec<&str> = match &blocked.reason {
             Reason::Singular(point) => point.bodies.iter().map(String::as_str).collect(),
             Reason::Contradiction(open) => vec![&open.element],
             _ => Vec::new(),
         };
         Self {
-            message: blocked.describe(solver.mechanism(), solver.pose(), moves),
+            message: blocked.describe(solver.mechanism(), pose, time, moves),
             at: place_of(&names, solver),
             assembles: false,
         }

@@ -160,7 +160,7 @@ impl Session {
             self.refresh();
             return Outcome::Reached;
         };
-        let mut obstacle = Obstacle::of_stop(&blocked, &self.solver, |_| false);
+        let mut obstacle = Obstacle::of_stop(&blocked, &self.solver, &self.path, |_| false);
         let way = before.parameters[parameter.index()];
         let limit = way + blocked.s * (value - way);
         self.solver.restore(&before);
@@ -243,7 +243,9 @@ impl Session {
     pub(super) fn follow(&mut self, moves: impl Fn(DriverId) -> bool) -> Outcome {
         match self.solver.track(&self.path) {
             Ok(_) => Outcome::Reached,
-            Err(blocked) => Outcome::Stopped(Obstacle::of_stop(&blocked, &self.solver, moves)),
+            Err(blocked) => {
+                Outcome::Stopped(Obstacle::of_stop(&blocked, &self.solver, &self.path, moves))
+            }
         }
     }
 

@@ -92,10 +92,11 @@ fn a_rocker_that_drives_stops_at_its_dead_point() {
     let Outcome::Stopped(obstacle) = session.drive(DriverId(0), 0.3) else {
         panic!("the dead point stops it");
     };
+    // A hand's move takes no time.
+    let message = &obstacle.message;
     assert!(
-        obstacle.message.contains("dead point"),
-        "{}",
-        obstacle.message
+        message.contains("dead point") && !message.contains("t = "),
+        "{message}"
     );
     assert!(obstacle.at.is_some());
     assert!((session.pose().drivers[0] - limit).abs() < 1e-9);

@@ -72,13 +72,14 @@ impl Blocked {
         }
     }
 
-    /// Returns the cause of the stop, its time, and the values of the drivers that move; `pose` is
-    /// the last one reached.
+    /// Returns the cause of the stop, its `time` \[s\] if the motion takes time, and the values of
+    /// the drivers that move; `pose` is the last one reached.
     #[must_use]
     pub fn describe(
         &self,
         mechanism: &Mechanism,
         pose: &Pose,
+        time: Option<f64>,
         moves: impl Fn(DriverId) -> bool,
     ) -> String {
         let reason = match &self.reason {
@@ -108,7 +109,8 @@ impl Blocked {
                 format!("`{}` at {value}", driver.name)
             })
             .collect();
-        let (time, moving) = (pose.time, moving.join(", "));
-        format!("{reason} at t = {time:.9} s: the mechanism cannot go on, with {moving}")
+        let moving = moving.join(", ");
+        let time = time.map_or_else(String::new, |time| format!(" at t = {time:.9} s"));
+        format!("{reason}{time}: the mechanism cannot go on, with {moving}")
     }
 }
