@@ -30,7 +30,6 @@ pub(super) use values::check_value;
 use super::error::{Error, Failure, check_finite};
 use super::log::{Category, Logger, Sink};
 use super::model::{Groups, Model};
-use super::resource_path;
 use super::state::{Allowed, Call, Interface, Phase, State, Version, allowed, is_allowed};
 use super::status::Status;
 use super::variable::{Variable, derivatives};
@@ -82,56 +81,27 @@ pub struct Instance<M: Model> {
 }
 
 impl<M: Model> Instance<M> {
-    /// Creates an FMI 2.0 instance of the model in the folder of the URI `resources`.
+    /// Creates an instance of the model in the folder `resources`, for a version of the standard.
     ///
     /// # Errors
     ///
-    /// The resources hold no model, or one with another GUID. The sink has received the reason.
+    /// The resources hold no model, or one with another GUID or instantiation token.
     pub fn instantiate(
+        version: Version,
         guid: &str,
-        resources: &str,
-        interface: Interface,
-        sink: Box<dyn Sink + Send>,
-        logging_on: bool,
-    ) -> Result<Self, Error> {
-        let loaded = resource_path(resources)
-            .map_err(Error::from)
-            .and_then(|folder| Self::load(guid, &folder, interface));
-        match loaded {
-            Ok(model) => Ok(Self::new(model, sink, logging_on)),
-            Err(error) => {
-                let message = format!("fmi2Instantiate: {error}");
-                sink.write(Status::Error, Category::Error, &message);
-                Err(error)
-            }
-        }
-    }
-
-    /// Creates an FMI 3.0 instance of the model in the folder `resources`.
-    ///
-    /// # Errors
-    ///
-    /// The resources hold no model, or one with another instantiation token.
-    pub fn instantiate_in(
-        token: &str,
         resources: &Path,
         interface: Interface,
         sink: Box<dyn Sink + Send>,
         logging_on: bool,
     ) -> Result<Self, Error> {
-        let model = Self::load(token, resources, interface)?;
-        Ok(Self::of_version(Version::Fmi3, model, sink, logging_on))
-    }
-
-    fn load(guid: &str, folder: &Path, interface: Interface) -> Result<M, Error> {
-        let model = M::load(folder, interface)?;
-        if model.guid() == guid {
-            return Ok(model);
+        let model = M::load(resources, interface)?;
+        if model.guid() != guid {
+            return Err(Error::Guid {
+                given: guid.to_owned(),
+                actual: model.guid().to_owned(),
+            });
         }
-        Err(Error::Guid {
-            given: guid.to_owned(),
-            actual: model.guid().to_owned(),
-        })
+        Ok(Self::of_version(version, model, sink, logging_on))
     }
 
     /// Creates an FMI 2.0 instance of a model.

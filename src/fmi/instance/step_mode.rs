@@ -121,15 +121,6 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// `fmi3EvaluateDiscreteStates`: there are none.
-    ///
-    /// # Errors
-    ///
-    /// The state forbids the call.
-    pub fn evaluate_discrete_states(&self) -> Result<(), Error> {
-        self.allow(Call::EvaluateDiscreteStates)
-    }
-
     /// `fmi3DoStep`: begins a step from the last communication point over `h` seconds. Without
     /// intermediate update the step has ended then.
     ///
