@@ -18,7 +18,7 @@ use crate::drawing::{Scene, Sheet, png};
 use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Version, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
-    DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of,
+    DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of, rounded,
 };
 
 const MAIN: &str = include_str!("documentation.html");
@@ -372,7 +372,7 @@ fn parameter(variable: &Variable<Quantity>, values: &[f64]) -> Option<[String; 5
     Some([
         variable.name.clone(),
         // A derived value carries the rounding of its expression.
-        shown(Some(rounded(values[parameter.index()]))),
+        shown(Some(rounded(values[parameter.index()], 12))),
         name_of(*unit),
         limits,
         what,
@@ -430,11 +430,6 @@ fn row(variable: &Variable<Quantity>) -> [String; 4] {
         unit,
         variable.description.replace('`', ""),
     ]
-}
-
-/// Rounds to twelve digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 fn name_of(unit: Option<Unit>) -> String {

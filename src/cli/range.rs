@@ -23,7 +23,7 @@ use super::plot::{MOST_BODIES, axis, varies};
 use super::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
 use crate::kinematics::{End, Extreme, Range as Motion, RangeSettings, Reason, Sample, in_line};
-use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, shown};
+use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounded, shown};
 
 /// Find how far a driver can go.
 ///
@@ -259,8 +259,8 @@ pub(super) fn end_text(end: &End, driver: &Driver, id: DriverId) -> String {
         // The end of the search is no property of the mechanism: four digits are enough.
         End::NotFound { value: at } => {
             let (value, unit) = in_unit(kind, *at);
-            let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-            format!("{} {unit} and farther: no limit was found", shown(rounded))
+            let value = shown(rounded(value, 4));
+            format!("{value} {unit} and farther: no limit was found")
         }
     }
 }

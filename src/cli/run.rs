@@ -20,7 +20,7 @@ use super::progress::Progress;
 use super::recorder::Recorder;
 use super::stdout::{STDOUT, is_stdout};
 use super::times::{Span, Times};
-use crate::mechanism::{Driver, DriverSource, Mechanism, Motion as Prescribed};
+use crate::mechanism::{Driver, DriverSource, Mechanism, Motion as Prescribed, rounded};
 
 /// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
@@ -268,12 +268,15 @@ fn example(driver: &Driver, duration: f64) -> Option<String> {
     };
     let (value, usual): (fn(f64) -> String, _) = if driver.coordinate.kind.is_angle() {
         (
-            |angle| format!("{}*deg", round(angle.to_degrees())),
+            |angle| format!("{}*deg", rounded(angle.to_degrees(), 6)),
             "2*pi".to_owned(),
         )
     } else {
-        let velocity = round(0.1 * start.abs().max(0.01));
-        (|length| round(length).to_string(), velocity.to_string())
+        let velocity = rounded(0.1 * start.abs().max(0.01), 6);
+        (
+            |length| rounded(length, 6).to_string(),
+            velocity.to_string(),
+        )
     };
     let (sign, speed) = match (driver.min, driver.max) {
         (Some(min), Some(max)) if start - min > max - start => {
@@ -287,9 +290,4 @@ fn example(driver: &Driver, duration: f64) -> Option<String> {
     Some(format!(
         ", for example --drive '{name} = {start} {sign} {speed}*t'"
     ))
-}
-
-/// Rounds to six digits.
-fn round(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }

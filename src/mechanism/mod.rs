@@ -67,6 +67,8 @@ pub use spline::{Ends, Spline};
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
+#[cfg(any(feature = "drawing", feature = "fmi"))]
+pub(crate) use wording::rounded;
 pub(crate) use wording::shown;
 #[cfg(feature = "cli")]
 pub(crate) use wording::{large_angle, quoted};

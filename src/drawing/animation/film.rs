@@ -12,6 +12,7 @@ use crate::drawing::attachment::Placement;
 use crate::drawing::force_place::largest;
 use crate::drawing::outline::across;
 use crate::drawing::sheet::CAPITALS;
+use crate::mechanism::rounded;
 
 /// Part of the largest force that no arrow shows: it would be shorter than a line is wide.
 const INVISIBLE: f64 = 1e-2;
@@ -262,7 +263,7 @@ impl Channel {
 
 /// Rounds to seven digits: far more than 16 bits tell apart.
 fn significant(value: f64) -> f64 {
-    format!("{value:.6e}").parse().unwrap_or(value)
+    rounded(value, 7)
 }
 
 fn short(value: f64) -> f64 {

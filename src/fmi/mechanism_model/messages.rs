@@ -9,7 +9,7 @@ use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
-use crate::mechanism::{Driver, Order, shown};
+use crate::mechanism::{Driver, Order, rounded, shown};
 
 impl MechanismModel {
     /// Describes why a step stopped: the drivers that move, their limits and the values asked for.
@@ -251,8 +251,7 @@ fn describe_contradiction(
     let Driver { name, .. } = driver;
     let unit = driver.coordinate.kind.units()[order as usize].name;
     // Four digits: differences of positions have rounding.
-    let rounded = |rate: f64| format!("{rate:.3e}").parse().unwrap_or(rate);
-    let [given, actual] = [given, actual].map(|rate| format!("{} {unit}", shown(rounded(rate))));
+    let [given, actual] = [given, actual].map(|rate| format!("{} {unit}", shown(rounded(rate, 4))));
     let (lower, rate) = match order {
         Order::Acceleration => ("velocity", "acceleration"),
         _ => ("position", "velocity"),
