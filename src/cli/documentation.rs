@@ -133,13 +133,11 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     let home = solver.pose().clone();
     let simulation = &own.simulation;
     let mut driven = Mechanism::clone(&own);
-    let moves = |motion: &Prescribed| motion.uses_time();
-    let is_moved = own.drivers.iter().any(|d| d.motion().is_some_and(moves));
     let angle = |driver: &usize| own.drivers[*driver].coordinate.kind.is_angle();
     let inputs = || (0..ranges.len()).filter(|driver| ranges[*driver].is_some());
     let first = inputs().find(angle).or_else(|| inputs().next());
     let (duration, moving) = match first.and_then(|first| Some((first, ranges[first].as_ref()?))) {
-        _ if is_moved => (
+        _ if own.uses_time() => (
             simulation.stop - simulation.start,
             "The prescribed motion, until the stop time.".to_owned(),
         ),

@@ -20,7 +20,7 @@ use super::progress::Progress;
 use super::recorder::Recorder;
 use super::stdout::{STDOUT, is_stdout};
 use super::times::{Span, Times};
-use crate::mechanism::{Driver, DriverSource, Mechanism, Motion as Prescribed, rounded};
+use crate::mechanism::{Driver, DriverSource, Mechanism, rounded};
 
 /// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
@@ -246,8 +246,7 @@ impl Run {
 
 /// Returns a note if nothing moves, with an example of a motion.
 fn note_of_rest(mechanism: &Mechanism, scenario: &Scenario) -> Option<Message> {
-    let moves = |driver: &Driver| driver.motion().is_some_and(Prescribed::uses_time);
-    if scenario.signals.has_drivers() || scenario.mechanism.drivers.iter().any(moves) {
+    if scenario.signals.has_drivers() || scenario.mechanism.uses_time() {
         return None;
     }
     let duration = mechanism.simulation.stop - mechanism.simulation.start;

@@ -386,6 +386,13 @@ pub struct Simulation {
 }
 
 impl Mechanism {
+    /// Returns whether a prescribed motion depends on time.
+    #[must_use]
+    pub fn uses_time(&self) -> bool {
+        let mut motions = self.drivers.iter().filter_map(Driver::motion);
+        motions.any(Motion::uses_time)
+    }
+
     /// Returns a marker's name with its body's: `crank.A`, `ground.O2`.
     #[must_use]
     pub fn marker_path(&self, id: MarkerId) -> String {

@@ -225,18 +225,8 @@ impl Session {
 
     /// Prepares the path on which nothing moves, at the pose.
     pub(super) fn path_here(&mut self) -> &mut Path {
-        let pose = self.solver.pose();
-        let path = &mut self.path;
-        path.start = pose.time;
-        path.duration = 0.0;
-        path.from.clone_from(&pose.parameters);
-        path.to.clone_from(&pose.parameters);
-        for (curve, value) in path.curves.iter_mut().zip(&pose.drivers) {
-            if let Curve::Input { .. } = curve {
-                *curve = Curve::held(*value, *value);
-            }
-        }
-        path
+        self.solver.pose().set_path(&mut self.path);
+        &mut self.path
     }
 
     /// Follows the path that was prepared; `moves` tells which drivers move.
