@@ -66,11 +66,9 @@ impl Input {
 
     /// Returns a solver at the file's own assembled pose.
     pub(super) fn assemble(&self) -> Result<Solver, Error> {
-        let mut solver = self.solver()?;
-        solver
-            .assemble(&Path::new(&self.mechanism))
-            .map_err(|error| self.error(error))?;
-        Ok(solver)
+        let path = Path::new(&self.mechanism);
+        let solver = Solver::assembled(Arc::clone(&self.mechanism), &path);
+        solver.map_err(|error| self.error(error))
     }
 }
 

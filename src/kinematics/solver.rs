@@ -70,6 +70,17 @@ impl Solver {
         })
     }
 
+    /// Makes a solver that is assembled at the end of `path`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new`](Self::new) and of [`assemble`](Self::assemble).
+    pub fn assembled(mechanism: Arc<Mechanism>, path: &Path) -> Result<Self, Error> {
+        let mut solver = Self::new(mechanism)?;
+        solver.assemble(path)?;
+        Ok(solver)
+    }
+
     /// Returns the mechanism.
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {

@@ -60,8 +60,7 @@ impl Session {
         let refuse = |error: crate::kinematics::Error| vec![error.to_string()];
         let mechanism = Arc::new(mechanism);
         let path = Path::new(&mechanism);
-        let mut solver = Solver::new(Arc::clone(&mechanism)).map_err(refuse)?;
-        solver.assemble(&path).map_err(refuse)?;
+        let mut solver = Solver::assembled(Arc::clone(&mechanism), &path).map_err(refuse)?;
         let pose = solver.pose().clone();
         let forces = mechanism.has_dynamics().then(|| Box::new(solver.forces()));
         let (ranges, reached) = driver_ranges(&mut solver);
@@ -167,10 +166,10 @@ impl Session {
         let mut path = self.path_here().clone();
         path.from.clone_from(&values);
         path.to.clone_from(&values);
-        match Self::assembled(&mechanism, &path) {
-            Ok(pose) if anew => {
-                self.solver.restore(&pose);
-                self.start = pose;
+        match Solver::assembled(Arc::clone(&mechanism), &path) {
+            Ok(solver) if anew => {
+                self.solver.restore(solver.pose());
+                self.start = solver.pose().clone();
                 self.refresh();
                 return Outcome::Reached;
             }
@@ -190,16 +189,6 @@ impl Session {
         }
         self.refresh();
         Outcome::Refused(obstacle)
-    }
-
-    /// Returns the pose in which a mechanism assembles at the end of a path.
-    fn assembled(
-        mechanism: &Arc<Mechanism>,
-        path: &Path,
-    ) -> Result<Pose, crate::kinematics::Error> {
-        let mut solver = Solver::new(Arc::clone(mechanism))?;
-        solver.assemble(path)?;
-        Ok(solver.pose().clone())
     }
 
     /// Sets the rates of a driver that is an input \[m/s or rad/s, m/s² or rad/s²\].

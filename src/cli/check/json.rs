@@ -125,8 +125,7 @@ fn describe(mechanism: &Arc<Mechanism>) -> Value {
 
 /// Assembles the mechanism at its start values and describes the pose.
 fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematics::Error> {
-    let mut solver = Solver::new(Arc::clone(mechanism))?;
-    solver.assemble(&Path::new(mechanism))?;
+    let mut solver = Solver::assembled(Arc::clone(mechanism), &Path::new(mechanism))?;
     let rcond = solver.rcond();
     let pose = solver.pose();
     let still = Rates::new(pose.q.len());

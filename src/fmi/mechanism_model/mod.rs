@@ -144,8 +144,7 @@ impl MechanismModel {
     /// The mechanism does not assemble.
     pub fn new(mechanism: Arc<Mechanism>, interface: Interface) -> Result<Self, kinematics::Error> {
         let path = Path::new(&mechanism);
-        let mut solver = Solver::new(Arc::clone(&mechanism))?;
-        solver.assemble(&path)?;
+        let solver = Solver::assembled(Arc::clone(&mechanism), &path)?;
         let file_pose = Arc::new(solver.pose().clone());
         let mut file_carryover = Carryover::default();
         solver.carry_over(&mut file_carryover);
