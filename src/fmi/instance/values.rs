@@ -222,22 +222,6 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// `fmi2GetInteger`, for Enumerations as well. Writes all values or none.
-    ///
-    /// # Errors
-    ///
-    /// As [`integers`](Self::integers).
-    pub fn get_integer(
-        &mut self,
-        value_references: &[u32],
-        values: &mut [i32],
-    ) -> Result<(), Error> {
-        for (to, value) in values.iter_mut().zip(self.integers(value_references)?) {
-            *to = value;
-        }
-        Ok(())
-    }
-
     /// Returns the values of Integer and Enumeration variables in the order of their references.
     ///
     /// # Errors
