@@ -20,11 +20,7 @@ pub(super) struct Input {
 impl Input {
     /// Reads a file and shows its errors and warnings on stderr.
     pub(super) fn read(path: &FilePath) -> Result<Self, Error> {
-        let source =
-            Source::open(path.display().to_string(), path).map_err(|source| Error::Read {
-                path: path.to_owned(),
-                source,
-            })?;
+        let source = Source::open(path.display().to_string(), path).map_err(Error::read(path))?;
         match Mechanism::parse(&source) {
             Ok((mechanism, warnings)) => {
                 show(&source, &warnings);

@@ -26,8 +26,7 @@ pub(super) fn report(file: &FilePath, modes: bool) -> (Value, Result<(), Error>)
             (report, outcome)
         }
         Err(source) => {
-            let path = file.to_owned();
-            let error = Error::Read { path, source };
+            let error = Error::read(file)(source);
             let message = error.to_string();
             let report = json!({ "file": name, "ok": false, "error": { "message": message } });
             (report, Err(error))
