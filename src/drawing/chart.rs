@@ -1,7 +1,7 @@
 //! Line charts over a common x-axis: one panel for each kind of quantity, one above the other.
 
 use super::lettering;
-use super::outline::{Outline, Point};
+use super::outline::{Outline, Point, finite_extremes};
 use super::palette::Colour;
 use super::sheet::{CAPITALS, Layer, Mark, Sheet, Stroke, Text, WIDTH};
 use super::ticks::Ticks;
@@ -116,20 +116,12 @@ impl Sheet {
 
 /// The range of what is plotted.
 fn x_range(at: &[f64]) -> [f64; 2] {
-    let [low, high] = extremes(at.iter());
+    let [low, high] = finite_extremes(at);
     if high > low {
         [low, high]
     } else {
         [low - 0.5, low + 0.5]
     }
-}
-
-fn extremes<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
-    let finite = values.filter(|value| value.is_finite());
-    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
-        [low.min(value), high.max(value)]
-    });
-    if low <= high { [low, high] } else { [0.0; 2] }
 }
 
 /// The y-axis of a panel: its ticks are values over a power of ten that belongs to the unit.
@@ -141,8 +133,7 @@ struct Scale {
 
 impl Scale {
     fn new(panel: &Panel) -> Self {
-        let values = panel.lines.iter().flat_map(|line| &line.values);
-        let range = extremes(values);
+        let range = finite_extremes(panel.lines.iter().flat_map(|line| &line.values));
         let size = range[0].abs().max(range[1].abs());
         // Numbers of one to four digits before the point, or a few after it.
         let power = if size >= 1e4 || (1e-9..1e-1).contains(&size) {

@@ -10,7 +10,7 @@ use super::{Animation, Moment};
 use crate::drawing::anchor::Anchor;
 use crate::drawing::attachment::Placement;
 use crate::drawing::force_place::largest;
-use crate::drawing::outline::across;
+use crate::drawing::outline::{across, finite_extremes};
 use crate::drawing::sheet::CAPITALS;
 use crate::mechanism::rounded;
 
@@ -234,14 +234,7 @@ struct Channel {
 
 impl Channel {
     fn new(values: Vec<f64>) -> Self {
-        let finite = values.iter().filter(|value| value.is_finite());
-        let none = [f64::INFINITY, f64::NEG_INFINITY];
-        let range = finite.fold(none, |[low, high], v| [low.min(*v), high.max(*v)]);
-        let range = if range[0] <= range[1] {
-            range
-        } else {
-            [0.0; 2]
-        };
+        let range = finite_extremes(&values);
         Self { values, range }
     }
 
