@@ -74,41 +74,27 @@ pub(super) fn documents(
     let picture = png::write(&sheet, ICON_WIDTH, false, None)
         .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
     let shown = show(&mut solver).map_err(refuse)?;
+    let document = |path: &str, content: Vec<u8>| Document {
+        path: path.to_owned(),
+        content,
+    };
+    let diagram = match version {
+        Version::Fmi2 => "model.png",
+        Version::Fmi3 => "documentation/diagram.png",
+    };
+    let values = &home.pose().parameters;
+    let has_live_page = page_solver.is_some();
+    let page = page(&input.mechanism, values, &shown, version, has_live_page);
     let mut documents = vec![
-        Document {
-            path: "terminalsAndIcons/icon.png".to_owned(),
-            content: picture.clone(),
-        },
-        Document {
-            path: match version {
-                Version::Fmi2 => "model.png",
-                Version::Fmi3 => "documentation/diagram.png",
-            }
-            .to_owned(),
-            content: picture,
-        },
-        Document {
-            path: "documentation/index.html".to_owned(),
-            content: page(
-                &input.mechanism,
-                &home.pose().parameters,
-                &shown,
-                version,
-                page_solver.is_some(),
-            )
-            .into_bytes(),
-        },
-        Document {
-            path: "documentation/licenses/license.txt".to_owned(),
-            content: LICENSES.to_vec(),
-        },
+        document("terminalsAndIcons/icon.png", picture.clone()),
+        document(diagram, picture),
+        document("documentation/index.html", page.into_bytes()),
+        document("documentation/licenses/license.txt", LICENSES.to_vec()),
     ];
     if let Some(page_solver) = page_solver {
-        documents.push(Document {
-            path: "documentation/page.html".to_owned(),
-            content: live::page(&input.source, &input.mechanism, &live::solver(page_solver))
-                .into_bytes(),
-        });
+        let solver = live::solver(page_solver);
+        let page = live::page(&input.source, &input.mechanism, &solver);
+        documents.push(document("documentation/page.html", page.into_bytes()));
     }
     Ok(documents)
 }
