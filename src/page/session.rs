@@ -255,23 +255,18 @@ impl Session {
                 self.driver_rates[index] = self.solver.motion(driver, time);
             }
         }
-        let Self {
-            solver,
-            rates,
-            driver_rates,
-            forces,
-            loads,
-            ..
-        } = self;
-        let solved = solver.solve_rates(|driver| driver_rates[driver.index()], rates);
+        let driver_rates = &self.driver_rates;
+        let solved =
+            (self.solver).solve_rates(|driver| driver_rates[driver.index()], &mut self.rates);
         self.has_rates = solved.is_ok()
-            && forces.as_deref_mut().is_none_or(|forces| {
+            && self.forces.as_deref_mut().is_none_or(|forces| {
                 let motion = KnownMotion {
-                    rates,
+                    rates: &self.rates,
                     driver_rates,
-                    inputs: loads,
+                    inputs: &self.loads,
                 };
-                solver.solve_forces(motion, ForceParts::ALL, forces).is_ok()
+                let solved = self.solver.solve_forces(motion, ForceParts::ALL, forces);
+                solved.is_ok()
             });
     }
 
