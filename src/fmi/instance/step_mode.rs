@@ -224,12 +224,8 @@ impl<M: Model> Instance<M> {
     /// Returns the number of points of intermediate update per step. A host that uses none of them
     /// gets the end alone, and so the same bits as without intermediate update.
     fn points(&self) -> u32 {
-        let CoSimulation {
-            early_return_allowed,
-            required_intermediate_variables,
-            ..
-        } = &self.co_simulation;
-        if required_intermediate_variables.is_empty() && !early_return_allowed {
+        let wishes = &self.co_simulation;
+        if wishes.required_intermediate_variables.is_empty() && !wishes.early_return_allowed {
             1
         } else {
             POINTS

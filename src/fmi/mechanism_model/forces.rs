@@ -104,16 +104,10 @@ impl MechanismModel {
         if self.refresh_forces(parts, Phase::Running, log).is_err() {
             return;
         }
-        let Self {
-            forces,
-            solver,
-            lifted,
-            ..
-        } = self;
-        let Some(ModelForces { forces, .. }) = forces.as_deref() else {
+        let Some(ModelForces { forces, .. }) = self.forces.as_deref() else {
             return;
         };
-        for lift_off in solver.lift_offs(forces, lifted) {
+        for lift_off in self.solver.lift_offs(forces, &mut self.lifted) {
             log.advise(|| lift_off.to_string());
         }
     }

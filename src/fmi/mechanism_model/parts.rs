@@ -132,32 +132,19 @@ impl MechanismModel {
         let Some(parts) = self.parts.take() else {
             return;
         };
-        let Before {
-            time,
-            committed,
-            committed_carryover,
-            committed_rates,
-            inputs,
-            force_inputs,
-            lifted,
-            monitors,
-            was_current,
-            near_singular,
-            path_progress,
-            progress,
-        } = parts.before;
-        self.time = time;
-        self.committed = committed;
-        self.committed_carryover = committed_carryover;
-        self.committed_rates = committed_rates;
-        self.inputs = inputs;
-        self.force_inputs = force_inputs;
-        self.lifted = lifted;
-        self.monitors = monitors;
-        self.near_singular = near_singular;
-        self.path_progress = path_progress;
-        self.progress = progress;
-        self.stay_at_committed(was_current);
+        let before = parts.before;
+        self.time = before.time;
+        self.committed = before.committed;
+        self.committed_carryover = before.committed_carryover;
+        self.committed_rates = before.committed_rates;
+        self.inputs = before.inputs;
+        self.force_inputs = before.force_inputs;
+        self.lifted = before.lifted;
+        self.monitors = before.monitors;
+        self.near_singular = before.near_singular;
+        self.path_progress = before.path_progress;
+        self.progress = before.progress;
+        self.stay_at_committed(before.was_current);
     }
 
     /// Goes to the values that the host has set at the present time, and lets the path start there.

@@ -105,19 +105,13 @@ impl MechanismModel {
     /// Sets the path from the committed pose to the values in force at the end of a step of size
     /// `h` from `start`; with `h = 0` to the values set.
     pub(super) fn set_path(&mut self, start: f64, h: f64) {
-        let Self {
-            path,
-            committed,
-            settings,
-            inputs,
-            interface,
-            ..
-        } = self;
+        let (path, committed) = (&mut self.path, &self.committed);
         path.start = start;
         path.duration = h;
         path.from.copy_from_slice(&committed.parameters);
-        path.to.copy_from_slice(&settings.parameters);
-        let drivers = path.curves.iter_mut().zip(inputs).zip(&committed.drivers);
+        path.to.copy_from_slice(&self.settings.parameters);
+        let drivers = path.curves.iter_mut().zip(&mut self.inputs);
+        let drivers = drivers.zip(&committed.drivers);
         for ((curve, input), committed) in drivers {
             if let Curve::Input {
                 position,
@@ -126,10 +120,10 @@ impl MechanismModel {
                 jump,
             } = curve
             {
-                let rates = match interface {
+                let rates = match self.interface {
                     // The host integrates and sets each input at each time.
                     Interface::ModelExchange => DriverRates::default(),
-                    Interface::CoSimulation => input.path(settings.rule, start, h),
+                    Interface::CoSimulation => input.path(self.settings.rule, start, h),
                 };
                 *position = input.position();
                 *velocity = rates.velocity;
@@ -141,26 +135,16 @@ impl MechanismModel {
 
     /// Sets the drivers' rates to those at the part `s` of a step of size `h` from `start`.
     pub(super) fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
-        let Self {
-            driver_rates,
-            sources,
-            mechanism,
-            inputs,
-            settings,
-            solver,
-            interface,
-            ..
-        } = self;
-        for (index, driver) in mechanism.drivers.iter().enumerate() {
-            let rates = &mut driver_rates[index];
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            let rates = &mut self.driver_rates[index];
             match &driver.source {
                 DriverSource::Input { .. } => {
-                    let input = &inputs[index];
-                    let given = match interface {
+                    let input = &self.inputs[index];
+                    let given = match self.interface {
                         Interface::ModelExchange => input.given_rates(),
                         Interface::CoSimulation => {
-                            let (given, from) = input.rates_after(settings.rule, start, s * h);
-                            sources[index] = from;
+                            let (given, from) = input.rates_after(self.settings.rule, start, s * h);
+                            self.sources[index] = from;
                             given
                         }
                     };
@@ -168,7 +152,7 @@ impl MechanismModel {
                     rates.derivatives = [given.velocity, given.acceleration];
                 }
                 DriverSource::Motion(_) => {
-                    *rates = solver.motion(DriverId(index), start + s * h);
+                    *rates = self.solver.motion(DriverId(index), start + s * h);
                 }
             }
         }
