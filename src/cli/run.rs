@@ -118,15 +118,14 @@ impl Run {
             let [plotted, told] = [Output::plotted(&all), Output::told(&all)];
             [all, plotted, told]
         };
+        let shown = [
+            (&self.output, &written),
+            (&self.plot, &plotted),
+            (&self.animate, &told),
+        ];
+        let mut shown = shown.iter().filter(|(path, _)| path.is_some());
         let asks_forces = self.forces
-            || [&written, &plotted, &told]
-                .into_iter()
-                .zip([
-                    self.output.is_some(),
-                    self.plot.is_some(),
-                    self.animate.is_some(),
-                ])
-                .any(|(columns, asked)| asked && columns.iter().any(Output::is_force))
+            || shown.any(|(_, columns)| columns.iter().any(Output::is_force))
             || over.as_ref().is_some_and(Output::is_force);
         let home_solver = input.assemble()?;
         let notes = [
@@ -155,9 +154,7 @@ impl Run {
         }
         let outcome = self.play(&mut motion, input.source.name(), &times, &mut recorders);
         // Also after a dead point: the results up to there are written.
-        let finished = recorders
-            .into_iter()
-            .map(|recorder| recorder.finish(&motion));
+        let finished = recorders.into_iter().map(|r| r.finish(&motion));
         let failed: Vec<Error> = finished.filter_map(Result::err).collect();
         let mut errors = outcome.err().into_iter().chain(failed);
         let Some(last) = errors.next_back() else {
