@@ -62,7 +62,7 @@ impl MechanismModel {
     /// dynamics. The rates are up to date.
     fn forces_to_solve(&mut self) -> Option<(&mut Solver, &mut Forces, KnownMotion<'_>)> {
         let ModelForces { forces, inputs } = self.forces.as_deref_mut()?;
-        for (now, input) in inputs.iter_mut().zip(&self.force_inputs) {
+        for (now, input) in inputs.iter_mut().zip(&self.course.force_inputs) {
             *now = input.present();
         }
         let motion = KnownMotion {
@@ -93,7 +93,7 @@ impl MechanismModel {
 
     /// Reports each contact that begins to pull, as it would lift off.
     pub(super) fn report_contacts(&mut self, log: &Logger) {
-        if self.lifted.is_empty() || !log.wants(Category::Warning) {
+        if self.course.lifted.is_empty() || !log.wants(Category::Warning) {
             return;
         }
         let parts = ForceParts {
@@ -107,7 +107,7 @@ impl MechanismModel {
         let Some(ModelForces { forces, .. }) = self.forces.as_deref() else {
             return;
         };
-        for lift_off in self.solver.lift_offs(forces, &mut self.lifted) {
+        for lift_off in self.solver.lift_offs(forces, &mut self.course.lifted) {
             log.advise(|| lift_off.to_string());
         }
     }

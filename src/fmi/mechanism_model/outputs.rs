@@ -257,15 +257,15 @@ impl MechanismModel {
         }
         for &(vr, quantity) in reals.others.iter().filter(|(_, q)| groups & group(*q) != 0) {
             values[vr as usize] = match quantity {
-                Quantity::Input(driver, order) => self.inputs[driver.index()].get(order),
-                Quantity::ForceInput(place) => self.force_inputs[place].get(),
+                Quantity::Input(driver, order) => self.course.inputs[driver.index()].get(order),
+                Quantity::ForceInput(place) => self.course.force_inputs[place].get(),
                 Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
-                Quantity::Time => self.time,
+                Quantity::Time => self.course.time,
                 Quantity::Residual => self.solver.residual(),
                 Quantity::Rcond => self.solver.rcond(),
-                Quantity::Iterations => f64::from(self.progress.iterations),
-                Quantity::Substeps => f64::from(self.progress.substeps),
-                Quantity::Proved => f64::from(u8::from(self.progress.checked == 0)),
+                Quantity::Iterations => f64::from(self.course.progress.iterations),
+                Quantity::Substeps => f64::from(self.course.progress.substeps),
+                Quantity::Proved => f64::from(u8::from(self.course.progress.checked == 0)),
                 _ => unreachable!("the list has no other quantities"),
             };
         }
