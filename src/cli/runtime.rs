@@ -44,11 +44,14 @@ pub(super) fn find(folder: Option<&Path>) -> Result<Vec<FoundLibrary>, Error> {
     }))
 }
 
-/// Keeps the libraries of the platforms named.
+/// Keeps the libraries of the platforms named; all if none is.
 pub(super) fn narrow(
     found: Vec<FoundLibrary>,
     platforms: &[Platform],
 ) -> Result<Vec<FoundLibrary>, Error> {
+    if platforms.is_empty() {
+        return Ok(found);
+    }
     let has = |platform: &Platform| found.iter().any(|f| f.library.platform == *platform);
     if let Some(missing) = platforms.iter().find(|platform| !has(platform)) {
         let names: Vec<&str> = found.iter().map(|f| f.library.platform.name).collect();
