@@ -90,11 +90,8 @@ impl Sheet {
             marks: Vec::new(),
             texts: Vec::new(),
         };
-        plot.text(
-            &chart.title,
-            Point::new(MARGIN, MARGIN + CAPITALS),
-            Align::Start,
-        );
+        let corner = Point::new(MARGIN, MARGIN + CAPITALS);
+        plot.text(&chart.title, corner, Align::Start);
         let height = HEIGHTS[chart.panels.len().clamp(1, HEIGHTS.len()) - 1];
         let mut y = MARGIN + CAPITALS;
         for (panel, scale) in chart.panels.iter().zip(&scales) {
@@ -148,12 +145,10 @@ impl Scale {
             3 => format!("1000 {unit}"),
             _ => format!("1e{power} {unit}"),
         };
+        let range = range.map(|value| value * 10_f64.powi(-power));
+        let in_degrees = power == 0 && unit.starts_with("deg");
         Self {
-            ticks: Ticks::around(
-                range.map(|value| value * 10_f64.powi(-power)),
-                4.0,
-                power == 0 && unit.starts_with("deg"),
-            ),
+            ticks: Ticks::around(range, 4.0, in_degrees),
             power,
             header: format!("{label} [{unit}]"),
         }
@@ -161,11 +156,8 @@ impl Scale {
 
     /// The width of its widest number.
     fn width(&self) -> f64 {
-        let texts = self
-            .ticks
-            .values
-            .iter()
-            .map(|value| self.ticks.text(*value));
+        let ticks = &self.ticks;
+        let texts = ticks.values.iter().map(|value| ticks.text(*value));
         texts.map(|text| width(&text)).fold(0.0, f64::max)
     }
 }
@@ -248,11 +240,8 @@ impl Plot<'_> {
             let x = self.on_x(value);
             grid.add_line(&[Point::new(x, top), Point::new(x, bottom)]);
         }
-        self.line(
-            Layer::Grid,
-            grid,
-            Stroke::solid(Colour::GROUND.tint(0.25), FRAME),
-        );
+        let stroke = Stroke::solid(Colour::GROUND.tint(0.25), FRAME);
+        self.line(Layer::Grid, grid, stroke);
         if low < 0.0 && high > 0.0 {
             let zero = [Point::new(left, on_y(0.0)), Point::new(right, on_y(0.0))];
             let stroke = Stroke::solid(Colour::GROUND.tint(0.7), FRAME);
