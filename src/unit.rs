@@ -164,6 +164,18 @@ impl Unit {
         }
     }
 
+    /// Returns the name of the unit in which values are shown.
+    #[must_use]
+    pub fn display_name(self) -> &'static str {
+        self.display.map_or(self.name, |display| display.name)
+    }
+
+    /// Returns the factor from an SI value to the value shown.
+    #[must_use]
+    pub fn display_factor(self) -> f64 {
+        self.display.map_or(1.0, |display| display.factor)
+    }
+
     /// The same unit, its values shown in `display`, which must be of the same dimension.
     #[must_use]
     pub const fn shown_in(self, display: DisplayUnit) -> Self {

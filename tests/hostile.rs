@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use biela::fmi::{Category, Instance, Interface, MechanismModel, RESOURCE, Sink, Status};
+use biela::fmi::{Category, Instance, Interface, MechanismModel, RESOURCE, Sink, Status, Version};
 
 /// Far more than any of these takes on a busy machine in a build that is not optimised.
 const SOON: Duration = Duration::from_secs(20);
@@ -17,11 +17,11 @@ impl Sink for Silent {
 fn refusal(text: &str) -> String {
     let folder = tempfile::tempdir().expect("there is room for temporary files");
     std::fs::write(folder.path().join(RESOURCE), text).expect("the folder is ours");
-    let uri = format!("file://{}", folder.path().display());
     let start = Instant::now();
     let made = Instance::<MechanismModel>::instantiate(
+        Version::Fmi2,
         "guid",
-        &uri,
+        folder.path(),
         Interface::CoSimulation,
         Box::new(Silent),
         false,

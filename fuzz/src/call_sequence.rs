@@ -256,7 +256,7 @@ fn make(
         Request::EnterStepMode => (Call::EnterStepMode, instance.enter_step_mode()),
         Request::EvaluateDiscreteStates => (
             Call::EvaluateDiscreteStates,
-            instance.evaluate_discrete_states(),
+            instance.allow(Call::EvaluateDiscreteStates),
         ),
         Request::EnterEventMode => (Call::EnterEventMode, instance.enter_event_mode()),
         Request::NewDiscreteStates => (

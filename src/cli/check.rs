@@ -6,6 +6,7 @@ pub(super) mod json;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use forces::Forces;
@@ -14,7 +15,7 @@ use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::output::print;
 use super::suggested_estimates::as_estimates;
-use crate::kinematics::{self, Element, Mode, Modes, Path, Rates, Solver};
+use crate::kinematics::{self, Element, Mode, Modes, Path, Rates, Solver, System};
 use crate::mechanism::{
     CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, ParameterId, Unit, shown,
 };
@@ -98,12 +99,8 @@ impl Check {
         warn_of_misfits(&solver);
         print(&describe_pose(&mut solver))?;
         if mechanism.has_dynamics() {
-            let forces = Forces::at_rest(&mut solver);
-            print(
-                &forces
-                    .map_err(|error| input.error(error))?
-                    .describe(mechanism),
-            )?;
+            let forces = Forces::at_rest(&mut solver).map_err(|error| input.error(error))?;
+            print(&forces.describe(mechanism))?;
         }
         if !self.modes && mechanism.bodies.len() <= MOST_BODIES_SEARCHED {
             let modes = solver.modes().map_err(|error| input.error(error))?;
@@ -120,8 +117,8 @@ impl Check {
     }
 }
 
-fn describe_equations(mechanism: &std::sync::Arc<Mechanism>) -> String {
-    let system = crate::kinematics::System::new(std::sync::Arc::clone(mechanism));
+fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
+    let system = System::new(Arc::clone(mechanism));
     let mut joints = vec![0_usize; mechanism.joints.len()];
     for equation in system.equations() {
         if let Element::Joint(joint) = equation.element {
@@ -132,46 +129,24 @@ fn describe_equations(mechanism: &std::sync::Arc<Mechanism>) -> String {
     let mut line = |label: &str, count: usize, names: Vec<String>| {
         let _ = writeln!(out, "  {label:<20}{count:>4}    {}", names.join(", "));
     };
-    let held = mechanism.constraints.len();
-    let unknowns = system.unknowns();
-    line(
-        "bodies",
-        mechanism.bodies.len(),
-        mechanism.bodies.iter().map(|b| b.name.clone()).collect(),
-    );
-    line(
-        "unknowns",
-        unknowns,
-        vec![format!("x, y, phi of each body{}", contacts_text(&system))],
-    );
-    line(
-        "constraints",
-        joints.iter().sum::<usize>() + held,
-        mechanism
-            .joints
-            .iter()
-            .zip(&joints)
-            .map(|(joint, rows)| format!("{} ({rows})", joint.name))
-            .chain(
-                mechanism
-                    .constraints
-                    .iter()
-                    .map(|c| format!("{} (1)", c.name)),
-            )
-            .collect(),
-    );
-    line(
-        "drivers",
-        mechanism.drivers.len(),
-        mechanism
-            .drivers
-            .iter()
-            .map(|driver| match driver.source {
-                DriverSource::Input { .. } => format!("{} (input)", driver.name),
-                DriverSource::Motion(_) => format!("{} (prescribed motion)", driver.name),
-            })
-            .collect(),
-    );
+    let bodies = mechanism.bodies.iter().map(|body| body.name.clone());
+    line("bodies", bodies.len(), bodies.collect());
+    let unknowns = format!("x, y, phi of each body{}", contacts_text(&system));
+    line("unknowns", system.unknowns(), vec![unknowns]);
+    let count = joints.iter().sum::<usize>() + mechanism.constraints.len();
+    let joints = mechanism.joints.iter().zip(&joints);
+    let joints = joints.map(|(joint, rows)| format!("{} ({rows})", joint.name));
+    let constraints = mechanism.constraints.iter();
+    let constraints = constraints.map(|constraint| format!("{} (1)", constraint.name));
+    line("constraints", count, joints.chain(constraints).collect());
+    let drivers = mechanism.drivers.iter().map(|driver| {
+        let source = match driver.source {
+            DriverSource::Input { .. } => "input",
+            DriverSource::Motion(_) => "prescribed motion",
+        };
+        format!("{} ({source})", driver.name)
+    });
+    line("drivers", drivers.len(), drivers.collect());
     let mut title = mechanism.name.clone();
     if !mechanism.description.is_empty() {
         let _ = write!(title, ": {}", mechanism.description);
@@ -180,20 +155,19 @@ fn describe_equations(mechanism: &std::sync::Arc<Mechanism>) -> String {
 }
 
 /// Lists the unknowns that joints bring with them.
-fn contacts_text(system: &crate::kinematics::System) -> String {
+fn contacts_text(system: &System) -> String {
     let first = 3 * system.mechanism().bodies.len();
     let joints: Vec<_> = (first..system.unknowns())
         .map(|column| system.describe_unknown(column))
         .collect();
-    if joints.is_empty() {
-        String::new()
-    } else {
-        format!(", the contact's angle of {}", joints.join(", "))
+    match joints[..] {
+        [] => String::new(),
+        _ => format!(", the contact's angle of {}", joints.join(", ")),
     }
 }
 
 fn describe_pose(solver: &mut Solver) -> String {
-    let mechanism = std::sync::Arc::clone(solver.mechanism());
+    let mechanism = Arc::clone(solver.mechanism());
     let rcond = solver.rcond();
     let mut out = String::new();
     let redundancies = solver.redundancies();
@@ -203,28 +177,20 @@ fn describe_pose(solver: &mut Solver) -> String {
             .iter()
             .map(|r| format!("{} of the {} of {}", r.redundant, r.equations, r.element))
             .collect();
-        let _ = writeln!(
-            out,
-            "  {:<20}{count:>4}    {}",
-            "redundant",
-            names.join(", ")
-        );
+        let names = names.join(", ");
+        let _ = writeln!(out, "  {:<20}{count:>4}    {names}", "redundant");
     }
     // The Jacobian with all drivers is regular: one driver per degree of freedom.
+    let count = mechanism.drivers.len();
     let _ = writeln!(
         out,
-        "  {:<20}{:>4}    all driven",
-        "degrees of freedom",
-        mechanism.drivers.len()
+        "  {:<20}{count:>4}    all driven",
+        "degrees of freedom"
     );
     let _ = writeln!(out, "\nassembled at");
     for (driver, value) in mechanism.drivers.iter().zip(&solver.pose().drivers) {
-        let _ = writeln!(
-            out,
-            "  {} = {}",
-            driver.name,
-            with_unit(driver.coordinate.kind, *value)
-        );
+        let value = with_unit(driver.coordinate.kind, *value);
+        let _ = writeln!(out, "  {} = {value}", driver.name);
     }
     out += &describe_bodies(solver);
     let still = Rates::new(solver.pose().q.len());
@@ -234,12 +200,8 @@ fn describe_pose(solver: &mut Solver) -> String {
     }
     for (index, measure) in mechanism.measures.iter().enumerate() {
         let value = solver.measure(index, &still).value;
-        let _ = writeln!(
-            out,
-            "  {} = {}",
-            measure.name,
-            with_unit(measure.coordinate.kind, value)
-        );
+        let value = with_unit(measure.coordinate.kind, value);
+        let _ = writeln!(out, "  {} = {value}", measure.name);
     }
     for (measure, value) in at_rest {
         let unit = measure.unit.filter(|unit| *unit != Unit::ONE);
@@ -310,10 +272,8 @@ fn mention_modes(solver: &Solver, modes: &Modes) -> String {
         return String::new();
     }
     let least = if modes.complete { "" } else { "at least " };
-    let mut out = format!(
-        "\n{least}{} to close at these values: `--modes`\n",
-        other_ways(modes)
-    );
+    let ways = other_ways(modes);
+    let mut out = format!("\n{least}{ways} to close at these values: `--modes`\n");
     let parameters = &solver.pose().parameters;
     let bodies = solver.mechanism().bodies.iter();
     // An estimate without a value was refused before.

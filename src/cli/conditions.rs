@@ -230,12 +230,7 @@ impl Scenario {
                 _ => (self.signals.at(DriverId(index), self.start)).map(|signal| signal.value),
             };
             if let Some(position) = given {
-                *curve = Curve::Input {
-                    position,
-                    velocity: 0.0,
-                    acceleration: 0.0,
-                    jump: home.drivers[index] - position,
-                };
+                *curve = Curve::held(position, home.drivers[index]);
             }
         }
         if let Start::Reassembled(_) = home_solver.start(&home, &path)? {

@@ -24,10 +24,7 @@ impl Csv {
         let out: Box<dyn Write> = if is_stdout(&path) {
             Box::new(io::stdout().lock())
         } else {
-            match File::create(&path) {
-                Ok(file) => Box::new(file),
-                Err(source) => return Err(Error::Write { path, source }),
-            }
+            Box::new(File::create(&path).map_err(Error::write(&path))?)
         };
         let mut csv = Self {
             out: BufWriter::new(out),
@@ -48,12 +45,7 @@ impl Csv {
     ) -> Result<(), Error> {
         line(&mut self.out, &self.columns)
             .and_then(|()| writeln!(self.out))
-            .map_err(|source| self.error(source))
-    }
-
-    fn error(&self, source: io::Error) -> Error {
-        let path = self.path.clone();
-        Error::Write { path, source }
+            .map_err(Error::write(&self.path))
     }
 }
 
@@ -68,7 +60,7 @@ impl Recorder for Csv {
     }
 
     fn finish(mut self: Box<Self>, _motion: &Motion) -> Result<(), Error> {
-        self.out.flush().map_err(|source| self.error(source))?;
+        self.out.flush().map_err(Error::write(&self.path))?;
         tell_written(&self.path);
         Ok(())
     }

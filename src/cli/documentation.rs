@@ -18,7 +18,7 @@ use crate::drawing::{Scene, Sheet, png};
 use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Version, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
-    DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of,
+    DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of, rounded,
 };
 
 const MAIN: &str = include_str!("documentation.html");
@@ -74,41 +74,27 @@ pub(super) fn documents(
     let picture = png::write(&sheet, ICON_WIDTH, false, None)
         .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
     let shown = show(&mut solver).map_err(refuse)?;
+    let document = |path: &str, content: Vec<u8>| Document {
+        path: path.to_owned(),
+        content,
+    };
+    let diagram = match version {
+        Version::Fmi2 => "model.png",
+        Version::Fmi3 => "documentation/diagram.png",
+    };
+    let values = &home.pose().parameters;
+    let has_live_page = page_solver.is_some();
+    let page = page(&input.mechanism, values, &shown, version, has_live_page);
     let mut documents = vec![
-        Document {
-            path: "terminalsAndIcons/icon.png".to_owned(),
-            content: picture.clone(),
-        },
-        Document {
-            path: match version {
-                Version::Fmi2 => "model.png",
-                Version::Fmi3 => "documentation/diagram.png",
-            }
-            .to_owned(),
-            content: picture,
-        },
-        Document {
-            path: "documentation/index.html".to_owned(),
-            content: page(
-                &input.mechanism,
-                &home.pose().parameters,
-                &shown,
-                version,
-                page_solver.is_some(),
-            )
-            .into_bytes(),
-        },
-        Document {
-            path: "documentation/licenses/license.txt".to_owned(),
-            content: LICENSES.to_vec(),
-        },
+        document("terminalsAndIcons/icon.png", picture.clone()),
+        document(diagram, picture),
+        document("documentation/index.html", page.into_bytes()),
+        document("documentation/licenses/license.txt", LICENSES.to_vec()),
     ];
     if let Some(page_solver) = page_solver {
-        documents.push(Document {
-            path: "documentation/page.html".to_owned(),
-            content: live::page(&input.source, &input.mechanism, &live::solver(page_solver))
-                .into_bytes(),
-        });
+        let solver = live::solver(page_solver);
+        let page = live::page(&input.source, &input.mechanism, &solver);
+        documents.push(document("documentation/page.html", page.into_bytes()));
     }
     Ok(documents)
 }
@@ -133,13 +119,11 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     let home = solver.pose().clone();
     let simulation = &own.simulation;
     let mut driven = Mechanism::clone(&own);
-    let moves = |motion: &Prescribed| motion.uses_time();
-    let is_moved = own.drivers.iter().any(|d| d.motion().is_some_and(moves));
     let angle = |driver: &usize| own.drivers[*driver].coordinate.kind.is_angle();
     let inputs = || (0..ranges.len()).filter(|driver| ranges[*driver].is_some());
     let first = inputs().find(angle).or_else(|| inputs().next());
     let (duration, moving) = match first.and_then(|first| Some((first, ranges[first].as_ref()?))) {
-        _ if is_moved => (
+        _ if own.uses_time() => (
             simulation.stop - simulation.start,
             "The prescribed motion, until the stop time.".to_owned(),
         ),
@@ -372,7 +356,7 @@ fn parameter(variable: &Variable<Quantity>, values: &[f64]) -> Option<[String; 5
     Some([
         variable.name.clone(),
         // A derived value carries the rounding of its expression.
-        shown(Some(rounded(values[parameter.index()]))),
+        shown(Some(rounded(values[parameter.index()], 12))),
         name_of(*unit),
         limits,
         what,
@@ -430,11 +414,6 @@ fn row(variable: &Variable<Quantity>) -> [String; 4] {
         unit,
         variable.description.replace('`', ""),
     ]
-}
-
-/// Rounds to twelve digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 fn name_of(unit: Option<Unit>) -> String {

@@ -1,6 +1,7 @@
 //! Errors of commands, and their exit status.
 
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
 use super::message::Message;
 use super::stdout::shown;
@@ -27,30 +28,40 @@ pub(super) enum Error {
     Usage(String),
     /// A file cannot be read.
     #[error("cannot read `{}`: {source}", path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: io::Error },
     /// A file, or stdout for `-`, cannot be written.
     #[error("cannot write {}: {source}", shown(path))]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
     /// The server of `watch` cannot listen.
     #[error("cannot listen on port {port}: {source}; --port names another, 0 a free one")]
-    Listen { port: u16, source: std::io::Error },
+    Listen { port: u16, source: io::Error },
     /// The FMU cannot be written.
     #[error(transparent)]
     Package(#[from] PackageError),
 }
 
 impl Error {
+    /// Returns what makes the error of a file that cannot be read.
+    pub(super) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |source| Self::Read {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    /// Returns what makes the error of a file that cannot be written.
+    pub(super) fn write(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |source| Self::Write {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
     /// Tells the error on stderr, unless it was told already or is a closed pipe.
     pub(super) fn show(&self) {
         match self {
             Self::Diagnosed => {}
-            Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => {}
+            Self::Write { source, .. } if source.kind() == io::ErrorKind::BrokenPipe => {}
             _ => Message::Error(self.to_string()).show(),
         }
     }
@@ -60,7 +71,7 @@ impl Error {
         match self {
             Self::Diagnosed | Self::Mechanism { .. } | Self::DeadPoint { .. } => 1,
             // A reader that has read enough closes the pipe.
-            Self::Write { source, .. } if source.kind() == std::io::ErrorKind::BrokenPipe => 0,
+            Self::Write { source, .. } if source.kind() == io::ErrorKind::BrokenPipe => 0,
             Self::Usage(_)
             | Self::Read { .. }
             | Self::Write { .. }

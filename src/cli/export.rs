@@ -78,10 +78,8 @@ impl Export {
         let path = self
             .output
             .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", mechanism.name)));
-        let mut found = runtime::find(self.runtime.as_deref())?;
-        if !self.platforms.is_empty() {
-            found = runtime::narrow(found, &self.platforms)?;
-        }
+        let found = runtime::find(self.runtime.as_deref())?;
+        let found = runtime::narrow(found, &self.platforms)?;
         for library in found.iter().filter_map(|found| found.path.as_deref()) {
             files.add("a runtime library", library);
         }
@@ -92,10 +90,8 @@ impl Export {
             true => None,
             false => page_solver::find(None)?,
         };
-        write(
-            &path,
-            &pack(&input, &solver, self.fmi, &libraries, page.as_deref())?,
-        )?;
+        let fmu = pack(&input, &solver, self.fmi, &libraries, page.as_deref())?;
+        write(&path, &fmu)?;
         let platforms: Vec<_> = (libraries.iter())
             .map(|library| library.platform.folder(self.fmi))
             .collect();

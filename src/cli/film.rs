@@ -58,10 +58,8 @@ impl Film {
     /// Adds the row of the current time, if it is one to show.
     pub(super) fn add(&mut self, motion: &Motion) {
         if self.rows.is_multiple_of(self.stride) {
-            let readings = self.columns.iter().map(|column| {
-                let factor = column.unit.display.map_or(1.0, |display| display.factor);
-                column.read(motion) * factor
-            });
+            let readings = (self.columns.iter())
+                .map(|column| column.read(motion) * column.unit.display_factor());
             let rates = [motion.rates.velocity(), motion.rates.acceleration()];
             let pose = motion.solver.pose();
             self.moments.push(Moment {

@@ -20,11 +20,7 @@ pub(super) struct Input {
 impl Input {
     /// Reads a file and shows its errors and warnings on stderr.
     pub(super) fn read(path: &FilePath) -> Result<Self, Error> {
-        let source =
-            Source::open(path.display().to_string(), path).map_err(|source| Error::Read {
-                path: path.to_owned(),
-                source,
-            })?;
+        let source = Source::open(path.display().to_string(), path).map_err(Error::read(path))?;
         match Mechanism::parse(&source) {
             Ok((mechanism, warnings)) => {
                 show(&source, &warnings);
@@ -66,11 +62,9 @@ impl Input {
 
     /// Returns a solver at the file's own assembled pose.
     pub(super) fn assemble(&self) -> Result<Solver, Error> {
-        let mut solver = self.solver()?;
-        solver
-            .assemble(&Path::new(&self.mechanism))
-            .map_err(|error| self.error(error))?;
-        Ok(solver)
+        let path = Path::new(&self.mechanism);
+        let solver = Solver::assembled(Arc::clone(&self.mechanism), &path);
+        solver.map_err(|error| self.error(error))
     }
 }
 

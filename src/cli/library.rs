@@ -43,19 +43,11 @@ pub fn archive(
         mechanism: Arc::clone(mechanism),
     };
     let pack = || {
-        let mut found = runtime::find(runtime)?;
-        if !platforms.is_empty() {
-            found = runtime::narrow(found, &platforms)?;
-        }
+        let found = runtime::narrow(runtime::find(runtime)?, &platforms)?;
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         let page = page_solver::find(None)?;
-        pack(
-            &input,
-            &input.assemble()?,
-            version,
-            &libraries,
-            page.as_deref(),
-        )
+        let solver = input.assemble()?;
+        pack(&input, &solver, version, &libraries, page.as_deref())
     };
     pack().map_err(|error: super::error::Error| error.to_string())
 }

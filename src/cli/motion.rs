@@ -43,14 +43,8 @@ impl Motion {
     pub(super) fn from(solver: Solver, signals: Signals, time: f64) -> Result<Self, Error> {
         let start = solver.pose();
         let mut path = Path::new(solver.mechanism());
+        start.set_path(&mut path);
         path.start = time;
-        path.from.clone_from(&start.parameters);
-        path.to.clone_from(&start.parameters);
-        for (curve, value) in path.curves.iter_mut().zip(&start.drivers) {
-            if let Curve::Input { position, .. } = curve {
-                *position = *value;
-            }
-        }
         let mut motion = Self {
             rates: Rates::new(start.q.len()),
             driver_rates: start.drivers.iter().map(|u| Jet::constant(*u)).collect(),

@@ -142,10 +142,7 @@ fn create(path: &Path, text: &str) -> Result<(), Error> {
     let written = created.and_then(|mut file| file.write_all(text.as_bytes()));
     written.map_err(|source| match source.kind() {
         std::io::ErrorKind::AlreadyExists => exists(path),
-        _ => Error::Write {
-            path: path.to_owned(),
-            source,
-        },
+        _ => Error::write(path)(source),
     })
 }
 

@@ -16,10 +16,7 @@ pub(super) fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
     } else {
         std::fs::write(path, content)
     };
-    written.map_err(|source| Error::Write {
-        path: path.to_owned(),
-        source,
-    })
+    written.map_err(Error::write(path))
 }
 
 /// Prints to stdout.

@@ -1,7 +1,7 @@
 //! The solver for pages, compiled to WebAssembly.
 
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::error::Error;
 
@@ -44,10 +44,7 @@ pub(super) fn demand(file: Option<&Path>) -> Result<Cow<'static, [u8]>, Error> {
 }
 
 fn read(path: &Path) -> Result<Cow<'static, [u8]>, Error> {
-    let content = std::fs::read(path).map_err(|source| Error::Read {
-        path: PathBuf::from(path),
-        source,
-    })?;
+    let content = std::fs::read(path).map_err(Error::read(path))?;
     if !content.starts_with(b"\0asm") {
         return Err(Error::Usage(format!(
             "`{}` is no solver for pages: it does not begin as WebAssembly does",

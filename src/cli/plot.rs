@@ -112,13 +112,7 @@ impl Plot {
                 unit: column.unit,
                 is_driver,
             };
-            let panel = panels.iter().position(|(known, _)| *known == key);
-            let panel = panel.unwrap_or_else(|| {
-                let (y, lines) = (axis(column.unit), Vec::new());
-                panels.push((key, Panel { y, lines }));
-                panels.len() - 1
-            });
-            panels[panel].1.lines.push(Line {
+            panel(&mut panels, key, column.unit).lines.push(Line {
                 name: column.name,
                 look,
                 values: displayed(values, column.unit),
@@ -158,9 +152,20 @@ struct PanelKey {
     is_driver: bool,
 }
 
+/// Returns the panel of a key, a new one with the axis of a unit if there is none.
+pub(super) fn panel<K: PartialEq>(panels: &mut Vec<(K, Panel)>, key: K, unit: Unit) -> &mut Panel {
+    let known = panels.iter().position(|(known, _)| *known == key);
+    let index = known.unwrap_or_else(|| {
+        let (y, lines) = (axis(unit), Vec::new());
+        panels.push((key, Panel { y, lines }));
+        panels.len() - 1
+    });
+    &mut panels[index].1
+}
+
 /// Returns values in the unit for display.
 fn displayed(values: Vec<f64>, unit: Unit) -> Vec<f64> {
-    let factor = unit.display.map_or(1.0, |display| display.factor);
+    let factor = unit.display_factor();
     values.into_iter().map(|value| factor * value).collect()
 }
 
@@ -252,9 +257,8 @@ pub(super) fn axis(unit: Unit) -> Axis {
         // A computed measure, such as a ratio.
         _ => "value",
     };
-    let shown = unit.display.map_or(unit.name, |display| display.name);
     Axis {
         label: label.to_owned(),
-        unit: shown.replace('2', "²"),
+        unit: unit.display_name().replace('2', "²"),
     }
 }

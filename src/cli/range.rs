@@ -19,11 +19,11 @@ use super::input_files::InputFiles;
 use super::message::Message;
 use super::output::{print, tell_written, write};
 use super::picture::Format;
-use super::plot::{MOST_BODIES, axis, varies};
+use super::plot::{MOST_BODIES, axis, panel, varies};
 use super::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
 use crate::kinematics::{End, Extreme, Range as Motion, RangeSettings, Reason, Sample, in_line};
-use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, shown};
+use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounded, shown};
 
 /// Find how far a driver can go.
 ///
@@ -186,11 +186,8 @@ fn describe(
             in_line(&point.bodies, "")
         );
     }
-    for (measure, [least, greatest]) in mechanism.measures.iter().zip(&range.measures) {
-        let name = &measure.name;
-        let of_measure = |extreme: &Extreme| about(measure.coordinate.kind, extreme.value);
-        let [low, high] = [least, greatest].map(of_measure);
-        let [at, high_at] = [least, greatest].map(|extreme| about(kind, extreme.driver));
+    let mut tell_extremes = |name: &str, [low, high]: [String; 2], places: [f64; 2]| {
+        let [at, high_at] = places.map(|at| about(kind, at));
         let _ = if low == high {
             writeln!(text, "  {name} {low} everywhere")
         } else {
@@ -199,6 +196,11 @@ fn describe(
                 "  {name} from {low}, at {at}, to {high}, at {high_at}"
             )
         };
+    };
+    for (measure, extremes) in mechanism.measures.iter().zip(&range.measures) {
+        let value = |extreme: &Extreme| about(measure.coordinate.kind, extreme.value);
+        let places = extremes.each_ref().map(|extreme| extreme.driver);
+        tell_extremes(&measure.name, extremes.each_ref().map(value), places);
     }
     let extreme = |of: fn(&Sample) -> Option<f64>| {
         let known = range
@@ -209,16 +211,8 @@ fn describe(
         worst.zip(known.max_by(|a, b| a.0.total_cmp(&b.0)))
     };
     if let Some(((worst, at), (best, best_at))) = extreme(|sample| sample.transmission) {
-        let [worst, best] = [worst, best].map(|angle| format!("{:.2} deg", angle.to_degrees()));
-        let _ = if worst == best {
-            writeln!(text, "  transmission angle {worst} everywhere")
-        } else {
-            let [at, best_at] = [at, best_at].map(|at| about(kind, at));
-            writeln!(
-                text,
-                "  transmission angle from {worst}, at {at}, to {best}, at {best_at}"
-            )
-        };
+        let angles = [worst, best].map(|angle| format!("{:.2} deg", angle.to_degrees()));
+        tell_extremes("transmission angle", angles, [at, best_at]);
     }
     if let Some(((worst, at), (best, _))) = extreme(|sample| Some(sample.rcond)) {
         let [worst, best] = [worst, best].map(|rcond| scientific(rcond, 2));
@@ -259,8 +253,8 @@ pub(super) fn end_text(end: &End, driver: &Driver, id: DriverId) -> String {
         // The end of the search is no property of the mechanism: four digits are enough.
         End::NotFound { value: at } => {
             let (value, unit) = in_unit(kind, *at);
-            let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-            format!("{} {unit} and farther: no limit was found", shown(rounded))
+            let value = shown(rounded(value, 4));
+            format!("{value} {unit} and farther: no limit was found")
         }
     }
 }
@@ -342,33 +336,24 @@ fn turning(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> impl Iter
 fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
     let of_driver = &mechanism.drivers[driver.index()];
     let [x_unit, angle] = [of_driver.coordinate.kind.unit(), Unit::RADIAN];
-    let factor = |unit: Unit| unit.display.map_or(1.0, |display| display.factor);
     let line = |name: &str, look: usize, unit: Unit, of: &dyn Fn(&Sample) -> f64| Line {
         name: name.to_owned(),
         look,
         values: (range.samples.iter())
-            .map(|s| factor(unit) * of(s))
+            .map(|s| unit.display_factor() * of(s))
             .collect(),
         marks: Vec::new(),
     };
     let mut panels: Vec<(Unit, Panel)> = Vec::new();
-    let mut add = |unit: Unit, line: Line| {
-        let panel = panels.iter().position(|(known, _)| *known == unit);
-        let panel = panel.unwrap_or_else(|| {
-            let (y, lines) = (axis(unit), Vec::new());
-            panels.push((unit, Panel { y, lines }));
-            panels.len() - 1
-        });
-        panels[panel].1.lines.push(line);
-    };
+    let mut add = |unit: Unit, line: Line| panel(&mut panels, unit, unit).lines.push(line);
     for (index, (measure, extremes)) in mechanism.measures.iter().zip(&range.measures).enumerate() {
         let kind = measure.coordinate.kind;
         let unit = kind.unit();
         let mut line = line(&measure.name, index, unit, &|s| s.measures[index]);
         if varies(&line.values) {
             line.marks.extend(extremes.iter().map(|extreme| {
-                let at = factor(x_unit) * extreme.driver;
-                let value = factor(unit) * extreme.value;
+                let at = x_unit.display_factor() * extreme.driver;
+                let value = unit.display_factor() * extreme.value;
                 (at, value, shown(value))
             }));
         }
@@ -400,7 +385,7 @@ fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
             unit: axis(x_unit).unit,
         },
         at: (range.samples.iter())
-            .map(|sample| sample.driver * factor(x_unit))
+            .map(|sample| sample.driver * x_unit.display_factor())
             .collect(),
         panels,
     }

@@ -20,7 +20,7 @@ use super::progress::Progress;
 use super::recorder::Recorder;
 use super::stdout::{STDOUT, is_stdout};
 use super::times::{Span, Times};
-use crate::mechanism::{Driver, DriverSource, Mechanism, Motion as Prescribed};
+use crate::mechanism::{Driver, DriverSource, Mechanism, rounded};
 
 /// Run a mechanism: write its motion as CSV, plot it, animate it.
 ///
@@ -118,15 +118,14 @@ impl Run {
             let [plotted, told] = [Output::plotted(&all), Output::told(&all)];
             [all, plotted, told]
         };
+        let shown = [
+            (&self.output, &written),
+            (&self.plot, &plotted),
+            (&self.animate, &told),
+        ];
+        let mut shown = shown.iter().filter(|(path, _)| path.is_some());
         let asks_forces = self.forces
-            || [&written, &plotted, &told]
-                .into_iter()
-                .zip([
-                    self.output.is_some(),
-                    self.plot.is_some(),
-                    self.animate.is_some(),
-                ])
-                .any(|(columns, asked)| asked && columns.iter().any(Output::is_force))
+            || shown.any(|(_, columns)| columns.iter().any(Output::is_force))
             || over.as_ref().is_some_and(Output::is_force);
         let home_solver = input.assemble()?;
         let notes = [
@@ -155,9 +154,7 @@ impl Run {
         }
         let outcome = self.play(&mut motion, input.source.name(), &times, &mut recorders);
         // Also after a dead point: the results up to there are written.
-        let finished = recorders
-            .into_iter()
-            .map(|recorder| recorder.finish(&motion));
+        let finished = recorders.into_iter().map(|r| r.finish(&motion));
         let failed: Vec<Error> = finished.filter_map(Result::err).collect();
         let mut errors = outcome.err().into_iter().chain(failed);
         let Some(last) = errors.next_back() else {
@@ -246,8 +243,7 @@ impl Run {
 
 /// Returns a note if nothing moves, with an example of a motion.
 fn note_of_rest(mechanism: &Mechanism, scenario: &Scenario) -> Option<Message> {
-    let moves = |driver: &Driver| driver.motion().is_some_and(Prescribed::uses_time);
-    if scenario.signals.has_drivers() || scenario.mechanism.drivers.iter().any(moves) {
+    if scenario.signals.has_drivers() || scenario.mechanism.uses_time() {
         return None;
     }
     let duration = mechanism.simulation.stop - mechanism.simulation.start;
@@ -268,12 +264,15 @@ fn example(driver: &Driver, duration: f64) -> Option<String> {
     };
     let (value, usual): (fn(f64) -> String, _) = if driver.coordinate.kind.is_angle() {
         (
-            |angle| format!("{}*deg", round(angle.to_degrees())),
+            |angle| format!("{}*deg", rounded(angle.to_degrees(), 6)),
             "2*pi".to_owned(),
         )
     } else {
-        let velocity = round(0.1 * start.abs().max(0.01));
-        (|length| round(length).to_string(), velocity.to_string())
+        let velocity = rounded(0.1 * start.abs().max(0.01), 6);
+        (
+            |length| rounded(length, 6).to_string(),
+            velocity.to_string(),
+        )
     };
     let (sign, speed) = match (driver.min, driver.max) {
         (Some(min), Some(max)) if start - min > max - start => {
@@ -287,9 +286,4 @@ fn example(driver: &Driver, duration: f64) -> Option<String> {
     Some(format!(
         ", for example --drive '{name} = {start} {sign} {speed}*t'"
     ))
-}
-
-/// Rounds to six digits.
-fn round(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }

@@ -25,10 +25,8 @@ pub(super) fn find(folder: Option<&Path>) -> Result<Vec<FoundLibrary>, Error> {
     let found = match folder {
         Some(folder) => in_folder(folder)?,
         None => {
-            let program = std::env::current_exe().map_err(|source| Error::Read {
-                path: PathBuf::from("the running program"),
-                source,
-            })?;
+            let program =
+                std::env::current_exe().map_err(Error::read(Path::new("the running program")))?;
             installed(program.parent().unwrap_or(Path::new("")))?
         }
     };
@@ -46,11 +44,14 @@ pub(super) fn find(folder: Option<&Path>) -> Result<Vec<FoundLibrary>, Error> {
     }))
 }
 
-/// Keeps the libraries of the platforms named.
+/// Keeps the libraries of the platforms named; all if none is.
 pub(super) fn narrow(
     found: Vec<FoundLibrary>,
     platforms: &[Platform],
 ) -> Result<Vec<FoundLibrary>, Error> {
+    if platforms.is_empty() {
+        return Ok(found);
+    }
     let has = |platform: &Platform| found.iter().any(|f| f.library.platform == *platform);
     if let Some(missing) = platforms.iter().find(|platform| !has(platform)) {
         let names: Vec<&str> = found.iter().map(|f| f.library.platform.name).collect();
@@ -108,10 +109,7 @@ fn installed(programs: &Path) -> Result<Vec<FoundLibrary>, Error> {
 
 /// Reads a library; refuses a file that is no shared library of its platform.
 fn read(platform: Platform, path: PathBuf) -> Result<FoundLibrary, Error> {
-    let content = std::fs::read(&path).map_err(|source| Error::Read {
-        path: path.clone(),
-        source,
-    })?;
+    let content = std::fs::read(&path).map_err(Error::read(&path))?;
     let (format, starts): (_, &[&[u8]]) = match platform.extension {
         "dll" => ("PE", &[b"MZ"]),
         // For one processor with 64 bits, or for several.

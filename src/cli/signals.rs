@@ -48,10 +48,7 @@ impl Signals {
     /// `crank_angle.position` or `crank_angle` for short, and inputs of forces. Columns are separated as in the tables
     /// of a mechanism file.
     pub(super) fn read(path: &Path, mechanism: &Mechanism) -> Result<Self, Error> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path).map_err(Error::read(path))?;
         Self::parse(&text, mechanism)
             .map_err(|message| Error::Usage(format!("--input: `{}`: {message}", path.display())))
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, rounded};
 
 /// Digits of an estimate after the first: far more than assembly needs, few enough to hide
 /// rounding.
@@ -14,8 +14,8 @@ pub(super) fn as_estimates(mechanism: &Mechanism, q: &[f64]) -> String {
     let lengths = q.chunks_exact(3).flat_map(|q| [q[0].abs(), q[1].abs()]);
     let size = lengths.fold(0.0, f64::max);
     for (body, q) in mechanism.bodies.iter().zip(q.chunks_exact(3)) {
-        let [x, y] = [q[0], q[1]].map(|length| rounded(length, size));
-        let phi = rounded(q[2].to_degrees(), 360.0);
+        let [x, y] = [q[0], q[1]].map(|length| estimate(length, size));
+        let phi = estimate(q[2].to_degrees(), 360.0);
         // Zero needs no unit.
         let phi = if phi == "0" {
             phi
@@ -28,18 +28,17 @@ pub(super) fn as_estimates(mechanism: &Mechanism, q: &[f64]) -> String {
 }
 
 /// Formats a number without the rounding at its end.
-fn rounded(value: f64, scale: f64) -> String {
+fn estimate(value: f64, scale: f64) -> String {
     let smallest = scale * 10_f64.powi(-(DIGITS as i32));
     if value.abs() <= smallest {
         return "0".to_owned();
     }
-    let rounded = format!("{value:.DIGITS$e}").parse().unwrap_or(value);
-    format!("{rounded}")
+    format!("{}", rounded(value, DIGITS + 1))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::rounded;
+    use super::estimate;
 
     #[test]
     fn numbers_are_short_and_exact_enough() {
@@ -50,7 +49,7 @@ mod tests {
             (41.451_705_977_309_4, "41.4517059773"),
             (-1.5e-7, "-0.00000015"),
         ] {
-            assert_eq!(rounded(value, 0.1), text);
+            assert_eq!(estimate(value, 0.1), text);
         }
     }
 }

@@ -243,10 +243,7 @@ impl View {
 
 /// Reads a file and returns its warnings, or its errors as text; tells nothing on the terminal.
 fn read(path: &Path) -> Result<Result<(Input, Vec<String>), String>, Error> {
-    let source = Source::open(path.display().to_string(), path).map_err(|source| Error::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let source = Source::open(path.display().to_string(), path).map_err(Error::read(path))?;
     Ok(match Mechanism::parse(&source) {
         Ok((mechanism, warnings)) => {
             let warnings = match warnings[..] {

@@ -1,7 +1,7 @@
 //! Line charts over a common x-axis: one panel for each kind of quantity, one above the other.
 
 use super::lettering;
-use super::outline::{Outline, Point};
+use super::outline::{Outline, Point, finite_extremes};
 use super::palette::Colour;
 use super::sheet::{CAPITALS, Layer, Mark, Sheet, Stroke, Text, WIDTH};
 use super::ticks::Ticks;
@@ -90,11 +90,8 @@ impl Sheet {
             marks: Vec::new(),
             texts: Vec::new(),
         };
-        plot.text(
-            &chart.title,
-            Point::new(MARGIN, MARGIN + CAPITALS),
-            Align::Start,
-        );
+        let corner = Point::new(MARGIN, MARGIN + CAPITALS);
+        plot.text(&chart.title, corner, Align::Start);
         let height = HEIGHTS[chart.panels.len().clamp(1, HEIGHTS.len()) - 1];
         let mut y = MARGIN + CAPITALS;
         for (panel, scale) in chart.panels.iter().zip(&scales) {
@@ -116,20 +113,12 @@ impl Sheet {
 
 /// The range of what is plotted.
 fn x_range(at: &[f64]) -> [f64; 2] {
-    let [low, high] = extremes(at.iter());
+    let [low, high] = finite_extremes(at);
     if high > low {
         [low, high]
     } else {
         [low - 0.5, low + 0.5]
     }
-}
-
-fn extremes<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
-    let finite = values.filter(|value| value.is_finite());
-    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
-        [low.min(value), high.max(value)]
-    });
-    if low <= high { [low, high] } else { [0.0; 2] }
 }
 
 /// The y-axis of a panel: its ticks are values over a power of ten that belongs to the unit.
@@ -141,8 +130,7 @@ struct Scale {
 
 impl Scale {
     fn new(panel: &Panel) -> Self {
-        let values = panel.lines.iter().flat_map(|line| &line.values);
-        let range = extremes(values);
+        let range = finite_extremes(panel.lines.iter().flat_map(|line| &line.values));
         let size = range[0].abs().max(range[1].abs());
         // Numbers of one to four digits before the point, or a few after it.
         let power = if size >= 1e4 || (1e-9..1e-1).contains(&size) {
@@ -157,12 +145,10 @@ impl Scale {
             3 => format!("1000 {unit}"),
             _ => format!("1e{power} {unit}"),
         };
+        let range = range.map(|value| value * 10_f64.powi(-power));
+        let in_degrees = power == 0 && unit.starts_with("deg");
         Self {
-            ticks: Ticks::around(
-                range.map(|value| value * 10_f64.powi(-power)),
-                4.0,
-                power == 0 && unit.starts_with("deg"),
-            ),
+            ticks: Ticks::around(range, 4.0, in_degrees),
             power,
             header: format!("{label} [{unit}]"),
         }
@@ -170,11 +156,8 @@ impl Scale {
 
     /// The width of its widest number.
     fn width(&self) -> f64 {
-        let texts = self
-            .ticks
-            .values
-            .iter()
-            .map(|value| self.ticks.text(*value));
+        let ticks = &self.ticks;
+        let texts = ticks.values.iter().map(|value| ticks.text(*value));
         texts.map(|text| width(&text)).fold(0.0, f64::max)
     }
 }
@@ -257,11 +240,8 @@ impl Plot<'_> {
             let x = self.on_x(value);
             grid.add_line(&[Point::new(x, top), Point::new(x, bottom)]);
         }
-        self.line(
-            Layer::Grid,
-            grid,
-            Stroke::solid(Colour::GROUND.tint(0.25), FRAME),
-        );
+        let stroke = Stroke::solid(Colour::GROUND.tint(0.25), FRAME);
+        self.line(Layer::Grid, grid, stroke);
         if low < 0.0 && high > 0.0 {
             let zero = [Point::new(left, on_y(0.0)), Point::new(right, on_y(0.0))];
             let stroke = Stroke::solid(Colour::GROUND.tint(0.7), FRAME);

@@ -6,7 +6,9 @@ use super::anchor::Anchor;
 use super::outline::{across, direction};
 use super::symbol::{ForceArrow, ForceKind, Symbol, TorqueArrow};
 use crate::kinematics::{Element, ForceQuantity, Forces};
-use crate::mechanism::{Coordinate, CoordinateKind, DriverId, Indeterminate, Load, Mechanism};
+use crate::mechanism::{
+    Coordinate, CoordinateKind, DriverId, Indeterminate, Load, Mechanism, rounded,
+};
 
 /// A force or torque that a picture shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,7 +161,7 @@ pub(super) fn largest<'a>(values: impl Iterator<Item = &'a [f64; 3]>) -> [f64; 2
 
 /// Returns a size with three digits, in thousands of its unit from 1000 on.
 fn in_words(size: f64, unit: &str) -> String {
-    let rounded = format!("{size:.2e}").parse().unwrap_or(size);
+    let rounded = rounded(size, 3);
     let (size, prefix) = if rounded >= 1000.0 {
         (rounded / 1000.0, "k")
     } else {

@@ -192,6 +192,20 @@ pub(super) fn angle(v: Point) -> f64 {
     v.y.atan2(v.x)
 }
 
+/// Returns the least and the greatest of some numbers; infinities if there are none.
+pub(super) fn extremes(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], number| {
+        [low.min(number), high.max(number)]
+    })
+}
+
+/// Returns the least and the greatest of the numbers that are finite; zeros if there are none.
+pub(super) fn finite_extremes<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
+    let finite = numbers.into_iter().copied().filter(|n| n.is_finite());
+    let [low, high] = extremes(finite);
+    if low <= high { [low, high] } else { [0.0; 2] }
+}
+
 /// Returns a vector turned by a quarter turn, counter-clockwise.
 pub(super) fn across(v: Point) -> Point {
     Point::new(-v.y, v.x)

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::kinematics::{Curve, End, Path, RangeSettings, Solver};
-use crate::mechanism::{DriverId, Mechanism, Motion};
+use crate::mechanism::{DriverId, Mechanism};
 
 /// Poses along a whole motion: curves look smooth.
 const STEPS: usize = 240;
@@ -24,23 +24,12 @@ pub(super) fn sweep(solver: &mut Solver) -> Vec<Vec<f64>> {
     let home = solver.pose().clone();
     let mechanism = Arc::clone(solver.mechanism());
     let mut path = Path::new(&mechanism);
-    path.start = home.time;
-    path.from.clone_from(&home.parameters);
-    path.to.clone_from(&home.parameters);
-    for (curve, value) in path.curves.iter_mut().zip(&home.drivers) {
-        if let Curve::Input { position, .. } = curve {
-            *position = *value;
-        }
-    }
-    let moves = mechanism
-        .drivers
-        .iter()
-        .any(|driver| driver.motion().is_some_and(Motion::uses_time));
+    home.set_path(&mut path);
     let crank = first_angle(&mechanism);
     let bodies = mechanism.bodies.len();
     let [steps, most_turns] = resolution(&mechanism);
     let mut poses = vec![home.q.clone()];
-    if moves {
+    if mechanism.uses_time() {
         let duration = (mechanism.simulation.stop - home.time).max(0.0);
         path.duration = duration / steps as f64;
         for _ in 0..steps {
@@ -192,12 +181,7 @@ fn turn(
     let step = by / steps;
     (0..steps as usize).all(|_| {
         let value = solver.pose().drivers[driver];
-        path.curves[driver] = Curve::Input {
-            position: value + step,
-            velocity: 0.0,
-            acceleration: 0.0,
-            jump: -step,
-        };
+        path.curves[driver] = Curve::held(value + step, value);
         advance(solver, path, poses)
     })
 }

@@ -70,6 +70,17 @@ impl Solver {
         })
     }
 
+    /// Makes a solver that is assembled at the end of `path`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new`](Self::new) and of [`assemble`](Self::assemble).
+    pub fn assembled(mechanism: Arc<Mechanism>, path: &Path) -> Result<Self, Error> {
+        let mut solver = Self::new(mechanism)?;
+        solver.assemble(path)?;
+        Ok(solver)
+    }
+
     /// Returns the mechanism.
     #[must_use]
     pub fn mechanism(&self) -> &Arc<Mechanism> {
@@ -386,12 +397,7 @@ impl Solver {
     /// Returns the joints and constraints whose reactions redundant constraints leave
     /// indeterminate, known once the solver is [assembled](Self::assemble). The pose is unchanged.
     pub fn indeterminate(&mut self) -> Vec<Element> {
-        let Self {
-            model,
-            state,
-            tracker,
-        } = self;
-        forces::indeterminate(model, state, tracker)
+        forces::indeterminate(&mut self.model, &mut self.state, &mut self.tracker)
     }
 
     /// Returns the instant centre of a body and ground, for rates of the present pose.
@@ -413,12 +419,8 @@ impl Solver {
     ///
     /// If the driver is none of the mechanism's.
     pub fn range(&mut self, driver: DriverId, settings: &RangeSettings) -> Range {
-        let Self {
-            model,
-            state,
-            tracker,
-        } = self;
-        analysis::range(model, state, tracker, driver, settings)
+        let tracker = &mut self.tracker;
+        analysis::range(&mut self.model, &mut self.state, tracker, driver, settings)
     }
 
     /// Finds the other assembly modes for the parameters and driver values of the present pose. The

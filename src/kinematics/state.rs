@@ -8,7 +8,7 @@ use super::constraint::{Constraint, Gradient, point_acceleration, point_velocity
 use super::error::Error;
 use super::model::Model;
 use super::newton::Rejected;
-use super::path::{Motions, Path, Rates};
+use super::path::{Curve, Motions, Path, Rates};
 use super::system::{System, Targets, Values};
 use crate::mechanism::{DriverId, Jet, MarkerId};
 
@@ -30,6 +30,19 @@ pub struct Pose {
 }
 
 impl Pose {
+    /// Sets a path on which nothing moves but prescribed motions, at this pose.
+    pub fn set_path(&self, path: &mut Path) {
+        path.start = self.time;
+        path.duration = 0.0;
+        path.from.clone_from(&self.parameters);
+        path.to.clone_from(&self.parameters);
+        for (curve, value) in path.curves.iter_mut().zip(&self.drivers) {
+            if let Curve::Input { .. } = curve {
+                *curve = Curve::held(*value, *value);
+            }
+        }
+    }
+
     /// Copies another pose of the same mechanism. Allocates only for crossings.
     pub(in crate::kinematics) fn copy_from(&mut self, other: &Self) {
         self.crossings.clone_from(&other.crossings);

@@ -67,6 +67,8 @@ pub use spline::{Ends, Spline};
 #[cfg(feature = "cli")]
 pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
+#[cfg(any(feature = "drawing", feature = "fmi"))]
+pub(crate) use wording::rounded;
 pub(crate) use wording::shown;
 #[cfg(feature = "cli")]
 pub(crate) use wording::{large_angle, quoted};
@@ -384,6 +386,13 @@ pub struct Simulation {
 }
 
 impl Mechanism {
+    /// Returns whether a prescribed motion depends on time.
+    #[must_use]
+    pub fn uses_time(&self) -> bool {
+        let mut motions = self.drivers.iter().filter_map(Driver::motion);
+        motions.any(Motion::uses_time)
+    }
+
     /// Returns a marker's name with its body's: `crank.A`, `ground.O2`.
     #[must_use]
     pub fn marker_path(&self, id: MarkerId) -> String {

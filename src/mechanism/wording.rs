@@ -42,10 +42,14 @@ pub(super) fn shown_apart(a: f64, b: f64) -> [String; 2] {
     shown(digits.unwrap_or(DIGITS))
 }
 
+/// Returns a number rounded to significant digits.
+pub(crate) fn rounded(number: f64, digits: usize) -> f64 {
+    let text = format!("{number:.*e}", digits - 1);
+    text.parse().unwrap_or(number)
+}
+
 fn shown_with(number: f64, digits: usize) -> String {
-    let rounded = format!("{number:.*e}", digits - 1)
-        .parse()
-        .unwrap_or(number);
+    let rounded = rounded(number, digits);
     if rounded == 0.0 || (1e-4..1e7).contains(&f64::abs(rounded)) {
         format!("{rounded}")
     } else {

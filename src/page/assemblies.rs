@@ -52,11 +52,7 @@ impl Session {
             ..Mechanism::clone(own)
         });
         let path = self.path_here().clone();
-        let solver = Solver::new(mechanism).and_then(|mut solver| {
-            solver.assemble(&path)?;
-            Ok(solver)
-        });
-        match solver {
+        match Solver::assembled(mechanism, &path) {
             Ok(solver) => {
                 self.adopt(solver);
                 Outcome::Reached

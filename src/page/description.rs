@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::ranges::driver_speeds;
 use super::session::Session;
 use super::values::{is_told, shown_in};
-use crate::mechanism::{Driver, Mechanism, Motion, Parameter, ParameterId, Unit};
+use crate::mechanism::{Driver, Mechanism, Parameter, ParameterId, Unit};
 
 impl Session {
     /// Returns what a page shows once: names, units, limits.
@@ -86,7 +86,6 @@ impl Session {
                 })
             })
             .collect();
-        let uses_time = self.uses_time();
         json!({
             "name": mechanism.name,
             "description": mechanism.description,
@@ -95,7 +94,7 @@ impl Session {
             "parameters": parameters,
             "variables": variables,
             "loads": loads,
-            "uses_time": uses_time,
+            "uses_time": mechanism.uses_time(),
             "start": mechanism.simulation.start,
             "stop": mechanism.simulation.stop,
             "has_forces": self.forces.is_some(),
@@ -114,15 +113,6 @@ impl Session {
             })
         });
         json!(ranges.collect::<Vec<_>>())
-    }
-
-    /// Whether a prescribed motion depends on time.
-    #[must_use]
-    pub fn uses_time(&self) -> bool {
-        let drivers = &self.mechanism().drivers;
-        drivers
-            .iter()
-            .any(|d| d.motion().is_some_and(Motion::uses_time))
     }
 }
 

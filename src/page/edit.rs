@@ -3,7 +3,7 @@
 use toml_edit::{Array, DocumentMut, Item, TableLike, TomlError, Value};
 
 use crate::kinematics::Pose;
-use crate::mechanism::{DriverSource, Mechanism, constant};
+use crate::mechanism::{DriverSource, Mechanism, constant, rounded};
 
 /// A text that is no mechanism file.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -99,7 +99,7 @@ fn in_unit_of(old: &Value, value: f64) -> Option<Value> {
     number.trim().parse::<f64>().ok()?;
     let factor = constant(unit.trim())?;
     let number = value / factor;
-    let round = format!("{number:.11e}").parse().ok()?;
+    let round = rounded(number, 12);
     let is_near = |number: &f64| (number * factor - value).abs() <= NEAR * value.abs();
     let shown = Some(round).filter(is_near).unwrap_or(number);
     Some(format!("{shown}*{}", unit.trim()).into())

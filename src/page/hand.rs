@@ -169,7 +169,7 @@ impl Session {
         let inputs: Vec<Handle> = inputs
             .map(|(index, _)| Handle::Driver(DriverId(index)))
             .collect();
-        if inputs.is_empty() && self.uses_time() {
+        if inputs.is_empty() && self.mechanism().uses_time() {
             return vec![Handle::Time];
         }
         inputs

@@ -48,27 +48,17 @@ pub(super) fn driver_ranges(solver: &mut Solver) -> (Vec<Option<DriverRange>>, V
         };
         let ends = [end(&range.lower), end(&range.upper)];
         poses.extend(range.samples.into_iter().map(|sample| sample.q));
-        Some(match ends {
-            [Some(low), Some(high)] => DriverRange {
-                ends: [low, high],
-                turns: false,
-            },
-            [Some(low), None] => DriverRange {
-                ends: [low, low + TAU],
-                turns: false,
-            },
-            [None, Some(high)] => DriverRange {
-                ends: [high - TAU, high],
-                turns: false,
-            },
+        let turns = ends == [None, None];
+        let ends = match ends {
+            [Some(low), Some(high)] => [low, high],
+            [Some(low), None] => [low, low + TAU],
+            [None, Some(high)] => [high - TAU, high],
             [None, None] => {
                 let low = TAU * (value / TAU).floor();
-                DriverRange {
-                    ends: [low, low + TAU],
-                    turns: true,
-                }
+                [low, low + TAU]
             }
-        })
+        };
+        Some(DriverRange { ends, turns })
     });
     let ranges = ranges.collect();
     solver.restore(&home);

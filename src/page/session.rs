@@ -60,8 +60,7 @@ impl Session {
         let refuse = |error: crate::kinematics::Error| vec![error.to_string()];
         let mechanism = Arc::new(mechanism);
         let path = Path::new(&mechanism);
-        let mut solver = Solver::new(Arc::clone(&mechanism)).map_err(refuse)?;
-        solver.assemble(&path).map_err(refuse)?;
+        let mut solver = Solver::assembled(Arc::clone(&mechanism), &path).map_err(refuse)?;
         let pose = solver.pose().clone();
         let forces = mechanism.has_dynamics().then(|| Box::new(solver.forces()));
         let (ranges, reached) = driver_ranges(&mut solver);
@@ -167,10 +166,10 @@ impl Session {
         let mut path = self.path_here().clone();
         path.from.clone_from(&values);
         path.to.clone_from(&values);
-        match Self::assembled(&mechanism, &path) {
-            Ok(pose) if anew => {
-                self.solver.restore(&pose);
-                self.start = pose;
+        match Solver::assembled(Arc::clone(&mechanism), &path) {
+            Ok(solver) if anew => {
+                self.solver.restore(solver.pose());
+                self.start = solver.pose().clone();
                 self.refresh();
                 return Outcome::Reached;
             }
@@ -190,16 +189,6 @@ impl Session {
         }
         self.refresh();
         Outcome::Refused(obstacle)
-    }
-
-    /// Returns the pose in which a mechanism assembles at the end of a path.
-    fn assembled(
-        mechanism: &Arc<Mechanism>,
-        path: &Path,
-    ) -> Result<Pose, crate::kinematics::Error> {
-        let mut solver = Solver::new(Arc::clone(mechanism))?;
-        solver.assemble(path)?;
-        Ok(solver.pose().clone())
     }
 
     /// Sets the rates of a driver that is an input \[m/s or rad/s, m/s² or rad/s²\].
@@ -225,18 +214,8 @@ impl Session {
 
     /// Prepares the path on which nothing moves, at the pose.
     pub(super) fn path_here(&mut self) -> &mut Path {
-        let pose = self.solver.pose();
-        let path = &mut self.path;
-        path.start = pose.time;
-        path.duration = 0.0;
-        path.from.clone_from(&pose.parameters);
-        path.to.clone_from(&pose.parameters);
-        for (curve, value) in path.curves.iter_mut().zip(&pose.drivers) {
-            if let Curve::Input { .. } = curve {
-                *curve = Curve::held(*value, *value);
-            }
-        }
-        path
+        self.solver.pose().set_path(&mut self.path);
+        &mut self.path
     }
 
     /// Follows the path that was prepared; `moves` tells which drivers move.
@@ -278,23 +257,18 @@ impl Session {
                 self.driver_rates[index] = self.solver.motion(driver, time);
             }
         }
-        let Self {
-            solver,
-            rates,
-            driver_rates,
-            forces,
-            loads,
-            ..
-        } = self;
-        let solved = solver.solve_rates(|driver| driver_rates[driver.index()], rates);
+        let driver_rates = &self.driver_rates;
+        let solved =
+            (self.solver).solve_rates(|driver| driver_rates[driver.index()], &mut self.rates);
         self.has_rates = solved.is_ok()
-            && forces.as_deref_mut().is_none_or(|forces| {
+            && self.forces.as_deref_mut().is_none_or(|forces| {
                 let motion = KnownMotion {
-                    rates,
+                    rates: &self.rates,
                     driver_rates,
-                    inputs: loads,
+                    inputs: &self.loads,
                 };
-                solver.solve_forces(motion, ForceParts::ALL, forces).is_ok()
+                let solved = self.solver.solve_forces(motion, ForceParts::ALL, forces);
+                solved.is_ok()
             });
     }
 

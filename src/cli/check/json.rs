@@ -26,8 +26,7 @@ pub(super) fn report(file: &FilePath, modes: bool) -> (Value, Result<(), Error>)
             (report, outcome)
         }
         Err(source) => {
-            let path = file.to_owned();
-            let error = Error::Read { path, source };
+            let error = Error::read(file)(source);
             let message = error.to_string();
             let report = json!({ "file": name, "ok": false, "error": { "message": message } });
             (report, Err(error))
@@ -125,8 +124,7 @@ fn describe(mechanism: &Arc<Mechanism>) -> Value {
 
 /// Assembles the mechanism at its start values and describes the pose.
 fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematics::Error> {
-    let mut solver = Solver::new(Arc::clone(mechanism))?;
-    solver.assemble(&Path::new(mechanism))?;
+    let mut solver = Solver::assembled(Arc::clone(mechanism), &Path::new(mechanism))?;
     let rcond = solver.rcond();
     let pose = solver.pose();
     let still = Rates::new(pose.q.len());

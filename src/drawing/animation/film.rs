@@ -10,8 +10,9 @@ use super::{Animation, Moment};
 use crate::drawing::anchor::Anchor;
 use crate::drawing::attachment::Placement;
 use crate::drawing::force_place::largest;
-use crate::drawing::outline::across;
+use crate::drawing::outline::{across, finite_extremes};
 use crate::drawing::sheet::CAPITALS;
+use crate::mechanism::rounded;
 
 /// Part of the largest force that no arrow shows: it would be shorter than a line is wide.
 const INVISIBLE: f64 = 1e-2;
@@ -233,14 +234,7 @@ struct Channel {
 
 impl Channel {
     fn new(values: Vec<f64>) -> Self {
-        let finite = values.iter().filter(|value| value.is_finite());
-        let none = [f64::INFINITY, f64::NEG_INFINITY];
-        let range = finite.fold(none, |[low, high], v| [low.min(*v), high.max(*v)]);
-        let range = if range[0] <= range[1] {
-            range
-        } else {
-            [0.0; 2]
-        };
+        let range = finite_extremes(&values);
         Self { values, range }
     }
 
@@ -262,7 +256,7 @@ impl Channel {
 
 /// Rounds to seven digits: far more than 16 bits tell apart.
 fn significant(value: f64) -> f64 {
-    format!("{value:.6e}").parse().unwrap_or(value)
+    rounded(value, 7)
 }
 
 fn short(value: f64) -> f64 {

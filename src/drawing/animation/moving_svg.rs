@@ -57,19 +57,10 @@ pub fn moving_svg(animation: &Animation) -> String {
     let font = number(CAPITALS * FONT_SIZE);
     svg += &format!("<g font-family=\"{FONTS}\" font-size=\"{font}\">\n");
     for ((attachment, label), covered) in stage.labels.iter().zip(&covered) {
-        let text = text_element(
-            &label.text,
-            label.text.start.x,
-            &fixed_width(label.text.width()),
-        );
-        svg += &text.replace(
-            "</text>",
-            &format!(
-                "{}{}</text>\n",
-                film.label(*attachment, label),
-                film.hiding(covered)
-            ),
-        );
+        let width = fixed_width(label.text.width());
+        let text = text_element(&label.text, label.text.start.x, &width);
+        let moves = film.label(*attachment, label) + &film.hiding(covered);
+        svg += &text.replace("</text>", &format!("{moves}</text>\n"));
     }
     let scale = &stage.scale_text;
     svg += &text_element(scale, scale.start.x, &fixed_width(scale.width()));
@@ -77,10 +68,8 @@ pub fn moving_svg(animation: &Animation) -> String {
 }
 
 fn fixed_width(width: f64) -> String {
-    format!(
-        "textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"",
-        number(width)
-    )
+    let width = number(width);
+    format!("textLength=\"{width}\" lengthAdjust=\"spacingAndGlyphs\"")
 }
 
 /// The motion of all frames.

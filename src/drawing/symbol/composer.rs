@@ -242,13 +242,10 @@ impl<'a> Composer<'a> {
 
     /// Returns the range of a point along the axis of an anchor over the motion \[m\].
     pub(super) fn range(&self, along: Anchor, point: Anchor) -> [f64; 2] {
-        let positions = self.poses().map(|q| {
+        extremes(self.poses().map(|q| {
             let axis = along.placed(q);
             direction(axis.angle).dot(&(point.placed(q).point - axis.point))
-        });
-        positions.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| {
-            [low.min(s), high.max(s)]
-        })
+        }))
     }
 
     /// Returns a part of an axis, stretched to the markers of its body that lie on the axis.

@@ -2,7 +2,7 @@
 
 use super::joint_letter::{Place, are_one};
 use super::*;
-use crate::mechanism::{DisplayUnit, shown};
+use crate::mechanism::{DisplayUnit, rounded, shown};
 
 /// The length between two points of a body, or of ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,8 +99,7 @@ fn offset(
 
 /// Returns a length with five digits in a unit.
 fn told(length: f64, unit: Option<DisplayUnit>) -> String {
-    let value = length * unit.map_or(1.0, |unit| unit.factor);
-    shown(format!("{value:.4e}").parse().unwrap_or(value))
+    shown(rounded(length * unit.map_or(1.0, |unit| unit.factor), 5))
 }
 
 /// Returns the pairs of points whose distances are told: the shortest first, none across a shorter

@@ -53,8 +53,7 @@ fn range(
         let origin = direction(face.angle).dot(&(face.point - cam.point));
         Some(axis.dot(&contact) - origin)
     });
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let [low, high] = contacts.fold(none, |[low, high], s| [low.min(s), high.max(s)]);
+    let [low, high] = extremes(contacts);
     let end = END * (high - low);
     composer.with_markers(face, [low - end, high + end])
 }

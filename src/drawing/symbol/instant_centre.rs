@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::kinematics::InstantCentre;
-use crate::mechanism::{DisplayUnit, shown};
+use crate::mechanism::{DisplayUnit, rounded, shown};
 
 /// The instant centre of bodies that share it.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,10 +50,7 @@ pub(in crate::drawing) fn compose(
         let point = Point::from(at);
         if low.inf(&point) != low || high.sup(&point) != high {
             let (factor, unit) = unit.map_or((1.0, "m"), |unit| (unit.factor, unit.name));
-            let [x, y] = at.map(|value| {
-                let value = value * factor;
-                shown(format!("{value:.4e}").parse().unwrap_or(value))
-            });
+            let [x, y] = at.map(|value| shown(rounded(value * factor, 5)));
             notes.push(format!(
                 "instant centre of {name} outside the picture, at ({x}, {y}) {unit}"
             ));

@@ -14,7 +14,9 @@ mod pen;
 use super::anchor::{Anchor, Disc};
 use super::attachment::{Attachment, End, Line, Measure};
 use super::label::{Candidate, ON_WHEEL};
-use super::outline::{Outline, Point, across, angle, contains, convex_hull, direction, unit};
+use super::outline::{
+    Outline, Point, across, angle, contains, convex_hull, direction, extremes, unit,
+};
 use super::palette::Colour;
 use super::sheet::{Bounds, Layer};
 use crate::mechanism::{

@@ -1,10 +1,14 @@
-//! Functions that differ in name and call alone, one line each.
+//! Functions of the standard that are calls on an instance: their names, arguments and bodies.
 
-/// Defines functions whose arguments besides the instance are values, not pointers.
+/// Defines functions that find the instance behind their handle, run their body on it, and return the
+/// status of the outcome.
 macro_rules! instance_calls {
     (
         $handle:ty => $status:ty;
-        $($(#[$doc:meta])* $function:ident($($argument:ident: $of:ty),*) = $call:expr;)*
+        $(
+            $(#[$doc:meta])*
+            $function:ident($($argument:tt: $of:ty),* $(,)?) = |$instance:ident| $body:expr;
+        )*
     ) => {
         $(
             $(#[$doc])*
@@ -14,42 +18,36 @@ macro_rules! instance_calls {
             /// The [host's promise](crate::fmi::abi#safety).
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn $function(handle: $handle, $($argument: $of),*) -> $status {
-                let call = $crate::fmi::abi::component::as_call($call);
                 // SAFETY: the host's promise.
                 unsafe {
-                    $crate::fmi::abi::component::with_instance(handle, stringify!($function), |instance| Ok(call(instance)?))
+                    $crate::fmi::abi::component::with_instance(
+                        handle,
+                        stringify!($function),
+                        |$instance| $body,
+                    )
                 }
             }
         )*
     };
 }
+pub(super) use instance_calls;
 
-/// Defines functions whose arrays are as long as there are continuous states or event
-/// indicators: right for a length of zero only.
+/// Defines functions whose arrays, which they do not touch, are as long as there are continuous states
+/// or event indicators: right for a length of zero only.
 macro_rules! of_none {
     (
         $handle:ty => $status:ty;
         $($(#[$doc:meta])* $function:ident($call:ident, $array:ty);)*
     ) => {
-        $(
-            $(#[$doc])*
-            ///
-            /// # Safety
-            ///
-            /// The [host's promise](crate::fmi::abi#safety). The array is not touched.
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $function(
-                handle: $handle,
-                _array: $array,
-                count: usize,
-            ) -> $status {
-                // SAFETY: the host's promise.
-                unsafe {
-                    $crate::fmi::abi::component::with_instance(handle, stringify!($function), |instance| {
-                        Ok(instance.continuous($crate::fmi::Call::$call, count)?)
-                    })
-                }
-            }
-        )*
+        $crate::fmi::abi::calls::instance_calls! {
+            $handle => $status;
+            $(
+                $(#[$doc])*
+                $function(_: $array, count: usize) = |instance| {
+                    Ok(instance.continuous($crate::fmi::Call::$call, count)?)
+                };
+            )*
+        }
     };
 }
+pub(super) use of_none;

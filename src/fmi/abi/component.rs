@@ -4,7 +4,6 @@ use std::any::Any;
 use std::cell::UnsafeCell;
 use std::ffi::{c_uint, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Exported;
@@ -18,7 +17,7 @@ pub(super) type Handle = *mut c_void;
 /// A status as the host sees it. The versions of the standard number them alike.
 pub(super) type StatusCode = c_uint;
 
-type Instance = crate::fmi::Instance<Exported>;
+pub(super) type Instance = crate::fmi::Instance<Exported>;
 
 /// Data behind a handle.
 pub(super) struct Component {
@@ -162,11 +161,6 @@ pub(super) unsafe fn with_instance(
     status_code(status)
 }
 
-/// Gives a closure the type of a call, so that its argument's type need not be written.
-pub(super) fn as_call<F: FnOnce(&mut Instance) -> Result<(), Error>>(call: F) -> F {
-    call
-}
-
 fn serve(
     instance: &mut Instance,
     call: &str,
@@ -198,11 +192,4 @@ pub(super) fn panic_message(payload: &(dyn Any + Send)) -> &str {
         .map(String::as_str)
         .or_else(|| payload.downcast_ref::<&str>().copied())
         .unwrap_or("no message")
-}
-
-/// A caught panic reaches the host as a message; std would print it to stderr as well. The
-/// library has a copy of std of its own, so that no other panic in the process is silenced.
-pub(super) fn silence_panics() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| std::panic::set_hook(Box::new(|_| {})));
 }

@@ -3,7 +3,8 @@
 //! | file | subject |
 //! |---|---|
 //! | `fmi2`, `fmi3` | the functions of one version, by subject |
-//! | `calls` | functions that differ in name and call alone |
+//! | `calls` | functions that are calls on an instance |
+//! | `instantiation` | what all functions do that instantiate |
 //! | `component` | instances as the host sees them |
 //! | `arguments` | arrays and strings of the host |
 //! | `intermediate` | the host's part in a step of FMI 3.0 |
@@ -40,12 +41,12 @@
 )]
 
 mod arguments;
-#[macro_use]
 mod calls;
 mod component;
 mod floating_point;
 mod fmi2;
 mod fmi3;
+mod instantiation;
 mod intermediate;
 mod message;
 mod saved_state;

@@ -3,158 +3,105 @@
 //! A handle is a box with an [`FmuState`]. It belongs to the host until it frees it, and outlives
 //! the instance that it was got from.
 
-use std::ptr::null_mut;
-
 use super::Exported;
-use super::arguments::{Room, slice, write};
-use super::component::{CallError, Handle, StatusCode, with_instance};
-use crate::fmi::{Call, Error, Model, StateError};
+use super::component::{CallError, Handle};
+use crate::fmi::Model;
 
-type FmuState = crate::fmi::FmuState<<Exported as Model>::State>;
+pub(super) type FmuState = crate::fmi::FmuState<<Exported as Model>::State>;
 
 /// Name of the argument in messages.
-const ARGUMENT: &str = "FMUstate";
+pub(super) const ARGUMENT: &str = "FMUstate";
 
 /// Returns the state behind a handle of the host.
 ///
 /// # Safety
 ///
 /// The [host's promise](super#safety) for an FMU state, while the reference is used.
-unsafe fn state<'a>(handle: Handle) -> Result<&'a FmuState, CallError> {
+pub(super) unsafe fn state<'a>(handle: Handle) -> Result<&'a FmuState, CallError> {
     // SAFETY: promised by the caller.
     unsafe { handle.cast::<FmuState>().as_ref() }
         .ok_or_else(|| CallError::Argument(format!("`{ARGUMENT}` is a null pointer")))
 }
 
-/// Makes a copy of the state, or puts it in place of one that the host hands over for that.
-///
-/// # Safety
-///
-/// The [host's promise](super#safety). `*fmu_state` holds a value, other than in functions that
-/// write only.
-pub(super) unsafe fn get(c: Handle, call: &str, fmu_state: *mut Handle) -> StatusCode {
-    // SAFETY: the host's promise; a state to be replaced is a box of this library.
-    unsafe {
-        with_instance(c, call, |instance| {
-            let [handle] = slice(ARGUMENT, fmu_state, 1)? else {
-                unreachable!("one was asked for");
+/// Returns the handle of a state, which is then the host's to free.
+pub(super) fn hand_over(state: FmuState) -> Handle {
+    Box::into_raw(Box::new(state)).cast()
+}
+
+/// Defines the functions of a version of the standard that get, set, free, measure, serialize and
+/// deserialize a state.
+macro_rules! fmu_state_calls {
+    (
+        $handle:ty => $status:ty, $byte:ty;
+        $get:ident $set:ident $free:ident $size:ident $serialize:ident $deserialize:ident
+    ) => {
+        use std::ptr::null_mut;
+
+        use $crate::fmi::abi::arguments::{Room, slice, write};
+        use $crate::fmi::abi::component::{CallError, Handle};
+        use $crate::fmi::abi::saved_state::{ARGUMENT, FmuState, hand_over, state};
+        use $crate::fmi::{Call, Error, StateError};
+
+        $crate::fmi::abi::calls::instance_calls! {
+            $handle => $status;
+            #[doc = concat!("`", stringify!($get), "`: makes a copy of the state, or puts it in place of one")]
+            /// that the host hands over for that: `*fmu_state` holds a value, other than in functions that
+            /// write only.
+            $get(fmu_state: *mut Handle) = |instance| {
+                let handle = slice(ARGUMENT, fmu_state, 1)?[0];
+                let state = instance.fmu_state()?;
+                match handle.cast::<FmuState>().as_mut() {
+                    Some(existing) => *existing = state,
+                    None => fmu_state.write(hand_over(state)),
+                }
+                Ok(())
             };
-            let state = instance.fmu_state()?;
-            match handle.cast::<FmuState>().as_mut() {
-                Some(existing) => *existing = state,
-                None => fmu_state.write(Box::into_raw(Box::new(state)).cast()),
-            }
-            Ok(())
-        })
-    }
+            #[doc = concat!("`", stringify!($set), "`.")]
+            $set(fmu_state: Handle) = |instance| Ok(instance.set_fmu_state(state(fmu_state)?)?);
+            #[doc = concat!("`", stringify!($free), "`; nothing happens for null, either way.")]
+            $free(fmu_state: *mut Handle) = |instance| {
+                instance.allow(Call::FreeFMUstate)?;
+                if fmu_state.is_null() {
+                    return Ok(());
+                }
+                let handle = slice(ARGUMENT, fmu_state, 1)?[0];
+                if !handle.is_null() {
+                    drop(Box::from_raw(handle.cast::<FmuState>()));
+                    fmu_state.write(null_mut());
+                }
+                Ok(())
+            };
+            #[doc = concat!("`", stringify!($size), "`.")]
+            $size(fmu_state: Handle, size: *mut usize) = |instance| {
+                let bytes = instance.serialized_fmu_state_size(state(fmu_state)?)?;
+                write("size", size, bytes)
+            };
+            // A byte of a standard is one of Rust, perhaps with another sign.
+            #[doc = concat!("`", stringify!($serialize), "`.")]
+            $serialize(fmu_state: Handle, serialized_state: *mut $byte, size: usize) = |instance| {
+                let bytes = instance.serialize_fmu_state(state(fmu_state)?)?;
+                let room = Room::new("serializedState", serialized_state.cast(), size)?;
+                // With more room the host would hand back more than was written.
+                if size != bytes.len() {
+                    let (needed, given) = (bytes.len(), size);
+                    let refused = StateError::Room { needed, given };
+                    return Err(CallError::Refused(Error::FmuState(refused)));
+                }
+                room.fill(bytes);
+                Ok(())
+            };
+            #[doc = concat!("`", stringify!($deserialize), "`: makes a state, which is then the host's to free.")]
+            $deserialize(
+                serialized_state: *const $byte,
+                size: usize,
+                fmu_state: *mut Handle,
+            ) = |instance| {
+                let bytes = slice("serializedState", serialized_state.cast(), size)?;
+                let room = Room::new(ARGUMENT, fmu_state, 1)?;
+                room.fill([hand_over(instance.deserialize_fmu_state(bytes)?)]);
+                Ok(())
+            };
+        }
+    };
 }
-
-/// Restores a state.
-///
-/// # Safety
-///
-/// The [host's promise](super#safety).
-pub(super) unsafe fn set(c: Handle, call: &str, fmu_state: Handle) -> StatusCode {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, call, |instance| {
-            Ok(instance.set_fmu_state(state(fmu_state)?)?)
-        })
-    }
-}
-
-/// Frees a state; nothing happens for null, either way.
-///
-/// # Safety
-///
-/// The [host's promise](super#safety).
-pub(super) unsafe fn free(c: Handle, call: &str, fmu_state: *mut Handle) -> StatusCode {
-    // SAFETY: the host's promise; a state that is not null is a box of this library.
-    unsafe {
-        with_instance(c, call, |instance| {
-            instance.allow(Call::FreeFMUstate)?;
-            if fmu_state.is_null() {
-                return Ok(());
-            }
-            let handle = slice(ARGUMENT, fmu_state, 1)?[0];
-            if !handle.is_null() {
-                drop(Box::from_raw(handle.cast::<FmuState>()));
-                fmu_state.write(null_mut());
-            }
-            Ok(())
-        })
-    }
-}
-
-/// Writes the number of bytes of a serialized state.
-///
-/// # Safety
-///
-/// The [host's promise](super#safety).
-pub(super) unsafe fn size(
-    c: Handle,
-    call: &str,
-    fmu_state: Handle,
-    size: *mut usize,
-) -> StatusCode {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, call, |instance| {
-            let bytes = instance.serialized_fmu_state_size(state(fmu_state)?)?;
-            write("size", size, bytes)
-        })
-    }
-}
-
-/// Writes a state as bytes.
-///
-/// # Safety
-///
-/// The [host's promise](super#safety).
-pub(super) unsafe fn serialize(
-    c: Handle,
-    call: &str,
-    fmu_state: Handle,
-    serialized_state: *mut u8,
-    size: usize,
-) -> StatusCode {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, call, |instance| {
-            let bytes = instance.serialize_fmu_state(state(fmu_state)?)?;
-            let room = Room::new("serializedState", serialized_state, size)?;
-            // With more room the host would hand back more than was written.
-            if size != bytes.len() {
-                let (needed, given) = (bytes.len(), size);
-                let refused = StateError::Room { needed, given };
-                return Err(CallError::Refused(Error::FmuState(refused)));
-            }
-            room.fill(bytes);
-            Ok(())
-        })
-    }
-}
-
-/// Makes a state from bytes, which is then the host's to free.
-///
-/// # Safety
-///
-/// The [host's promise](super#safety).
-pub(super) unsafe fn deserialize(
-    c: Handle,
-    call: &str,
-    serialized_state: *const u8,
-    size: usize,
-    fmu_state: *mut Handle,
-) -> StatusCode {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, call, |instance| {
-            let bytes = slice("serializedState", serialized_state, size)?;
-            let room = Room::new(ARGUMENT, fmu_state, 1)?;
-            let state = instance.deserialize_fmu_state(bytes)?;
-            room.fill([Box::into_raw(Box::new(state)).cast()]);
-            Ok(())
-        })
-    }
-}
+pub(super) use fmu_state_calls;

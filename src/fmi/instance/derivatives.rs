@@ -61,7 +61,7 @@ impl<M: Model> Instance<M> {
         unknowns: &[M::Quantity],
         directions: &[(M::Quantity, f64)],
     ) -> Result<Vec<f64>, Error> {
-        let phase = self.state.phase(self.interface);
+        let phase = self.course.state.phase(self.interface);
         let logger = &self.logger;
         self.model
             .directional_derivatives(unknowns, directions, phase, logger)
@@ -74,7 +74,7 @@ impl<M: Model> Instance<M> {
         value_references: &[u32],
         changes: &[f64],
     ) -> Result<Vec<(M::Quantity, f64)>, Error> {
-        let initializing = self.state == State::InitializationMode;
+        let initializing = self.course.state == State::InitializationMode;
         let (by_parameters, role) = match self.version {
             Version::Fmi2 => (
                 initializing,
@@ -103,7 +103,7 @@ impl<M: Model> Instance<M> {
 
     /// Returns the unknowns of derivatives.
     fn unknowns(&self, value_references: &[u32]) -> Result<Vec<M::Quantity>, Error> {
-        let initializing = self.state == State::InitializationMode;
+        let initializing = self.course.state == State::InitializationMode;
         let role = match self.version {
             Version::Fmi2 => {
                 "derivatives are taken of outputs, in initialization mode of calculated \
@@ -149,7 +149,10 @@ impl<M: Model> Instance<M> {
     ) -> Result<Vec<(u32, DependencyKind)>, Error> {
         self.allow(call)?;
         self.variable(value_reference)?;
-        let initializing = matches!(self.state, State::Instantiated | State::InitializationMode);
+        let initializing = matches!(
+            self.course.state,
+            State::Instantiated | State::InitializationMode
+        );
         let found = self.model.dependencies(value_reference, initializing);
         Ok(found.unwrap_or_default())
     }

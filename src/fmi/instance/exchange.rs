@@ -20,7 +20,7 @@ impl<M: Model> Instance<M> {
         }
         self.commit(Call::EnterEventMode)?;
         self.model.update_discrete();
-        self.state = State::EventMode;
+        self.course.state = State::EventMode;
         Ok(())
     }
 
@@ -32,10 +32,10 @@ impl<M: Model> Instance<M> {
     /// The state forbids the call, the time is beyond the stop time, or the model failed.
     pub fn new_discrete_states(&mut self) -> Result<bool, Error> {
         self.allow(Call::NewDiscreteStates)?;
-        if self.terminated || self.interface == Interface::CoSimulation {
+        if self.course.terminated || self.interface == Interface::CoSimulation {
             self.commit(Call::NewDiscreteStates)?;
         }
-        Ok(self.terminated)
+        Ok(self.course.terminated)
     }
 
     /// `fmi2EnterContinuousTimeMode`.
@@ -45,7 +45,7 @@ impl<M: Model> Instance<M> {
     /// The state forbids the call.
     pub fn enter_continuous_time_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterContinuousTimeMode)?;
-        self.state = State::ContinuousTimeMode;
+        self.course.state = State::ContinuousTimeMode;
         Ok(())
     }
 
@@ -58,25 +58,25 @@ impl<M: Model> Instance<M> {
     pub fn completed_integrator_step(&mut self) -> Result<bool, Error> {
         self.allow(Call::CompletedIntegratorStep)?;
         self.commit(Call::CompletedIntegratorStep)?;
-        Ok(self.terminated)
+        Ok(self.course.terminated)
     }
 
     /// Commits the model's present point. If none exists the simulation must end: the standard
     /// permits no discard here (2.1.3). Refuses a point beyond the stop time (2.1.6).
     fn commit(&mut self, call: Call) -> Result<(), Error> {
         let time = self.model.time();
-        if let Some(stop) = self.stop_time
-            && time > stop + TIME_ROUNDING * stop.abs().max(time - self.last_successful_time)
+        if let Some(stop) = self.course.stop_time
+            && time > stop + TIME_ROUNDING * stop.abs().max(time - self.course.last_successful_time)
         {
             return Err(Error::Time {
                 message: format!("the time {time} s is beyond the stop time {stop} s"),
             });
         }
-        let phase = self.state.phase(self.interface);
+        let phase = self.course.state.phase(self.interface);
         match self.model.commit(phase, &self.logger) {
             Ok(()) => {
-                self.last_successful_time = self.model.time();
-                self.terminated = false;
+                self.course.last_successful_time = self.model.time();
+                self.course.terminated = false;
                 Ok(())
             }
             Err(Failure::Discarded(reason)) => {
@@ -86,7 +86,7 @@ impl<M: Model> Instance<M> {
                     Version::Fmi2 => self.logger.write(Status::Error, Category::Error, &message),
                     Version::Fmi3 => self.logger.warn(&message),
                 }
-                self.terminated = true;
+                self.course.terminated = true;
                 Ok(())
             }
             Err(failure) => Err(self.failed(call, failure)),

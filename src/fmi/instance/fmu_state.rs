@@ -18,14 +18,60 @@ pub struct FmuState<S> {
     guid: Arc<str>,
     version: Version,
     interface: Interface,
-    state: State,
-    stop_time: Option<f64>,
-    last_successful_time: f64,
-    discarded: bool,
-    terminated: bool,
-    set_since_step: bool,
-    at_dead_point: bool,
+    course: Course,
     model: S,
+}
+
+/// Everything apart from the model that decides how an instance goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Course {
+    pub(super) state: State,
+    pub(super) stop_time: Option<f64>,
+    pub(super) last_successful_time: f64,
+    /// Whether the last step was discarded.
+    pub(super) discarded: bool,
+    /// Whether the simulation must end, or go on from another state.
+    pub(super) terminated: bool,
+    /// FMI 3.0: whether values were set in step mode since the last step, or at the present point
+    /// of intermediate update.
+    pub(super) set_since_step: bool,
+    /// FMI 3.0: whether the last step ended at a dead point.
+    pub(super) at_dead_point: bool,
+}
+
+impl Course {
+    /// Returns the course of an instance that starts at `time`.
+    pub(super) fn new(time: f64) -> Self {
+        Self {
+            state: State::Instantiated,
+            stop_time: None,
+            last_successful_time: time,
+            discarded: false,
+            terminated: false,
+            set_since_step: false,
+            at_dead_point: false,
+        }
+    }
+
+    /// Visits all fields.
+    fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
+        let Self {
+            state,
+            stop_time,
+            last_successful_time,
+            discarded,
+            terminated,
+            set_since_step,
+            at_dead_point,
+        } = self;
+        codec.one_of(state, &State::ALL)?;
+        codec.option(stop_time, 0.0, |codec, time| codec.finite(time))?;
+        codec.finite(last_successful_time)?;
+        for flag in [discarded, terminated, set_since_step, at_dead_point] {
+            codec.flag(flag)?;
+        }
+        Ok(())
+    }
 }
 
 impl<M: Model> Instance<M> {
@@ -36,46 +82,13 @@ impl<M: Model> Instance<M> {
     /// The state machine forbids the call.
     pub fn fmu_state(&mut self) -> Result<FmuState<M::State>, Error> {
         self.allow(Call::GetFMUstate)?;
-        // Destructured, so that the compiler reports a new field.
-        let Self {
-            quantities: _,
-            groups: _,
-            request: _,
-            derivatives: _,
-            continuous_inputs: _,
-            logger: _,
-            allowed: _,
-            // Agreements with the host.
-            co_simulation: _,
-            intermediate: _,
-            // No state is saved during a step.
-            pending_step: _,
-            guid,
-            version,
-            model,
-            interface,
-            state,
-            stop_time,
-            last_successful_time,
-            discarded,
-            terminated,
-            set_since_step,
-            at_dead_point,
-            state_held,
-        } = self;
-        *state_held = true;
+        self.state_held = true;
         Ok(FmuState {
-            guid: Arc::clone(guid),
-            version: *version,
-            interface: *interface,
-            state: *state,
-            stop_time: *stop_time,
-            last_successful_time: *last_successful_time,
-            discarded: *discarded,
-            terminated: *terminated,
-            set_since_step: *set_since_step,
-            at_dead_point: *at_dead_point,
-            model: model.save(),
+            guid: Arc::clone(&self.guid),
+            version: self.version,
+            interface: self.interface,
+            course: self.course,
+            model: self.model.save(),
         })
     }
 
@@ -87,20 +100,14 @@ impl<M: Model> Instance<M> {
     pub fn set_fmu_state(&mut self, state: &FmuState<M::State>) -> Result<(), Error> {
         self.allow(Call::SetFMUstate)?;
         self.check_origin(state)?;
-        let in_event_mode = state.state == State::EventMode;
-        if in_event_mode && !self.has_event_mode() {
+        let now = state.course.state;
+        if now == State::EventMode && !self.has_event_mode() {
             return Err(Error::FmuState(StateError::EventMode));
         }
         self.model.restore(&state.model);
-        self.state = state.state;
-        self.stop_time = state.stop_time;
-        self.last_successful_time = state.last_successful_time;
-        self.discarded = state.discarded;
-        self.terminated = state.terminated;
-        self.set_since_step = state.set_since_step;
-        self.at_dead_point = state.at_dead_point;
+        self.course = state.course;
         self.state_held = true;
-        self.log_event(|model| format!("FMU state set: {} at t = {} s", state.state, model.time()));
+        self.log_event(|model| format!("FMU state set: {now} at t = {} s", model.time()));
         Ok(())
     }
 
@@ -148,10 +155,10 @@ impl<M: Model> Instance<M> {
         serialized::read(&self.guid, bytes, |reader| Self::visit(&mut state, reader))?;
         self.check_origin(&state)?;
         // No instance ever gets into `stepCanceled`.
-        let allowed = is_allowed(self.allowed, Call::GetFMUstate, state.state);
-        if !allowed || state.state == State::StepCanceled {
+        let now = state.course.state;
+        if !is_allowed(self.allowed, Call::GetFMUstate, now) || now == State::StepCanceled {
             return Err(Error::FmuState(StateError::Impossible {
-                why: format!("it is in state {}", state.state),
+                why: format!("it is in state {now}"),
             }));
         }
         let checked = self.model.check(&mut state.model);
@@ -184,28 +191,9 @@ impl<M: Model> Instance<M> {
     }
 
     fn visit(state: &mut FmuState<M::State>, codec: &mut impl Codec) -> Result<(), Unreadable> {
-        let FmuState {
-            guid: _,
-            version,
-            interface,
-            state,
-            stop_time,
-            last_successful_time,
-            discarded,
-            terminated,
-            set_since_step,
-            at_dead_point,
-            model,
-        } = state;
-        codec.one_of(version, &Version::ALL)?;
-        codec.one_of(interface, &Interface::ALL)?;
-        codec.one_of(state, &State::ALL)?;
-        codec.option(stop_time, 0.0, |codec, time| codec.finite(time))?;
-        codec.finite(last_successful_time)?;
-        codec.flag(discarded)?;
-        codec.flag(terminated)?;
-        codec.flag(set_since_step)?;
-        codec.flag(at_dead_point)?;
-        M::visit(model, codec)
+        codec.one_of(&mut state.version, &Version::ALL)?;
+        codec.one_of(&mut state.interface, &Interface::ALL)?;
+        state.course.visit(codec)?;
+        M::visit(&mut state.model, codec)
     }
 }

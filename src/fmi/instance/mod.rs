@@ -30,10 +30,10 @@ pub(super) use values::check_value;
 use super::error::{Error, Failure, check_finite};
 use super::log::{Category, Logger, Sink};
 use super::model::{Groups, Model};
-use super::resource_path;
 use super::state::{Allowed, Call, Interface, Phase, State, Version, allowed, is_allowed};
 use super::status::Status;
 use super::variable::{Variable, derivatives};
+use fmu_state::Course;
 use step_mode::PendingStep;
 use values::{Request, groups_of, is_continuous_input};
 
@@ -65,73 +65,34 @@ pub struct Instance<M: Model> {
     /// A step that has called back.
     pending_step: Option<PendingStep>,
     logger: Logger,
-    state: State,
-    stop_time: Option<f64>,
-    last_successful_time: f64,
-    /// Whether the last step was discarded.
-    discarded: bool,
-    /// Whether the simulation must end, or go on from another state.
-    terminated: bool,
+    /// Everything that an FMU state saves besides the model.
+    course: Course,
     /// Whether the host holds an FMU state of the last communication point.
     state_held: bool,
-    /// FMI 3.0: whether values were set in step mode since the last step, or at the present point
-    /// of intermediate update.
-    set_since_step: bool,
-    /// FMI 3.0: whether the last step ended at a dead point.
-    at_dead_point: bool,
 }
 
 impl<M: Model> Instance<M> {
-    /// Creates an FMI 2.0 instance of the model in the folder of the URI `resources`.
+    /// Creates an instance of the model in the folder `resources`, for a version of the standard.
     ///
     /// # Errors
     ///
-    /// The resources hold no model, or one with another GUID. The sink has received the reason.
+    /// The resources hold no model, or one with another GUID or instantiation token.
     pub fn instantiate(
+        version: Version,
         guid: &str,
-        resources: &str,
-        interface: Interface,
-        sink: Box<dyn Sink + Send>,
-        logging_on: bool,
-    ) -> Result<Self, Error> {
-        let loaded = resource_path(resources)
-            .map_err(Error::from)
-            .and_then(|folder| Self::load(guid, &folder, interface));
-        match loaded {
-            Ok(model) => Ok(Self::new(model, sink, logging_on)),
-            Err(error) => {
-                let message = format!("fmi2Instantiate: {error}");
-                sink.write(Status::Error, Category::Error, &message);
-                Err(error)
-            }
-        }
-    }
-
-    /// Creates an FMI 3.0 instance of the model in the folder `resources`.
-    ///
-    /// # Errors
-    ///
-    /// The resources hold no model, or one with another instantiation token.
-    pub fn instantiate_in(
-        token: &str,
         resources: &Path,
         interface: Interface,
         sink: Box<dyn Sink + Send>,
         logging_on: bool,
     ) -> Result<Self, Error> {
-        let model = Self::load(token, resources, interface)?;
-        Ok(Self::of_version(Version::Fmi3, model, sink, logging_on))
-    }
-
-    fn load(guid: &str, folder: &Path, interface: Interface) -> Result<M, Error> {
-        let model = M::load(folder, interface)?;
-        if model.guid() == guid {
-            return Ok(model);
+        let model = M::load(resources, interface)?;
+        if model.guid() != guid {
+            return Err(Error::Guid {
+                given: guid.to_owned(),
+                actual: model.guid().to_owned(),
+            });
         }
-        Err(Error::Guid {
-            given: guid.to_owned(),
-            actual: model.guid().to_owned(),
-        })
+        Ok(Self::of_version(version, model, sink, logging_on))
     }
 
     /// Creates an FMI 2.0 instance of a model.
@@ -163,14 +124,8 @@ impl<M: Model> Instance<M> {
             intermediate: Box::default(),
             pending_step: None,
             logger: Logger::new(sink, logging_on, version),
-            state: State::Instantiated,
-            stop_time: None,
-            last_successful_time: model.time(),
-            discarded: false,
-            terminated: false,
+            course: Course::new(model.time()),
             state_held: false,
-            set_since_step: false,
-            at_dead_point: false,
             model,
         }
     }
@@ -196,7 +151,7 @@ impl<M: Model> Instance<M> {
     /// Returns the present state.
     #[must_use]
     pub fn state(&self) -> State {
-        self.state
+        self.course.state
     }
 
     /// Returns the version of the standard that the instance follows.
@@ -270,15 +225,18 @@ impl<M: Model> Instance<M> {
     /// Logs that a call has failed; in FMI 3.0 an error ends the simulation.
     fn fail(&mut self, status: Status, category: Category, message: &str) {
         self.logger.write(status, category, message);
-        if self.version == Version::Fmi3 && status == Status::Error && self.state != State::Fatal {
+        if self.version == Version::Fmi3
+            && status == Status::Error
+            && self.course.state != State::Fatal
+        {
             self.abandon_step();
-            self.state = State::Terminated;
+            self.course.state = State::Terminated;
         }
     }
 
     /// Marks the instance as unusable after a caught defect, and logs the defect.
     pub fn mark_fatal(&mut self, message: &str) {
-        self.state = State::Fatal;
+        self.course.state = State::Fatal;
         self.logger.write(Status::Fatal, Category::Fatal, message);
     }
 
@@ -289,7 +247,7 @@ impl<M: Model> Instance<M> {
     /// [`Error::State`] if another state does, [`Error::Interface`] if none does.
     #[inline]
     pub fn allow(&self, call: Call) -> Result<(), Error> {
-        if is_allowed(self.allowed, call, self.state) {
+        if is_allowed(self.allowed, call, self.course.state) {
             Ok(())
         } else {
             Err(self.not_allowed(call))
@@ -298,7 +256,7 @@ impl<M: Model> Instance<M> {
 
     #[cold]
     fn not_allowed(&self, call: Call) -> Error {
-        let (version, interface, state) = (self.version, self.interface, self.state);
+        let (version, interface, state) = (self.version, self.interface, self.course.state);
         let other = Interface::ALL.into_iter().find(|other| *other != interface);
         let in_other = other.is_some_and(|other| !call.allowed_in(version, other).is_empty());
         if !call.allowed_in(version, interface).is_empty() {
@@ -353,8 +311,8 @@ impl<M: Model> Instance<M> {
             }
         }
         self.model.set_time(start);
-        self.last_successful_time = start;
-        self.stop_time = stop;
+        self.course.last_successful_time = start;
+        self.course.stop_time = stop;
         Ok(())
     }
 
@@ -365,7 +323,7 @@ impl<M: Model> Instance<M> {
     /// The state forbids the call.
     pub fn enter_initialization_mode(&mut self) -> Result<(), Error> {
         self.allow(Call::EnterInitializationMode)?;
-        self.state = State::InitializationMode;
+        self.course.state = State::InitializationMode;
         Ok(())
     }
 
@@ -381,7 +339,7 @@ impl<M: Model> Instance<M> {
     ) -> Result<(), Error> {
         self.allow(Call::EnterInitializationMode)?;
         self.set_experiment(start, stop)?;
-        self.state = State::InitializationMode;
+        self.course.state = State::InitializationMode;
         Ok(())
     }
 
@@ -395,12 +353,12 @@ impl<M: Model> Instance<M> {
         self.allow(Call::ExitInitializationMode)?;
         if let Err(failure) = self.model.commit(Phase::Initialization, &self.logger) {
             if self.version == Version::Fmi2 {
-                self.state = State::Error;
+                self.course.state = State::Error;
             }
             return Err(self.failed(Call::ExitInitializationMode, failure));
         }
         self.model.update_discrete();
-        self.state = match (self.interface, self.version) {
+        self.course.state = match (self.interface, self.version) {
             (Interface::ModelExchange, _) => State::EventMode,
             (Interface::CoSimulation, Version::Fmi2) => State::StepComplete,
             (Interface::CoSimulation, Version::Fmi3) if self.co_simulation.event_mode_used => {
@@ -408,7 +366,7 @@ impl<M: Model> Instance<M> {
             }
             (Interface::CoSimulation, Version::Fmi3) => State::StepMode,
         };
-        self.last_successful_time = self.model.time();
+        self.course.last_successful_time = self.model.time();
         self.log_event(|model| format!("initialized at t = {} s", model.time()));
         Ok(())
     }
@@ -420,7 +378,7 @@ impl<M: Model> Instance<M> {
     /// The state forbids the call.
     pub fn terminate(&mut self) -> Result<(), Error> {
         self.allow(Call::Terminate)?;
-        self.state = State::Terminated;
+        self.course.state = State::Terminated;
         self.log_event(|_| "terminated".to_owned());
         Ok(())
     }
@@ -433,14 +391,8 @@ impl<M: Model> Instance<M> {
     pub fn reset(&mut self) -> Result<(), Error> {
         self.allow(Call::Reset)?;
         self.model.reset();
-        self.state = State::Instantiated;
-        self.last_successful_time = self.model.time();
-        self.stop_time = None;
-        self.discarded = false;
-        self.terminated = false;
+        self.course = Course::new(self.model.time());
         self.state_held = false;
-        self.set_since_step = false;
-        self.at_dead_point = false;
         self.log_event(|_| "reset".to_owned());
         Ok(())
     }

@@ -102,8 +102,8 @@ impl<M: Model> Instance<M> {
             let why = "the host does not use event mode in this instance";
             return Err(Error::NotProvided { why });
         }
-        self.set_since_step = false;
-        self.state = State::EventMode;
+        self.course.set_since_step = false;
+        self.course.state = State::EventMode;
         Ok(())
     }
 
@@ -117,17 +117,8 @@ impl<M: Model> Instance<M> {
         self.model
             .commit(Phase::Event, &self.logger)
             .map_err(|failure| self.failed(Call::EnterStepMode, failure))?;
-        self.state = State::StepMode;
+        self.course.state = State::StepMode;
         Ok(())
-    }
-
-    /// `fmi3EvaluateDiscreteStates`: there are none.
-    ///
-    /// # Errors
-    ///
-    /// The state forbids the call.
-    pub fn evaluate_discrete_states(&self) -> Result<(), Error> {
-        self.allow(Call::EvaluateDiscreteStates)
     }
 
     /// `fmi3DoStep`: begins a step from the last communication point over `h` seconds. Without
@@ -149,7 +140,7 @@ impl<M: Model> Instance<M> {
                 end,
                 stop: end,
                 points: 0,
-                values_set: self.set_since_step,
+                values_set: self.course.set_since_step,
             });
             return self.next_part();
         }
@@ -174,7 +165,7 @@ impl<M: Model> Instance<M> {
         let Some(step) = self.pending_step.as_mut() else {
             return Err(Error::StepAborted);
         };
-        self.state = State::StepMode;
+        self.course.state = State::StepMode;
         if let Some(time) = early_return
             && self.co_simulation.early_return_allowed
         {
@@ -215,8 +206,8 @@ impl<M: Model> Instance<M> {
                 return self.step_failed(start, size, failure);
             }
             if target < stop || !early {
-                self.set_since_step = false;
-                self.state = State::IntermediateUpdateMode;
+                self.course.set_since_step = false;
+                self.course.state = State::IntermediateUpdateMode;
                 return Ok(StepProgress::Intermediate {
                     time: target,
                     can_return_early: self.co_simulation.early_return_allowed,
@@ -233,12 +224,8 @@ impl<M: Model> Instance<M> {
     /// Returns the number of points of intermediate update per step. A host that uses none of them
     /// gets the end alone, and so the same bits as without intermediate update.
     fn points(&self) -> u32 {
-        let CoSimulation {
-            early_return_allowed,
-            required_intermediate_variables,
-            ..
-        } = &self.co_simulation;
-        if required_intermediate_variables.is_empty() && !early_return_allowed {
+        let wishes = &self.co_simulation;
+        if wishes.required_intermediate_variables.is_empty() && !wishes.early_return_allowed {
             1
         } else {
             POINTS
@@ -247,14 +234,14 @@ impl<M: Model> Instance<M> {
 
     /// Ends a step that has reached its end, or the time at which the host wanted it to end.
     fn step_ended(&mut self, early_return: bool) -> StepOutcome {
-        self.set_since_step = false;
-        self.at_dead_point = false;
-        self.last_successful_time = self.model.time();
+        self.course.set_since_step = false;
+        self.course.at_dead_point = false;
+        self.course.last_successful_time = self.model.time();
         StepOutcome {
             event_handling_needed: false,
             terminate_simulation: false,
             early_return,
-            last_successful_time: self.last_successful_time,
+            last_successful_time: self.course.last_successful_time,
         }
     }
 
@@ -273,15 +260,15 @@ impl<M: Model> Instance<M> {
         self.model.meet_dead_point();
         let mut time = self.model.time();
         let progressed = time > start + TIME_ROUNDING * start.abs().max(h);
-        let was_at_dead_point = std::mem::replace(&mut self.at_dead_point, true);
+        let was_at_dead_point = std::mem::replace(&mut self.course.at_dead_point, true);
         if was_at_dead_point && !progressed {
             // The pose went the rest of its way to the same dead point.
             time = start;
         }
         let event_mode_used = self.co_simulation.event_mode_used;
         self.logger.warn(&format!("fmi3DoStep: {reason}"));
-        self.set_since_step = false;
-        self.last_successful_time = time;
+        self.course.set_since_step = false;
+        self.course.last_successful_time = time;
         Ok(StepProgress::Done(StepOutcome {
             event_handling_needed: event_mode_used,
             terminate_simulation: !event_mode_used || was_at_dead_point && !progressed,
@@ -294,13 +281,13 @@ impl<M: Model> Instance<M> {
     pub(super) fn abandon_step(&mut self) {
         if let Some(step) = self.pending_step.take() {
             self.model.abandon_step();
-            self.set_since_step = step.values_set;
+            self.course.set_since_step = step.values_set;
         }
     }
 
     /// Checks that the host may set these variables at the present point of intermediate update.
     pub(super) fn check_intermediate_inputs(&self, value_references: &[u32]) -> Result<(), Error> {
-        if self.state != State::IntermediateUpdateMode {
+        if self.course.state != State::IntermediateUpdateMode {
             return Ok(());
         }
         self.check_intermediate(value_references)
@@ -322,12 +309,12 @@ impl<M: Model> Instance<M> {
         if value_references.is_empty() {
             return;
         }
-        match self.state {
-            State::IntermediateUpdateMode if !self.set_since_step => {
-                self.set_since_step = true;
+        match self.course.state {
+            State::IntermediateUpdateMode if !self.course.set_since_step => {
+                self.course.set_since_step = true;
                 self.model.split_step(&self.logger);
             }
-            State::StepMode => self.set_since_step = true,
+            State::StepMode => self.course.set_since_step = true,
             _ => {}
         }
     }
@@ -336,19 +323,19 @@ impl<M: Model> Instance<M> {
     /// with start values, in step mode computed ones only if nothing was set since the last step,
     /// in intermediate update the required ones, before any is set.
     pub(super) fn check_readable(&self, value_references: &[u32]) -> Result<(), Error> {
-        match self.state {
+        match self.course.state {
             State::Instantiated => self.refuse_any(value_references, |causality| match causality {
                 Causality::Parameter | Causality::Input => None,
                 _ => Some(|name| Error::NoStart { name }),
             }),
-            State::StepMode if self.set_since_step => {
+            State::StepMode if self.course.set_since_step => {
                 self.refuse_any(value_references, |causality| match causality {
                     Causality::Output | Causality::Local => Some(|name| Error::NotStepped { name }),
                     _ => None,
                 })
             }
             State::IntermediateUpdateMode
-                if self.set_since_step && !value_references.is_empty() =>
+                if self.course.set_since_step && !value_references.is_empty() =>
             {
                 Err(Error::ReadAfterSet)
             }

@@ -21,7 +21,7 @@ impl<M: Model> Instance<M> {
         self.check_step(communication_point, h)?;
         let end = communication_point + h;
         let stepped = self.model.step(h, end, &self.logger);
-        self.last_successful_time = self.model.time();
+        self.course.last_successful_time = self.model.time();
         match stepped {
             Ok(()) => {
                 self.state_held = false;
@@ -37,10 +37,10 @@ impl<M: Model> Instance<M> {
     fn fail_step(&mut self, communication_point: f64, h: f64, failure: Failure) -> Error {
         if let Failure::Discarded(_) = failure {
             let rounding = TIME_ROUNDING * communication_point.abs().max(h);
-            let progressed = self.last_successful_time > communication_point + rounding;
-            self.state = State::StepFailed;
-            self.discarded = true;
-            self.terminated = !(progressed && self.state_held);
+            let progressed = self.course.last_successful_time > communication_point + rounding;
+            self.course.state = State::StepFailed;
+            self.course.discarded = true;
+            self.course.terminated = !(progressed && self.state_held);
         }
         self.failed(Call::DoStep, failure)
     }
@@ -61,7 +61,7 @@ impl<M: Model> Instance<M> {
                  ended, {time} s"
             ));
         }
-        match self.stop_time {
+        match self.course.stop_time {
             Some(stop) if communication_point + h > stop + rounding => refuse(format!(
                 "the step from {communication_point} s over {h} s passes the stop time {stop} s"
             )),
@@ -72,7 +72,7 @@ impl<M: Model> Instance<M> {
     /// `fmi2GetStatus` of `fmi2DoStepStatus`: status of the last step.
     #[must_use]
     pub fn step_status(&self) -> Status {
-        if self.discarded {
+        if self.course.discarded {
             Status::Discard
         } else {
             Status::Ok
@@ -82,13 +82,13 @@ impl<M: Model> Instance<M> {
     /// `fmi2GetRealStatus` of `fmi2LastSuccessfulTime` \[s\]: the last time that the model reached.
     #[must_use]
     pub fn last_successful_time(&self) -> f64 {
-        self.last_successful_time
+        self.course.last_successful_time
     }
 
     /// `fmi2GetBooleanStatus` of `fmi2Terminated`: whether the simulation must end. False after a
     /// discarded step that a host with an FMU state of its start can repeat with a smaller size.
     #[must_use]
     pub fn is_terminated(&self) -> bool {
-        self.terminated
+        self.course.terminated
     }
 }

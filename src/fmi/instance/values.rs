@@ -222,22 +222,6 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// `fmi2GetInteger`, for Enumerations as well. Writes all values or none.
-    ///
-    /// # Errors
-    ///
-    /// As [`integers`](Self::integers).
-    pub fn get_integer(
-        &mut self,
-        value_references: &[u32],
-        values: &mut [i32],
-    ) -> Result<(), Error> {
-        for (to, value) in values.iter_mut().zip(self.integers(value_references)?) {
-            *to = value;
-        }
-        Ok(())
-    }
-
     /// Returns the values of Integer and Enumeration variables in the order of their references.
     ///
     /// # Errors
@@ -309,7 +293,7 @@ impl<M: Model> Instance<M> {
 
     #[inline]
     fn refresh(&mut self, call: Call, groups: Groups) -> Result<(), Error> {
-        let phase = self.state.phase(self.interface);
+        let phase = self.course.state.phase(self.interface);
         self.model
             .refresh(groups, phase, &self.logger)
             .map_err(|failure| self.failed(call, failure))
@@ -349,11 +333,14 @@ impl<M: Model> Instance<M> {
         if variable.kind.is_real_in(self.version) != (expected == "Real") {
             return Err(self.wrong_type(variable, expected));
         }
-        let initializing = matches!(self.state, State::Instantiated | State::InitializationMode);
+        let initializing = matches!(
+            self.course.state,
+            State::Instantiated | State::InitializationMode
+        );
         let why = match variable.causality {
             Causality::Input
                 if variable.variability == Variability::Continuous
-                    || self.state != State::ContinuousTimeMode =>
+                    || self.course.state != State::ContinuousTimeMode =>
             {
                 return Ok(variable);
             }
@@ -362,7 +349,7 @@ impl<M: Model> Instance<M> {
             Causality::Parameter if variable.variability == Variability::Fixed => {
                 "a fixed parameter, and initialization has ended"
             }
-            Causality::Parameter if self.state == State::ContinuousTimeMode => {
+            Causality::Parameter if self.course.state == State::ContinuousTimeMode => {
                 "a tunable parameter, which changes in event mode"
             }
             Causality::Parameter => return Ok(variable),

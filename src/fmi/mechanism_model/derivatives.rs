@@ -29,11 +29,11 @@ impl MechanismModel {
         }
         self.refresh_rates(phase, log)?;
         let mut direction = Direction {
-            drivers: vec![Jet::constant(0.0); self.inputs.len()],
+            drivers: vec![Jet::constant(0.0); self.course.inputs.len()],
             parameters: vec![0.0; self.settings.parameters.len()],
             time: 0.0,
         };
-        let mut forces = vec![0.0; self.force_inputs.len()];
+        let mut forces = vec![0.0; self.course.force_inputs.len()];
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
@@ -76,17 +76,17 @@ impl MechanismModel {
     /// Returns the derivatives of a driver's value, velocity and acceleration in force by one of its
     /// inputs.
     fn derivatives_by(&self, driver: DriverId, order: Order, phase: Phase) -> [f64; 3] {
-        let input = &self.inputs[driver.index()];
+        let input = &self.course.inputs[driver.index()];
         let rates = match self.interface {
             Interface::ModelExchange => RateSource::Inputs,
             Interface::CoSimulation => self.settings.rule.rates,
         };
         if phase == Phase::Event && !self.at_committed {
-            input.change_at_event(rates, self.time, order)
+            input.change_at_event(rates, self.course.time, order)
         } else if self.at_committed && input.has_stepped() {
-            input.change_by_step(rates, self.monitors[driver.index()].sources, order)
+            input.change_by_step(rates, self.course.monitors[driver.index()].sources, order)
         } else {
-            input.change_by_value(rates, self.time, order)
+            input.change_by_value(rates, self.course.time, order)
         }
     }
 }

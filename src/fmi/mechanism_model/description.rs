@@ -12,7 +12,7 @@ use crate::fmi::model_description::{
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable};
 use crate::kinematics::{Dependencies, ForceQuantity, Structure, System};
-use crate::mechanism::{DriverId, Load, Mechanism, Order, Signal, Unit, Variable as Of};
+use crate::mechanism::{DriverId, Load, Mechanism, Order, Signal, Unit, Variable as Of, rounded};
 
 /// Capabilities of a [`MechanismModel`](super::MechanismModel).
 const CAPABILITIES: Capabilities = Capabilities {
@@ -361,9 +361,7 @@ fn set_nominal(mechanism: &Mechanism, variables: &mut [Variable<Quantity>]) {
     {
         return;
     }
-    let Ok(size) = format!("{:.0e}", at.size()).parse() else {
-        return;
-    };
+    let size = rounded(at.size(), 1);
     for variable in variables {
         let is_position = matches!(
             variable.quantity,

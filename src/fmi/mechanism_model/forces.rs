@@ -52,26 +52,25 @@ impl MechanismModel {
         log: &Logger,
     ) -> Result<(), Failure> {
         self.refresh_rates(phase, log)?;
-        let Self {
-            forces,
-            force_inputs,
-            solver,
-            rates,
-            driver_rates,
-            ..
-        } = self;
-        let Some(ModelForces { forces, inputs }) = forces.as_deref_mut() else {
+        let Some((solver, forces, motion)) = self.forces_to_solve() else {
             return Ok(());
         };
-        for (now, input) in inputs.iter_mut().zip(force_inputs) {
+        solver.solve_forces(motion, parts, forces).map_err(failed)
+    }
+
+    /// Returns the solver, the forces, and the motion for which they are sought; `None` without
+    /// dynamics. The rates are up to date.
+    fn forces_to_solve(&mut self) -> Option<(&mut Solver, &mut Forces, KnownMotion<'_>)> {
+        let ModelForces { forces, inputs } = self.forces.as_deref_mut()?;
+        for (now, input) in inputs.iter_mut().zip(&self.course.force_inputs) {
             *now = input.present();
         }
         let motion = KnownMotion {
-            rates,
-            driver_rates,
+            rates: &self.rates,
+            driver_rates: &self.driver_rates,
             inputs,
         };
-        solver.solve_forces(motion, parts, forces).map_err(failed)
+        Some((&mut self.solver, forces, motion))
     }
 
     /// Returns the derivatives of forces along a direction, along which the inputs of forces change
@@ -85,24 +84,8 @@ impl MechanismModel {
         direction: &Direction,
         changes: &[f64],
     ) -> Result<Option<ForceSensitivity>, Error> {
-        let Self {
-            forces,
-            force_inputs,
-            solver,
-            rates,
-            driver_rates,
-            ..
-        } = self;
-        let Some(ModelForces { forces, inputs }) = forces.as_deref_mut() else {
+        let Some((solver, forces, motion)) = self.forces_to_solve() else {
             return Ok(None);
-        };
-        for (now, input) in inputs.iter_mut().zip(force_inputs) {
-            *now = input.present();
-        }
-        let motion = KnownMotion {
-            rates,
-            driver_rates,
-            inputs,
         };
         let along = solver.force_sensitivity(motion, direction, changes, forces);
         along.map(Some)
@@ -110,7 +93,7 @@ impl MechanismModel {
 
     /// Reports each contact that begins to pull, as it would lift off.
     pub(super) fn report_contacts(&mut self, log: &Logger) {
-        if self.lifted.is_empty() || !log.wants(Category::Warning) {
+        if self.course.lifted.is_empty() || !log.wants(Category::Warning) {
             return;
         }
         let parts = ForceParts {
@@ -121,16 +104,10 @@ impl MechanismModel {
         if self.refresh_forces(parts, Phase::Running, log).is_err() {
             return;
         }
-        let Self {
-            forces,
-            solver,
-            lifted,
-            ..
-        } = self;
-        let Some(ModelForces { forces, .. }) = forces.as_deref() else {
+        let Some(ModelForces { forces, .. }) = self.forces.as_deref() else {
             return;
         };
-        for lift_off in solver.lift_offs(forces, lifted) {
+        for lift_off in self.solver.lift_offs(forces, &mut self.course.lifted) {
             log.advise(|| lift_off.to_string());
         }
     }

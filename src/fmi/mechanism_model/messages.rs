@@ -9,7 +9,7 @@ use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
-use crate::mechanism::{Driver, Order, shown};
+use crate::mechanism::{Driver, Order, rounded, shown};
 
 impl MechanismModel {
     /// Describes why a step stopped: the drivers that move, their limits and the values asked for.
@@ -29,7 +29,7 @@ impl MechanismModel {
                     show(limit[index]),
                     start + s * h
                 ));
-            } else if (asked[index] - self.committed.drivers[index]).abs() > 0.0 {
+            } else if (asked[index] - self.course.committed.drivers[index]).abs() > 0.0 {
                 parts.push(format!(
                     "driver `{}` was asked for {} and cannot go beyond {}",
                     driver.name,
@@ -90,8 +90,8 @@ impl MechanismModel {
 
     /// Reports each approach to a singular position once.
     pub(super) fn report_approach(&mut self, log: &Logger) {
-        if let Some(approach) = self.solver.approach(&mut self.near_singular) {
-            log.advise(|| format!("t = {} s: {approach}", self.time));
+        if let Some(approach) = self.solver.approach(&mut self.course.near_singular) {
+            log.advise(|| format!("t = {} s: {approach}", self.course.time));
         }
     }
 
@@ -102,7 +102,7 @@ impl MechanismModel {
             return;
         }
         let drivers = self.mechanism.drivers.iter().zip(&self.path.curves);
-        let observed = self.inputs.iter().zip(&mut self.monitors);
+        let observed = self.course.inputs.iter().zip(&mut self.course.monitors);
         for ((driver, curve), (input, monitor)) in drivers.zip(observed) {
             if let Curve::Input { jump, .. } = *curve
                 && jump.abs() > PI
@@ -115,7 +115,7 @@ impl MechanismModel {
                         "t = {} s: driver `{name}` jumps by {} rad within one step, which the \
                          mechanism follows turn by turn; if the host wraps the angle, set \
                          `wrapped = true` for the driver in the mechanism file",
-                        self.time,
+                        self.course.time,
                         shown(-jump)
                     )
                 });
@@ -144,9 +144,9 @@ impl MechanismModel {
             self.report_inputs(rule, advice, start, h, log);
         }
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            self.monitors[index].sources = self.sources[index];
+            self.course.monitors[index].sources = self.sources[index];
             if driver.motion().is_none() {
-                self.inputs[index].record(rule, start, h);
+                self.course.inputs[index].record(rule, start, h);
             }
         }
         self.report_contacts(log);
@@ -158,7 +158,7 @@ impl MechanismModel {
     /// before, and given rates that contradict the motion.
     fn report_inputs(&mut self, rule: Rule, advice: &str, start: f64, h: f64, log: &Logger) {
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            let (input, monitor) = (&self.inputs[index], &mut self.monitors[index]);
+            let (input, monitor) = (&self.course.inputs[index], &mut self.course.monitors[index]);
             let value = self.solver.pose().drivers[index];
             if monitor.goes_beyond(value, [driver.min, driver.max]) {
                 log.advise(|| describe_excursion(driver, value, start + h));
@@ -182,7 +182,7 @@ impl MechanismModel {
 
     /// Logs the change points on the last path.
     pub(super) fn log_crossings(&self, log: &Logger) {
-        if self.path_progress.crossings > 0 && log.wants(Category::Events) {
+        if self.course.path_progress.crossings > 0 && log.wants(Category::Events) {
             for crossing in self.solver.crossed() {
                 let message = self.solver.describe_crossing(crossing);
                 log.write(Status::Ok, Category::Events, &message);
@@ -198,14 +198,14 @@ impl MechanismModel {
                 substeps,
                 checked,
                 ..
-            } = self.path_progress;
+            } = self.course.path_progress;
             let checked = match checked {
                 0 => String::new(),
                 checked => format!(" ({checked} checked, not proved)"),
             };
             let message = format!(
                 "t = {} s: sub-steps {substeps}{checked}, iterations {iterations}, residual {:.1e}",
-                self.time,
+                self.course.time,
                 self.solver.residual()
             );
             log.write(Status::Ok, Category::Solver, &message);
@@ -251,8 +251,7 @@ fn describe_contradiction(
     let Driver { name, .. } = driver;
     let unit = driver.coordinate.kind.units()[order as usize].name;
     // Four digits: differences of positions have rounding.
-    let rounded = |rate: f64| format!("{rate:.3e}").parse().unwrap_or(rate);
-    let [given, actual] = [given, actual].map(|rate| format!("{} {unit}", shown(rounded(rate))));
+    let [given, actual] = [given, actual].map(|rate| format!("{} {unit}", shown(rounded(rate, 4))));
     let (lower, rate) = match order {
         Order::Acceleration => ("velocity", "acceleration"),
         _ => ("position", "velocity"),

@@ -75,47 +75,78 @@ pub struct MechanismModel {
     /// another machine may have computed with other rounding.
     start_pose: Arc<Pose>,
     settings: Settings,
-    /// Inputs per driver; those of prescribed motions have no meaning.
-    inputs: Vec<DriverInput>,
-    /// Inputs of forces, in the order of their variables.
-    force_inputs: Vec<ForceInput>,
+    course: Course,
     /// Forces at the solver's pose, if the mechanism has dynamics.
     forces: Option<Box<ModelForces>>,
-    /// Whether each contact pulled at the last communication point.
-    lifted: Vec<bool>,
-    /// Observations per driver.
-    monitors: Vec<Monitor>,
     /// Sources of the rates per driver at the solver's pose.
     sources: Vec<[Source; 2]>,
-    /// Pose from which the mechanism goes on; in co-simulation that of the last communication
-    /// point.
-    committed: Pose,
-    /// The solver's choices at the committed pose, while it is at another one.
-    committed_carryover: Carryover,
     /// The solver's choices after it was made.
     file_carryover: Carryover,
     /// Whether the solver is at the committed pose.
     at_committed: bool,
     /// Rates of all drivers at the solver's pose; `value` has no meaning.
     driver_rates: Vec<Jet>,
-    /// Rates of all drivers at the committed pose.
-    committed_rates: Vec<Jet>,
     freshness: Freshness,
     /// Rates of q at the solver's pose.
     rates: Rates,
     reals: Reals,
     path: Path,
-    /// Effort of the last path.
-    path_progress: Progress,
-    /// Effort of the last step or, in model exchange, up to the last event.
-    progress: Progress,
-    time: f64,
     /// The step that is being taken in parts.
     parts: Option<Box<Parts>>,
     /// Time of the dead point in front of which the last step has stopped.
     dead_point: Option<f64>,
+}
+
+/// Time, pose and histories that a step moves on, and that return where it is given up.
+#[derive(Clone, Debug, PartialEq)]
+struct Course {
+    time: f64,
+    /// Pose from which the mechanism goes on; in co-simulation that of the last communication
+    /// point.
+    committed: Pose,
+    /// The solver's choices at the committed pose, while it is at another one.
+    committed_carryover: Carryover,
+    /// Rates of all drivers at the committed pose.
+    committed_rates: Vec<Jet>,
+    /// Inputs per driver; those of prescribed motions have no meaning.
+    inputs: Vec<DriverInput>,
+    /// Inputs of forces, in the order of their variables.
+    force_inputs: Vec<ForceInput>,
+    /// Whether each contact pulled at the last communication point.
+    lifted: Vec<bool>,
+    /// Observations per driver.
+    monitors: Vec<Monitor>,
     /// Whether the host has been warned of the singular position nearby.
     near_singular: bool,
+    /// Effort of the last path.
+    path_progress: Progress,
+    /// Effort of the last step or, in model exchange, up to the last event.
+    progress: Progress,
+}
+
+impl Course {
+    /// Returns the course that begins at a pose with the solver's choices there.
+    fn new(
+        mechanism: &Mechanism,
+        forces: Option<&ModelForces>,
+        start: &Pose,
+        carryover: &Carryover,
+    ) -> Self {
+        let drivers = mechanism.drivers.len();
+        Self {
+            time: start.time,
+            committed: start.clone(),
+            committed_carryover: carryover.clone(),
+            committed_rates: vec![Jet::constant(0.0); drivers],
+            inputs: start_inputs(mechanism),
+            force_inputs: vec![ForceInput::default(); forces.map_or(0, ModelForces::inputs)],
+            lifted: vec![false; forces.map_or(0, ModelForces::contacts)],
+            monitors: vec![Monitor::default(); drivers],
+            near_singular: false,
+            path_progress: Progress::default(),
+            progress: Progress::default(),
+        }
+    }
 }
 
 /// Values set by the host, apart from inputs.
@@ -144,40 +175,30 @@ impl MechanismModel {
     /// The mechanism does not assemble.
     pub fn new(mechanism: Arc<Mechanism>, interface: Interface) -> Result<Self, kinematics::Error> {
         let path = Path::new(&mechanism);
-        let mut solver = Solver::new(Arc::clone(&mechanism))?;
-        solver.assemble(&path)?;
+        let solver = Solver::assembled(Arc::clone(&mechanism), &path)?;
         let file_pose = Arc::new(solver.pose().clone());
         let mut file_carryover = Carryover::default();
         solver.carry_over(&mut file_carryover);
         let variables = variables(&mechanism);
         let forces = (mechanism.has_dynamics()).then(|| Box::new(ModelForces::new(&solver)));
+        let course = Course::new(&mechanism, forces.as_deref(), &file_pose, &file_carryover);
         Ok(Self {
             guid: guid(&mechanism),
             interface,
             reals: Reals::new(&variables),
             variables,
             settings: Settings::new(&mechanism),
-            inputs: start_inputs(&mechanism),
-            force_inputs: force_inputs(forces.as_deref()),
-            lifted: vec![false; forces.as_deref().map_or(0, ModelForces::contacts)],
+            course,
             forces,
-            monitors: vec![Monitor::default(); mechanism.drivers.len()],
             sources: vec![[Source::default(); 2]; mechanism.drivers.len()],
-            committed: Pose::clone(&file_pose),
-            committed_carryover: file_carryover.clone(),
             file_carryover,
             at_committed: true,
             driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
-            committed_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
             rates: Rates::new(file_pose.q.len()),
             freshness: Freshness::Stale,
             path,
-            path_progress: Progress::default(),
-            progress: Progress::default(),
-            time: file_pose.time,
             parts: None,
             dead_point: None,
-            near_singular: false,
             start_pose: Arc::clone(&file_pose),
             file_pose,
             solver,
@@ -225,32 +246,23 @@ impl Model for MechanismModel {
     }
 
     fn time(&self) -> f64 {
-        self.time
+        self.course.time
     }
 
     fn set_time(&mut self, time: f64) {
-        self.time = time;
+        self.course.time = time;
         self.set_freshness(Freshness::Stale);
     }
 
     fn reset(&mut self) {
         self.start_pose = Arc::clone(&self.file_pose);
         self.settings = Settings::new(&self.mechanism);
-        self.inputs = start_inputs(&self.mechanism);
-        self.force_inputs.fill(ForceInput::default());
-        self.lifted.fill(false);
-        self.monitors.fill(Monitor::default());
-        self.committed.clone_from(&self.start_pose);
-        self.committed_carryover.clone_from(&self.file_carryover);
+        let (start, carryover) = (&self.start_pose, &self.file_carryover);
+        self.course = Course::new(&self.mechanism, self.forces.as_deref(), start, carryover);
         self.return_to_committed();
         self.driver_rates.fill(Jet::constant(0.0));
-        self.committed_rates.fill(Jet::constant(0.0));
         self.set_freshness(Freshness::Stale);
-        self.path_progress = Progress::default();
-        self.progress = Progress::default();
-        self.time = self.start_pose.time;
         self.parts = None;
-        self.near_singular = false;
     }
 
     fn set_reals(&mut self, values: impl Iterator<Item = (Quantity, f64)>) {
@@ -260,15 +272,15 @@ impl Model for MechanismModel {
                 Quantity::Input(driver, order) => {
                     inputs_changed = true;
                     let index = driver.index();
-                    let input = &mut self.inputs[index];
+                    let input = &mut self.course.inputs[index];
                     if order == Order::Position && self.mechanism.drivers[index].wrapped {
-                        input.set_wrapped(value, self.committed.drivers[index]);
+                        input.set_wrapped(value, self.course.committed.drivers[index]);
                     } else {
                         input.set(order, value);
                     }
                 }
                 Quantity::ForceInput(place) => {
-                    self.force_inputs[place].set(value);
+                    self.course.force_inputs[place].set(value);
                     // The pose does not depend on it.
                     self.reals.invalidate();
                     continue;
@@ -307,10 +319,10 @@ impl Model for MechanismModel {
         for (quantity, order, value) in derivatives {
             match quantity {
                 Quantity::Input(driver, input) => {
-                    self.inputs[driver.index()].set_derivative(input, order, value);
+                    self.course.inputs[driver.index()].set_derivative(input, order, value);
                 }
                 Quantity::ForceInput(place) => {
-                    self.force_inputs[place].set_derivative(order, value);
+                    self.course.force_inputs[place].set_derivative(order, value);
                     continue;
                 }
                 _ => {}
@@ -337,9 +349,9 @@ impl Model for MechanismModel {
         let count = match quantity {
             Quantity::RateSource => return self.settings.rule.rates as i32,
             Quantity::Extrapolation => return self.settings.rule.extrapolation as i32,
-            Quantity::Iterations => self.progress.iterations,
-            Quantity::Substeps => self.progress.substeps,
-            Quantity::Proved => u32::from(self.progress.checked == 0),
+            Quantity::Iterations => self.course.progress.iterations,
+            Quantity::Substeps => self.course.progress.substeps,
+            Quantity::Proved => u32::from(self.course.progress.checked == 0),
             _ => unreachable!("all other variables are Reals"),
         };
         i32::try_from(count).unwrap_or(i32::MAX)
@@ -368,7 +380,7 @@ impl Model for MechanismModel {
     }
 
     fn update_discrete(&mut self) {
-        self.progress = self.path_progress;
+        self.course.progress = self.course.path_progress;
     }
 
     fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
@@ -401,7 +413,7 @@ impl Model for MechanismModel {
 
     fn meet_dead_point(&mut self) {
         if let Some(time) = self.dead_point.take() {
-            self.time = time;
+            self.course.time = time;
         }
     }
 
@@ -443,10 +455,6 @@ fn start_inputs(mechanism: &Mechanism) -> Vec<DriverInput> {
     drivers
         .map(|driver| DriverInput::new(start(&driver.source)))
         .collect()
-}
-
-fn force_inputs(forces: Option<&ModelForces>) -> Vec<ForceInput> {
-    vec![ForceInput::default(); forces.map_or(0, ModelForces::inputs)]
 }
 
 /// Converts an error of the kinematics.

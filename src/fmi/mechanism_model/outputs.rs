@@ -229,14 +229,9 @@ impl MechanismModel {
 
     /// Fills in all values but those of bodies.
     fn fill_others(&mut self, groups: Groups) {
-        let Reals {
-            values,
-            signals,
-            others,
-            derived,
-            ..
-        } = &mut self.reals;
-        for SignalPlace { signal, references } in signals.iter() {
+        let reals = &mut self.reals;
+        let values = &mut reals.values;
+        for SignalPlace { signal, references } in &reals.signals {
             let [pose, rates] = [signal.group(), signal.group() << 1].map(|g| groups & g != 0);
             if pose || rates {
                 let jet = self.solver.signal(*signal, &self.rates, &self.driver_rates);
@@ -250,7 +245,7 @@ impl MechanismModel {
             }
         }
         if groups & (DERIVED | DERIVED << 1) != 0 {
-            for (index, &(vr, group)) in derived.iter().enumerate() {
+            for (index, &(vr, group)) in reals.derived.iter().enumerate() {
                 if groups & group != 0 {
                     values[vr as usize] =
                         self.solver.derived(index, &self.rates, &self.driver_rates);
@@ -260,17 +255,17 @@ impl MechanismModel {
         if groups & (SETTINGS | SOLVER) == 0 {
             return;
         }
-        for &(vr, quantity) in others.iter().filter(|(_, q)| groups & group(*q) != 0) {
+        for &(vr, quantity) in reals.others.iter().filter(|(_, q)| groups & group(*q) != 0) {
             values[vr as usize] = match quantity {
-                Quantity::Input(driver, order) => self.inputs[driver.index()].get(order),
-                Quantity::ForceInput(place) => self.force_inputs[place].get(),
+                Quantity::Input(driver, order) => self.course.inputs[driver.index()].get(order),
+                Quantity::ForceInput(place) => self.course.force_inputs[place].get(),
                 Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
-                Quantity::Time => self.time,
+                Quantity::Time => self.course.time,
                 Quantity::Residual => self.solver.residual(),
                 Quantity::Rcond => self.solver.rcond(),
-                Quantity::Iterations => f64::from(self.progress.iterations),
-                Quantity::Substeps => f64::from(self.progress.substeps),
-                Quantity::Proved => f64::from(u8::from(self.progress.checked == 0)),
+                Quantity::Iterations => f64::from(self.course.progress.iterations),
+                Quantity::Substeps => f64::from(self.course.progress.substeps),
+                Quantity::Proved => f64::from(u8::from(self.course.progress.checked == 0)),
                 _ => unreachable!("the list has no other quantities"),
             };
         }

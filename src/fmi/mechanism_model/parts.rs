@@ -5,14 +5,10 @@
 //! of a whole step does. Values that the host sets on the way hold from there on: the mechanism
 //! goes to them at that time, and the path starts anew.
 
-use super::MechanismModel;
-use super::force_input::ForceInput;
-use super::input::DriverInput;
-use super::monitor::Monitor;
+use super::{Course, MechanismModel};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
-use crate::kinematics::{Carryover, Curve, Path, Pose, Progress};
-use crate::mechanism::Jet;
+use crate::kinematics::{Curve, Path, Progress};
 
 /// A step that is being taken in parts.
 #[derive(Debug)]
@@ -23,55 +19,28 @@ pub(super) struct Parts {
     path: Path,
     /// Whether values were set at the present time, which the mechanism has not reached yet.
     split: bool,
-    before: Before,
-}
-
-/// State of the model before the step.
-#[derive(Debug)]
-struct Before {
-    time: f64,
-    committed: Pose,
-    committed_carryover: Carryover,
-    committed_rates: Vec<Jet>,
-    inputs: Vec<DriverInput>,
-    force_inputs: Vec<ForceInput>,
-    lifted: Vec<bool>,
-    monitors: Vec<Monitor>,
+    /// The model's course before the step, and whether the pose belonged to the values set.
+    before: Course,
     was_current: bool,
-    near_singular: bool,
-    path_progress: Progress,
-    progress: Progress,
 }
 
 impl MechanismModel {
     /// Begins a step of size `h` to the time `end`.
     pub(super) fn begin_parts(&mut self, h: f64, end: f64, log: &Logger) {
         let was_current = self.note_committed();
-        let before = Before {
-            time: self.time,
-            committed: self.committed.clone(),
-            committed_carryover: self.committed_carryover.clone(),
-            committed_rates: self.committed_rates.clone(),
-            inputs: self.inputs.clone(),
-            force_inputs: self.force_inputs.clone(),
-            lifted: self.lifted.clone(),
-            monitors: self.monitors.clone(),
-            was_current,
-            near_singular: self.near_singular,
-            path_progress: self.path_progress,
-            progress: self.progress,
-        };
+        let before = self.course.clone();
         if !self.at_committed {
             self.return_to_committed();
         }
-        self.set_path(self.time, h);
+        self.set_path(self.course.time, h);
         self.report_falls(log);
-        self.path_progress = Progress::default();
+        self.course.path_progress = Progress::default();
         self.parts = Some(Box::new(Parts {
             end,
             path: self.path.clone(),
             split: false,
             before,
+            was_current,
         }));
     }
 
@@ -97,7 +66,7 @@ impl MechanismModel {
         if let Some(parts) = &mut self.parts {
             parts.split = true;
             let start = parts.path.start;
-            self.complete_step(start, self.time - start, log);
+            self.complete_step(start, self.course.time - start, log);
         }
     }
 
@@ -115,9 +84,9 @@ impl MechanismModel {
             .and_then(|()| self.reach_held_values(&parts, log));
         match ended {
             Ok(()) => {
-                self.progress = self.path_progress;
+                self.course.progress = self.course.path_progress;
                 let start = parts.path.start;
-                self.complete_step(start, self.time - start, log);
+                self.complete_step(start, self.course.time - start, log);
                 Ok(())
             }
             Err(failure) => {
@@ -132,42 +101,18 @@ impl MechanismModel {
         let Some(parts) = self.parts.take() else {
             return;
         };
-        let Before {
-            time,
-            committed,
-            committed_carryover,
-            committed_rates,
-            inputs,
-            force_inputs,
-            lifted,
-            monitors,
-            was_current,
-            near_singular,
-            path_progress,
-            progress,
-        } = parts.before;
-        self.time = time;
-        self.committed = committed;
-        self.committed_carryover = committed_carryover;
-        self.committed_rates = committed_rates;
-        self.inputs = inputs;
-        self.force_inputs = force_inputs;
-        self.lifted = lifted;
-        self.monitors = monitors;
-        self.near_singular = near_singular;
-        self.path_progress = path_progress;
-        self.progress = progress;
-        self.stay_at_committed(was_current);
+        self.course = parts.before;
+        self.stay_at_committed(parts.was_current);
     }
 
     /// Goes to the values that the host has set at the present time, and lets the path start there.
     fn reach_values_set(&mut self, parts: &mut Parts, log: &Logger) -> Result<(), Failure> {
         if std::mem::take(&mut parts.split) {
-            self.set_path(self.time, 0.0);
+            self.set_path(self.course.time, 0.0);
             self.follow(log)?;
-            self.set_driver_rates(self.time, 0.0, 0.0);
+            self.set_driver_rates(self.course.time, 0.0, 0.0);
             self.commit_pose();
-            self.set_path(self.time, parts.end - self.time);
+            self.set_path(self.course.time, parts.end - self.course.time);
             parts.path.clone_from(&self.path);
         }
         Ok(())
@@ -177,7 +122,7 @@ impl MechanismModel {
     fn follow_part(&mut self, parts: &Parts, time: f64, log: &Logger) -> Result<(), Failure> {
         let whole = &parts.path;
         let to_end = time >= parts.end;
-        if to_end && self.time.to_bits() == whole.start.to_bits() {
+        if to_end && self.course.time.to_bits() == whole.start.to_bits() {
             // The same bits as a step that is taken at once.
             self.path.clone_from(whole);
         } else {
@@ -186,22 +131,26 @@ impl MechanismModel {
             } else {
                 (time - whole.start) / whole.duration
             };
-            self.set_part_of_path(whole, (self.time - whole.start) / whole.duration, end);
+            let start = (self.course.time - whole.start) / whole.duration;
+            self.set_part_of_path(whole, start, end);
         }
         let followed = self.follow(log);
         if followed.is_ok() {
             self.advance_forces(self.path.duration);
         }
         // Also after a dead point, whose time may be earlier.
-        let reached = if followed.is_ok() { time } else { self.time };
+        let reached = match followed {
+            Ok(()) => time,
+            Err(_) => self.course.time,
+        };
         let s = if to_end && followed.is_ok() {
             1.0
         } else {
             (reached - whole.start) / whole.duration
         };
-        if followed.is_ok() || self.time > self.path.start {
+        if followed.is_ok() || self.course.time > self.path.start {
             self.set_driver_rates(whole.start, whole.duration, s);
-            self.time = if s < 1.0 { reached } else { parts.end };
+            self.course.time = if s < 1.0 { reached } else { parts.end };
             self.commit_pose();
         }
         followed
@@ -210,17 +159,17 @@ impl MechanismModel {
     /// Goes to the values in force at the present time where the step ends before its path does:
     /// held inputs and parameters reach their values at the end of a step.
     fn reach_held_values(&mut self, parts: &Parts, log: &Logger) -> Result<(), Failure> {
-        if self.time >= parts.end {
+        if self.course.time >= parts.end {
             return Ok(());
         }
         let whole = &parts.path;
-        let elapsed = self.time - whole.start;
-        self.path.start = self.time;
+        let elapsed = self.course.time - whole.start;
+        self.path.start = self.course.time;
         self.path.duration = 0.0;
-        self.path.from.copy_from_slice(&self.committed.parameters);
+        (self.path.from).copy_from_slice(&self.course.committed.parameters);
         self.path.to.copy_from_slice(&whole.to);
         let curves = self.path.curves.iter_mut().zip(&whole.curves);
-        for ((curve, whole), now) in curves.zip(&self.committed.drivers) {
+        for ((curve, whole), now) in curves.zip(&self.course.committed.drivers) {
             if let Curve::Input {
                 position,
                 velocity,
@@ -241,9 +190,9 @@ impl MechanismModel {
     /// Sets the path to the part from `s0` to `s1` of a whole one.
     fn set_part_of_path(&mut self, whole: &Path, s0: f64, s1: f64) {
         let path = &mut self.path;
-        path.start = self.time;
+        path.start = self.course.time;
         path.duration = (s1 - s0) * whole.duration;
-        path.from.copy_from_slice(&self.committed.parameters);
+        path.from.copy_from_slice(&self.course.committed.parameters);
         for ((to, from), end) in path.to.iter_mut().zip(&whole.from).zip(&whole.to) {
             *to = if s1 < 1.0 {
                 from + s1 * (end - from)
@@ -253,7 +202,7 @@ impl MechanismModel {
         }
         self.mechanism.derive_parameters(&mut path.to);
         let curves = path.curves.iter_mut().zip(&whole.curves);
-        for ((curve, whole_curve), now) in curves.zip(&self.committed.drivers) {
+        for ((curve, whole_curve), now) in curves.zip(&self.course.committed.drivers) {
             if let Curve::Input {
                 position,
                 velocity,
@@ -279,7 +228,7 @@ impl MechanismModel {
     fn follow(&mut self, log: &Logger) -> Result<(), Failure> {
         match self.solver.track(&self.path) {
             Ok(progress) => {
-                let total = &mut self.path_progress;
+                let total = &mut self.course.path_progress;
                 total.iterations += progress.iterations;
                 total.substeps += progress.substeps;
                 total.crossings += progress.crossings;

@@ -21,7 +21,7 @@ impl MechanismModel {
     /// [`Failure::Discarded`] if no continuous motion leads to the end. The mechanism is then at
     /// the last time whose driver values it reached.
     pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        let start = self.time;
+        let start = self.course.time;
         match self.follow_step(h) {
             Ok(progress) => {
                 self.reach_end(progress, start, h, end, log);
@@ -46,7 +46,7 @@ impl MechanismModel {
         end: f64,
         log: &Logger,
     ) -> Result<(), Failure> {
-        let start = self.time;
+        let start = self.course.time;
         let was_current = self.note_committed();
         match self.follow_step(h) {
             Ok(progress) => {
@@ -66,18 +66,18 @@ impl MechanismModel {
         if !self.at_committed {
             self.return_to_committed();
         }
-        self.set_path(self.time, h);
+        self.set_path(self.course.time, h);
         self.solver.track(&self.path)
     }
 
     /// Ends a step of size `h` from `start` that the solver has followed.
     fn reach_end(&mut self, progress: Progress, start: f64, h: f64, end: f64, log: &Logger) {
         self.report_falls(log);
-        self.path_progress = progress;
-        self.progress = progress;
+        self.course.path_progress = progress;
+        self.course.progress = progress;
         self.set_driver_rates(start, h, 1.0);
         self.advance_forces(h);
-        self.time = end;
+        self.course.time = end;
         self.commit_pose();
         self.complete_step(start, h, log);
     }
@@ -86,7 +86,7 @@ impl MechanismModel {
     /// whether that pose belongs to the values set.
     pub(super) fn note_committed(&mut self) -> bool {
         if self.at_committed {
-            self.solver.carry_over(&mut self.committed_carryover);
+            self.solver.carry_over(&mut self.course.committed_carryover);
         }
         self.at_committed && self.freshness != Freshness::Stale
     }
@@ -94,7 +94,7 @@ impl MechanismModel {
     /// Returns to the committed pose as [`note_committed`](Self::note_committed) found it.
     pub(super) fn stay_at_committed(&mut self, was_current: bool) {
         self.return_to_committed();
-        self.driver_rates.copy_from_slice(&self.committed_rates);
+        (self.driver_rates).copy_from_slice(&self.course.committed_rates);
         self.set_freshness(if was_current {
             Freshness::Pose
         } else {
@@ -105,19 +105,13 @@ impl MechanismModel {
     /// Sets the path from the committed pose to the values in force at the end of a step of size
     /// `h` from `start`; with `h = 0` to the values set.
     pub(super) fn set_path(&mut self, start: f64, h: f64) {
-        let Self {
-            path,
-            committed,
-            settings,
-            inputs,
-            interface,
-            ..
-        } = self;
+        let (path, committed) = (&mut self.path, &self.course.committed);
         path.start = start;
         path.duration = h;
         path.from.copy_from_slice(&committed.parameters);
-        path.to.copy_from_slice(&settings.parameters);
-        let drivers = path.curves.iter_mut().zip(inputs).zip(&committed.drivers);
+        path.to.copy_from_slice(&self.settings.parameters);
+        let drivers = path.curves.iter_mut().zip(&mut self.course.inputs);
+        let drivers = drivers.zip(&committed.drivers);
         for ((curve, input), committed) in drivers {
             if let Curve::Input {
                 position,
@@ -126,10 +120,10 @@ impl MechanismModel {
                 jump,
             } = curve
             {
-                let rates = match interface {
+                let rates = match self.interface {
                     // The host integrates and sets each input at each time.
                     Interface::ModelExchange => DriverRates::default(),
-                    Interface::CoSimulation => input.path(settings.rule, start, h),
+                    Interface::CoSimulation => input.path(self.settings.rule, start, h),
                 };
                 *position = input.position();
                 *velocity = rates.velocity;
@@ -141,33 +135,24 @@ impl MechanismModel {
 
     /// Sets the drivers' rates to those at the part `s` of a step of size `h` from `start`.
     pub(super) fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
-        let Self {
-            driver_rates,
-            sources,
-            mechanism,
-            inputs,
-            settings,
-            solver,
-            interface,
-            ..
-        } = self;
-        for (index, driver) in mechanism.drivers.iter().enumerate() {
-            let rates = &mut driver_rates[index];
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            let rates = &mut self.driver_rates[index];
             match &driver.source {
                 DriverSource::Input { .. } => {
-                    let input = &inputs[index];
-                    let given = match interface {
+                    let input = &self.course.inputs[index];
+                    let given = match self.interface {
                         Interface::ModelExchange => input.given_rates(),
                         // Writes the sources in place: copied on, they would be waited for.
                         Interface::CoSimulation => {
-                            input.rates_after(settings.rule, start, s * h, &mut sources[index])
+                            let sources = &mut self.sources[index];
+                            input.rates_after(self.settings.rule, start, s * h, sources)
                         }
                     };
                     rates.value = 0.0;
                     rates.derivatives = [given.velocity, given.acceleration];
                 }
                 DriverSource::Motion(_) => {
-                    *rates = solver.motion(DriverId(index), start + s * h);
+                    *rates = self.solver.motion(DriverId(index), start + s * h);
                 }
             }
         }
@@ -176,9 +161,9 @@ impl MechanismModel {
     /// Sets the drivers' rates at an event: those that are given, and otherwise those of the last
     /// step, since no estimate is made from values that no step has reached.
     fn set_driver_rates_at_event(&mut self) {
-        self.set_driver_rates(self.time, 0.0, 0.0);
+        self.set_driver_rates(self.course.time, 0.0, 0.0);
         let now = self.driver_rates.iter_mut().zip(&self.sources);
-        for ((rates, sources), last) in now.zip(&self.committed_rates) {
+        for ((rates, sources), last) in now.zip(&self.course.committed_rates) {
             let last = last.derivatives;
             for ((rate, last), source) in rates.derivatives.iter_mut().zip(last).zip(sources) {
                 if matches!(source, Source::Estimate | Source::Difference) {
@@ -210,12 +195,12 @@ impl MechanismModel {
         }
         self.commit_pose();
         if starting {
-            for input in &mut self.inputs {
+            for input in &mut self.course.inputs {
                 input.start();
             }
             self.report_mechanism(log);
         } else {
-            self.complete_step(self.time, 0.0, log);
+            self.complete_step(self.course.time, 0.0, log);
         }
         Ok(())
     }
@@ -227,7 +212,8 @@ impl MechanismModel {
             return Ok(());
         }
         self.refresh_pose(Phase::Event, log)?;
-        for (input, last) in self.inputs.iter_mut().zip(&self.committed.drivers) {
+        let course = &mut self.course;
+        for (input, last) in course.inputs.iter_mut().zip(&course.committed.drivers) {
             if (input.position() - last).abs() > 0.0 {
                 input.forget_samples();
             }
@@ -240,15 +226,17 @@ impl MechanismModel {
 
     /// Commits the solver's pose.
     pub(super) fn commit_pose(&mut self) {
-        self.solver.save(&mut self.committed);
-        self.committed_rates.copy_from_slice(&self.driver_rates);
+        let course = &mut self.course;
+        self.solver.save(&mut course.committed);
+        course.committed_rates.copy_from_slice(&self.driver_rates);
         self.at_committed = true;
         self.set_freshness(Freshness::Pose);
     }
 
     /// Puts the solver back to the committed pose, with the choices that it had there.
     pub(super) fn return_to_committed(&mut self) {
-        let resumed = (self.solver).resume(&self.committed, &self.committed_carryover);
+        let course = &self.course;
+        let resumed = (self.solver).resume(&course.committed, &course.committed_carryover);
         debug_assert!(resumed, "the choices are the solver's own");
         self.at_committed = true;
     }
@@ -256,7 +244,7 @@ impl MechanismModel {
     /// Lets the solver leave the committed pose: notes its choices, and begins with them.
     fn leave_committed(&mut self) {
         if self.at_committed {
-            self.solver.carry_over(&mut self.committed_carryover);
+            self.solver.carry_over(&mut self.course.committed_carryover);
         }
         self.return_to_committed();
         self.at_committed = false;
@@ -265,7 +253,7 @@ impl MechanismModel {
     /// Restores the committed pose and its rates.
     pub(super) fn restore_committed(&mut self) {
         self.leave_committed();
-        self.driver_rates.copy_from_slice(&self.committed_rates);
+        (self.driver_rates).copy_from_slice(&self.course.committed_rates);
         self.at_committed = true;
     }
 
@@ -278,8 +266,8 @@ impl MechanismModel {
         log: &Logger,
     ) -> Failure {
         let message = self.describe_dead_point(&blocked, start, h);
-        self.path_progress = blocked.progress;
-        self.progress = blocked.progress;
+        self.course.path_progress = blocked.progress;
+        self.course.progress = blocked.progress;
         self.log_crossings(log);
         // Held inputs and parameters reach their values at the end of the step only. Inputs on a
         // curve of their own have right values up to the dead point.
@@ -297,7 +285,7 @@ impl MechanismModel {
         if jumped {
             self.restore_committed();
         } else {
-            self.time = start + blocked.s * h;
+            self.course.time = start + blocked.s * h;
             self.set_driver_rates(start, h, blocked.s);
         }
         // A prescribed motion would be ahead of the pose at the dead point itself.
@@ -309,7 +297,7 @@ impl MechanismModel {
 
     /// Moves the inputs of forces on by a time `h`.
     pub(super) fn advance_forces(&mut self, h: f64) {
-        for input in &mut self.force_inputs {
+        for input in &mut self.course.force_inputs {
             input.advance(h);
         }
     }
@@ -360,8 +348,9 @@ impl MechanismModel {
     ///
     /// The mechanism does not assemble.
     fn initialize(&mut self, log: &Logger) -> Result<(), Failure> {
-        self.committed.clone_from(&self.start_pose);
-        self.set_path(self.start_pose.time, self.time - self.start_pose.time);
+        self.course.committed.clone_from(&self.start_pose);
+        let start = self.start_pose.time;
+        self.set_path(start, self.course.time - start);
         for curve in &mut self.path.curves {
             if let Curve::Input {
                 velocity,
@@ -372,17 +361,17 @@ impl MechanismModel {
                 (*velocity, *acceleration) = (0.0, 0.0);
             }
         }
-        self.committed_carryover.clone_from(&self.file_carryover);
+        (self.course.committed_carryover).clone_from(&self.file_carryover);
         self.return_to_committed();
         self.at_committed = false;
         let start = self.solver.start(&self.start_pose, &self.path);
         match start.map_err(failed)? {
             Start::Continuous(progress) => {
-                self.path_progress = progress;
+                self.course.path_progress = progress;
                 self.log_crossings(log);
             }
             Start::Reassembled(assembly) => {
-                self.path_progress = Progress {
+                self.course.path_progress = Progress {
                     iterations: assembly.iterations,
                     substeps: 1,
                     crossings: 0,
@@ -396,7 +385,7 @@ impl MechanismModel {
                 });
             }
         }
-        self.set_driver_rates(self.time, 0.0, 0.0);
+        self.set_driver_rates(self.course.time, 0.0, 0.0);
         Ok(())
     }
 
@@ -408,16 +397,17 @@ impl MechanismModel {
     /// [`Failure::Discarded`] if no continuous motion leads there.
     fn evaluate(&mut self) -> Result<(), Failure> {
         self.leave_committed();
+        let (now, committed) = (self.course.time, self.course.committed.time);
         let (start, h) = match self.interface {
-            Interface::ModelExchange => (self.committed.time, self.time - self.committed.time),
-            Interface::CoSimulation => (self.time, 0.0),
+            Interface::ModelExchange => (committed, now - committed),
+            Interface::CoSimulation => (now, 0.0),
         };
         self.set_path(start, h);
         let followed = self.solver.track(&self.path);
         self.set_driver_rates(start, h, 1.0);
         match followed {
             Ok(progress) => {
-                self.path_progress = progress;
+                self.course.path_progress = progress;
                 Ok(())
             }
             Err(blocked) => {

@@ -2,11 +2,8 @@
 
 use std::sync::Arc;
 
-use super::force_input::ForceInput;
-use super::input::DriverInput;
-use super::monitor::Monitor;
 use super::rule::{Extrapolation, RateSource};
-use super::{Freshness, MechanismModel, Quantity, Settings};
+use super::{Course, Freshness, MechanismModel, Quantity, Settings};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
@@ -24,25 +21,14 @@ const CLOSED: f64 = 1e-9;
 pub struct MechanismState {
     start_pose: Arc<Pose>,
     settings: Settings,
-    inputs: Vec<DriverInput>,
-    force_inputs: Vec<ForceInput>,
-    lifted: Vec<bool>,
-    monitors: Vec<Monitor>,
-    committed: Pose,
-    /// The solver's pose: the committed one, or that of values set since.
+    course: Course,
+    /// The solver's pose, the committed one or that of values set since, and its choices there.
     present: Pose,
-    /// The solver's choices at both.
-    committed_carryover: Carryover,
     present_carryover: Carryover,
     at_committed: bool,
     driver_rates: Vec<Jet>,
-    committed_rates: Vec<Jet>,
     /// [`Freshness::Stale`] or [`Freshness::Pose`]: rates follow from the pose.
     freshness: Freshness,
-    path_progress: Progress,
-    progress: Progress,
-    time: f64,
-    near_singular: bool,
 }
 
 impl MechanismModel {
@@ -75,74 +61,55 @@ impl MechanismModel {
             forces: _,
             start_pose,
             settings,
-            inputs,
-            force_inputs,
-            lifted,
-            monitors,
+            course,
             solver,
-            committed,
-            committed_carryover,
             at_committed,
             driver_rates,
-            committed_rates,
             freshness,
-            path_progress,
-            progress,
-            time,
-            near_singular,
         } = self;
         let mut present_carryover = Carryover::default();
         solver.carry_over(&mut present_carryover);
+        if *at_committed {
+            course.committed_carryover.clone_from(&present_carryover);
+        }
+        let present = if *at_committed {
+            course.committed.clone()
+        } else {
+            solver.pose().clone()
+        };
         MechanismState {
             start_pose: Arc::clone(start_pose),
             settings: settings.clone(),
-            inputs: inputs.clone(),
-            force_inputs: force_inputs.clone(),
-            lifted: lifted.clone(),
-            monitors: monitors.clone(),
-            committed: committed.clone(),
-            committed_carryover: if *at_committed {
-                present_carryover.clone()
-            } else {
-                committed_carryover.clone()
-            },
+            course: course.clone(),
             present_carryover,
-            present: if *at_committed {
-                committed.clone()
-            } else {
-                solver.pose().clone()
-            },
+            present,
             at_committed: *at_committed,
             driver_rates: driver_rates.clone(),
-            committed_rates: committed_rates.clone(),
             freshness: *freshness,
-            path_progress: *path_progress,
-            progress: *progress,
-            time: *time,
-            near_singular: *near_singular,
         }
     }
 
     pub(super) fn restore_state(&mut self, state: &MechanismState) {
         self.start_pose = Arc::clone(&state.start_pose);
         self.settings.clone_from(&state.settings);
-        self.inputs.clone_from(&state.inputs);
-        self.force_inputs.clone_from(&state.force_inputs);
-        self.lifted.clone_from(&state.lifted);
-        self.monitors.clone_from(&state.monitors);
-        self.committed.clone_from(&state.committed);
-        self.committed_carryover
-            .clone_from(&state.committed_carryover);
+        // Without new memory.
+        let (own, saved) = (&mut self.course, &state.course);
+        own.inputs.clone_from(&saved.inputs);
+        own.force_inputs.clone_from(&saved.force_inputs);
+        own.lifted.clone_from(&saved.lifted);
+        own.monitors.clone_from(&saved.monitors);
+        own.committed.clone_from(&saved.committed);
+        (own.committed_carryover).clone_from(&saved.committed_carryover);
+        own.committed_rates.clone_from(&saved.committed_rates);
+        own.path_progress = saved.path_progress;
+        own.progress = saved.progress;
+        own.time = saved.time;
+        own.near_singular = saved.near_singular;
         let resumed = (self.solver).resume(&state.present, &state.present_carryover);
         debug_assert!(resumed, "the choices were checked when the state was read");
         self.at_committed = state.at_committed;
         self.driver_rates.clone_from(&state.driver_rates);
-        self.committed_rates.clone_from(&state.committed_rates);
         self.set_freshness(state.freshness);
-        self.path_progress = state.path_progress;
-        self.progress = state.progress;
-        self.time = state.time;
-        self.near_singular = state.near_singular;
         self.parts = None;
     }
 
@@ -165,7 +132,7 @@ impl MechanismModel {
         }
         self.check_pose(&state.start_pose)?;
         for (pose, carryover) in [
-            (&state.committed, &state.committed_carryover),
+            (&state.course.committed, &state.course.committed_carryover),
             (&state.present, &state.present_carryover),
         ] {
             self.check_pose(pose)?;
@@ -210,23 +177,26 @@ impl MechanismState {
         let Self {
             start_pose,
             settings,
+            course,
+            present,
+            present_carryover,
+            at_committed,
+            driver_rates,
+            freshness,
+        } = self;
+        let Course {
+            time,
+            committed,
+            committed_carryover,
+            committed_rates,
             inputs,
             force_inputs,
             lifted,
             monitors,
-            committed,
-            present,
-            committed_carryover,
-            present_carryover,
-            at_committed,
-            driver_rates,
-            committed_rates,
-            freshness,
+            near_singular,
             path_progress,
             progress,
-            time,
-            near_singular,
-        } = self;
+        } = course;
         codec.one_of(freshness, &[Freshness::Stale, Freshness::Pose])?;
         codec.flag(at_committed)?;
         codec.flag(near_singular)?;

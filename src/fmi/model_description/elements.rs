@@ -5,7 +5,7 @@ use std::io;
 
 use quick_xml::writer::ElementWriter;
 
-use super::xml::{WithOptional, Xml, non_empty, number};
+use super::xml::{Element, Xml, non_empty, number};
 use super::{DependencyKind, Experiment, ModelDescription};
 use crate::fmi::log::Category;
 use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
@@ -50,8 +50,7 @@ pub(super) fn write_root<Q>(
             ("license", description.license),
             ("generationDateAndTime", generated),
         ])
-        .write_inner_content(content)?;
-    Ok(())
+        .with_content(content)
 }
 
 fn real_unit<Q>(variable: &Variable<Q>) -> Option<Unit> {
@@ -76,41 +75,39 @@ pub(super) fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Re
         let displays = &mut units[index].1;
         displays.extend(unit.display.filter(|display| !displays.contains(display)));
     }
-    xml.create_element("UnitDefinitions")
-        .write_inner_content(|xml| {
-            for (unit, displays) in &units {
-                let definition = xml
-                    .create_element("Unit")
-                    .with_attribute(("name", unit.name));
-                definition.write_inner_content(|xml| {
-                    let dimension = unit.dimension;
-                    let exponents = [
-                        ("kg", dimension.kg),
-                        ("m", dimension.m),
-                        ("s", dimension.s),
-                        ("rad", dimension.rad),
-                    ];
-                    let mut base = xml.create_element("BaseUnit");
-                    for (name, exponent) in exponents {
-                        if exponent != 0 {
-                            base = base.with_attribute((name, exponent.to_string().as_str()));
-                        }
+    xml.create_element("UnitDefinitions").with_content(|xml| {
+        for (unit, displays) in &units {
+            let definition = xml
+                .create_element("Unit")
+                .with_attribute(("name", unit.name));
+            definition.with_content(|xml| {
+                let dimension = unit.dimension;
+                let exponents = [
+                    ("kg", dimension.kg),
+                    ("m", dimension.m),
+                    ("s", dimension.s),
+                    ("rad", dimension.rad),
+                ];
+                let mut base = xml.create_element("BaseUnit");
+                for (name, exponent) in exponents {
+                    if exponent != 0 {
+                        base = base.with_attribute((name, exponent.to_string().as_str()));
                     }
-                    base.write_empty()?;
-                    for display in displays {
-                        xml.create_element("DisplayUnit")
-                            .with_attributes([
-                                ("name", display.name),
-                                ("factor", &number(display.factor)),
-                            ])
-                            .write_empty()?;
-                    }
-                    Ok(())
-                })?;
-            }
-            Ok(())
-        })?;
-    Ok(())
+                }
+                base.empty()?;
+                for display in displays {
+                    xml.create_element("DisplayUnit")
+                        .with_attributes([
+                            ("name", display.name),
+                            ("factor", &number(display.factor)),
+                        ])
+                        .empty()?;
+                }
+                Ok(())
+            })?;
+        }
+        Ok(())
+    })
 }
 
 /// Returns the simple type of variables with this unit.
@@ -173,8 +170,7 @@ pub(super) fn write_real_type(
     element
         .with_attributes([("quantity", quantity), ("unit", unit.name)])
         .with_optional(&[("displayUnit", display)])
-        .write_empty()?;
-    Ok(())
+        .empty()
 }
 
 /// Appends the attributes of the variable's values; `derivative_of` identifies the variable whose
@@ -219,7 +215,7 @@ pub(super) fn write_items(
     element: ElementWriter<'_, Vec<u8>>,
     enumeration: &Enumeration,
 ) -> io::Result<()> {
-    element.write_inner_content(|xml| {
+    element.with_content(|xml| {
         for (index, (name, description)) in enumeration.items.iter().enumerate() {
             xml.create_element("Item")
                 .with_attributes([
@@ -227,28 +223,25 @@ pub(super) fn write_items(
                     ("value", &(index + 1).to_string()),
                     ("description", description),
                 ])
-                .write_empty()?;
+                .empty()?;
         }
         Ok(())
-    })?;
-    Ok(())
+    })
 }
 
 /// Writes the log categories; `always` is appended to the descriptions of those that reach the host
 /// with any settings.
 pub(super) fn write_log_categories(xml: &mut Xml, always: &str) -> io::Result<()> {
-    xml.create_element("LogCategories")
-        .write_inner_content(|xml| {
-            for (category, description) in Category::ALL {
-                let always = if category.always() { always } else { "" };
-                let description = format!("{description}{always}");
-                xml.create_element("Category")
-                    .with_attributes([("name", category.name()), ("description", &description)])
-                    .write_empty()?;
-            }
-            Ok(())
-        })?;
-    Ok(())
+    xml.create_element("LogCategories").with_content(|xml| {
+        for (category, description) in Category::ALL {
+            let always = if category.always() { always } else { "" };
+            let description = format!("{description}{always}");
+            xml.create_element("Category")
+                .with_attributes([("name", category.name()), ("description", &description)])
+                .empty()?;
+        }
+        Ok(())
+    })
 }
 
 /// Writes the default experiment.
@@ -260,8 +253,7 @@ pub(super) fn write_experiment(xml: &mut Xml, experiment: Experiment) -> io::Res
             ("tolerance", &number(experiment.tolerance)),
             ("stepSize", &number(experiment.step)),
         ])
-        .write_empty()?;
-    Ok(())
+        .empty()
 }
 
 /// Writes the list of variables, each with its index.
@@ -270,12 +262,10 @@ pub(super) fn write_variables<Q>(
     variables: &[Variable<Q>],
     write_variable: impl Fn(&mut Xml, usize, &Variable<Q>) -> io::Result<()>,
 ) -> io::Result<()> {
-    xml.create_element("ModelVariables")
-        .write_inner_content(|xml| {
-            (variables.iter().enumerate())
-                .try_for_each(|(index, variable)| write_variable(xml, index, variable))
-        })?;
-    Ok(())
+    xml.create_element("ModelVariables").with_content(|xml| {
+        (variables.iter().enumerate())
+            .try_for_each(|(index, variable)| write_variable(xml, index, variable))
+    })
 }
 
 /// Returns the name of a causality.

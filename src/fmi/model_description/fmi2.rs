@@ -7,7 +7,7 @@ use super::elements::{
     write_experiment, write_items, write_log_categories, write_real_type, write_root, write_units,
     write_variables,
 };
-use super::xml::{WithOptional, Xml, boolean, non_empty};
+use super::xml::{Element, Xml, boolean, non_empty};
 use super::{Capabilities, ModelDescription, Unknown};
 use crate::fmi::variable::{Kind, Variable};
 
@@ -47,8 +47,7 @@ fn write_model_exchange<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>)
             ("canSerializeFMUstate", "true"),
             ("providesDirectionalDerivative", boolean(directional)),
         ])
-        .write_empty()?;
-    Ok(())
+        .empty()
 }
 
 fn write_co_simulation<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
@@ -73,25 +72,22 @@ fn write_co_simulation<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) 
                 boolean(directional_derivatives),
             ),
         ])
-        .write_empty()?;
-    Ok(())
+        .empty()
 }
 
 fn write_types<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
-    xml.create_element("TypeDefinitions")
-        .write_inner_content(|xml| {
-            types(variables)
-                .into_iter()
-                .try_for_each(|declared| match declared {
-                    Type::Real(name, unit) => write_type(xml, name, |xml| {
-                        write_real_type(xml.create_element("Real"), name, unit)
-                    }),
-                    Type::Enumeration(enumeration) => write_type(xml, enumeration.name, |xml| {
-                        write_items(xml.create_element("Enumeration"), enumeration)
-                    }),
-                })
-        })?;
-    Ok(())
+    xml.create_element("TypeDefinitions").with_content(|xml| {
+        types(variables)
+            .into_iter()
+            .try_for_each(|declared| match declared {
+                Type::Real(name, unit) => write_type(xml, name, |xml| {
+                    write_real_type(xml.create_element("Real"), name, unit)
+                }),
+                Type::Enumeration(enumeration) => write_type(xml, enumeration.name, |xml| {
+                    write_items(xml.create_element("Enumeration"), enumeration)
+                }),
+            })
+    })
 }
 
 fn write_type(
@@ -101,8 +97,7 @@ fn write_type(
 ) -> io::Result<()> {
     xml.create_element("SimpleType")
         .with_attribute(("name", name))
-        .write_inner_content(content)?;
-    Ok(())
+        .with_content(content)
 }
 
 fn write_variable<Q>(xml: &mut Xml, index: usize, variable: &Variable<Q>) -> io::Result<()> {
@@ -119,26 +114,22 @@ fn write_variable<Q>(xml: &mut Xml, index: usize, variable: &Variable<Q>) -> io:
         .with_optional(&[("description", non_empty(&variable.description))])
         .with_attributes([("causality", causality), ("variability", variability)])
         .with_optional(&[("initial", initial)])
-        .write_inner_content(|xml| {
+        .with_content(|xml| {
             let element = match variable.kind {
                 Kind::Real { .. } => "Real",
                 Kind::Integer => "Integer",
                 Kind::Enumeration(_) => "Enumeration",
             };
             let derivative_of = variable.derivative_of.map(|of| of as usize + 1);
-            with_values(xml.create_element(element), variable, derivative_of).write_empty()?;
-            Ok(())
-        })?;
-    Ok(())
+            with_values(xml.create_element(element), variable, derivative_of).empty()
+        })
 }
 
 fn write_structure<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
-    xml.create_element("ModelStructure")
-        .write_inner_content(|xml| {
-            write_unknowns(xml, "Outputs", &description.outputs)?;
-            write_unknowns(xml, "InitialUnknowns", &description.initial_unknowns)
-        })?;
-    Ok(())
+    xml.create_element("ModelStructure").with_content(|xml| {
+        write_unknowns(xml, "Outputs", &description.outputs)?;
+        write_unknowns(xml, "InitialUnknowns", &description.initial_unknowns)
+    })
 }
 
 fn write_unknowns(xml: &mut Xml, name: &str, unknowns: &[Unknown]) -> io::Result<()> {
@@ -146,7 +137,7 @@ fn write_unknowns(xml: &mut Xml, name: &str, unknowns: &[Unknown]) -> io::Result
     if unknowns.is_empty() {
         return Ok(());
     }
-    xml.create_element(name).write_inner_content(|xml| {
+    xml.create_element(name).with_content(|xml| {
         for unknown in unknowns {
             let [indices, kinds] = lists(&unknown.dependencies, |index| *index);
             xml.create_element("Unknown")
@@ -156,9 +147,8 @@ fn write_unknowns(xml: &mut Xml, name: &str, unknowns: &[Unknown]) -> io::Result
                 ])
                 // The schema forbids an empty list of kinds.
                 .with_optional(&[("dependenciesKind", non_empty(&kinds))])
-                .write_empty()?;
+                .empty()?;
         }
         Ok(())
-    })?;
-    Ok(())
+    })
 }

@@ -10,7 +10,7 @@ use super::elements::{
     write_experiment, write_items, write_log_categories, write_real_type, write_root, write_units,
     write_variables,
 };
-use super::xml::{WithOptional, Xml, boolean, non_empty};
+use super::xml::{Element, Xml, boolean, non_empty};
 use super::{ModelDescription, Unknown};
 use crate::fmi::variable::{Causality, Kind, Variable};
 
@@ -52,7 +52,7 @@ fn write_interfaces<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> 
     xml.create_element("ModelExchange")
         .with_attributes(common)
         .with_attribute(("needsCompletedIntegratorStep", "true"))
-        .write_empty()?;
+        .empty()?;
     let intermediate = boolean(capabilities.intermediate_update);
     xml.create_element("CoSimulation")
         .with_attributes(common)
@@ -67,8 +67,7 @@ fn write_interfaces<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> 
             ("canReturnEarlyAfterIntermediateUpdate", intermediate),
             ("hasEventMode", "true"),
         ])
-        .write_empty()?;
-    Ok(())
+        .empty()
 }
 
 fn write_types<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
@@ -77,23 +76,21 @@ fn write_types<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
     if types.is_empty() {
         return Ok(());
     }
-    xml.create_element("TypeDefinitions")
-        .write_inner_content(|xml| {
-            types.into_iter().try_for_each(|declared| match declared {
-                Type::Real(name, unit) => {
-                    let element = xml.create_element("Float64Type");
-                    write_real_type(element.with_attribute(("name", name)), name, unit)
-                }
-                Type::Enumeration(enumeration) => {
-                    let element = xml.create_element("EnumerationType");
-                    write_items(
-                        element.with_attribute(("name", enumeration.name)),
-                        enumeration,
-                    )
-                }
-            })
-        })?;
-    Ok(())
+    xml.create_element("TypeDefinitions").with_content(|xml| {
+        types.into_iter().try_for_each(|declared| match declared {
+            Type::Real(name, unit) => {
+                let element = xml.create_element("Float64Type");
+                write_real_type(element.with_attribute(("name", name)), name, unit)
+            }
+            Type::Enumeration(enumeration) => {
+                let element = xml.create_element("EnumerationType");
+                write_items(
+                    element.with_attribute(("name", enumeration.name)),
+                    enumeration,
+                )
+            }
+        })
+    })
 }
 
 fn write_variable<Q>(xml: &mut Xml, index: usize, variable: &Variable<Q>) -> io::Result<()> {
@@ -123,17 +120,14 @@ fn write_variable<Q>(xml: &mut Xml, index: usize, variable: &Variable<Q>) -> io:
             ("initial", initial_name(variable.causality)),
         ]);
     let derivative_of = variable.derivative_of.map(|of| of as usize);
-    with_values(element, variable, derivative_of).write_empty()?;
-    Ok(())
+    with_values(element, variable, derivative_of).empty()
 }
 
 fn write_structure<Q>(xml: &mut Xml, description: &ModelDescription<'_, Q>) -> io::Result<()> {
-    xml.create_element("ModelStructure")
-        .write_inner_content(|xml| {
-            write_unknowns(xml, "Output", &description.outputs)?;
-            write_unknowns(xml, "InitialUnknown", &description.initial_unknowns)
-        })?;
-    Ok(())
+    xml.create_element("ModelStructure").with_content(|xml| {
+        write_unknowns(xml, "Output", &description.outputs)?;
+        write_unknowns(xml, "InitialUnknown", &description.initial_unknowns)
+    })
 }
 
 fn write_unknowns(xml: &mut Xml, name: &str, unknowns: &[Unknown]) -> io::Result<()> {
@@ -147,7 +141,7 @@ fn write_unknowns(xml: &mut Xml, name: &str, unknowns: &[Unknown]) -> io::Result
                 ("dependencies", &references),
             ])
             .with_optional(&[("dependenciesKind", non_empty(&kinds))])
-            .write_empty()?;
+            .empty()?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::io;
 
 use super::Document;
-use super::xml::{WithOptional, Xml, document, non_empty, number};
+use super::xml::{Element, Xml, document, non_empty, number};
 
 /// Path of the file in the archive.
 pub(in crate::fmi) const PATH: &str = "terminalsAndIcons/terminalsAndIcons.xml";
@@ -44,13 +44,12 @@ pub(in crate::fmi) fn write(terminals: &[Terminal], documents: &[Document]) -> O
     Some(document(|xml| {
         xml.create_element("fmiTerminalsAndIcons")
             .with_attribute(("fmiVersion", "3.0"))
-            .write_inner_content(|xml| {
+            .with_content(|xml| {
                 if let Some(icon) = icon {
                     write_icon(xml, &icon.content)?;
                 }
                 write_terminals(xml, terminals)
-            })?;
-        Ok(())
+            })
     }))
 }
 
@@ -61,7 +60,7 @@ fn write_icon(xml: &mut Xml, png: &[u8]) -> io::Result<()> {
     let scale = EXTENT / width.max(height);
     let [x, y] = [width, height].map(|length| (scale * length).round());
     xml.create_element("GraphicalRepresentation")
-        .write_inner_content(|xml| {
+        .with_content(|xml| {
             xml.create_element("Icon")
                 .with_attributes([
                     ("x1", number(-x).as_str()),
@@ -69,10 +68,8 @@ fn write_icon(xml: &mut Xml, png: &[u8]) -> io::Result<()> {
                     ("x2", &number(x)),
                     ("y2", &number(y)),
                 ])
-                .write_empty()?;
-            Ok(())
-        })?;
-    Ok(())
+                .empty()
+        })
 }
 
 /// Returns width and height of a PNG, which its first chunk has.
@@ -90,12 +87,12 @@ fn write_terminals(xml: &mut Xml, terminals: &[Terminal]) -> io::Result<()> {
     if terminals.is_empty() {
         return Ok(());
     }
-    xml.create_element("Terminals").write_inner_content(|xml| {
+    xml.create_element("Terminals").with_content(|xml| {
         for terminal in terminals {
             xml.create_element("Terminal")
                 .with_attributes([("name", terminal.name.as_str()), ("matchingRule", "bus")])
                 .with_optional(&[("description", non_empty(&terminal.description))])
-                .write_inner_content(|xml| {
+                .with_content(|xml| {
                     for member in &terminal.members {
                         let kind = if member.is_flow { "inflow" } else { "signal" };
                         xml.create_element("TerminalMemberVariable")
@@ -104,14 +101,13 @@ fn write_terminals(xml: &mut Xml, terminals: &[Terminal]) -> io::Result<()> {
                                 ("memberName", &member.name),
                                 ("variableKind", kind),
                             ])
-                            .write_empty()?;
+                            .empty()?;
                     }
                     Ok(())
                 })?;
         }
         Ok(())
-    })?;
-    Ok(())
+    })
 }
 
 #[cfg(test)]

@@ -19,12 +19,19 @@ pub(super) fn document(root: impl FnOnce(&mut Xml) -> io::Result<()>) -> Vec<u8>
     bytes
 }
 
-/// Attributes that an element has only if they have a value.
-pub(super) trait WithOptional {
+/// Optional attributes of an element, and its content.
+pub(super) trait Element: Sized {
+    /// Adds the attributes that have a value.
     fn with_optional(self, attributes: &[(&str, Option<&str>)]) -> Self;
+
+    /// Writes the element with what `content` writes.
+    fn with_content(self, content: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<()>;
+
+    /// Writes the element without content.
+    fn empty(self) -> io::Result<()>;
 }
 
-impl WithOptional for ElementWriter<'_, Vec<u8>> {
+impl Element for ElementWriter<'_, Vec<u8>> {
     fn with_optional(mut self, attributes: &[(&str, Option<&str>)]) -> Self {
         for &(name, value) in attributes {
             if let Some(value) = value {
@@ -32,6 +39,14 @@ impl WithOptional for ElementWriter<'_, Vec<u8>> {
             }
         }
         self
+    }
+
+    fn with_content(self, content: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<()> {
+        self.write_inner_content(content).map(drop)
+    }
+
+    fn empty(self) -> io::Result<()> {
+        self.write_empty().map(drop)
     }
 }
 

@@ -3,83 +3,62 @@
 use super::{Allowed, Call, Interface, State, table};
 
 table! {
-    SetDebugLogging = fmi2SetDebugLogging:
+    SetDebugLogging:
         [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [
             Instantiated InitializationMode StepComplete StepInProgress StepFailed StepCanceled
             Terminated Error
         ];
-    SetupExperiment = fmi2SetupExperiment,
-    EnterInitializationMode = fmi2EnterInitializationMode:
+    SetupExperiment EnterInitializationMode:
         [Instantiated]
         [Instantiated];
-    ExitInitializationMode = fmi2ExitInitializationMode:
+    ExitInitializationMode:
         [InitializationMode]
         [InitializationMode];
-    Terminate = fmi2Terminate:
+    Terminate:
         [EventMode ContinuousTimeMode]
         [StepComplete StepFailed];
-    Reset = fmi2Reset,
-    GetFMUstate = fmi2GetFMUstate,
-    SetFMUstate = fmi2SetFMUstate,
-    FreeFMUstate = fmi2FreeFMUstate,
-    SerializedFMUstateSize = fmi2SerializedFMUstateSize,
-    SerializeFMUstate = fmi2SerializeFMUstate,
-    DeSerializeFMUstate = fmi2DeSerializeFMUstate:
+    Reset GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate
+    DeSerializeFMUstate:
         [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [Instantiated InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    GetReal = fmi2GetReal,
-    GetInteger = fmi2GetInteger,
-    GetBoolean = fmi2GetBoolean,
-    GetString = fmi2GetString,
-    GetDirectionalDerivative = fmi2GetDirectionalDerivative:
+    GetReal GetInteger GetBoolean GetString GetDirectionalDerivative:
         [InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [InitializationMode StepComplete StepFailed StepCanceled Terminated Error];
-    SetReal = fmi2SetReal:
+    SetReal:
         [Instantiated InitializationMode EventMode ContinuousTimeMode]
         [Instantiated InitializationMode StepComplete];
-    SetInteger = fmi2SetInteger,
-    SetBoolean = fmi2SetBoolean,
-    SetString = fmi2SetString:
+    SetInteger SetBoolean SetString:
         [Instantiated InitializationMode EventMode]
         [Instantiated InitializationMode StepComplete];
-    EnterEventMode = fmi2EnterEventMode,
-    SetTime = fmi2SetTime:
+    EnterEventMode SetTime:
         [EventMode ContinuousTimeMode]
         [];
-    NewDiscreteStates = fmi2NewDiscreteStates,
-    EnterContinuousTimeMode = fmi2EnterContinuousTimeMode:
+    NewDiscreteStates EnterContinuousTimeMode:
         [EventMode]
         [];
-    CompletedIntegratorStep = fmi2CompletedIntegratorStep,
-    SetContinuousStates = fmi2SetContinuousStates:
+    CompletedIntegratorStep SetContinuousStates:
         [ContinuousTimeMode]
         [];
-    GetDerivatives = fmi2GetDerivatives,
-    GetEventIndicators = fmi2GetEventIndicators,
-    GetContinuousStates = fmi2GetContinuousStates:
+    GetDerivatives GetEventIndicators GetContinuousStates:
         [InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
-    GetNominalsOfContinuousStates = fmi2GetNominalsOfContinuousStates:
+    GetNominalsOfContinuousStates:
         [Instantiated InitializationMode EventMode ContinuousTimeMode Terminated Error]
         [];
-    SetRealInputDerivatives = fmi2SetRealInputDerivatives:
+    SetRealInputDerivatives:
         []
         [Instantiated InitializationMode StepComplete];
-    GetRealOutputDerivatives = fmi2GetRealOutputDerivatives:
+    GetRealOutputDerivatives:
         []
         [StepComplete StepFailed StepCanceled Terminated Error];
-    DoStep = fmi2DoStep:
+    DoStep:
         []
         [StepComplete];
-    CancelStep = fmi2CancelStep:
+    CancelStep:
         []
         [StepInProgress];
-    GetStatus = fmi2GetStatus,
-    GetRealStatus = fmi2GetRealStatus,
-    GetIntegerStatus = fmi2GetIntegerStatus,
-    GetBooleanStatus = fmi2GetBooleanStatus,
-    GetStringStatus = fmi2GetStringStatus:
+    GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus:
         []
         [StepComplete StepInProgress StepFailed Terminated];
 }

@@ -10,101 +10,85 @@ mod fmi3;
 
 use std::fmt;
 
-/// Version of the standard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Version {
-    /// FMI 2.0.
-    Fmi2,
-    /// FMI 3.0.
-    Fmi3,
+/// Declares an enumeration, its list of values, and their names.
+macro_rules! named {
+    ($(#[$doc:meta])* $enum:ident { $($(#[$of_value:meta])* $value:ident = $name:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $enum {
+            $($(#[$of_value])* $value,)*
+        }
+
+        impl $enum {
+            /// All values.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$value),*];
+        }
+
+        impl fmt::Display for $enum {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self {
+                    $(Self::$value => $name,)*
+                })
+            }
+        }
+    };
 }
 
-impl Version {
-    /// Both versions.
-    pub const ALL: [Self; 2] = [Self::Fmi2, Self::Fmi3];
-}
-
-impl fmt::Display for Version {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Fmi2 => "FMI 2.0",
-            Self::Fmi3 => "FMI 3.0",
-        })
+named! {
+    /// Version of the standard.
+    Version {
+        /// FMI 2.0.
+        Fmi2 = "FMI 2.0",
+        /// FMI 3.0.
+        Fmi3 = "FMI 3.0",
     }
 }
 
-/// One of the two interfaces of an FMU.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Interface {
-    /// The host integrates and evaluates the model at any time.
-    ModelExchange,
-    /// The model steps from one communication point to the next.
-    CoSimulation,
-}
-
-impl Interface {
-    /// Both interfaces.
-    pub const ALL: [Self; 2] = [Self::ModelExchange, Self::CoSimulation];
-}
-
-impl fmt::Display for Interface {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::ModelExchange => "model exchange",
-            Self::CoSimulation => "co-simulation",
-        })
+named! {
+    /// One of the two interfaces of an FMU.
+    Interface {
+        /// The host integrates and evaluates the model at any time.
+        ModelExchange = "model exchange",
+        /// The model steps from one communication point to the next.
+        CoSimulation = "co-simulation",
     }
 }
 
-/// A state of an instance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum State {
-    /// After instantiation or reset.
-    Instantiated,
-    /// Between entering and exiting initialization mode.
-    InitializationMode,
-    /// Discrete values may change at a fixed time: model exchange and, in FMI 3.0, co-simulation.
-    EventMode,
-    /// Model exchange: the host integrates.
-    ContinuousTimeMode,
-    /// Co-simulation of FMI 3.0: ready for the next step.
-    StepMode,
-    /// Co-simulation of FMI 3.0: a step has called back at a point on its way.
-    IntermediateUpdateMode,
-    /// Co-simulation of FMI 2.0: ready for the next step.
-    StepComplete,
-    /// Co-simulation: a step is under way. Never entered: `fmi2DoStep` returns at its end.
-    StepInProgress,
-    /// Co-simulation: the last step was discarded.
-    StepFailed,
-    /// Co-simulation: the host has cancelled a step. Never entered, like `StepInProgress`.
-    StepCanceled,
-    /// After termination; in FMI 3.0 also after a call that has failed.
-    Terminated,
-    /// Initialization failed in FMI 2.0; the host may read, reset, set an FMU state or free the instance.
-    Error,
-    /// A defect was caught; the host may free the instance.
-    Fatal,
+named! {
+    /// A state of an instance.
+    State {
+        /// After instantiation or reset.
+        Instantiated = "instantiated",
+        /// Between entering and exiting initialization mode.
+        InitializationMode = "initializationMode",
+        /// Discrete values may change at a fixed time: model exchange and, in FMI 3.0,
+        /// co-simulation.
+        EventMode = "eventMode",
+        /// Model exchange: the host integrates.
+        ContinuousTimeMode = "continuousTimeMode",
+        /// Co-simulation of FMI 3.0: ready for the next step.
+        StepMode = "stepMode",
+        /// Co-simulation of FMI 3.0: a step has called back at a point on its way.
+        IntermediateUpdateMode = "intermediateUpdateMode",
+        /// Co-simulation of FMI 2.0: ready for the next step.
+        StepComplete = "stepComplete",
+        /// Co-simulation: a step is under way. Never entered: `fmi2DoStep` returns at its end.
+        StepInProgress = "stepInProgress",
+        /// Co-simulation: the last step was discarded.
+        StepFailed = "stepFailed",
+        /// Co-simulation: the host has cancelled a step. Never entered, like `StepInProgress`.
+        StepCanceled = "stepCanceled",
+        /// After termination; in FMI 3.0 also after a call that has failed.
+        Terminated = "terminated",
+        /// Initialization failed in FMI 2.0; the host may read, reset, set an FMU state or free the
+        /// instance.
+        Error = "error",
+        /// A defect was caught; the host may free the instance.
+        Fatal = "fatal",
+    }
 }
 
 impl State {
-    /// All states.
-    pub const ALL: [Self; 13] = [
-        Self::Instantiated,
-        Self::InitializationMode,
-        Self::EventMode,
-        Self::ContinuousTimeMode,
-        Self::StepMode,
-        Self::IntermediateUpdateMode,
-        Self::StepComplete,
-        Self::StepInProgress,
-        Self::StepFailed,
-        Self::StepCanceled,
-        Self::Terminated,
-        Self::Error,
-        Self::Fatal,
-    ];
-
     /// Returns the phase of the model in this state.
     #[inline]
     pub(super) fn phase(self, interface: Interface) -> Phase {
@@ -134,199 +118,110 @@ pub enum Phase {
     Halted,
 }
 
-impl fmt::Display for State {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Instantiated => "instantiated",
-            Self::InitializationMode => "initializationMode",
-            Self::EventMode => "eventMode",
-            Self::ContinuousTimeMode => "continuousTimeMode",
-            Self::StepMode => "stepMode",
-            Self::IntermediateUpdateMode => "intermediateUpdateMode",
-            Self::StepComplete => "stepComplete",
-            Self::StepInProgress => "stepInProgress",
-            Self::StepFailed => "stepFailed",
-            Self::StepCanceled => "stepCanceled",
-            Self::Terminated => "terminated",
-            Self::Error => "error",
-            Self::Fatal => "fatal",
-        })
-    }
-}
-
-/// Declares the calls.
+/// Declares the calls with the names of their C functions.
 macro_rules! calls {
-    ($($(#[$doc:meta])* $name:ident,)*) => {
+    ($($call:ident = $first:ident $(| $second:ident)?;)*) => {
         /// A function of the C interfaces that is allowed in some states only.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Call {
-            $($(#[$doc])* $name,)*
+            $(#[doc = concat!("`", stringify!($first), "`" $(, ", `", stringify!($second), "`")?)]
+            $call,)*
         }
 
         impl Call {
             /// All calls.
-            pub const ALL: &'static [Self] = &[$(Self::$name),*];
+            pub const ALL: &'static [Self] = &[$(Self::$call),*];
+
+            /// Returns the names of the C functions, at most one of each version.
+            const fn functions(self) -> &'static [&'static str] {
+                match self {
+                    $(Self::$call => &[stringify!($first) $(, stringify!($second))?],)*
+                }
+            }
         }
     };
 }
 
 calls! {
-    /// `fmi2SetDebugLogging`, `fmi3SetDebugLogging`
-    SetDebugLogging,
-    /// `fmi2SetupExperiment`
-    SetupExperiment,
-    /// `fmi2EnterInitializationMode`, `fmi3EnterInitializationMode`
-    EnterInitializationMode,
-    /// `fmi2ExitInitializationMode`, `fmi3ExitInitializationMode`
-    ExitInitializationMode,
-    /// `fmi2Terminate`, `fmi3Terminate`
-    Terminate,
-    /// `fmi2Reset`, `fmi3Reset`
-    Reset,
-    /// `fmi2GetReal`, `fmi3GetFloat64`
-    GetReal,
-    /// `fmi2GetInteger`, `fmi3GetInt64`
-    GetInteger,
-    /// `fmi2GetBoolean`, `fmi3GetBoolean`
-    GetBoolean,
-    /// `fmi2GetString`, `fmi3GetString`
-    GetString,
-    /// `fmi2SetReal`, `fmi3SetFloat64`
-    SetReal,
-    /// `fmi2SetInteger`, `fmi3SetInt64`
-    SetInteger,
-    /// `fmi2SetBoolean`, `fmi3SetBoolean`
-    SetBoolean,
-    /// `fmi2SetString`, `fmi3SetString`
-    SetString,
-    /// `fmi2GetFMUstate`, `fmi3GetFMUState`
-    GetFMUstate,
-    /// `fmi2SetFMUstate`, `fmi3SetFMUState`
-    SetFMUstate,
-    /// `fmi2FreeFMUstate`, `fmi3FreeFMUState`
-    FreeFMUstate,
-    /// `fmi2SerializedFMUstateSize`, `fmi3SerializedFMUStateSize`
-    SerializedFMUstateSize,
-    /// `fmi2SerializeFMUstate`, `fmi3SerializeFMUState`
-    SerializeFMUstate,
-    /// `fmi2DeSerializeFMUstate`, `fmi3DeserializeFMUState`
-    DeSerializeFMUstate,
-    /// `fmi2GetDirectionalDerivative`, `fmi3GetDirectionalDerivative`
-    GetDirectionalDerivative,
-    /// `fmi2EnterEventMode`, `fmi3EnterEventMode`
-    EnterEventMode,
-    /// `fmi2NewDiscreteStates`, `fmi3UpdateDiscreteStates`
-    NewDiscreteStates,
-    /// `fmi2EnterContinuousTimeMode`, `fmi3EnterContinuousTimeMode`
-    EnterContinuousTimeMode,
-    /// `fmi2CompletedIntegratorStep`, `fmi3CompletedIntegratorStep`
-    CompletedIntegratorStep,
-    /// `fmi2SetTime`, `fmi3SetTime`
-    SetTime,
-    /// `fmi2SetContinuousStates`, `fmi3SetContinuousStates`
-    SetContinuousStates,
-    /// `fmi2GetDerivatives`, `fmi3GetContinuousStateDerivatives`
-    GetDerivatives,
-    /// `fmi2GetEventIndicators`, `fmi3GetEventIndicators`
-    GetEventIndicators,
-    /// `fmi2GetContinuousStates`, `fmi3GetContinuousStates`
-    GetContinuousStates,
-    /// `fmi2GetNominalsOfContinuousStates`, `fmi3GetNominalsOfContinuousStates`
-    GetNominalsOfContinuousStates,
-    /// `fmi2SetRealInputDerivatives`
-    SetRealInputDerivatives,
-    /// `fmi2GetRealOutputDerivatives`, `fmi3GetOutputDerivatives`
-    GetRealOutputDerivatives,
-    /// `fmi2DoStep`, `fmi3DoStep`
-    DoStep,
-    /// `fmi2CancelStep`
-    CancelStep,
-    /// `fmi2GetStatus`
-    GetStatus,
-    /// `fmi2GetRealStatus`
-    GetRealStatus,
-    /// `fmi2GetIntegerStatus`
-    GetIntegerStatus,
-    /// `fmi2GetBooleanStatus`
-    GetBooleanStatus,
-    /// `fmi2GetStringStatus`
-    GetStringStatus,
-    /// `fmi3GetFloat32`
-    GetFloat32,
-    /// `fmi3SetFloat32`
-    SetFloat32,
-    /// `fmi3GetInt8`
-    GetInt8,
-    /// `fmi3SetInt8`
-    SetInt8,
-    /// `fmi3GetUInt8`
-    GetUInt8,
-    /// `fmi3SetUInt8`
-    SetUInt8,
-    /// `fmi3GetInt16`
-    GetInt16,
-    /// `fmi3SetInt16`
-    SetInt16,
-    /// `fmi3GetUInt16`
-    GetUInt16,
-    /// `fmi3SetUInt16`
-    SetUInt16,
-    /// `fmi3GetInt32`
-    GetInt32,
-    /// `fmi3SetInt32`
-    SetInt32,
-    /// `fmi3GetUInt32`
-    GetUInt32,
-    /// `fmi3SetUInt32`
-    SetUInt32,
-    /// `fmi3GetUInt64`
-    GetUInt64,
-    /// `fmi3SetUInt64`
-    SetUInt64,
-    /// `fmi3GetBinary`
-    GetBinary,
-    /// `fmi3SetBinary`
-    SetBinary,
-    /// `fmi3GetClock`
-    GetClock,
-    /// `fmi3SetClock`
-    SetClock,
-    /// `fmi3GetNumberOfVariableDependencies`
-    GetNumberOfVariableDependencies,
-    /// `fmi3GetVariableDependencies`
-    GetVariableDependencies,
-    /// `fmi3GetAdjointDerivative`
-    GetAdjointDerivative,
-    /// `fmi3EnterConfigurationMode`
-    EnterConfigurationMode,
-    /// `fmi3ExitConfigurationMode`
-    ExitConfigurationMode,
-    /// `fmi3GetIntervalDecimal`
-    GetIntervalDecimal,
-    /// `fmi3GetIntervalFraction`
-    GetIntervalFraction,
-    /// `fmi3GetShiftDecimal`
-    GetShiftDecimal,
-    /// `fmi3GetShiftFraction`
-    GetShiftFraction,
-    /// `fmi3SetIntervalDecimal`
-    SetIntervalDecimal,
-    /// `fmi3SetIntervalFraction`
-    SetIntervalFraction,
-    /// `fmi3SetShiftDecimal`
-    SetShiftDecimal,
-    /// `fmi3SetShiftFraction`
-    SetShiftFraction,
-    /// `fmi3EvaluateDiscreteStates`
-    EvaluateDiscreteStates,
-    /// `fmi3GetNumberOfEventIndicators`
-    GetNumberOfEventIndicators,
-    /// `fmi3GetNumberOfContinuousStates`
-    GetNumberOfContinuousStates,
-    /// `fmi3EnterStepMode`
-    EnterStepMode,
-    /// `fmi3ActivateModelPartition`
-    ActivateModelPartition,
+    SetDebugLogging = fmi2SetDebugLogging | fmi3SetDebugLogging;
+    SetupExperiment = fmi2SetupExperiment;
+    EnterInitializationMode = fmi2EnterInitializationMode | fmi3EnterInitializationMode;
+    ExitInitializationMode = fmi2ExitInitializationMode | fmi3ExitInitializationMode;
+    Terminate = fmi2Terminate | fmi3Terminate;
+    Reset = fmi2Reset | fmi3Reset;
+    GetReal = fmi2GetReal | fmi3GetFloat64;
+    GetInteger = fmi2GetInteger | fmi3GetInt64;
+    GetBoolean = fmi2GetBoolean | fmi3GetBoolean;
+    GetString = fmi2GetString | fmi3GetString;
+    SetReal = fmi2SetReal | fmi3SetFloat64;
+    SetInteger = fmi2SetInteger | fmi3SetInt64;
+    SetBoolean = fmi2SetBoolean | fmi3SetBoolean;
+    SetString = fmi2SetString | fmi3SetString;
+    GetFMUstate = fmi2GetFMUstate | fmi3GetFMUState;
+    SetFMUstate = fmi2SetFMUstate | fmi3SetFMUState;
+    FreeFMUstate = fmi2FreeFMUstate | fmi3FreeFMUState;
+    SerializedFMUstateSize = fmi2SerializedFMUstateSize | fmi3SerializedFMUStateSize;
+    SerializeFMUstate = fmi2SerializeFMUstate | fmi3SerializeFMUState;
+    DeSerializeFMUstate = fmi2DeSerializeFMUstate | fmi3DeserializeFMUState;
+    GetDirectionalDerivative = fmi2GetDirectionalDerivative | fmi3GetDirectionalDerivative;
+    EnterEventMode = fmi2EnterEventMode | fmi3EnterEventMode;
+    NewDiscreteStates = fmi2NewDiscreteStates | fmi3UpdateDiscreteStates;
+    EnterContinuousTimeMode = fmi2EnterContinuousTimeMode | fmi3EnterContinuousTimeMode;
+    CompletedIntegratorStep = fmi2CompletedIntegratorStep | fmi3CompletedIntegratorStep;
+    SetTime = fmi2SetTime | fmi3SetTime;
+    SetContinuousStates = fmi2SetContinuousStates | fmi3SetContinuousStates;
+    GetDerivatives = fmi2GetDerivatives | fmi3GetContinuousStateDerivatives;
+    GetEventIndicators = fmi2GetEventIndicators | fmi3GetEventIndicators;
+    GetContinuousStates = fmi2GetContinuousStates | fmi3GetContinuousStates;
+    GetNominalsOfContinuousStates =
+        fmi2GetNominalsOfContinuousStates | fmi3GetNominalsOfContinuousStates;
+    SetRealInputDerivatives = fmi2SetRealInputDerivatives;
+    GetRealOutputDerivatives = fmi2GetRealOutputDerivatives | fmi3GetOutputDerivatives;
+    DoStep = fmi2DoStep | fmi3DoStep;
+    CancelStep = fmi2CancelStep;
+    GetStatus = fmi2GetStatus;
+    GetRealStatus = fmi2GetRealStatus;
+    GetIntegerStatus = fmi2GetIntegerStatus;
+    GetBooleanStatus = fmi2GetBooleanStatus;
+    GetStringStatus = fmi2GetStringStatus;
+    GetFloat32 = fmi3GetFloat32;
+    SetFloat32 = fmi3SetFloat32;
+    GetInt8 = fmi3GetInt8;
+    SetInt8 = fmi3SetInt8;
+    GetUInt8 = fmi3GetUInt8;
+    SetUInt8 = fmi3SetUInt8;
+    GetInt16 = fmi3GetInt16;
+    SetInt16 = fmi3SetInt16;
+    GetUInt16 = fmi3GetUInt16;
+    SetUInt16 = fmi3SetUInt16;
+    GetInt32 = fmi3GetInt32;
+    SetInt32 = fmi3SetInt32;
+    GetUInt32 = fmi3GetUInt32;
+    SetUInt32 = fmi3SetUInt32;
+    GetUInt64 = fmi3GetUInt64;
+    SetUInt64 = fmi3SetUInt64;
+    GetBinary = fmi3GetBinary;
+    SetBinary = fmi3SetBinary;
+    GetClock = fmi3GetClock;
+    SetClock = fmi3SetClock;
+    GetNumberOfVariableDependencies = fmi3GetNumberOfVariableDependencies;
+    GetVariableDependencies = fmi3GetVariableDependencies;
+    GetAdjointDerivative = fmi3GetAdjointDerivative;
+    EnterConfigurationMode = fmi3EnterConfigurationMode;
+    ExitConfigurationMode = fmi3ExitConfigurationMode;
+    GetIntervalDecimal = fmi3GetIntervalDecimal;
+    GetIntervalFraction = fmi3GetIntervalFraction;
+    GetShiftDecimal = fmi3GetShiftDecimal;
+    GetShiftFraction = fmi3GetShiftFraction;
+    SetIntervalDecimal = fmi3SetIntervalDecimal;
+    SetIntervalFraction = fmi3SetIntervalFraction;
+    SetShiftDecimal = fmi3SetShiftDecimal;
+    SetShiftFraction = fmi3SetShiftFraction;
+    EvaluateDiscreteStates = fmi3EvaluateDiscreteStates;
+    GetNumberOfEventIndicators = fmi3GetNumberOfEventIndicators;
+    GetNumberOfContinuousStates = fmi3GetNumberOfContinuousStates;
+    EnterStepMode = fmi3EnterStepMode;
+    ActivateModelPartition = fmi3ActivateModelPartition;
 }
 
 /// Sets of states that allow each call, one bit per state: every call looks here, and a bit is
@@ -346,12 +241,17 @@ impl Call {
     /// Returns the name of the C function; that of the other version if this one has none.
     #[must_use]
     pub fn name(self, version: Version) -> &'static str {
-        let names = [fmi2::name(self), fmi3::name(self)];
-        let [first, second] = match version {
-            Version::Fmi2 => names,
-            Version::Fmi3 => [names[1], names[0]],
+        self.function(version).unwrap_or(self.functions()[0])
+    }
+
+    /// Returns the name of the C function of one version.
+    fn function(self, version: Version) -> Option<&'static str> {
+        let prefix = match version {
+            Version::Fmi2 => "fmi2",
+            Version::Fmi3 => "fmi3",
         };
-        first.or(second).unwrap_or_default()
+        let mut functions = self.functions().iter().copied();
+        functions.find(|function| function.starts_with(prefix))
     }
 
     /// Returns the states that allow the call; none if it belongs to the other interface or to
@@ -384,10 +284,10 @@ pub(super) fn is_allowed(allowed: &Allowed, call: Call, state: State) -> bool {
     allowed[call as usize] >> state as u16 & 1 != 0
 }
 
-/// Defines the table of one version: calls with the names of their C functions, and the states that
-/// allow them in model exchange and in co-simulation.
+/// Defines the table of one version: calls, and the states that allow them in model exchange and in
+/// co-simulation.
 macro_rules! table {
-    ($($($call:ident = $name:ident),+: [$($me:ident)*] [$($cs:ident)*];)*) => {
+    ($($($call:ident)+: [$($me:ident)*] [$($cs:ident)*];)*) => {
         /// Sets of states by interface.
         pub(super) static ALLOWED: [Allowed; 2] = {
             let mut allowed = [[0; Call::ALL.len()]; 2];
@@ -402,14 +302,6 @@ macro_rules! table {
             )*
             allowed
         };
-
-        /// Returns the name of the C function.
-        pub(super) fn name(call: Call) -> Option<&'static str> {
-            match call {
-                $($(Call::$call => Some(stringify!($name)),)+)*
-                _ => None,
-            }
-        }
 
         /// Returns the states that allow a call.
         pub(super) fn allowed_in(call: Call, interface: Interface) -> &'static [State] {
@@ -447,13 +339,16 @@ mod tests {
     }
 
     #[test]
-    fn every_call_has_a_name() {
-        for &call in Call::ALL {
-            assert!(
-                Version::ALL
-                    .iter()
-                    .any(|&version| !call.name(version).is_empty())
-            );
+    fn every_call_that_a_version_allows_has_a_function_of_it() {
+        for version in Version::ALL {
+            for &call in Call::ALL {
+                let is_allowed = |interface| !call.allowed_in(version, interface).is_empty();
+                let is_known = Interface::ALL.into_iter().any(is_allowed);
+                assert!(
+                    !is_known || call.function(version).is_some(),
+                    "{version}, {call:?}"
+                );
+            }
         }
     }
 }

@@ -60,21 +60,16 @@ impl InterpolatedBlock {
     /// Puts the unknowns near the motion beyond the crossing, ahead of its end. Returns false within
     /// the crossing.
     pub(in crate::kinematics) fn start_beyond(&self, state: &mut BlockState<'_>) -> bool {
-        let Crossing {
-            driver,
-            center,
-            half_width,
-            ..
-        } = *self.crossing;
-        let value = state.drivers[driver.index()];
-        let place = self.crossing.place(value);
+        let crossing = &self.crossing;
+        let value = state.drivers[crossing.driver.index()];
+        let place = crossing.place(value);
         if place.abs() <= SEAM {
             return false;
         }
-        let end = center + half_width.copysign(place);
+        let end = crossing.center + crossing.half_width.copysign(place);
         let off = value - end;
         for (local, &column) in self.block.columns().iter().enumerate() {
-            let [position, first, second] = self.crossing.evaluate(local, end);
+            let [position, first, second] = crossing.evaluate(local, end);
             let ahead = position + off * (first + 0.5 * off * second);
             state.at.set_coordinate(column, ahead);
         }
@@ -84,12 +79,7 @@ impl InterpolatedBlock {
     /// Writes the chord bounds: an eighth of the second derivative times the squared step, plus the
     /// slope times the deviation of the driver.
     fn write_bounds(&self, state: &BlockState<'_>, step: &mut Step<'_>) {
-        let Step {
-            from,
-            pivots,
-            bounds,
-            ..
-        } = step;
+        let bounds = &mut *step.bounds;
         let driver = self.crossing.driver.index();
         let way = state.drivers[driver] - self.value;
         let bodies = 3 * state.system.mechanism().bodies.len();
@@ -98,7 +88,7 @@ impl InterpolatedBlock {
         // Angles first: the turn of a body moves its pivot.
         for phi in [true, false] {
             for (local, &column) in self.block.columns().iter().enumerate() {
-                let (before, now) = (from[column], state.at.coordinate(column));
+                let (before, now) = (step.from[column], state.at.coordinate(column));
                 let [slope, bend] = self.crossing.steepest(local);
                 let deviation = 0.125 * bend * way * way
                     + slope * driver_deviation
@@ -119,7 +109,7 @@ impl InterpolatedBlock {
                     }
                 } else if !phi && has_pivots {
                     let body = column / 3;
-                    let arm = pivots.get(body).norm();
+                    let arm = step.pivots.get(body).norm();
                     let bound = bounds.body_mut(body);
                     bound.point_deviation = bound
                         .point_deviation

@@ -86,20 +86,16 @@ pub fn of_coordinate(coordinate: &Coordinate) -> Box<dyn Constraint> {
         to,
         axes,
     } = *coordinate;
+    let projection = |axis| Projection {
+        from,
+        to,
+        axes,
+        axis,
+    };
     match kind {
         CoordinateKind::Angle => Box::new(Angle { from, to }),
-        CoordinateKind::X => Box::new(Projection {
-            from,
-            to,
-            axes,
-            axis: Axis::X,
-        }),
-        CoordinateKind::Y => Box::new(Projection {
-            from,
-            to,
-            axes,
-            axis: Axis::Y,
-        }),
+        CoordinateKind::X => Box::new(projection(Axis::X)),
+        CoordinateKind::Y => Box::new(projection(Axis::Y)),
         CoordinateKind::Distance => Box::new(Distance { from, to }),
     }
 }

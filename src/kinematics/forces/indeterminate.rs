@@ -36,9 +36,7 @@ pub(in crate::kinematics) fn indeterminate(
     for away in AWAY {
         let mechanism = model.system.mechanism();
         let mut path = Path::new(mechanism);
-        path.start = home.time;
-        path.from.clone_from(&home.parameters);
-        path.to.clone_from(&home.parameters);
+        home.set_path(&mut path);
         let curves = path.curves.iter_mut().enumerate();
         for ((index, curve), &now) in curves.zip(&home.drivers) {
             let row = model.system.driver_row(DriverId(index));

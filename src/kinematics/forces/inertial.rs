@@ -1,7 +1,7 @@
 //! Masses, and the forces that they demand for a motion.
 
 use crate::kinematics::error::Error;
-use crate::mechanism::{Body, Expression, Mechanism, Number, ParameterId};
+use crate::mechanism::{Expression, Mechanism, Number, ParameterId};
 
 /// The masses of a mechanism with the parameters in force.
 #[derive(Clone, Debug)]
@@ -61,15 +61,13 @@ impl<N: Number> Masses<N> {
             |expression: &Option<Expression>| expression.as_ref().map_or(N::constant(0.0), value);
         self.gravity = mechanism.simulation.gravity.each_ref().map(value);
         for of_body in &mut self.bodies {
-            let Body {
-                mass,
-                inertia,
-                center,
-                ..
-            } = &mechanism.bodies[of_body.body];
-            of_body.mass = optional(mass);
-            of_body.inertia = optional(inertia);
-            let center = center.as_ref().map(|center| center.each_ref().map(value));
+            let body = &mechanism.bodies[of_body.body];
+            of_body.mass = optional(&body.mass);
+            of_body.inertia = optional(&body.inertia);
+            let center = body
+                .center
+                .as_ref()
+                .map(|center| center.each_ref().map(value));
             of_body.center = center.unwrap_or([N::constant(0.0); 2]);
         }
     }

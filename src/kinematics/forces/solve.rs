@@ -157,23 +157,17 @@ impl Forces {
     /// [`Solver::solve_forces`](crate::kinematics::Solver::solve_forces) sought its part.
     #[must_use]
     pub fn value(&self, quantity: ForceQuantity) -> f64 {
-        let Results {
-            drivers,
-            multipliers,
-            reactions,
-            sizes,
-            energies,
-        } = &self.results;
+        let found = &self.results;
         match quantity {
-            ForceQuantity::Effort(driver) => drivers[driver.index()].effort,
-            ForceQuantity::Power(driver) => drivers[driver.index()].power,
-            ForceQuantity::Inertia(driver) => drivers[driver.index()].inertia,
-            ForceQuantity::Bias(driver) => drivers[driver.index()].bias,
-            ForceQuantity::Reaction(joint, component) => reactions[joint][component],
-            ForceQuantity::Held(constraint) => multipliers[self.rows.constraints[constraint]],
-            ForceQuantity::Applied(force, component) => sizes[force][component],
-            ForceQuantity::KineticEnergy => energies[0],
-            ForceQuantity::PotentialEnergy => energies[1],
+            ForceQuantity::Effort(driver) => found.drivers[driver.index()].effort,
+            ForceQuantity::Power(driver) => found.drivers[driver.index()].power,
+            ForceQuantity::Inertia(driver) => found.drivers[driver.index()].inertia,
+            ForceQuantity::Bias(driver) => found.drivers[driver.index()].bias,
+            ForceQuantity::Reaction(joint, component) => found.reactions[joint][component],
+            ForceQuantity::Held(constraint) => found.multipliers[self.rows.constraints[constraint]],
+            ForceQuantity::Applied(force, component) => found.sizes[force][component],
+            ForceQuantity::KineticEnergy => found.energies[0],
+            ForceQuantity::PotentialEnergy => found.energies[1],
         }
     }
 

@@ -177,15 +177,12 @@ impl SparseLu {
         &'a self,
         other: &'a Self,
     ) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
-        let Rows {
-            start,
-            columns,
-            values,
-        } = &self.matrix;
-        let entries = columns.iter().zip(values).zip(&other.matrix.values);
+        let own = &self.matrix;
+        let entries = own.columns.iter().zip(&own.values);
+        let entries = entries.zip(&other.matrix.values);
         let mut row = 0;
         entries.enumerate().map(move |(place, ((&column, a), b))| {
-            while start[row + 1] <= place {
+            while own.start[row + 1] <= place {
                 row += 1;
             }
             (row, column, a - b)
@@ -403,61 +400,49 @@ impl Factors for SparseLu {
     }
 
     fn solve(&mut self, b: &mut [f64]) {
-        let Some(Triangles {
-            order,
-            lower,
-            upper,
-            ..
-        }) = &self.factors
-        else {
+        let Some(factors) = &self.factors else {
             return;
         };
         let x = &mut self.work;
-        for (k, &row) in order.rows.iter().enumerate() {
-            let (columns, values) = lower.row(k);
+        for (k, &row) in factors.order.rows.iter().enumerate() {
+            let (columns, values) = factors.lower.row(k);
             let known = columns.iter().zip(values).map(|(&c, l)| l * x[c]);
             x[k] = b[row] - known.sum::<f64>();
         }
         for k in (0..x.len()).rev() {
-            let (columns, values) = upper.row(k);
+            let (columns, values) = factors.upper.row(k);
             let known = columns.iter().zip(values).map(|(&c, u)| u * x[c]);
             x[k] = (x[k] - known.sum::<f64>()) / self.diagonal[k];
         }
-        for (x, &column) in x.iter_mut().zip(&order.columns) {
+        for (x, &column) in x.iter_mut().zip(&factors.order.columns) {
             b[column] = std::mem::take(x);
         }
     }
 
     fn solve_transposed(&mut self, b: &mut [f64]) {
-        let Some(Triangles {
-            order,
-            lower,
-            upper,
-            ..
-        }) = &self.factors
-        else {
+        let Some(factors) = &self.factors else {
             return;
         };
         let x = &mut self.work;
-        for (x, &column) in x.iter_mut().zip(&order.columns) {
+        for (x, &column) in x.iter_mut().zip(&factors.order.columns) {
             *x = b[column];
         }
         for k in 0..x.len() {
             let value = x[k] / self.diagonal[k];
             x[k] = value;
-            let (columns, values) = upper.row(k);
+            let (columns, values) = factors.upper.row(k);
             for (&column, u) in columns.iter().zip(values) {
                 x[column] -= u * value;
             }
         }
         for k in (0..x.len()).rev() {
             let value = x[k];
-            let (columns, values) = lower.row(k);
+            let (columns, values) = factors.lower.row(k);
             for (&column, l) in columns.iter().zip(values) {
                 x[column] -= l * value;
             }
         }
-        for (x, &row) in x.iter_mut().zip(&order.rows) {
+        for (x, &row) in x.iter_mut().zip(&factors.order.rows) {
             b[row] = std::mem::take(x);
         }
     }

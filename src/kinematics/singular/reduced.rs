@@ -220,18 +220,11 @@ impl<'a> ReducedEquation<'a> {
             *value = jet.value;
         }
         let off = tau - self.start;
-        let Self {
-            before,
-            at,
-            origin,
-            origin_tangent,
-            ..
-        } = self;
-        for &column in before.iter().flat_map(|block| block.columns()) {
-            let ahead = off
-                * (origin_tangent.velocity()[column]
-                    + 0.5 * off * origin_tangent.acceleration()[column]);
-            at.set_coordinate(column, origin[column] + ahead);
+        let tangent = &self.origin_tangent;
+        let (velocity, acceleration) = (tangent.velocity(), tangent.acceleration());
+        for &column in self.before.iter().flat_map(|block| block.columns()) {
+            let ahead = off * (velocity[column] + 0.5 * off * acceleration[column]);
+            self.at.set_coordinate(column, self.origin[column] + ahead);
         }
         let jets = std::mem::take(&mut self.jets);
         let (before, mut state) = self.state();

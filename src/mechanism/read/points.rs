@@ -182,17 +182,12 @@ impl<'a> Context<'a> {
         // Together in a folder they have to differ on systems that take A for a.
         let lower_case = name.to_lowercase();
         let mut others = self.table_files.iter().map(|file| file.name.as_str());
+        let file = quoted(name);
         let message = if lower_case.ends_with(".toml") {
-            format!(
-                "{} has the name of a mechanism, not of a table",
-                quoted(name)
-            )
+            format!("{file} has the name of a mechanism, not of a table")
         } else if let Some(other) = others.find(|other| other.to_lowercase() == lower_case) {
-            format!(
-                "{} and {} are one file on some systems",
-                quoted(name),
-                quoted(other)
-            )
+            let other = quoted(other);
+            format!("{file} and {other} are one file on some systems")
         } else {
             match self.source.read_beside(name) {
                 Ok(text) => {
@@ -202,7 +197,7 @@ impl<'a> Context<'a> {
                     });
                     return Some(self.table_files.len() - 1);
                 }
-                Err(error) => format!("cannot read the file {}: {error}", quoted(name)),
+                Err(error) => format!("cannot read the file {file}: {error}"),
             }
         };
         self.error(code::TABLE_FILE, span.clone(), message);
@@ -218,11 +213,8 @@ impl<'a> Context<'a> {
         let Some(at) = table.values.iter().position(|[_, y]| *y <= 0.0) else {
             return Some(());
         };
-        let value = shown(table.values[at][1]);
-        let message = format!(
-            "{subject} must be positive; {}it is {value}",
-            table.line(at)
-        );
+        let (line, value) = (table.line(at), shown(table.values[at][1]));
+        let message = format!("{subject} must be positive; {line}it is {value}");
         self.error(code::ILLEGAL_VALUE, table.span(at), message);
         None
     }

@@ -1,7 +1,7 @@
 //! From instantiation to freeing: what changes the state without moving the mechanism.
 
 use std::ffi::c_char;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr::null_mut;
 
 use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
@@ -9,13 +9,13 @@ use super::types::{
 };
 
 use super::host::HostLogger;
-use crate::fmi::abi::Exported;
 use crate::fmi::abi::arguments::{slice, text};
-use crate::fmi::abi::component::{
-    CallError, Component, panic_message, silence_panics, with_instance,
+use crate::fmi::abi::calls::instance_calls;
+use crate::fmi::abi::component::{CallError, Component};
+use crate::fmi::abi::instantiation::{instantiate, texts};
+use crate::fmi::{
+    Call, Category, Error, Instance, Interface, Sink, Status, Version, resource_path,
 };
-use crate::fmi::abi::floating_point::StandardEnvironment;
-use crate::fmi::{Call, Category, Instance, Interface, Sink, Status};
 
 /// `fmi2GetTypesPlatform`: always `"default"`.
 #[unsafe(no_mangle)]
@@ -46,36 +46,19 @@ pub unsafe extern "C" fn fmi2Instantiate(
     _visible: fmi2Boolean,
     logging_on: fmi2Boolean,
 ) -> fmi2Component {
-    silence_panics();
-    let _environment = StandardEnvironment::set();
     if functions.is_null() || !functions.is_aligned() {
-        return std::ptr::null_mut();
+        return null_mut();
     }
     // SAFETY: not null, aligned, and promised by the caller to be readable.
     let callbacks = unsafe { &*functions };
-    let complain = |message: &str| {
+    let make = || {
+        let arguments = [
+            ("instanceName", instance_name),
+            ("fmuGUID", fmu_guid),
+            ("fmuResourceLocation", fmu_resource_location),
+        ];
         // SAFETY: the host's promise.
-        let name = unsafe { text("instanceName", instance_name) };
-        HostLogger::new(callbacks, name.unwrap_or_default()).write(
-            Status::Error,
-            Category::Error,
-            &format!("fmi2Instantiate: {message}"),
-        );
-        std::ptr::null_mut()
-    };
-    let attempt = catch_unwind(AssertUnwindSafe(|| -> Result<_, CallError> {
-        // SAFETY: the host's promise.
-        let (name, guid, resources) = unsafe {
-            (
-                text("instanceName", instance_name)?,
-                text("fmuGUID", fmu_guid)?,
-                text("fmuResourceLocation", fmu_resource_location)?,
-            )
-        };
-        if name.trim().is_empty() {
-            let message = "`instanceName` is empty or blank".to_owned();
-            return Err(CallError::Argument(message));
-        }
+        let [name, guid, resources] = unsafe { texts(arguments)? };
         let interface = match fmu_type {
             fmi2ModelExchange => Interface::ModelExchange,
             fmi2CoSimulation => Interface::CoSimulation,
@@ -84,22 +67,21 @@ pub unsafe extern "C" fn fmi2Instantiate(
                 return Err(CallError::Argument(message));
             }
         };
+        let folder = resource_path(resources).map_err(Error::from)?;
         let sink = Box::new(HostLogger::new(callbacks, name));
-        Ok(Instance::<Exported>::instantiate(
-            guid,
-            resources,
-            interface,
-            sink,
-            logging_on != 0,
-        )?)
-    }));
-    match attempt {
-        Ok(Ok(instance)) => Component::hand_over(instance, None),
-        Ok(Err(CallError::Argument(message))) => complain(&message),
-        // The instance has told its sink already.
-        Ok(Err(_)) => std::ptr::null_mut(),
-        Err(payload) => complain(&format!("defect in biela: {}", panic_message(&*payload))),
-    }
+        let logging_on = logging_on != 0;
+        let version = Version::Fmi2;
+        let instance = Instance::instantiate(version, guid, &folder, interface, sink, logging_on)?;
+        Ok((instance, None))
+    };
+    let complain = |message: &str| {
+        // SAFETY: the host's promise.
+        let name = unsafe { text("instanceName", instance_name) };
+        let message = format!("fmi2Instantiate: {message}");
+        let logger = HostLogger::new(callbacks, name.unwrap_or_default());
+        logger.write(Status::Error, Category::Error, &message);
+    };
+    instantiate(make, complain)
 }
 
 /// `fmi2FreeInstance`; nothing happens for null.
@@ -113,63 +95,37 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     unsafe { Component::take_back(c) };
 }
 
-/// `fmi2SetDebugLogging`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetDebugLogging(
-    c: fmi2Component,
-    logging_on: fmi2Boolean,
-    n_categories: usize,
-    categories: *const fmi2String,
-) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2SetDebugLogging", |instance| {
-            instance.allow(Call::SetDebugLogging)?;
-            let categories = slice("categories", categories, n_categories)?;
-            let names: Result<Vec<_>, _> = categories
-                .iter()
-                .map(|&category| text("category", category))
-                .collect();
-            Ok(instance.set_debug_logging(logging_on != 0, &names?)?)
-        })
-    }
-}
-
-/// `fmi2SetupExperiment`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetupExperiment(
-    c: fmi2Component,
-    _tolerance_defined: fmi2Boolean,
-    _tolerance: fmi2Real,
-    start_time: fmi2Real,
-    stop_time_defined: fmi2Boolean,
-    stop_time: fmi2Real,
-) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2SetupExperiment", |instance| {
-            let stop_time = (stop_time_defined != 0).then_some(stop_time);
-            Ok(instance.setup_experiment(start_time, stop_time)?)
-        })
-    }
-}
-
 instance_calls! {
     fmi2Component => fmi2Status;
+    /// `fmi2SetDebugLogging`.
+    fmi2SetDebugLogging(
+        logging_on: fmi2Boolean,
+        n_categories: usize,
+        categories: *const fmi2String,
+    ) = |instance| {
+        instance.allow(Call::SetDebugLogging)?;
+        let categories = slice("categories", categories, n_categories)?;
+        let names = categories.iter().map(|&category| text("category", category));
+        let names: Vec<_> = names.collect::<Result<_, _>>()?;
+        Ok(instance.set_debug_logging(logging_on != 0, &names)?)
+    };
+    /// `fmi2SetupExperiment`.
+    fmi2SetupExperiment(
+        _tolerance_defined: fmi2Boolean,
+        _tolerance: fmi2Real,
+        start_time: fmi2Real,
+        stop_time_defined: fmi2Boolean,
+        stop_time: fmi2Real,
+    ) = |instance| {
+        let stop_time = (stop_time_defined != 0).then_some(stop_time);
+        Ok(instance.setup_experiment(start_time, stop_time)?)
+    };
     /// `fmi2EnterInitializationMode`.
-    fmi2EnterInitializationMode() = |instance| instance.enter_initialization_mode();
+    fmi2EnterInitializationMode() = |instance| Ok(instance.enter_initialization_mode()?);
     /// `fmi2ExitInitializationMode`.
-    fmi2ExitInitializationMode() = |instance| instance.exit_initialization_mode();
+    fmi2ExitInitializationMode() = |instance| Ok(instance.exit_initialization_mode()?);
     /// `fmi2Terminate`.
-    fmi2Terminate() = |instance| instance.terminate();
+    fmi2Terminate() = |instance| Ok(instance.terminate()?);
     /// `fmi2Reset`.
-    fmi2Reset() = |instance| instance.reset();
+    fmi2Reset() = |instance| Ok(instance.reset()?);
 }

@@ -6,126 +6,68 @@ use super::types::{
 };
 
 use crate::fmi::abi::arguments::{Room, slice, write};
+use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::abi::component::status_code;
-use crate::fmi::abi::component::with_instance;
 use crate::fmi::{Call, Error};
 
-/// `fmi2SetRealInputDerivatives`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    order: *const fmi2Integer,
-    value: *const fmi2Real,
-) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2SetRealInputDerivatives", |instance| {
-            let vr = slice("vr", vr, nvr)?;
-            let (order, value) = (slice("order", order, nvr)?, slice("value", value, nvr)?);
-            Ok(instance.set_real_input_derivatives(vr, order, value)?)
-        })
-    }
+instance_calls! {
+    fmi2Component => fmi2Status;
+    /// `fmi2SetRealInputDerivatives`.
+    fmi2SetRealInputDerivatives(
+        vr: *const fmi2ValueReference,
+        nvr: usize,
+        order: *const fmi2Integer,
+        value: *const fmi2Real,
+    ) = |instance| {
+        let vr = slice("vr", vr, nvr)?;
+        let (order, value) = (slice("order", order, nvr)?, slice("value", value, nvr)?);
+        Ok(instance.set_real_input_derivatives(vr, order, value)?)
+    };
+    /// `fmi2GetRealOutputDerivatives`.
+    fmi2GetRealOutputDerivatives(
+        vr: *const fmi2ValueReference,
+        nvr: usize,
+        order: *const fmi2Integer,
+        value: *mut fmi2Real,
+    ) = |instance| {
+        let (vr, order) = (slice("vr", vr, nvr)?, slice("order", order, nvr)?);
+        let room = Room::new("value", value, nvr)?;
+        room.fill(instance.output_derivatives(vr, order)?);
+        Ok(())
+    };
+    /// `fmi2DoStep`. Nothing is kept for going back, so that
+    /// `no_set_fmu_state_prior_to_current_point` makes no difference.
+    fmi2DoStep(
+        current_communication_point: fmi2Real,
+        communication_step_size: fmi2Real,
+        _no_set_fmu_state_prior_to_current_point: fmi2Boolean,
+    ) = |instance| Ok(instance.do_step(current_communication_point, communication_step_size)?);
+    /// `fmi2CancelStep`: no step is ever in progress when it could be called.
+    fmi2CancelStep() = |instance| Ok(instance.allow(Call::CancelStep)?);
 }
 
-/// `fmi2GetRealOutputDerivatives`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    order: *const fmi2Integer,
-    value: *mut fmi2Real,
-) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2GetRealOutputDerivatives", |instance| {
-            let (vr, order) = (slice("vr", vr, nvr)?, slice("order", order, nvr)?);
-            let room = Room::new("value", value, nvr)?;
-            room.fill(instance.output_derivatives(vr, order)?);
-            Ok(())
-        })
-    }
-}
-
-/// `fmi2DoStep`. Nothing is kept for going back, so that
-/// `no_set_fmu_state_prior_to_current_point` makes no difference.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DoStep(
-    c: fmi2Component,
-    current_communication_point: fmi2Real,
-    communication_step_size: fmi2Real,
-    _no_set_fmu_state_prior_to_current_point: fmi2Boolean,
-) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2DoStep", |instance| {
-            Ok(instance.do_step(current_communication_point, communication_step_size)?)
-        })
-    }
-}
-
-/// `fmi2CancelStep`: no step is ever in progress when it could be called.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(c, "fmi2CancelStep", |instance| {
-            Ok(instance.allow(Call::CancelStep)?)
-        })
-    }
-}
-
-/// The status functions, each with the one kind, if any, that it can tell.
+/// Defines the status functions, each with the one kind, if any, that it can tell.
 macro_rules! status {
     ($(
         $(#[$doc:meta])*
         $function:ident($call:ident): $type:ty $(, $kind:ident => |$instance:ident| $value:expr)?;
     )*) => {
-        $(
-            $(#[$doc])*
-            ///
-            /// # Safety
-            ///
-            /// The [host's promise](crate::fmi::abi#safety).
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $function(
-                c: fmi2Component,
-                kind: fmi2StatusKind,
-                value: *mut $type,
-            ) -> fmi2Status {
-                // SAFETY: the host's promise.
-                unsafe {
-                    with_instance(c, stringify!($function), |instance| {
-                        instance.allow(Call::$call)?;
-                        match (kind, value) {
-                            $(($kind, value) => {
-                                let $instance = instance;
-                                write("value", value, $value)
-                            })?
-                            (kind, _) => Err(Error::StatusKind { kind: kind.into() }.into()),
-                        }
-                    })
-                }
-            }
-        )*
+        instance_calls! {
+            fmi2Component => fmi2Status;
+            $(
+                $(#[$doc])*
+                $function(kind: fmi2StatusKind, value: *mut $type) = |instance| {
+                    instance.allow(Call::$call)?;
+                    match (kind, value) {
+                        $(($kind, value) => {
+                            let $instance = instance;
+                            write("value", value, $value)
+                        })?
+                        (kind, _) => Err(Error::StatusKind { kind: kind.into() }.into()),
+                    }
+                };
+            )*
+        }
     };
 }
 

@@ -7,8 +7,6 @@ use std::ffi::{c_char, c_int, c_uint, c_void};
 pub type fmi2Component = *mut c_void;
 /// The host's own data, handed back to its callbacks.
 pub type fmi2ComponentEnvironment = *mut c_void;
-/// A copy of an instance's state, opaque to the host.
-pub type fmi2FMUstate = *mut c_void;
 /// The handle of a variable.
 pub type fmi2ValueReference = c_uint;
 /// A value of type Real.

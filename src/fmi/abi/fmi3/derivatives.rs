@@ -6,163 +6,99 @@ use super::types::{
     fmi3Status, fmi3ValueReference,
 };
 use crate::fmi::abi::arguments::{Room, slice, write};
-use crate::fmi::abi::component::with_instance;
+use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::{Call, DependencyKind};
 
-/// `fmi3GetDirectionalDerivative`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetDirectionalDerivative(
-    instance: fmi3Instance,
-    unknowns: *const fmi3ValueReference,
-    n_unknowns: usize,
-    knowns: *const fmi3ValueReference,
-    n_knowns: usize,
-    seed: *const fmi3Float64,
-    n_seed: usize,
-    sensitivity: *mut fmi3Float64,
-    n_sensitivity: usize,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3GetDirectionalDerivative", |instance| {
-            check_count("nSeed", n_seed, n_knowns)?;
-            check_count("nSensitivity", n_sensitivity, n_unknowns)?;
-            let unknowns = slice("unknowns", unknowns, n_unknowns)?;
-            let knowns = slice("knowns", knowns, n_knowns)?;
-            let seed = slice("seed", seed, n_seed)?;
-            let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
-            room.fill(instance.directional_derivative(unknowns, knowns, seed)?);
-            Ok(())
-        })
-    }
-}
-
-/// `fmi3GetAdjointDerivative`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetAdjointDerivative(
-    instance: fmi3Instance,
-    unknowns: *const fmi3ValueReference,
-    n_unknowns: usize,
-    knowns: *const fmi3ValueReference,
-    n_knowns: usize,
-    seed: *const fmi3Float64,
-    n_seed: usize,
-    sensitivity: *mut fmi3Float64,
-    n_sensitivity: usize,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3GetAdjointDerivative", |instance| {
-            check_count("nSeed", n_seed, n_unknowns)?;
-            check_count("nSensitivity", n_sensitivity, n_knowns)?;
-            let unknowns = slice("unknowns", unknowns, n_unknowns)?;
-            let knowns = slice("knowns", knowns, n_knowns)?;
-            let seed = slice("seed", seed, n_seed)?;
-            let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
-            room.fill(instance.adjoint_derivative(unknowns, knowns, seed)?);
-            Ok(())
-        })
-    }
-}
-
-/// `fmi3GetOutputDerivatives`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetOutputDerivatives(
-    instance: fmi3Instance,
-    value_references: *const fmi3ValueReference,
-    n_value_references: usize,
-    orders: *const fmi3Int32,
-    values: *mut fmi3Float64,
-    n_values: usize,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3GetOutputDerivatives", |instance| {
-            check_count("nValues", n_values, n_value_references)?;
-            let references = slice("valueReferences", value_references, n_value_references)?;
-            let orders = slice("orders", orders, n_value_references)?;
-            let room = Room::new("values", values, n_values)?;
-            room.fill(instance.output_derivatives(references, orders)?);
-            Ok(())
-        })
-    }
-}
-
-/// `fmi3GetNumberOfVariableDependencies`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
-    instance: fmi3Instance,
-    value_reference: fmi3ValueReference,
-    n_dependencies: *mut usize,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(
-            instance,
-            "fmi3GetNumberOfVariableDependencies",
-            |instance| {
-                let call = Call::GetNumberOfVariableDependencies;
-                let dependencies = instance.dependencies(call, value_reference)?;
-                write("nDependencies", n_dependencies, dependencies.len())
-            },
-        )
-    }
-}
-
-/// `fmi3GetVariableDependencies`. Each variable has one element, for which the index 1 stands.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetVariableDependencies(
-    instance: fmi3Instance,
-    dependent: fmi3ValueReference,
-    element_indices_of_dependent: *mut usize,
-    independents: *mut fmi3ValueReference,
-    element_indices_of_independents: *mut usize,
-    dependency_kinds: *mut fmi3DependencyKind,
-    n_dependencies: usize,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3GetVariableDependencies", |instance| {
-            let found = instance.dependencies(Call::GetVariableDependencies, dependent)?;
-            check_count("nDependencies", n_dependencies, found.len())?;
-            let n = n_dependencies;
-            let of_dependent =
-                Room::new("elementIndicesOfDependent", element_indices_of_dependent, n)?;
-            let variables = Room::new("independents", independents, n)?;
-            let of_independents = Room::new(
-                "elementIndicesOfIndependents",
-                element_indices_of_independents,
-                n,
-            )?;
-            let kinds = Room::new("dependencyKinds", dependency_kinds, n)?;
-            of_dependent.fill(found.iter().map(|_| 1));
-            variables.fill(found.iter().map(|(vr, _)| *vr));
-            of_independents.fill(found.iter().map(|_| 1));
-            kinds.fill(found.iter().map(|(_, kind)| match kind {
-                DependencyKind::Dependent => fmi3Dependent,
-                DependencyKind::Constant => fmi3Constant,
-            }));
-            Ok(())
-        })
-    }
+instance_calls! {
+    fmi3Instance => fmi3Status;
+    /// `fmi3GetDirectionalDerivative`.
+    fmi3GetDirectionalDerivative(
+        unknowns: *const fmi3ValueReference,
+        n_unknowns: usize,
+        knowns: *const fmi3ValueReference,
+        n_knowns: usize,
+        seed: *const fmi3Float64,
+        n_seed: usize,
+        sensitivity: *mut fmi3Float64,
+        n_sensitivity: usize,
+    ) = |instance| {
+        check_count("nSeed", n_seed, n_knowns)?;
+        check_count("nSensitivity", n_sensitivity, n_unknowns)?;
+        let unknowns = slice("unknowns", unknowns, n_unknowns)?;
+        let knowns = slice("knowns", knowns, n_knowns)?;
+        let seed = slice("seed", seed, n_seed)?;
+        let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
+        room.fill(instance.directional_derivative(unknowns, knowns, seed)?);
+        Ok(())
+    };
+    /// `fmi3GetAdjointDerivative`.
+    fmi3GetAdjointDerivative(
+        unknowns: *const fmi3ValueReference,
+        n_unknowns: usize,
+        knowns: *const fmi3ValueReference,
+        n_knowns: usize,
+        seed: *const fmi3Float64,
+        n_seed: usize,
+        sensitivity: *mut fmi3Float64,
+        n_sensitivity: usize,
+    ) = |instance| {
+        check_count("nSeed", n_seed, n_unknowns)?;
+        check_count("nSensitivity", n_sensitivity, n_knowns)?;
+        let unknowns = slice("unknowns", unknowns, n_unknowns)?;
+        let knowns = slice("knowns", knowns, n_knowns)?;
+        let seed = slice("seed", seed, n_seed)?;
+        let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
+        room.fill(instance.adjoint_derivative(unknowns, knowns, seed)?);
+        Ok(())
+    };
+    /// `fmi3GetOutputDerivatives`.
+    fmi3GetOutputDerivatives(
+        value_references: *const fmi3ValueReference,
+        n_value_references: usize,
+        orders: *const fmi3Int32,
+        values: *mut fmi3Float64,
+        n_values: usize,
+    ) = |instance| {
+        check_count("nValues", n_values, n_value_references)?;
+        let references = slice("valueReferences", value_references, n_value_references)?;
+        let orders = slice("orders", orders, n_value_references)?;
+        let room = Room::new("values", values, n_values)?;
+        room.fill(instance.output_derivatives(references, orders)?);
+        Ok(())
+    };
+    /// `fmi3GetNumberOfVariableDependencies`.
+    fmi3GetNumberOfVariableDependencies(
+        value_reference: fmi3ValueReference,
+        n_dependencies: *mut usize,
+    ) = |instance| {
+        let call = Call::GetNumberOfVariableDependencies;
+        let dependencies = instance.dependencies(call, value_reference)?;
+        write("nDependencies", n_dependencies, dependencies.len())
+    };
+    /// `fmi3GetVariableDependencies`. Each variable has one element, for which the index 1 stands.
+    fmi3GetVariableDependencies(
+        dependent: fmi3ValueReference,
+        element_indices_of_dependent: *mut usize,
+        independents: *mut fmi3ValueReference,
+        element_indices_of_independents: *mut usize,
+        dependency_kinds: *mut fmi3DependencyKind,
+        n_dependencies: usize,
+    ) = |instance| {
+        let found = instance.dependencies(Call::GetVariableDependencies, dependent)?;
+        check_count("nDependencies", n_dependencies, found.len())?;
+        let n = n_dependencies;
+        let of_dependent = Room::new("elementIndicesOfDependent", element_indices_of_dependent, n)?;
+        let variables = Room::new("independents", independents, n)?;
+        let name = "elementIndicesOfIndependents";
+        let of_independents = Room::new(name, element_indices_of_independents, n)?;
+        let kinds = Room::new("dependencyKinds", dependency_kinds, n)?;
+        of_dependent.fill(found.iter().map(|_| 1));
+        variables.fill(found.iter().map(|(vr, _)| *vr));
+        of_independents.fill(found.iter().map(|_| 1));
+        kinds.fill(found.iter().map(|(_, kind)| match kind {
+            DependencyKind::Dependent => fmi3Dependent,
+            DependencyKind::Constant => fmi3Constant,
+        }));
+        Ok(())
+    };
 }

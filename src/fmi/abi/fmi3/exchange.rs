@@ -3,94 +3,74 @@
 use super::types::{fmi3Boolean, fmi3Float64, fmi3Instance, fmi3Status};
 use crate::fmi::Call;
 use crate::fmi::abi::arguments::{check_room, write};
-use crate::fmi::abi::component::with_instance;
+use crate::fmi::abi::calls::{instance_calls, of_none};
 
 instance_calls! {
     fmi3Instance => fmi3Status;
     /// `fmi3EnterEventMode`.
-    fmi3EnterEventMode() = |instance| instance.enter_event_mode();
+    fmi3EnterEventMode() = |instance| Ok(instance.enter_event_mode()?);
     /// `fmi3EvaluateDiscreteStates`: there are none.
-    fmi3EvaluateDiscreteStates() = |instance| instance.evaluate_discrete_states();
+    fmi3EvaluateDiscreteStates() = |instance| Ok(instance.allow(Call::EvaluateDiscreteStates)?);
     /// `fmi3EnterContinuousTimeMode`.
-    fmi3EnterContinuousTimeMode() = |instance| instance.enter_continuous_time_mode();
+    fmi3EnterContinuousTimeMode() = |instance| Ok(instance.enter_continuous_time_mode()?);
     /// `fmi3SetTime`.
-    fmi3SetTime(time: fmi3Float64) = |instance| instance.set_time(time);
-}
-
-/// `fmi3UpdateDiscreteStates`: there are no discrete states. The simulation ends at an event for
-/// whose values no pose exists.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
-    instance: fmi3Instance,
-    discrete_states_need_update: *mut fmi3Boolean,
-    terminate_simulation: *mut fmi3Boolean,
-    nominals_of_continuous_states_changed: *mut fmi3Boolean,
-    values_of_continuous_states_changed: *mut fmi3Boolean,
-    next_event_time_defined: *mut fmi3Boolean,
-    next_event_time: *mut fmi3Float64,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3UpdateDiscreteStates", |instance| {
-            instance.allow(Call::NewDiscreteStates)?;
-            let flags = [
-                ("discreteStatesNeedUpdate", discrete_states_need_update),
-                (
-                    "nominalsOfContinuousStatesChanged",
-                    nominals_of_continuous_states_changed,
-                ),
-                (
-                    "valuesOfContinuousStatesChanged",
-                    values_of_continuous_states_changed,
-                ),
-                ("nextEventTimeDefined", next_event_time_defined),
-            ];
-            // One after the other: a host may give the same place for results that it ignores.
-            for (name, flag) in flags {
-                check_room(name, flag)?;
-            }
-            check_room("terminateSimulation", terminate_simulation)?;
-            check_room("nextEventTime", next_event_time)?;
-            let must_end = instance.new_discrete_states()?;
-            for (_, flag) in flags {
-                flag.write(false);
-            }
-            next_event_time.write(0.0);
-            terminate_simulation.write(must_end);
-            Ok(())
-        })
-    }
-}
-
-/// `fmi3CompletedIntegratorStep`. Nothing is kept for going back, so that
-/// `no_set_fmu_state_prior_to_current_point` makes no difference.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
-    instance: fmi3Instance,
-    _no_set_fmu_state_prior_to_current_point: fmi3Boolean,
-    enter_event_mode: *mut fmi3Boolean,
-    terminate_simulation: *mut fmi3Boolean,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3CompletedIntegratorStep", |instance| {
-            instance.allow(Call::CompletedIntegratorStep)?;
-            check_room("enterEventMode", enter_event_mode)?;
-            check_room("terminateSimulation", terminate_simulation)?;
-            let must_end = instance.completed_integrator_step()?;
-            enter_event_mode.write(false);
-            terminate_simulation.write(must_end);
-            Ok(())
-        })
-    }
+    fmi3SetTime(time: fmi3Float64) = |instance| Ok(instance.set_time(time)?);
+    /// `fmi3UpdateDiscreteStates`: there are no discrete states. The simulation ends at an event for
+    /// whose values no pose exists.
+    fmi3UpdateDiscreteStates(
+        discrete_states_need_update: *mut fmi3Boolean,
+        terminate_simulation: *mut fmi3Boolean,
+        nominals_of_continuous_states_changed: *mut fmi3Boolean,
+        values_of_continuous_states_changed: *mut fmi3Boolean,
+        next_event_time_defined: *mut fmi3Boolean,
+        next_event_time: *mut fmi3Float64,
+    ) = |instance| {
+        instance.allow(Call::NewDiscreteStates)?;
+        let flags = [
+            ("discreteStatesNeedUpdate", discrete_states_need_update),
+            ("nominalsOfContinuousStatesChanged", nominals_of_continuous_states_changed),
+            ("valuesOfContinuousStatesChanged", values_of_continuous_states_changed),
+            ("nextEventTimeDefined", next_event_time_defined),
+        ];
+        // One after the other: a host may give the same place for results that it ignores.
+        for (name, flag) in flags {
+            check_room(name, flag)?;
+        }
+        check_room("terminateSimulation", terminate_simulation)?;
+        check_room("nextEventTime", next_event_time)?;
+        let must_end = instance.new_discrete_states()?;
+        for (_, flag) in flags {
+            flag.write(false);
+        }
+        next_event_time.write(0.0);
+        terminate_simulation.write(must_end);
+        Ok(())
+    };
+    /// `fmi3CompletedIntegratorStep`. Nothing is kept for going back, so that
+    /// `no_set_fmu_state_prior_to_current_point` makes no difference.
+    fmi3CompletedIntegratorStep(
+        _no_set_fmu_state_prior_to_current_point: fmi3Boolean,
+        enter_event_mode: *mut fmi3Boolean,
+        terminate_simulation: *mut fmi3Boolean,
+    ) = |instance| {
+        instance.allow(Call::CompletedIntegratorStep)?;
+        check_room("enterEventMode", enter_event_mode)?;
+        check_room("terminateSimulation", terminate_simulation)?;
+        let must_end = instance.completed_integrator_step()?;
+        enter_event_mode.write(false);
+        terminate_simulation.write(must_end);
+        Ok(())
+    };
+    /// `fmi3GetNumberOfEventIndicators`: always 0.
+    fmi3GetNumberOfEventIndicators(count: *mut usize) = |instance| {
+        instance.allow(Call::GetNumberOfEventIndicators)?;
+        write("nEventIndicators", count, 0)
+    };
+    /// `fmi3GetNumberOfContinuousStates`: always 0.
+    fmi3GetNumberOfContinuousStates(count: *mut usize) = |instance| {
+        instance.allow(Call::GetNumberOfContinuousStates)?;
+        write("nContinuousStates", count, 0)
+    };
 }
 
 of_none! {
@@ -105,37 +85,4 @@ of_none! {
     fmi3GetContinuousStates(GetContinuousStates, *mut fmi3Float64);
     /// `fmi3GetNominalsOfContinuousStates`: there are no continuous states.
     fmi3GetNominalsOfContinuousStates(GetNominalsOfContinuousStates, *mut fmi3Float64);
-}
-
-/// The functions that count continuous states or event indicators.
-macro_rules! counts_of_none {
-    ($($(#[$doc:meta])* $function:ident($call:ident, $count:literal);)*) => {
-        $(
-            $(#[$doc])*
-            ///
-            /// # Safety
-            ///
-            /// The [host's promise](crate::fmi::abi#safety).
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $function(
-                instance: fmi3Instance,
-                count: *mut usize,
-            ) -> fmi3Status {
-                // SAFETY: the host's promise.
-                unsafe {
-                    with_instance(instance, stringify!($function), |instance| {
-                        instance.allow(Call::$call)?;
-                        write($count, count, 0)
-                    })
-                }
-            }
-        )*
-    };
-}
-
-counts_of_none! {
-    /// `fmi3GetNumberOfEventIndicators`: always 0.
-    fmi3GetNumberOfEventIndicators(GetNumberOfEventIndicators, "nEventIndicators");
-    /// `fmi3GetNumberOfContinuousStates`: always 0.
-    fmi3GetNumberOfContinuousStates(GetNumberOfContinuousStates, "nContinuousStates");
 }

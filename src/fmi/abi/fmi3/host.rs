@@ -8,6 +8,7 @@ use crate::fmi::abi::message::{c_string, message_text};
 use crate::fmi::{Category, Sink, Status};
 
 /// The host's logger, with the environment that it wants to be called with.
+#[derive(Clone, Copy)]
 pub(super) struct HostLogger {
     callback: fmi3LogMessageCallback,
     environment: *mut c_void,

@@ -1,9 +1,7 @@
 //! From instantiation to freeing: what changes the state without moving the mechanism.
 
-use std::ffi::{c_char, c_void};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ffi::c_char;
 use std::path::Path;
-use std::ptr::null_mut;
 
 use super::host::HostLogger;
 use super::types::{
@@ -11,14 +9,12 @@ use super::types::{
     fmi3IntermediateUpdateCallback, fmi3LockPreemptionCallback, fmi3LogMessageCallback, fmi3Status,
     fmi3String, fmi3UnlockPreemptionCallback, fmi3ValueReference,
 };
-use crate::fmi::abi::Exported;
 use crate::fmi::abi::arguments::{slice, text};
-use crate::fmi::abi::component::{
-    CallError, Component, panic_message, silence_panics, with_instance,
-};
-use crate::fmi::abi::floating_point::StandardEnvironment;
+use crate::fmi::abi::calls::instance_calls;
+use crate::fmi::abi::component::{CallError, Component, Instance};
+use crate::fmi::abi::instantiation::{instantiate, texts};
 use crate::fmi::abi::intermediate::IntermediateUpdate;
-use crate::fmi::{Call, Category, CoSimulation, Instance, Interface, Sink, Status};
+use crate::fmi::{Call, Category, CoSimulation, Interface, Sink, Status, Version};
 
 /// `fmi3GetVersion`: always `"3.0"`.
 #[unsafe(no_mangle)]
@@ -29,12 +25,10 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
 /// The arguments that all functions have that instantiate.
 struct Arguments {
     call: &'static str,
-    instance_name: fmi3String,
-    token: fmi3String,
-    resource_path: fmi3String,
+    /// Name of the instance, instantiation token and path of the resources.
+    texts: [fmi3String; 3],
     logging_on: bool,
-    environment: *mut c_void,
-    log_message: fmi3LogMessageCallback,
+    logger: HostLogger,
 }
 
 impl Arguments {
@@ -48,50 +42,33 @@ impl Arguments {
         self,
         interface: Interface,
         intermediate_update: Option<IntermediateUpdate>,
-        agree: impl FnOnce(&mut Instance<Exported>) -> Result<(), CallError>,
+        agree: impl FnOnce(&mut Instance) -> Result<(), CallError>,
     ) -> fmi3Instance {
-        silence_panics();
-        let _environment = StandardEnvironment::set();
-        let attempt = catch_unwind(AssertUnwindSafe(|| {
+        let make = || {
+            let [name, token, path] = self.texts;
+            let arguments = [
+                ("instanceName", name),
+                ("instantiationToken", token),
+                ("resourcePath", path),
+            ];
             // SAFETY: promised by the caller.
-            let (name, token, resources) = unsafe {
-                (
-                    text("instanceName", self.instance_name)?,
-                    text("instantiationToken", self.token)?,
-                    text("resourcePath", self.resource_path)?,
-                )
-            };
-            if name.trim().is_empty() {
-                let message = "`instanceName` is empty or blank".to_owned();
-                return Err(CallError::Argument(message));
-            }
-            let sink = Box::new(HostLogger::new(self.log_message, self.environment));
-            let resources = Path::new(resources);
+            let [_, token, resources] = unsafe { texts(arguments)? };
+            let (version, folder) = (Version::Fmi3, Path::new(resources));
+            let sink = Box::new(self.logger);
             let mut instance =
-                Instance::instantiate_in(token, resources, interface, sink, self.logging_on)?;
+                Instance::instantiate(version, token, folder, interface, sink, self.logging_on)?;
             agree(&mut instance)?;
-            Ok(instance)
-        }));
-        match attempt {
-            Ok(Ok(instance)) => Component::hand_over(instance, intermediate_update),
-            Ok(Err(CallError::Argument(message))) => self.complain(&message),
-            Ok(Err(CallError::Refused(error))) => self.complain(&error.to_string()),
-            Err(payload) => {
-                self.complain(&format!("defect in biela: {}", panic_message(&*payload)))
-            }
-        }
+            Ok((instance, intermediate_update))
+        };
+        instantiate(make, |message| self.complain(message))
     }
 
     /// Logs why there is no instance, if the host wants messages at all.
-    fn complain(&self, message: &str) -> fmi3Instance {
+    fn complain(&self, message: &str) {
         if self.logging_on {
-            HostLogger::new(self.log_message, self.environment).write(
-                Status::Error,
-                Category::Error,
-                &format!("{}: {message}", self.call),
-            );
+            let message = format!("{}: {message}", self.call);
+            self.logger.write(Status::Error, Category::Error, &message);
         }
-        null_mut()
     }
 }
 
@@ -114,12 +91,9 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
 ) -> fmi3Instance {
     let arguments = Arguments {
         call: "fmi3InstantiateModelExchange",
-        instance_name,
-        token: instantiation_token,
-        resource_path,
+        texts: [instance_name, instantiation_token, resource_path],
         logging_on,
-        environment: instance_environment,
-        log_message,
+        logger: HostLogger::new(log_message, instance_environment),
     };
     // SAFETY: the host's promise.
     unsafe { arguments.instantiate(Interface::ModelExchange, None, |_| Ok(())) }
@@ -149,15 +123,12 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
 ) -> fmi3Instance {
     let arguments = Arguments {
         call: "fmi3InstantiateCoSimulation",
-        instance_name,
-        token: instantiation_token,
-        resource_path,
+        texts: [instance_name, instantiation_token, resource_path],
         logging_on,
-        environment: instance_environment,
-        log_message,
+        logger: HostLogger::new(log_message, instance_environment),
     };
     let callback = IntermediateUpdate::new(intermediate_update, instance_environment);
-    let agree = |instance: &mut Instance<Exported>| {
+    let agree = |instance: &mut Instance| {
         // SAFETY: the host's promise.
         let required = unsafe {
             slice(
@@ -202,19 +173,13 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
 ) -> fmi3Instance {
     let arguments = Arguments {
         call: "fmi3InstantiateScheduledExecution",
-        instance_name,
-        token: instantiation_token,
-        resource_path,
+        texts: [instance_name, instantiation_token, resource_path],
         logging_on,
-        environment: instance_environment,
-        log_message,
+        logger: HostLogger::new(log_message, instance_environment),
     };
-    let complain = AssertUnwindSafe(|| {
-        arguments.complain(
-            "the FMU is for co-simulation and model exchange, and has no clocks to be scheduled",
-        )
-    });
-    catch_unwind(complain).unwrap_or(null_mut())
+    let why = "the FMU is for co-simulation and model exchange, and has no clocks to be scheduled";
+    let make = || Err(CallError::Argument(why.to_owned()));
+    instantiate(make, |message| arguments.complain(message))
 }
 
 /// `fmi3FreeInstance`; nothing happens for null.
@@ -228,67 +193,41 @@ pub unsafe extern "C" fn fmi3FreeInstance(instance: fmi3Instance) {
     unsafe { Component::take_back(instance) };
 }
 
-/// `fmi3SetDebugLogging`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetDebugLogging(
-    instance: fmi3Instance,
-    logging_on: fmi3Boolean,
-    n_categories: usize,
-    categories: *const fmi3String,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3SetDebugLogging", |instance| {
-            instance.allow(Call::SetDebugLogging)?;
-            let categories = slice("categories", categories, n_categories)?;
-            let names: Result<Vec<_>, _> = categories
-                .iter()
-                .map(|&category| text("category", category))
-                .collect();
-            Ok(instance.set_debug_logging(logging_on, &names?)?)
-        })
-    }
-}
-
-/// `fmi3EnterInitializationMode`.
-///
-/// # Safety
-///
-/// The [host's promise](crate::fmi::abi#safety).
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterInitializationMode(
-    instance: fmi3Instance,
-    _tolerance_defined: fmi3Boolean,
-    _tolerance: fmi3Float64,
-    start_time: fmi3Float64,
-    stop_time_defined: fmi3Boolean,
-    stop_time: fmi3Float64,
-) -> fmi3Status {
-    // SAFETY: the host's promise.
-    unsafe {
-        with_instance(instance, "fmi3EnterInitializationMode", |instance| {
-            let stop_time = stop_time_defined.then_some(stop_time);
-            Ok(instance.enter_initialization_mode_at(start_time, stop_time)?)
-        })
-    }
-}
-
 instance_calls! {
     fmi3Instance => fmi3Status;
+    /// `fmi3SetDebugLogging`.
+    fmi3SetDebugLogging(
+        logging_on: fmi3Boolean,
+        n_categories: usize,
+        categories: *const fmi3String,
+    ) = |instance| {
+        instance.allow(Call::SetDebugLogging)?;
+        let categories = slice("categories", categories, n_categories)?;
+        let names = categories.iter().map(|&category| text("category", category));
+        let names: Vec<_> = names.collect::<Result<_, _>>()?;
+        Ok(instance.set_debug_logging(logging_on, &names)?)
+    };
+    /// `fmi3EnterInitializationMode`.
+    fmi3EnterInitializationMode(
+        _tolerance_defined: fmi3Boolean,
+        _tolerance: fmi3Float64,
+        start_time: fmi3Float64,
+        stop_time_defined: fmi3Boolean,
+        stop_time: fmi3Float64,
+    ) = |instance| {
+        let stop_time = stop_time_defined.then_some(stop_time);
+        Ok(instance.enter_initialization_mode_at(start_time, stop_time)?)
+    };
     /// `fmi3ExitInitializationMode`.
-    fmi3ExitInitializationMode() = |instance| instance.exit_initialization_mode();
+    fmi3ExitInitializationMode() = |instance| Ok(instance.exit_initialization_mode()?);
     /// `fmi3EnterConfigurationMode`: always refused, since there are no structural parameters.
-    fmi3EnterConfigurationMode() = |instance| instance.allow(Call::EnterConfigurationMode);
+    fmi3EnterConfigurationMode() = |instance| Ok(instance.allow(Call::EnterConfigurationMode)?);
     /// `fmi3ExitConfigurationMode`: always refused, since there are no structural parameters.
-    fmi3ExitConfigurationMode() = |instance| instance.allow(Call::ExitConfigurationMode);
+    fmi3ExitConfigurationMode() = |instance| Ok(instance.allow(Call::ExitConfigurationMode)?);
     /// `fmi3EnterStepMode`.
-    fmi3EnterStepMode() = |instance| instance.enter_step_mode();
+    fmi3EnterStepMode() = |instance| Ok(instance.enter_step_mode()?);
     /// `fmi3Terminate`.
-    fmi3Terminate() = |instance| instance.terminate();
+    fmi3Terminate() = |instance| Ok(instance.terminate()?);
     /// `fmi3Reset`.
-    fmi3Reset() = |instance| instance.reset();
+    fmi3Reset() = |instance| Ok(instance.reset()?);
 }

@@ -1,7 +1,6 @@
 //! Every function of `fmi3Functions.h`.
 
 mod access;
-mod clocks;
 mod derivatives;
 mod exchange;
 mod fmu_state;

@@ -3,7 +3,6 @@
 use fmi_sys::fmi3 as header;
 
 use super::access::*;
-use super::clocks::*;
 use super::derivatives::*;
 use super::exchange::*;
 use super::fmu_state::*;

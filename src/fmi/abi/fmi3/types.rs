@@ -9,8 +9,6 @@ use crate::fmi::abi::intermediate::Callback;
 pub type fmi3Instance = *mut c_void;
 /// The host's own data, handed back to its callbacks.
 pub type fmi3InstanceEnvironment = *mut c_void;
-/// A copy of an instance's state, opaque to the host.
-pub type fmi3FMUState = *mut c_void;
 /// The handle of a variable.
 pub type fmi3ValueReference = u32;
 /// A value of type Float32.

@@ -160,13 +160,8 @@ impl<'a> Builder<'a> {
     }
 
     fn target(&self, row: usize) -> Interval {
-        let BlockState {
-            system,
-            targets,
-            drivers,
-            ..
-        } = self.state;
-        Interval::point(system.target(row, targets, drivers))
+        let state = &self.state;
+        Interval::point(state.system.target(row, state.targets, state.drivers))
     }
 
     fn body_of(&self, marker: MarkerId) -> Option<usize> {
