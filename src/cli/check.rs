@@ -15,7 +15,7 @@ use super::error::Error;
 use super::input::{Input, warn_of_misfits};
 use super::output::print;
 use super::suggested_estimates::as_estimates;
-use crate::kinematics::{self, Element, Mode, Modes, Path, Rates, Solver, System};
+use crate::kinematics::{self, Element, Mode, Modes, Path, Play, Rates, Solver, System};
 use crate::mechanism::{
     CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, ParameterId, Unit, shown,
 };
@@ -28,7 +28,8 @@ use crate::mechanism::{
 /// ways too, and has at most 40 bodies, a line says so. With masses or forces it
 /// prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. If the mechanism does not
 /// close, it says whether that is proved, which joints stay open and by how much, and prints the
-/// nearest pose.
+/// nearest pose; if joints contradict each other, it prints the play that the last of them needs
+/// over the motion of the first driver.
 #[derive(Args, Debug)]
 pub(super) struct Check {
     /// The mechanism file.
@@ -84,7 +85,14 @@ impl Check {
         let input = Input::read(&self.file)?;
         let mechanism = &input.mechanism;
         print(&describe_equations(mechanism))?;
-        let mut solver = input.solver()?;
+        let contradicts = |error: kinematics::Error| {
+            print(&describe_play(mechanism, &error))?;
+            Err(input.error(error))
+        };
+        let mut solver = match Solver::new(Arc::clone(mechanism)) {
+            Ok(solver) => solver,
+            Err(error) => return contradicts(error),
+        };
         let assembled = solver.assemble(&Path::new(mechanism));
         if let Err(error) = assembled {
             if let kinematics::Error::NotAssembled { .. } = &error {
@@ -94,7 +102,7 @@ impl Check {
                     print(&estimates(&solver))?;
                 }
             }
-            return Err(input.error(error));
+            return contradicts(error);
         }
         warn_of_misfits(&solver);
         print(&describe_pose(&mut solver))?;
@@ -119,12 +127,7 @@ impl Check {
 
 fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
     let system = System::new(Arc::clone(mechanism));
-    let mut joints = vec![0_usize; mechanism.joints.len()];
-    for equation in system.equations() {
-        if let Element::Joint(joint) = equation.element {
-            joints[joint] += 1;
-        }
-    }
+    let joints = equations_of_joints(&system);
     let mut out = String::new();
     let mut line = |label: &str, count: usize, names: Vec<String>| {
         let _ = writeln!(out, "  {label:<20}{count:>4}    {}", names.join(", "));
@@ -152,6 +155,17 @@ fn describe_equations(mechanism: &Arc<Mechanism>) -> String {
         let _ = write!(title, ": {}", mechanism.description);
     }
     format!("{title}\n\n{out}")
+}
+
+/// Returns the number of equations of each joint.
+fn equations_of_joints(system: &System) -> Vec<usize> {
+    let mut joints = vec![0; system.mechanism().joints.len()];
+    for equation in system.equations() {
+        if let Element::Joint(joint) = equation.element {
+            joints[joint] += 1;
+        }
+    }
+    joints
 }
 
 /// Lists the unknowns that joints bring with them.
@@ -259,6 +273,27 @@ fn describe_bodies(solver: &Solver) -> String {
         );
     }
     out
+}
+
+/// Returns the play that a joint needs over a motion, if constraints contradict each other.
+fn describe_play(mechanism: &Arc<Mechanism>, error: &kinematics::Error) -> String {
+    let kinematics::Error::Contradiction { .. } = error else {
+        return String::new();
+    };
+    let Some(play) = Play::find(mechanism) else {
+        return String::new();
+    };
+    let driver = &mechanism.drivers[play.driver.index()];
+    let [from, to] = play
+        .range
+        .map(|value| with_unit(driver.coordinate.kind, value));
+    let Play { open, .. } = play;
+    let (joint, play) = (&open.element, open.measured());
+    let name = &driver.name;
+    format!(
+        "\nnot assembled; with a play of about {play} in {joint}, and all others exact, {name} moves \
+         from {from} to {to}\n"
+    )
 }
 
 fn estimates(solver: &Solver) -> String {

@@ -1,5 +1,6 @@
 //! The documentation inside an FMU: its picture, its page, and licences.
 
+use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -31,6 +32,9 @@ const ICON_WIDTH: u32 = 512;
 /// Number of moments of the motion, and the largest number of bodies in all of them.
 const MOMENTS: usize = 240;
 const MOST_PLACED: usize = 24_000;
+/// Most bodies of a mechanism that is moved once more for its picture; that of a larger one shows the
+/// way of the film.
+const MOST_SWEPT: usize = 1_000;
 /// Time that the film takes for a turn of the driver, or for its range there and back \[s\].
 const PERIOD: f64 = 4.0;
 /// Coarser settings than those of `biela range`: steps of three degrees, few turns, and lengths
@@ -68,12 +72,23 @@ pub(super) fn documents(
     let refuse = |error| input.error(error);
     let mut solver = Solver::new(Arc::clone(&input.mechanism)).map_err(refuse)?;
     solver.restore(home.pose());
-    let scene = Scene::new(&mut solver, true);
-    let sheet = Sheet::small(&scene, &solver.pose().q);
+    let shown = show(&mut solver).map_err(refuse)?;
+    let scene = if input.mechanism.bodies.len() <= MOST_SWEPT {
+        Scene::new(&mut solver, true)
+    } else {
+        let poses = shown
+            .animation
+            .moments
+            .iter()
+            .map(|moment| moment.q.clone());
+        let poses: Vec<_> = poses.collect();
+        let home = home.pose();
+        Scene::along(&input.mechanism, &home.parameters, &home.q, &poses, true)
+    };
+    let sheet = Sheet::small(&scene, &home.pose().q);
     // In strokes, so that the archive is the same whatever the machine's fonts.
     let picture = png::write(&sheet, ICON_WIDTH, false, None)
         .ok_or_else(|| Error::Usage(format!("no PNG is {ICON_WIDTH} pixels wide")))?;
-    let shown = show(&mut solver).map_err(refuse)?;
     let document = |path: &str, content: Vec<u8>| Document {
         path: path.to_owned(),
         content,
@@ -373,13 +388,15 @@ fn outputs(variables: &[Variable<Quantity>]) -> String {
         )
     });
     let mut owners: Vec<(&str, Vec<&Variable<Quantity>>)> = Vec::new();
+    let mut places: HashMap<&str, usize> = HashMap::new();
     for variable in told {
         let name = variable.name.as_str();
         let owner = name.split_once('.').map_or(name, |(owner, _)| owner);
-        match owners.iter_mut().find(|(known, _)| *known == owner) {
-            Some((_, members)) => members.push(variable),
-            None => owners.push((owner, vec![variable])),
+        let place = *places.entry(owner).or_insert(owners.len());
+        if place == owners.len() {
+            owners.push((owner, Vec::new()));
         }
+        owners[place].1.push(variable);
     }
     let mut html = String::new();
     for (owner, members) in owners {

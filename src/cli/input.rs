@@ -55,11 +55,6 @@ impl Input {
         }
     }
 
-    /// Returns a solver without a pose.
-    pub(super) fn solver(&self) -> Result<Solver, Error> {
-        Solver::new(Arc::clone(&self.mechanism)).map_err(|error| self.error(error))
-    }
-
     /// Returns a solver at the file's own assembled pose.
     pub(super) fn assemble(&self) -> Result<Solver, Error> {
         let path = Path::new(&self.mechanism);

@@ -196,11 +196,17 @@ pub struct OpenJoint {
 
 impl fmt::Display for OpenJoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} stays open by ", self.element)?;
+        write!(f, "{} stays open by {}", self.element, self.measured())
+    }
+}
+
+impl OpenJoint {
+    /// Returns the gap and the error of the angle, as far as it has one, in words.
+    pub(crate) fn measured(&self) -> String {
         match (self.gap > 0.0, self.angle > 0.0) {
-            (true, true) => write!(f, "{} and {}", millimetres(self.gap), degrees(self.angle)),
-            (false, true) => f.write_str(&degrees(self.angle)),
-            _ => f.write_str(&millimetres(self.gap)),
+            (true, true) => format!("{} and {}", millimetres(self.gap), degrees(self.angle)),
+            (false, true) => degrees(self.angle),
+            _ => millimetres(self.gap),
         }
     }
 }

@@ -76,7 +76,7 @@ pub mod variation;
 
 pub use analysis::{
     ChangePoint, Direction, End, Extreme, GeometryWarning, GeometryWarningKind, InstantCentre,
-    Mode, Modes, Range, RangeSettings, Sample, Sensitivity,
+    Mode, Modes, Play, Range, RangeSettings, Sample, Sensitivity,
 };
 pub use assembly::estimate::Move;
 pub use block::{BlockCarryover, CheckedSegment, Crossing, Polynomial};

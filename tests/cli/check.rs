@@ -117,6 +117,29 @@ fn modes_are_listed_with_their_estimates() {
     "#);
 }
 
+/// A rod beside the coupler of a parallelogram that is a millimetre too long is so at every angle that
+/// its own four-bar reaches: the pin is 0.101 m or more from the follower's pivot, the crank at
+/// acos((0.1² + 0.2² − 0.101²) / (2·0.1·0.2)) = 5.75° or more, of which poses are 2° apart from 60°.
+#[test]
+fn the_play_that_a_contradiction_needs_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let rod =
+        "[joints]\nrod = { type = 'link', markers = ['crank.A', 'follower.B'], length = 0.201 }";
+    let file = altered(folder.path(), "parallelogram", &[("[joints]", rod)]);
+    let assert = biela(&["check", &file]).code(1);
+    insta::assert_snapshot!(
+        behind(&stdout(&assert), "  drivers").trim(),
+        @"not assembled; with a play of about 1.000 mm in joint `B`, and all others exact, crank_angle moves from 6.000000 deg to 354.000000 deg"
+    );
+    let report = stdout(&biela(&["check", "--format", "json", &file]).code(1));
+    let report: serde_json::Value = serde_json::from_str(&report).expect("it is JSON");
+    let play = &report["error"]["play"];
+    assert_eq!(play["driver"], "crank_angle");
+    assert_eq!(play["open"][0]["element"], "joint `B`");
+    let gap = play["open"][0]["gap"].as_f64().expect("a number");
+    assert!((gap - 1e-3).abs() < 1e-8, "{gap}");
+}
+
 #[test]
 fn a_mechanism_that_does_not_close_is_shown_at_its_nearest() {
     let folder = tempfile::tempdir().unwrap();

@@ -183,3 +183,93 @@ fn rows_are_not_changed_in_a_circle() {
         assert!((coarse - fine).abs() < 1e-9, "{coarse} {fine}");
     }
 }
+
+/// Three cranks on one coupler with the pivots `far` and `middle` beside the origin, of a length at
+/// a scale, estimated at the angle `start`.
+fn tilted_cranks(crank: f64, [far, middle]: [[f64; 2]; 2], start: f64, scale: f64) -> String {
+    let tilt = far[1].atan2(far[0]);
+    let place = |[x, y]: [f64; 2], phi: f64| format!("{:?}, {:?}, {phi:?}", x * scale, y * scale);
+    // A pivot seen from the coupler, whose origin and ends move as those of the base.
+    let own = |[x, y]: [f64; 2]| {
+        let (sin, cos) = tilt.sin_cos();
+        place([x * cos + y * sin, y * cos - x * sin], 0.0)
+    };
+    let bar = format!("O = [0, 0], A = [{:?}, 0]", crank * scale);
+    let pivots = [("first", [0.0; 2]), ("second", far), ("third", middle)];
+    let mut bodies = pivots
+        .map(|(name, at)| body(name, &bar, &place(at, start)))
+        .concat();
+    let pin = [crank * start.cos(), crank * start.sin()];
+    bodies += &body(
+        "coupler",
+        &pivots
+            .map(|(name, at)| format!("{name} = [{}]", own(at)))
+            .join(", "),
+        &place(pin, tilt),
+    );
+    let ground = pivots
+        .map(|(name, at)| format!("{name} = [{}]\n", place(at, 0.0)))
+        .concat();
+    let joints = pivots.map(|(name, _)| {
+        let [pivot, pin] = ["pivot", "pin"].map(|end| format!("{name}_{end}"));
+        let [own, tip] = ["O", "A"].map(|marker| format!("{name}.{marker}"));
+        joint(&pivot, "revolute", &format!("ground.{name}"), &own)
+            + &joint(&pin, "revolute", &tip, &format!("coupler.{name}"))
+    });
+    let driver = angle_driver("u", "ground.first", "first.O", start.to_degrees());
+    file(&ground, &bodies, &joints.concat(), &driver)
+}
+
+/// The unit of length changes the rounding and nothing else: a jump past the places where the rows
+/// in use depend on each other takes as many sub-steps, to a factor of two.
+#[test]
+fn other_units_cost_no_sub_steps_past_flat_poses() {
+    let cases = [
+        (
+            0.176_823_765,
+            [
+                [0.457_402_373, -0.078_595_081],
+                [0.309_638_340, -0.082_902_434],
+            ],
+            -2.619_051_322,
+            -5.685_153_720,
+        ),
+        (
+            0.186_098_948,
+            [
+                [0.456_036_913, 0.076_380_719],
+                [0.422_821_724, -0.016_877_750],
+            ],
+            -0.288_171_431,
+            0.732_537_141,
+        ),
+        (
+            0.141_755_900,
+            [
+                [0.432_901_334, 0.058_785_801],
+                [0.102_899_748, 0.196_118_374],
+            ],
+            -0.123_921_424,
+            3.253_684_474,
+        ),
+    ];
+    for (crank, pivots, start, target) in cases {
+        let substeps = [1e-3, 0.0254, 0.3048, 1.0, 1e3].map(|scale| {
+            let mechanism = parse(&tilted_cranks(crank, pivots, start, scale));
+            let (mut solver, mut path) = assembled(&mechanism);
+            straight_to(&solver, &mut path, target);
+            let progress = solver.track(&path).expect("the cranks turn");
+            for pivot in ["second", "third"] {
+                let phi = 3 * mechanism.body_id(pivot).expect("it has it").index() + 2;
+                // As what is interpolated next to a change point.
+                assert!((solver.pose().q[phi] - target).abs() < 1e-9, "{pivot}");
+            }
+            progress.substeps
+        });
+        let [fewest, most] = [substeps.iter().min(), substeps.iter().max()];
+        let (Some(fewest), Some(most)) = (fewest, most) else {
+            unreachable!("there are scales");
+        };
+        assert!(most <= &(2 * fewest), "{substeps:?}");
+    }
+}

@@ -11,6 +11,7 @@ mod chains;
 mod cranks;
 mod endings;
 mod mechanisms;
+mod play;
 mod twins;
 mod verdicts;
 mod warning;

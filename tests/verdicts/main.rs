@@ -19,9 +19,9 @@ mod two_loops;
 
 use std::sync::Arc;
 
-use biela::kinematics::{Error, OpenJoint, Path, Solver, Verdict};
+use biela::kinematics::{Error, OpenJoint, Path, Reason, Solver, Verdict};
 use biela::mechanism::{Mechanism, Source};
-use common::parse;
+use common::{parse, straight_to};
 
 /// Expected verdict.
 enum Expected {
@@ -36,11 +36,13 @@ enum Expected {
     NotFound(Vec<(&'static str, f64, f64)>),
     /// It closes in a singular position.
     Singular,
+    /// It closes; a motion of its driver to a value is given up, for this reason.
+    GivenUp(f64, Reason),
     /// Its file is refused, with this message.
     Refused(&'static str),
 }
 
-use Expected::{Closes, Impossible, NearlySingular, NotFound, Refused, Singular};
+use Expected::{Closes, GivenUp, Impossible, NearlySingular, NotFound, Refused, Singular};
 
 struct Case {
     name: &'static str,
@@ -157,6 +159,13 @@ fn judge(case: &Case) {
                 described.contains("deterministic starts, which is no proof"),
                 "{described}"
             );
+        }
+        (GivenUp(value, reason), Ok(mut solver)) => {
+            let mut path = Path::new(solver.mechanism());
+            straight_to(&solver, &mut path, *value);
+            let blocked = solver.track(&path).expect_err(name);
+            assert_eq!(blocked.reason, *reason, "{name}");
+            assert!(solver.residual() < 1e-12, "{name}");
         }
         (Singular, Err(Error::Singular { rcond, .. })) => assert!(rcond < 1e-7, "{name}: {rcond}"),
         _ => panic!("{name}: {described}"),

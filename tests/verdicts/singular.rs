@@ -1,6 +1,10 @@
 //! Mechanisms that close in a singular position, or nearly.
 
-use crate::Expected::{NearlySingular, Singular};
+use std::f64::consts::TAU;
+
+use biela::kinematics::Reason;
+
+use crate::Expected::{GivenUp, NearlySingular, Singular};
 use crate::mechanisms::{cranked, four_bar, linked, upright};
 use crate::{Case, case};
 
@@ -14,6 +18,19 @@ pub(crate) fn cases() -> Vec<Case> {
             "links nearly in line",
             upright([1.0, 1.0, root - 1.0 + 1e-9, 2.0], 90.0),
             NearlySingular((8e-9 / root).sqrt()),
+        ),
+        // The ends of coupler and rocker are 1.9997 to 1.9999 apart, so that the sine between them is
+        // sin 2 acos 0.99985 = 0.035 to sin 2 acos 0.99995 = 0.02, whatever the crank's angle. Where
+        // they are farther from their line, the path is only too long.
+        case(
+            "a million turns beside a dead point",
+            upright([1e-4, 1.0, 1.0, 1.9998], 90.0),
+            GivenUp(1e6 * TAU, Reason::NearSingular),
+        ),
+        case(
+            "a million turns far from dead points",
+            upright([1e-4, 1.0, 1.0, 1.5], 90.0),
+            GivenUp(1e6 * TAU, Reason::TooLong),
         ),
         case(
             "a parallelogram laid flat",

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::NEARLY_SINGULAR;
 use super::forces::Forces;
+use super::{NEARLY_SINGULAR, equations_of_joints};
 use crate::cli::error::Error;
-use crate::kinematics::{self, Element, Path, Rates, Solver, System};
+use crate::kinematics::{self, OpenJoint, Path, Play, Rates, Solver, System};
 use crate::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
 
 /// Returns the report on a file and the outcome of the command.
@@ -57,11 +57,18 @@ pub(in crate::cli) fn report_on(source: &Source, modes: bool) -> Value {
         Err(error) => {
             report["error"] = json!({ "message": error.to_string() });
             if let kinematics::Error::NotAssembled { open, nearest, .. } = &error {
-                report["error"]["open"] = open
-                    .iter()
-                    .map(|joint| json!({ "element": joint.element, "gap": joint.gap, "angle": joint.angle }))
-                    .collect();
+                report["error"]["open"] = gaps(open);
                 report["error"]["nearest"] = poses(&mechanism, nearest);
+            }
+            if let kinematics::Error::Contradiction { .. } = &error
+                && let Some(play) = Play::find(&mechanism)
+            {
+                report["error"]["play"] = json!({
+                    "driver": mechanism.drivers[play.driver.index()].name,
+                    "from": play.range[0],
+                    "to": play.range[1],
+                    "open": gaps(&[play.open]),
+                });
             }
         }
     }
@@ -94,16 +101,11 @@ fn diagnostics(source: &Source, diagnostics: &[Diagnostic]) -> Value {
 
 fn describe(mechanism: &Arc<Mechanism>) -> Value {
     let system = System::new(Arc::clone(mechanism));
-    let equations = |element: Element| {
-        let equations = system.equations().iter();
-        equations
-            .filter(|equation| equation.element == element)
-            .count()
-    };
+    let equations = equations_of_joints(&system);
     let bodies = mechanism.bodies.iter().map(|body| &body.name);
-    let joints = mechanism.joints.iter().enumerate().map(|(index, joint)| {
-        json!({ "name": joint.name, "equations": equations(Element::Joint(index)) })
-    });
+    let joints = mechanism.joints.iter().zip(equations);
+    let joints =
+        joints.map(|(joint, equations)| json!({ "name": joint.name, "equations": equations }));
     let drivers = mechanism.drivers.iter().map(|driver| {
         json!({
             "name": driver.name,
@@ -178,6 +180,13 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
         });
     }
     Ok(found)
+}
+
+fn gaps(joints: &[OpenJoint]) -> Value {
+    let joints = joints.iter();
+    joints
+        .map(|joint| json!({ "element": joint.element, "gap": joint.gap, "angle": joint.angle }))
+        .collect()
 }
 
 fn poses(mechanism: &Mechanism, q: &[f64]) -> Value {

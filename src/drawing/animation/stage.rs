@@ -150,9 +150,10 @@ impl Stage {
     }
 }
 
-/// Returns the index of an item in a list, to which it is added if it is new.
+/// Returns the index of an item in a list, to which it is added if it is new. The items of a body
+/// come one after the other: the search begins at the last ones.
 fn index_in<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
-    let known = list.iter().position(|known| *known == item);
+    let known = list.iter().rposition(|known| *known == item);
     known.unwrap_or_else(|| {
         list.push(item);
         list.len() - 1

@@ -6,11 +6,13 @@
 //! | [`range`](mod@range) | values that a driver can reach |
 //! | [`modes`](mod@modes) | other poses for the same values of the drivers |
 //! | [`instant_centre`](mod@instant_centre) | points of bodies that are at rest for an instant |
+//! | [`play`] | the play that constraints need that contradict each other |
 //! | [`geometry_check`] | distances of wheels, hollows of cams |
 
 mod geometry_check;
 mod instant_centre;
 mod modes;
+mod play;
 mod range;
 mod sensitivity;
 
@@ -20,6 +22,7 @@ pub use instant_centre::InstantCentre;
 pub(super) use instant_centre::instant_centre;
 pub use modes::{Mode, Modes};
 pub(super) use modes::{modes, poses};
+pub use play::Play;
 pub(super) use range::range;
 pub use range::{ChangePoint, End, Extreme, Range, RangeSettings, Sample};
 pub use sensitivity::{Direction, Sensitivity};

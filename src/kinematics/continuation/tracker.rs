@@ -129,6 +129,7 @@ impl PathTracker {
             length: 1.0,
             limit: None,
             opened: None,
+            is_halved: false,
             is_last_attempt: false,
             gives_up,
             judged: (0, 0.0),
@@ -162,6 +163,8 @@ struct Run<'a> {
     limit: Option<DriverLimit>,
     /// A redundant constraint that was found open, and the place on the path.
     opened: Option<(f64, OpenJoint)>,
+    /// Whether a sub-step was rejected without a ratio since the last accepted one.
+    is_halved: bool,
     /// Whether the last sub-step had the smallest length.
     is_last_attempt: bool,
     /// Whether it stops in front of singular positions without looking for them.
@@ -244,7 +247,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Adds the crossings of change points near the pose.
+    /// Takes fitter rows near a singular position of those in use, or adds the crossings of change
+    /// points near the pose.
     ///
     /// # Errors
     ///
@@ -568,11 +572,13 @@ impl Run<'_> {
             self.return_to_pose();
             return Ok(());
         }
-        self.length = match failure {
+        let ratio = match failure {
             // The certificate concerns the rows that are solved.
-            Failure::Contradiction(_) | Failure::Jump(_) => HALF * (end - self.s),
-            Failure::NotCertified | Failure::Value(_) => self.shortened(end - self.s),
+            Failure::Contradiction(_) | Failure::Jump(_) => None,
+            Failure::NotCertified | Failure::Value(_) => self.ratio_to_rejected(),
         };
+        self.is_halved |= ratio.is_none();
+        self.length = (end - self.s) * ratio.unwrap_or(HALF);
         if self.length >= smallest {
             return Ok(());
         }
@@ -616,19 +622,23 @@ impl Run<'_> {
         }
     }
 
-    /// Returns the length to try after a sub-step of length `h` was rejected.
-    fn shortened(&self, h: f64) -> f64 {
+    /// Returns the ratio of the next sub-step to the rejected one, if the certificate gives one.
+    fn ratio_to_rejected(&self) -> Option<f64> {
         let ratio = self.bounds.step_ratio();
-        if ratio.is_finite() && ratio > 1.0 {
-            h * (ROOM / ratio.sqrt()).max(LEAST_RATIO)
-        } else {
-            h * HALF
-        }
+        let is_known = ratio.is_finite() && ratio > 1.0;
+        is_known.then(|| (ROOM / ratio.sqrt()).max(LEAST_RATIO))
     }
 
-    /// Returns the length to try after a sub-step of length `h` was accepted.
-    fn lengthened(&self, h: f64) -> f64 {
-        h * (ROOM / self.bounds.step_ratio().sqrt()).min(LARGEST_RATIO)
+    /// Returns the length to try after a sub-step of length `h` was accepted. After a rejection
+    /// without a ratio it is no longer than `h`: the certificate of the accepted sub-step says
+    /// nothing of the obstacle behind its end.
+    fn lengthened(&mut self, h: f64) -> f64 {
+        let largest = if std::mem::take(&mut self.is_halved) {
+            1.0
+        } else {
+            LARGEST_RATIO
+        };
+        h * (ROOM / self.bounds.step_ratio().sqrt()).min(largest)
     }
 }
 

@@ -29,7 +29,7 @@ const LESS_FIT: f64 = 0.1;
 /// The limit when rows are chosen again: nearly independent rows only.
 const FITTER: f64 = 0.1;
 /// Rows are changed for others if this much more is left of the weakest one.
-const WORTH: f64 = 4.0;
+const WORTH: f64 = 2.0;
 /// Next to a change point the rows of the first pose are used if their weakest one is no smaller
 /// part of that of the best choice: there all choices lose rank alike.
 const COMPARABLE: f64 = 0.05;

@@ -12,7 +12,7 @@ use super::reduced::{Line, ReducedEquation};
 use crate::kinematics::error::in_line;
 use crate::kinematics::model::Model;
 use crate::kinematics::path::Path;
-use crate::kinematics::redundancy::may_cross;
+use crate::kinematics::redundancy::{change_rows, may_cross};
 use crate::kinematics::state::State;
 use crate::mechanism::{DriverId, Jet};
 
@@ -91,9 +91,9 @@ impl FruitlessSearches {
     }
 }
 
-/// Adds the crossings of change points near the pose. Returns the limit of the next sub-step in
-/// front of a position that cannot be passed; the mechanism is at `s` of the path, with these
-/// derivatives of the drivers along it. Allocates where something may be near.
+/// Takes fitter rows, or adds the crossings of change points near the pose. Returns the limit of the
+/// next sub-step in front of a position that cannot be passed; the mechanism is at `s` of the path,
+/// with these derivatives of the drivers along it. Allocates where something may be near.
 ///
 /// # Errors
 ///
@@ -141,6 +141,9 @@ struct Ahead {
 
 /// Adds the crossings of change points near the pose. Returns the first position that drivers with
 /// these derivatives run into and cannot pass.
+///
+/// A mechanism that moves takes fitter rows first, if there are any: the rows in use depend on each
+/// other in more places than all rows do, and rounding decides how wide a crossing there may be.
 fn enter_near_crossings(
     model: &mut Model,
     state: &mut State,
@@ -149,7 +152,19 @@ fn enter_near_crossings(
 ) -> Option<Ahead> {
     let mut near = near_singular(model);
     near.retain(|&block| !fruitless.contain(block, model.plan.blocks[block].regularity()));
-    if near.is_empty() || !may_cross(model, state) {
+    if near.is_empty() {
+        return None;
+    }
+    if drivers.is_some() && change_rows(model, state) {
+        // Blocks are others now. At one pose rows change once at the most.
+        fruitless.clear();
+        return_to_regular_pose(model, state);
+        return enter_near_crossings(model, state, drivers, fruitless);
+    }
+    if !may_cross(model, state) {
+        for &block in &near {
+            fruitless.note(block, model.plan.blocks[block].regularity());
+        }
         return None;
     }
     let mut ahead = None;

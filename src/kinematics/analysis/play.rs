@@ -1,0 +1,182 @@
+//! The play that a joint needs for the motion of a mechanism whose constraints contradict each
+//! other.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use crate::kinematics::assembly::closure::is_small;
+use crate::kinematics::assembly::gaps::{gather, open_joints};
+use crate::kinematics::assembly::least_squares::LeastSquares;
+use crate::kinematics::element::Element;
+use crate::kinematics::error::{Error, OpenJoint};
+use crate::kinematics::initial_pose::assemble;
+use crate::kinematics::model::Model;
+use crate::kinematics::path::Path;
+use crate::kinematics::redundancy::choose_rows;
+use crate::kinematics::state::State;
+use crate::mechanism::{DriverId, Mechanism};
+
+/// The play that one joint or constraint needs for a motion, all others being exact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Play {
+    /// The driver that moves; the others are held.
+    pub driver: DriverId,
+    /// The driver's values between which all others close \[m or rad\].
+    pub range: [f64; 2],
+    /// The largest gap on the way.
+    pub open: OpenJoint,
+}
+
+/// Poses per turn of an angle; those of a length are this part of twice the mechanism's size apart.
+const POSES: usize = 180;
+/// Largest scaled residual of a row that counts as closed: the weight of the open one leaves the
+/// others some 1e-8 of its gap, times the leverage of their links.
+const CLOSED: f64 = 1e-7;
+
+impl Play {
+    /// Moves a mechanism whose constraints contradict each other from its start values over the
+    /// range of its first driver of an angle, or else of its first driver: up to a turn, or a
+    /// change by twice the mechanism's size. The joint or constraint of the contradictory set that
+    /// is declared last, the one of the [error](Error::Contradiction), stays open there, as little
+    /// as possible.
+    ///
+    /// `None` if the mechanism assembles, does not for another reason, has no driver, or has more
+    /// than 40 bodies.
+    #[must_use]
+    pub fn find(mechanism: &Arc<Mechanism>) -> Option<Self> {
+        let path = Path::new(mechanism);
+        let (mut model, pairs_up) = Model::new(Arc::clone(mechanism));
+        let mut state = State::new(&model.system);
+        if !is_small(&model.system) {
+            return None;
+        }
+        let chosen = if pairs_up {
+            Ok(())
+        } else {
+            choose_rows(&mut model, &mut state, &path)
+        };
+        let assembled = chosen.and_then(|()| assemble(&mut model, &mut state, &path).map(drop));
+        let Err(Error::Contradiction { open, .. }) = assembled else {
+            return None;
+        };
+        let drivers = &mechanism.drivers;
+        let is_angle = |driver: &usize| drivers[*driver].coordinate.kind.is_angle();
+        let first = (!drivers.is_empty()).then_some(0);
+        let driver = (0..drivers.len()).find(is_angle).or(first)?;
+        let mut elements = model.system.equations().iter().map(|e| e.element);
+        let element = elements.find(|element| element.describe(mechanism) == open.element)?;
+        let all: Vec<_> = (0..model.system.equations().len()).collect();
+        let mut home = vec![0.0; model.system.unknowns()];
+        state.at.copy_pose(&mut home);
+        let extent = if is_angle(&driver) {
+            TAU
+        } else {
+            2.0 * state.at.size()
+        };
+        let start = state.pose.drivers[driver];
+        let mut sweep = Sweep {
+            problem: LeastSquares::of_all(&model.system, &all),
+            own: model.system.rows_of(&[element]),
+            element,
+            driver,
+            start,
+            step: extent / POSES as f64,
+            home,
+            most: OpenJoint {
+                gap: 0.0,
+                angle: 0.0,
+                ..open
+            },
+            model: &model,
+            state: &mut state,
+        };
+        let up = sweep.follow(1.0)?;
+        let is_whole = is_angle(&driver) && up == POSES;
+        let down = if is_whole { 0 } else { sweep.follow(-1.0)? };
+        let reached = |places: usize| sweep.step * places as f64;
+        Some(Self {
+            driver: DriverId(driver),
+            range: [start - reached(down), start + reached(up)],
+            open: sweep.most,
+        })
+    }
+}
+
+/// A motion of one driver with one joint or constraint open.
+struct Sweep<'a> {
+    model: &'a Model,
+    state: &'a mut State,
+    problem: LeastSquares,
+    element: Element,
+    /// Its rows.
+    own: Vec<usize>,
+    driver: usize,
+    /// The driver's value at the start, and from one place to the next \[m or rad\].
+    start: f64,
+    step: f64,
+    /// q at the start.
+    home: Vec<f64>,
+    /// The largest gap so far.
+    most: OpenJoint,
+}
+
+impl Sweep<'_> {
+    /// Moves the driver from the start, up (1) or down (−1), as far as all others close and the
+    /// driver's limits permit. Returns the number of places behind the start; `None` if the others
+    /// do not close there.
+    fn follow(&mut self, sign: f64) -> Option<usize> {
+        let mechanism = Arc::clone(self.model.system.mechanism());
+        let driver = &mechanism.drivers[self.driver];
+        let is_within = |value: f64| {
+            driver.min.is_none_or(|min| value >= min) && driver.max.is_none_or(|max| value <= max)
+        };
+        let mut here = self.home.clone();
+        let mut before: Option<Vec<f64>> = None;
+        for place in 0..=POSES {
+            let value = self.start + sign * self.step * place as f64;
+            if place > 0 && !is_within(value) {
+                return Some(place - 1);
+            }
+            self.state.pose.drivers[self.driver] = value;
+            let ahead: Vec<f64> = match &before {
+                // Straight on, so that parallel links stay parallel.
+                Some(before) => here
+                    .iter()
+                    .zip(before)
+                    .map(|(q, old)| 2.0 * q - old)
+                    .collect(),
+                None => here.clone(),
+            };
+            self.state.at.set_pose(&mechanism, &ahead);
+            gather(self.model, self.state, &mut self.problem, self.element);
+            if !self.others_close() {
+                return place.checked_sub(1);
+            }
+            self.note_gap();
+            let mut there = here.clone();
+            self.state.at.copy_pose(&mut there);
+            // From the start itself the first way is not that of a step.
+            before = (place > 0).then_some(here);
+            here = there;
+        }
+        Some(POSES)
+    }
+
+    /// Returns whether all other rows hold.
+    fn others_close(&self) -> bool {
+        let system = &self.model.system;
+        let mut others = (0..system.equations().len()).filter(|row| !self.own.contains(row));
+        others.all(|row| {
+            let value = system.evaluate_row(row, self.state.values(), |_, _| {});
+            value.value.abs() <= CLOSED
+        })
+    }
+
+    fn note_gap(&mut self) {
+        let open = open_joints(self.model, self.state, &self.own, 0.0);
+        for (_, joint) in open {
+            self.most.gap = self.most.gap.max(joint.gap);
+            self.most.angle = self.most.angle.max(joint.angle);
+        }
+    }
+}
