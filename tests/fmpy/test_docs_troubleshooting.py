@@ -34,6 +34,7 @@ NOT_FOR_PEOPLE = re.compile(
     r"(?:expect|unreachable!|panic!|assert!|debug_assert!)\(\s*$"
     r"|(?:assert|assert_eq|debug_assert)!\(.*,\s*$"
     r"|(?:reason|after_help|doc|value_name|help) =$"
+    r"|\bdoc = concat!\(.*,\s*$"
 )
 """Code before a string that is for programmers, or part of `--help`."""
 
