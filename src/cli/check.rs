@@ -85,13 +85,13 @@ impl Check {
         let input = Input::read(&self.file)?;
         let mechanism = &input.mechanism;
         print(&describe_equations(mechanism))?;
-        let contradicts = |error: kinematics::Error| {
+        let refuse = |error: kinematics::Error| {
             print(&describe_play(mechanism, &error))?;
             Err(input.error(error))
         };
         let mut solver = match Solver::new(Arc::clone(mechanism)) {
             Ok(solver) => solver,
-            Err(error) => return contradicts(error),
+            Err(error) => return refuse(error),
         };
         let assembled = solver.assemble(&Path::new(mechanism));
         if let Err(error) = assembled {
@@ -102,7 +102,7 @@ impl Check {
                     print(&estimates(&solver))?;
                 }
             }
-            return contradicts(error);
+            return refuse(error);
         }
         warn_of_misfits(&solver);
         print(&describe_pose(&mut solver))?;
@@ -277,10 +277,7 @@ fn describe_bodies(solver: &Solver) -> String {
 
 /// Returns the play that a joint needs over a motion, if constraints contradict each other.
 fn describe_play(mechanism: &Arc<Mechanism>, error: &kinematics::Error) -> String {
-    let kinematics::Error::Contradiction { .. } = error else {
-        return String::new();
-    };
-    let Some(play) = Play::find(mechanism) else {
+    let Some(play) = Play::find(mechanism, error) else {
         return String::new();
     };
     let driver = &mechanism.drivers[play.driver.index()];

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::element::Element;
 use crate::mechanism::ProfileError;
 
 /// A call of the kinematics that could not do its work.
@@ -38,6 +39,8 @@ pub enum Error {
         open: OpenJoint,
         /// The length that would close it, if a length alone decides.
         fit: Option<Box<Fit>>,
+        /// The pose with that gap.
+        nearest: Box<OpenPose>,
     },
     /// An expression has no finite value for the parameter values in force.
     #[error("{what} has no finite value with these parameter values")]
@@ -209,6 +212,15 @@ impl OpenJoint {
             _ => millimetres(self.gap),
         }
     }
+}
+
+/// A pose in which all joints, constraints and drivers but one are closed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenPose {
+    /// The one that is open.
+    pub open: Element,
+    /// q.
+    pub q: Vec<f64>,
 }
 
 /// A length that would let a mechanism close.

@@ -318,6 +318,7 @@ fn expect_slip(name: &str, text: &str, expected: &[&str], gap: f64) -> Option<[f
         elements,
         open,
         fit,
+        ..
     } = &error
     else {
         panic!("{name}: {error}");

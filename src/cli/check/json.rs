@@ -60,9 +60,7 @@ pub(in crate::cli) fn report_on(source: &Source, modes: bool) -> Value {
                 report["error"]["open"] = gaps(open);
                 report["error"]["nearest"] = poses(&mechanism, nearest);
             }
-            if let kinematics::Error::Contradiction { .. } = &error
-                && let Some(play) = Play::find(&mechanism)
-            {
+            if let Some(play) = Play::find(&mechanism, &error) {
                 report["error"]["play"] = json!({
                     "driver": mechanism.drivers[play.driver.index()].name,
                     "from": play.range[0],

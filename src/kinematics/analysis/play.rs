@@ -4,15 +4,15 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::range::is_within;
 use crate::kinematics::assembly::closure::is_small;
+use crate::kinematics::assembly::estimate::go_to_estimate;
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
 use crate::kinematics::element::Element;
 use crate::kinematics::error::{Error, OpenJoint};
-use crate::kinematics::initial_pose::assemble;
 use crate::kinematics::model::Model;
 use crate::kinematics::path::Path;
-use crate::kinematics::redundancy::choose_rows;
 use crate::kinematics::state::State;
 use crate::mechanism::{DriverId, Mechanism};
 
@@ -37,37 +37,27 @@ impl Play {
     /// Moves a mechanism whose constraints contradict each other from its start values over the
     /// range of its first driver of an angle, or else of its first driver: up to a turn, or a
     /// change by twice the mechanism's size. The joint or constraint of the contradictory set that
-    /// is declared last, the one of the [error](Error::Contradiction), stays open there, as little
-    /// as possible.
+    /// is declared last stays open there, as little as possible. `error` is that of the assembly.
     ///
-    /// `None` if the mechanism assembles, does not for another reason, has no driver, or has more
-    /// than 40 bodies.
+    /// `None` if the error is another one than [`Error::Contradiction`], or the mechanism has no
+    /// driver or more than 40 bodies.
     #[must_use]
-    pub fn find(mechanism: &Arc<Mechanism>) -> Option<Self> {
-        let path = Path::new(mechanism);
-        let (mut model, pairs_up) = Model::new(Arc::clone(mechanism));
-        let mut state = State::new(&model.system);
+    pub fn find(mechanism: &Arc<Mechanism>, error: &Error) -> Option<Self> {
+        let Error::Contradiction { open, nearest, .. } = error else {
+            return None;
+        };
+        let (mut model, _) = Model::new(Arc::clone(mechanism));
         if !is_small(&model.system) {
             return None;
         }
-        let chosen = if pairs_up {
-            Ok(())
-        } else {
-            choose_rows(&mut model, &mut state, &path)
-        };
-        let assembled = chosen.and_then(|()| assemble(&mut model, &mut state, &path).map(drop));
-        let Err(Error::Contradiction { open, .. }) = assembled else {
-            return None;
-        };
+        let mut state = State::new(&model.system);
+        go_to_estimate(&mut model, &mut state, &Path::new(mechanism)).ok()?;
+        state.at.set_pose(mechanism, &nearest.q);
         let drivers = &mechanism.drivers;
         let is_angle = |driver: &usize| drivers[*driver].coordinate.kind.is_angle();
         let first = (!drivers.is_empty()).then_some(0);
         let driver = (0..drivers.len()).find(is_angle).or(first)?;
-        let mut elements = model.system.equations().iter().map(|e| e.element);
-        let element = elements.find(|element| element.describe(mechanism) == open.element)?;
         let all: Vec<_> = (0..model.system.equations().len()).collect();
-        let mut home = vec![0.0; model.system.unknowns()];
-        state.at.copy_pose(&mut home);
         let extent = if is_angle(&driver) {
             TAU
         } else {
@@ -76,16 +66,16 @@ impl Play {
         let start = state.pose.drivers[driver];
         let mut sweep = Sweep {
             problem: LeastSquares::of_all(&model.system, &all),
-            own: model.system.rows_of(&[element]),
-            element,
+            own: model.system.rows_of(&[nearest.open]),
+            element: nearest.open,
             driver,
             start,
             step: extent / POSES as f64,
-            home,
+            home: &nearest.q,
             most: OpenJoint {
                 gap: 0.0,
                 angle: 0.0,
-                ..open
+                ..open.clone()
             },
             model: &model,
             state: &mut state,
@@ -115,7 +105,7 @@ struct Sweep<'a> {
     start: f64,
     step: f64,
     /// q at the start.
-    home: Vec<f64>,
+    home: &'a [f64],
     /// The largest gap so far.
     most: OpenJoint,
 }
@@ -127,14 +117,11 @@ impl Sweep<'_> {
     fn follow(&mut self, sign: f64) -> Option<usize> {
         let mechanism = Arc::clone(self.model.system.mechanism());
         let driver = &mechanism.drivers[self.driver];
-        let is_within = |value: f64| {
-            driver.min.is_none_or(|min| value >= min) && driver.max.is_none_or(|max| value <= max)
-        };
-        let mut here = self.home.clone();
+        let mut here = self.home.to_vec();
         let mut before: Option<Vec<f64>> = None;
         for place in 0..=POSES {
             let value = self.start + sign * self.step * place as f64;
-            if place > 0 && !is_within(value) {
+            if place > 0 && !is_within(value, [driver.min, driver.max]) {
                 return Some(place - 1);
             }
             self.state.pose.drivers[self.driver] = value;

@@ -125,6 +125,11 @@ const SAME_PLACE: f64 = 1e-9;
 /// Most steps of Newton–Raphson towards an extreme; from a sample a degree away four are enough.
 const NEWTON_STEPS: usize = 12;
 
+/// Returns whether a value lies within bounds, as far as there are any.
+pub(super) fn is_within(value: f64, [below, above]: [Option<f64>; 2]) -> bool {
+    below.is_none_or(|below| value >= below) && above.is_none_or(|above| value <= above)
+}
+
 /// Finds the range of one driver from the present pose, with the other drivers, time and
 /// parameters held. See [`Solver::range`](crate::kinematics::Solver::range).
 pub(in crate::kinematics) fn range(
@@ -162,7 +167,7 @@ pub(in crate::kinematics) fn range(
     samples.reverse();
     samples.push(here);
     samples.extend(up);
-    samples.retain(|sample| explorer.is_within_bounds(sample.driver));
+    samples.retain(|sample| is_within(sample.driver, explorer.bounds));
     let measures = explorer.extremes(&samples);
     let mut crossings = explorer.crossings;
     crossings.sort_by(|a, b| a.value.total_cmp(&b.value));
@@ -274,12 +279,6 @@ impl Explorer<'_> {
         path.curves[index] = Curve::held(value, self.state.pose.drivers[index]);
         let tracked = self.tracker.track(self.model, self.state, &path);
         tracked.map(drop).map_err(|blocked| blocked.reason)
-    }
-
-    /// Returns whether a value of the driver lies within the bounds.
-    fn is_within_bounds(&self, value: f64) -> bool {
-        let [below, above] = self.bounds;
-        below.is_none_or(|below| value >= below) && above.is_none_or(|above| value <= above)
     }
 
     /// Returns the least and the greatest value of each measure: the best of the samples, then the

@@ -8,7 +8,7 @@ use super::rank::{DEPENDENT, constraint_rows, jacobian_rows};
 use crate::kinematics::Element;
 use crate::kinematics::assembly::gaps::{gather, open_joints};
 use crate::kinematics::assembly::least_squares::LeastSquares;
-use crate::kinematics::error::{Error, Fit, OpenJoint};
+use crate::kinematics::error::{Error, Fit, OpenJoint, OpenPose};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
@@ -78,10 +78,13 @@ pub(super) fn contradiction(
 ) -> Error {
     let mechanism = model.system.mechanism();
     let names = elements.iter().map(|element| element.describe(mechanism));
+    let mut q = vec![0.0; model.system.unknowns()];
+    state.at.copy_pose(&mut q);
     Error::Contradiction {
         elements: names.collect(),
-        fit: fit(&model.system, state, last).map(Box::new),
         open,
+        fit: fit(&model.system, state, last).map(Box::new),
+        nearest: Box::new(OpenPose { open: last, q }),
     }
 }
 
