@@ -45,7 +45,7 @@ const LARGEST_MOVE: f64 = 0.2;
 /// move counts as at least the third number: a block at rest has a tube too.
 const LEAST_WIDTH: f64 = 0.04;
 const LEAST_UPSTREAM_WIDTH: f64 = 0.02;
-const LEAST_MOVE: f64 = 0.01;
+const LEAST_MOVE: f64 = 1e-3;
 /// Ratio of the width of an upstream unknown to its largest radius in a tube of its own block.
 const UPSTREAM_ROOM: f64 = 1.2;
 /// Weight of an upstream unknown's move in the choice of the one that measures the place on the
@@ -133,6 +133,12 @@ impl CertifiedTubes {
     #[cfg(test)]
     pub(super) fn count(&self) -> usize {
         self.kept.iter().filter(|tube| tube.holds).count()
+    }
+
+    /// Returns the place of the tube to be made next.
+    #[cfg(test)]
+    pub(super) fn next_place(&self) -> usize {
+        self.next
     }
 
     /// Returns the tube to be made next, in the place of the oldest one.

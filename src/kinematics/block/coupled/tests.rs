@@ -1,6 +1,6 @@
 //! The estimate for large blocks accepts no step onto another branch; tubes serve turn by turn.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI};
 use std::fs;
 
 use crate::kinematics::block::{BlockSolver, BlockState, Extrapolation, SolveBlock, Step};
@@ -11,6 +11,8 @@ use crate::kinematics::reference::generated::{BAR, scissor_lift};
 use crate::kinematics::solver::Solver;
 use crate::mechanism::Source;
 
+/// Most cells with which the one block has no more than 32 torn unknowns.
+const MOST_PROVED_CELLS: usize = 16;
 /// Number of cells with which the one block has more than 32 torn unknowns.
 const CELLS: usize = 20;
 
@@ -166,5 +168,39 @@ fn later_turns_take_the_tubes_of_the_first_one() {
         assert!((20..200).contains(&first), "{name}: {first} tubes");
         assert_eq!(turn(&mut (381..3600)), first, "{name} goes on");
         assert_eq!(turn(&mut (0..3599).rev()), first, "{name} comes back");
+    }
+}
+
+/// Small moves at the bottom of a lift make large ones of its upper bars, so that its tubes are
+/// short; one for each step would cost more than none.
+#[test]
+fn a_tube_of_a_lift_serves_several_steps() {
+    for cells in [4, 8, MOST_PROVED_CELLS] {
+        let (mut solver, mut path) = assembled(&Source::new("lift", scissor_lift(cells)));
+        let height = |step: u32| cells as f64 * BAR * (FRAC_PI_6 + 5e-5 * f64::from(step)).sin();
+        // The block that makes tubes as it moves.
+        let place = |solver: &Solver| {
+            let blocks = solver.model.plan.blocks.iter();
+            let coupled = blocks.filter_map(|block| match block {
+                BlockSolver::CoupledBlock(block) => Some(block),
+                _ => None,
+            });
+            let largest = coupled.max_by_key(|block| block.equations.columns.len());
+            largest.expect("cells are coupled").tubes.next_place()
+        };
+        let steps = 60;
+        let mut made = 0;
+        for step in 1..=steps {
+            let before = place(&solver);
+            let now = solver.pose().drivers[0];
+            path.curves[0] = Curve::held(height(step), now);
+            let progress = solver.track(&path).expect("a lift rises");
+            assert_eq!((progress.substeps, progress.checked), (1, 0), "{cells}");
+            made += u32::from(place(&solver) != before);
+        }
+        assert!(
+            (1..=steps / 3).contains(&made),
+            "{cells} cells: {made} tubes"
+        );
     }
 }
