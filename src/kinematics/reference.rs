@@ -82,6 +82,12 @@ fn check(solver: &mut Solver, drivers: &[Jet], what: &str) -> f64 {
     rcond
 }
 
+/// Returns the text of a shipped mechanism.
+pub(super) fn shipped(name: &str) -> Source {
+    let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    Source::open(name, path.as_ref()).expect("it is shipped")
+}
+
 pub(super) fn assembled(source: &Source) -> (Solver, Path) {
     let what = source.name();
     let (mechanism, _) =

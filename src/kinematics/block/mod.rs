@@ -329,19 +329,12 @@ fn step_block<B: SolveBlock + ?Sized>(
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::{BlockSolver, SolveBlock};
-    use crate::kinematics::Solver;
-    use crate::mechanism::{Mechanism, Source};
+    use crate::kinematics::reference::{assembled, shipped};
 
     /// Returns a letter per block, `C` with the number of its unknowns.
     fn blocks(name: &str) -> String {
-        let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        let text = std::fs::read_to_string(path).expect("it is shipped");
-        let (mechanism, _) =
-            Mechanism::parse(&Source::new("test.toml", text)).expect("it has no errors");
-        let solver = Solver::new(Arc::new(mechanism)).expect("the drivers match");
+        let (solver, _) = assembled(&shipped(name));
         let letters = solver.model.plan.blocks.iter().map(|block| match block {
             BlockSolver::PinnedBody(_) => "P".to_owned(),
             BlockSolver::RrrDyad(_) => "D".to_owned(),

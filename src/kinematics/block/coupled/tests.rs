@@ -1,13 +1,12 @@
 //! The estimate for large blocks accepts no step onto another branch; tubes serve turn by turn.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI};
-use std::fs;
 
 use crate::kinematics::block::{BlockSolver, BlockState, Extrapolation, SolveBlock, Step};
 use crate::kinematics::certificate::{Pivots, StepBounds};
-use crate::kinematics::path::{Curve, Path};
-use crate::kinematics::reference::assembled;
+use crate::kinematics::path::Curve;
 use crate::kinematics::reference::generated::{BAR, scissor_lift};
+use crate::kinematics::reference::{assembled, shipped};
 use crate::kinematics::solver::Solver;
 use crate::mechanism::Source;
 
@@ -144,10 +143,7 @@ fn kept_tubes(solver: &Solver) -> usize {
 #[test]
 fn later_turns_take_the_tubes_of_the_first_one() {
     for name in ["cam_roller", "cam_flat", "cam_knife"] {
-        let path = format!("{}/mechanisms/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        let text = fs::read_to_string(path).expect("the mechanism is there");
-        let (mut solver, _) = assembled(&Source::new(name, text));
-        let mut path = Path::new(solver.mechanism());
+        let (mut solver, mut path) = assembled(&shipped(name));
         let start = solver.pose().drivers[0];
         let mut turn = |degrees: &mut dyn Iterator<Item = u32>| {
             for degree in degrees {
