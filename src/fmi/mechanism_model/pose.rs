@@ -142,10 +142,11 @@ impl MechanismModel {
                     let input = &self.course.inputs[index];
                     let given = match self.interface {
                         Interface::ModelExchange => input.given_rates(),
-                        // Writes the sources in place: copied on, they would be waited for.
                         Interface::CoSimulation => {
-                            let sources = &mut self.sources[index];
-                            input.rates_after(self.settings.rule, start, s * h, sources)
+                            let (given, sources) =
+                                input.rates_after(self.settings.rule, start, s * h);
+                            self.sources[index] = sources;
+                            given
                         }
                     };
                     rates.value = 0.0;
