@@ -98,14 +98,6 @@ impl DriverInput {
         History::default().change(rates, sources, order)
     }
 
-    /// Returns the rate inputs.
-    pub(super) fn given_rates(&self) -> DriverRates {
-        DriverRates {
-            velocity: self.values[1],
-            acceleration: self.values[2],
-        }
-    }
-
     /// Returns velocity and acceleration of the position's path at the start of a step of size `h`
     /// from `time`.
     pub(super) fn path(&self, rule: Rule, time: f64, h: f64) -> DriverRates {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::MechanismModel;
 use super::monitor::Contradiction;
-use super::rule::{Extrapolation, RateSource, Rule, Source};
+use super::rule::{RateSource, Rule, Source};
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
@@ -127,21 +127,9 @@ impl MechanismModel {
     /// records the inputs, and reports what the step brought about.
     pub(super) fn complete_step(&mut self, start: f64, h: f64, log: &Logger) {
         self.report_approach(log);
-        let (rule, advice) = match self.interface {
-            Interface::CoSimulation => {
-                let advice = ", or set `rates` to 3 (`estimated`)";
-                (self.settings.rule, advice)
-            }
-            Interface::ModelExchange => {
-                let rule = Rule {
-                    rates: RateSource::Inputs,
-                    extrapolation: Extrapolation::Hold,
-                };
-                (rule, "")
-            }
-        };
+        let rule = self.rule();
         if log.wants(Category::Warning) || log.wants(Category::Events) {
-            self.report_inputs(rule, advice, start, h, log);
+            self.report_inputs(rule, start, h, log);
         }
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             self.course.monitors[index].sources = self.sources[index];
@@ -156,7 +144,11 @@ impl MechanismModel {
 
     /// Reports excursions of drivers beyond their limits, rates that come from another source than
     /// before, and given rates that contradict the motion.
-    fn report_inputs(&mut self, rule: Rule, advice: &str, start: f64, h: f64, log: &Logger) {
+    fn report_inputs(&mut self, rule: Rule, start: f64, h: f64, log: &Logger) {
+        let advice = match self.interface {
+            Interface::CoSimulation => ", or set `rates` to 3 (`estimated`)",
+            Interface::ModelExchange => "",
+        };
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             let (input, monitor) = (&self.course.inputs[index], &mut self.course.monitors[index]);
             let value = self.solver.pose().drivers[index];

@@ -212,6 +212,18 @@ impl MechanismModel {
         &self.mechanism
     }
 
+    /// Returns the rule in force. In model exchange the host integrates, and gives every input at
+    /// each time.
+    fn rule(&self) -> Rule {
+        match self.interface {
+            Interface::CoSimulation => self.settings.rule,
+            Interface::ModelExchange => Rule {
+                rates: RateSource::Inputs,
+                extrapolation: Extrapolation::Hold,
+            },
+        }
+    }
+
     /// Records the validity of the solver's pose after a change, which makes all output values out
     /// of date.
     #[inline]

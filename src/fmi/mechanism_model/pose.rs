@@ -1,12 +1,12 @@
 //! Initialization, steps, and the pose and rates of the values set.
 
-use super::rule::{DriverRates, Source};
+use super::rule::Source;
 use super::{Freshness, MechanismModel, RateSource, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve, Progress, Start};
-use crate::mechanism::{DriverId, DriverSource};
+use crate::mechanism::{DriverId, DriverSource, Jet};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
 /// input counts as continuous: a host's polynomials do not meet exactly.
@@ -105,6 +105,7 @@ impl MechanismModel {
     /// Sets the path from the committed pose to the values in force at the end of a step of size
     /// `h` from `start`; with `h = 0` to the values set.
     pub(super) fn set_path(&mut self, start: f64, h: f64) {
+        let rule = self.rule();
         let (path, committed) = (&mut self.path, &self.course.committed);
         path.start = start;
         path.duration = h;
@@ -120,11 +121,7 @@ impl MechanismModel {
                 jump,
             } = curve
             {
-                let rates = match self.interface {
-                    // The host integrates and sets each input at each time.
-                    Interface::ModelExchange => DriverRates::default(),
-                    Interface::CoSimulation => input.path(self.settings.rule, start, h),
-                };
+                let rates = input.path(rule, start, h);
                 *position = input.position();
                 *velocity = rates.velocity;
                 *acceleration = rates.acceleration;
@@ -135,27 +132,20 @@ impl MechanismModel {
 
     /// Sets the drivers' rates to those at the part `s` of a step of size `h` from `start`.
     pub(super) fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
+        let rule = self.rule();
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            let rates = &mut self.driver_rates[index];
-            match &driver.source {
+            self.driver_rates[index] = match driver.source {
                 DriverSource::Input { .. } => {
-                    let input = &self.course.inputs[index];
-                    let given = match self.interface {
-                        Interface::ModelExchange => input.given_rates(),
-                        Interface::CoSimulation => {
-                            let (given, sources) =
-                                input.rates_after(self.settings.rule, start, s * h);
-                            self.sources[index] = sources;
-                            given
-                        }
-                    };
-                    rates.value = 0.0;
-                    rates.derivatives = [given.velocity, given.acceleration];
+                    let (rates, sources) =
+                        self.course.inputs[index].rates_after(rule, start, s * h);
+                    self.sources[index] = sources;
+                    Jet {
+                        value: 0.0,
+                        derivatives: [rates.velocity, rates.acceleration],
+                    }
                 }
-                DriverSource::Motion(_) => {
-                    *rates = self.solver.motion(DriverId(index), start + s * h);
-                }
-            }
+                DriverSource::Motion(_) => self.solver.motion(DriverId(index), start + s * h),
+            };
         }
     }
 
