@@ -119,17 +119,18 @@ impl DriverInput {
     /// Returns the rates in force at the end of a step of size `h` from `time`, and their sources;
     /// with `h = 0` those at `time` itself.
     pub(super) fn rates_after(&self, rule: Rule, time: f64, h: f64) -> (DriverRates, [Source; 2]) {
-        if self.is_extrapolated(rule) {
-            let (mut rates, sources) = self.rates(rule.rates, time, h, 0.0);
+        let extrapolated = self.is_extrapolated(rule);
+        let at = if extrapolated { 0.0 } else { h };
+        let (mut rates, sources) = self.rates(rule.rates, time, h, at);
+        if extrapolated {
             rates.velocity += h * rates.acceleration;
-            (rates, sources)
-        } else {
-            self.rates(rule.rates, time, h, h)
         }
+        (rates, sources)
     }
 
     /// Returns the rates by the table above, at `at` in a step of size `h` from `time`, and their
     /// sources.
+    #[inline(always)]
     fn rates(&self, rates: RateSource, time: f64, h: f64, at: f64) -> (DriverRates, [Source; 2]) {
         let velocity = self.given_velocity(rates, at);
         let acceleration = self.given_acceleration(rates, at);
@@ -142,6 +143,19 @@ impl DriverInput {
             };
             return (rates, [of_velocity, of_acceleration]);
         }
+        self.with_estimates(velocity, acceleration, rates, time, h)
+    }
+
+    /// Returns the rates by the table above, of which not both are given, at `time` before a step of
+    /// size `h`, and their sources.
+    fn with_estimates(
+        &self,
+        velocity: Option<(f64, Source)>,
+        acceleration: Option<(f64, Source)>,
+        rates: RateSource,
+        time: f64,
+        h: f64,
+    ) -> (DriverRates, [Source; 2]) {
         let mut history = self.history;
         history.push(self.sample(rates, time), h);
         let estimate = history.estimate();

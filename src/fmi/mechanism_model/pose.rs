@@ -20,6 +20,7 @@ impl MechanismModel {
     ///
     /// [`Failure::Discarded`] if no continuous motion leads to the end. The mechanism is then at
     /// the last time whose driver values it reached.
+    #[inline(always)]
     pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
         let start = self.course.time;
         match self.follow_step(h) {
@@ -71,6 +72,7 @@ impl MechanismModel {
     }
 
     /// Ends a step of size `h` from `start` that the solver has followed.
+    #[inline(always)]
     fn reach_end(&mut self, progress: Progress, start: f64, h: f64, end: f64, log: &Logger) {
         self.report_falls(log);
         self.course.path_progress = progress;
@@ -80,6 +82,25 @@ impl MechanismModel {
         self.course.time = end;
         self.commit_pose();
         self.complete_step(start, h, log);
+    }
+
+    /// Ends a step of size `h` from `start`, or in model exchange an accepted step of the host:
+    /// reports what it brought about, and records the inputs.
+    pub(super) fn complete_step(&mut self, start: f64, h: f64, log: &Logger) {
+        self.report_approach(log);
+        if log.is_on() {
+            self.report_step(start, h, log);
+        }
+        let rule = self.rule();
+        let course = &mut self.course;
+        let observed = course.monitors.iter_mut().zip(&self.sources);
+        let inputs = self.mechanism.drivers.iter().zip(&mut course.inputs);
+        for ((driver, input), (monitor, sources)) in inputs.zip(observed) {
+            monitor.sources = *sources;
+            if driver.motion().is_none() {
+                input.record(rule, start, h);
+            }
+        }
     }
 
     /// Notes the solver's choices at the committed pose, to which a step may have to return. Returns
@@ -298,10 +319,16 @@ impl MechanismModel {
     /// # Errors
     ///
     /// The pose does not exist.
+    #[inline]
     pub(super) fn refresh_pose(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
-        if self.freshness != Freshness::Stale {
-            return Ok(());
+        if self.freshness == Freshness::Stale {
+            self.find_pose(phase, log)?;
         }
+        Ok(())
+    }
+
+    /// Brings the solver to the pose of the values set, which it has left or never was at.
+    fn find_pose(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         match phase {
             Phase::Initialization => self.initialize(log)?,
             Phase::Running => self.evaluate()?,
