@@ -112,7 +112,7 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// A getter or setter of Booleans or Strings: legal for an empty list only.
+    /// Answers a getter or setter of a type that no variable has: legal for an empty list only.
     ///
     /// # Errors
     ///
