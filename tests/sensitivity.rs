@@ -124,3 +124,25 @@ fn an_estimate_is_differentiated() {
     let refused = by(length).unwrap_err().to_string();
     assert!(refused.contains("by inputs"), "{refused}");
 }
+
+/// In model exchange all rates are given, also at a point that the host has just accepted.
+#[test]
+fn accepted_points_of_model_exchange_have_given_rates() {
+    let mut instance = instance_of(shipped("pendulum"), Interface::ModelExchange);
+    instance.setup_experiment(0.0, None).unwrap();
+    instance.enter_initialization_mode().unwrap();
+    instance.exit_initialization_mode().unwrap();
+    instance.enter_continuous_time_mode().unwrap();
+    for step in 1..4 {
+        let t = 0.1 * f64::from(step);
+        instance.set_time(t).unwrap();
+        instance.set_real(&[0, 1], &[0.5 + t, 1.0]).unwrap();
+        instance.completed_integrator_step().unwrap();
+    }
+    let mut variables = instance.variables().iter();
+    let omega = variables.position(|v| v.name == "rod.omega").unwrap() as u32;
+    for (known, truth) in [(0, 0.0), (1, 1.0), (2, 0.0)] {
+        let values = instance.directional_derivative(&[omega], &[known], &[1.0]);
+        assert_eq!(values.unwrap(), [truth], "input {known}");
+    }
+}

@@ -110,6 +110,11 @@ impl Logger {
         self.insistent && category.always() || self.enabled & category.bits() != 0
     }
 
+    /// Returns whether the host has switched any category on.
+    pub(super) fn is_on(&self) -> bool {
+        self.enabled != 0
+    }
+
     /// Sends advice to the host if the category of warnings is on. Its status is `fmi2OK`: several
     /// hosts end a simulation when a call returns `fmi2Warning`, so that no call does.
     pub fn advise(&self, message: impl FnOnce() -> String) {

@@ -6,7 +6,7 @@ use std::slice;
 
 use super::component::CallError;
 
-/// The array `pointer` of `length` items.
+/// Returns the array of `length` items at `pointer`.
 ///
 /// # Safety
 ///
@@ -29,7 +29,7 @@ pub(super) unsafe fn slice<'a, T>(
 pub(super) struct Room<'a, T>(&'a mut [MaybeUninit<T>]);
 
 impl<'a, T: Copy> Room<'a, T> {
-    /// Room for `length` items at `pointer`.
+    /// Returns the room for `length` items at `pointer`.
     ///
     /// # Safety
     ///
@@ -92,7 +92,7 @@ fn refuse(name: &str, why: &str) -> CallError {
     CallError::Argument(format!("`{name}` {why}"))
 }
 
-/// The text behind a C string.
+/// Returns the text of a C string.
 ///
 /// # Safety
 ///

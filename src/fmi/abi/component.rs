@@ -34,9 +34,9 @@ pub(super) struct Component {
 
 /// Why a call did not succeed.
 pub(super) enum CallError {
-    /// The instance said no.
+    /// The instance has refused it.
     Refused(Error),
-    /// An argument is no use at all.
+    /// An argument is unusable.
     Argument(String),
 }
 
@@ -62,10 +62,10 @@ impl Component {
         Box::into_raw(Box::new(component)).cast()
     }
 
-    /// Whether nobody else was using the instance, whose use is the caller's from now on.
+    /// Reserves the instance for the caller. Returns whether it was free.
     ///
-    /// The host has promised to call from one thread at a time, so that looking and then taking
-    /// is enough; it costs a fraction of an atomic exchange, of which each call would need two.
+    /// The host has promised to call from one thread at a time, so that a load and a store are
+    /// enough; they cost a fraction of an atomic exchange, of which each call would need two.
     fn seize(&self) -> bool {
         let free = !self.busy.load(Ordering::Acquire);
         if free {
@@ -137,7 +137,7 @@ pub(super) unsafe fn with_instance(
         return status_code(Status::Error);
     };
     if !component.seize() {
-        // The instance's logger cannot be reached now; who is being served will tell of it.
+        // The instance's logger cannot be reached now; the call that is being served reports it.
         return status_code(Status::Error);
     }
     let _environment = StandardEnvironment::set();
@@ -154,7 +154,7 @@ pub(super) unsafe fn with_instance(
                  thread, and was refused",
             );
         }));
-        // Lest a logger that always calls back be told of it for ever.
+        // The logger may have called back again: one report is enough.
         component.disturbed.store(false, Ordering::Relaxed);
     }
     component.busy.store(false, Ordering::Release);

@@ -1,10 +1,37 @@
-//! Messages to the host as C strings.
+//! Messages to the host as C strings, and the categories that it wants.
 
 use std::borrow::Cow;
-use std::ffi::CString;
+use std::ffi::{CString, c_char};
 
-/// Longest message that hosts have room for: a mechanism of thousands of bodies may have as much to say.
+use super::arguments::{slice, text};
+use super::component::{CallError, Instance};
+use crate::fmi::Call;
+
+/// Longest message \[bytes\]: some hosts have no room for more, which a mechanism of thousands of
+/// bodies may need.
 const LONGEST_MESSAGE: usize = 8000;
+
+/// Switches the log categories whose names are in an array of the host.
+///
+/// # Safety
+///
+/// The [host's promise](super#safety).
+pub(super) unsafe fn set_debug_logging(
+    instance: &mut Instance,
+    on: bool,
+    categories: *const *const c_char,
+    count: usize,
+) -> Result<(), CallError> {
+    instance.allow(Call::SetDebugLogging)?;
+    // SAFETY: promised by the caller.
+    let categories = unsafe { slice("categories", categories, count)? };
+    let names = categories.iter().map(|&category| {
+        // SAFETY: promised by the caller.
+        unsafe { text("category", category) }
+    });
+    let names: Vec<_> = names.collect::<Result<_, _>>()?;
+    Ok(instance.set_debug_logging(on, &names)?)
+}
 
 /// Returns a message as the standard wants it: it reads `#12#` as a reference to a variable, and
 /// `##` as one `#`.

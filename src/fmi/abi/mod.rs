@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `fmi2`, `fmi3` | the functions of one version, by subject |
 //! | `calls` | functions that are calls on an instance |
-//! | `instantiation` | what all functions do that instantiate |
+//! | `instantiation` | instantiation, as far as the versions share it |
 //! | `component` | instances as the host sees them |
 //! | `arguments` | arrays and strings of the host |
 //! | `intermediate` | the host's part in a step of FMI 3.0 |
@@ -19,15 +19,15 @@
 //!
 //! The host promises, by the standard, what no function can check:
 //!
-//! - An instance that is not null came from a function of this library that instantiates, and has not
-//!   been freed. A call on it
-//!   while another is being served, from the logger or from another thread, is refused.
-//! - A pointer to an array that is not null points to as many items as are told with it. Those
-//!   that are read hold values and stay as they are during the call; those that are written may
-//!   hold nothing yet, and nobody else touches them during the call.
+//! - An instance that is not null came from a function of this library that instantiates, and has
+//!   not been freed. A call on it while another is being served, from the logger or from another
+//!   thread, is refused.
+//! - A pointer to an array that is not null points to as many items as the argument for its length
+//!   says. Items that are read hold values and do not change during the call; items that are
+//!   written may hold nothing yet, and nobody else uses them during the call.
 //! - A string that is not null ends in NUL.
 //! - An FMU state that is not null came from this library, has not been freed, and is used by
-//!   one call at a time. A pointer from anywhere else cannot be told from one.
+//!   one call at a time. A pointer from anywhere else cannot be recognized.
 
 #![allow(
     unsafe_code,

@@ -106,7 +106,7 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// A function of continuous states or event indicators, for `count` values.
+    /// Answers a function of continuous states or event indicators, for `count` values.
     ///
     /// # Errors
     ///

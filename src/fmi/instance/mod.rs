@@ -4,6 +4,10 @@
 //! call changes neither data nor state, and the instance stays usable; in FMI 3.0 it is then in
 //! state `terminated` (2.3.1). The [`Model`] computes the values.
 //!
+//! A host sets, steps and gets in every cycle. The methods of these three calls, and what they call
+//! in the model, are inlined into the C functions of both versions: as calls of their own they
+//! would make the cycle of the four-bar some 4 % longer.
+//!
 //! | file | subject |
 //! |---|---|
 //! | `values` | setting and getting variables, in both versions |
@@ -164,12 +168,13 @@ impl<M: Model> Instance<M> {
     /// simulation (2.3.1).
     pub fn report(&mut self, call: &str, error: &Error) -> Status {
         let status = error.status();
+        let message = format!("{call}: {error}");
         if self.version == Version::Fmi3 {
             let category = match status {
                 Status::Discard => Category::Discard,
                 _ => Category::Error,
             };
-            self.fail(status, category, &format!("{call}: {error}"));
+            self.fail(status, category, &message);
             return status;
         }
         match error {
@@ -178,17 +183,9 @@ impl<M: Model> Instance<M> {
                 let message = format!("{call}: discarded");
                 self.logger.write(status, Category::Discard, &message);
             }
-            Error::StatusKind { .. } => {
-                let message = format!("{call}: {error}");
-                self.logger.write(status, Category::Discard, &message);
-            }
-            Error::Range { .. } | Error::Item { .. } => {
-                self.logger.warn(&format!("{call}: {error}"));
-            }
-            _ => {
-                let message = format!("{call}: {error}");
-                self.logger.write(status, Category::Error, &message);
-            }
+            Error::StatusKind { .. } => self.logger.write(status, Category::Discard, &message),
+            Error::Range { .. } | Error::Item { .. } => self.logger.warn(&message),
+            _ => self.logger.write(status, Category::Error, &message),
         }
         status
     }

@@ -46,6 +46,7 @@ impl<M: Model> Instance<M> {
     }
 
     /// Checks that a step starts where the last one has ended, and passes no stop time.
+    #[inline(always)]
     pub(super) fn check_step(&self, communication_point: f64, h: f64) -> Result<(), Error> {
         check_finite("currentCommunicationPoint", communication_point)?;
         check_finite("communicationStepSize", h)?;

@@ -39,6 +39,7 @@ impl<M: Model> Instance<M> {
     ///
     /// A variable is unknown, no Real, or not settable in this state; a value is not finite, or
     /// that of a parameter is outside `min` and `max`.
+    #[inline(always)]
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
         if self.version == Version::Fmi3 {
@@ -47,8 +48,7 @@ impl<M: Model> Instance<M> {
         for (&value_reference, &value) in value_references.iter().zip(values) {
             let is_input = self.continuous_inputs.get(value_reference as usize);
             if !(is_input == Some(&true) && value.is_finite()) {
-                let variable = self.settable(value_reference, "Real")?;
-                check_value(variable, value)?;
+                self.check_real(value_reference, value)?;
             }
         }
         if self.version == Version::Fmi3 {
@@ -59,6 +59,12 @@ impl<M: Model> Instance<M> {
         self.model
             .set_reals(values.map(|(&vr, &value)| (quantities[vr as usize], value)));
         Ok(())
+    }
+
+    /// Checks that the host may set a Real to this value in the present state.
+    #[cold]
+    fn check_real(&self, value_reference: u32, value: f64) -> Result<(), Error> {
+        check_value(self.settable(value_reference, "Real")?, value)
     }
 
     /// `fmi2SetInteger`, for Enumerations as well. Sets all values or none.
@@ -106,7 +112,7 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// A getter or setter of Booleans or Strings: legal for an empty list only.
+    /// Answers a getter or setter of a type that no variable has: legal for an empty list only.
     ///
     /// # Errors
     ///
@@ -175,6 +181,7 @@ impl<M: Model> Instance<M> {
     /// # Errors
     ///
     /// A variable is unknown or no Real; or it has no value for the values set.
+    #[inline(always)]
     pub fn reals<'a>(&'a mut self, value_references: &'a [u32]) -> Result<Reals<'a>, Error> {
         self.allow(Call::GetReal)?;
         if self.request.references != value_references {
@@ -291,7 +298,7 @@ impl<M: Model> Instance<M> {
         (0..order).try_fold(value_reference, |vr, _| self.derivatives[vr as usize])
     }
 
-    #[inline]
+    #[inline(always)]
     fn refresh(&mut self, call: Call, groups: Groups) -> Result<(), Error> {
         let phase = self.course.state.phase(self.interface);
         self.model

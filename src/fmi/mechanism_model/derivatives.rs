@@ -1,10 +1,9 @@
 //! Directional derivatives of outputs and calculated parameters.
 
-use super::rule::RateSource;
 use super::{MechanismModel, Quantity, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
-use crate::fmi::state::{Interface, Phase};
+use crate::fmi::state::Phase;
 use crate::kinematics::Direction;
 use crate::mechanism::{DriverId, Jet, Order};
 
@@ -77,10 +76,7 @@ impl MechanismModel {
     /// inputs.
     fn derivatives_by(&self, driver: DriverId, order: Order, phase: Phase) -> [f64; 3] {
         let input = &self.course.inputs[driver.index()];
-        let rates = match self.interface {
-            Interface::ModelExchange => RateSource::Inputs,
-            Interface::CoSimulation => self.settings.rule.rates,
-        };
+        let rates = self.rule().rates;
         if phase == Phase::Event && !self.at_committed {
             input.change_at_event(rates, self.course.time, order)
         } else if self.at_committed && input.has_stepped() {

@@ -240,36 +240,36 @@ impl Indices {
         dependencies: &Dependencies,
         order: Order,
     ) -> BTreeMap<usize, DependencyKind> {
-        let mut indices = BTreeMap::new();
-        let mut add = |index: usize| {
-            indices.insert(index, DependencyKind::Dependent);
-        };
-        self.mechanism_parameters(quantity, dependencies, order, &mut add);
-        let mut drivers = dependencies.drivers.iter();
-        if drivers.any(|id| self.inputs[id.index()].is_some()) {
-            [self.rate_source, self.extrapolation]
-                .into_iter()
-                .flatten()
-                .for_each(add);
+        let mut indices = self.mechanism_parameters(quantity, dependencies, order);
+        if self.has_input(dependencies) {
+            let settings = [self.rate_source, self.extrapolation].into_iter().flatten();
+            indices.extend(settings.map(|index| (index, DependencyKind::Dependent)));
         }
         indices
     }
 
-    /// Adds the mechanism's own parameters that a quantity of this order depends on: a signal that
-    /// no driver moves has rates of zero for any parameters.
+    /// Returns the mechanism's own parameters that a quantity of this order depends on: a signal
+    /// that no driver moves has rates of zero for any parameters.
     fn mechanism_parameters(
         &self,
         quantity: Quantity,
         dependencies: &Dependencies,
         order: Order,
-        add: &mut impl FnMut(usize),
-    ) {
+    ) -> BTreeMap<usize, DependencyKind> {
         let is_signal = matches!(quantity, Quantity::Output(..));
-        if order == Order::Position || !is_signal || !dependencies.drivers.is_empty() {
-            for id in &dependencies.parameters {
-                add(self.parameters[id.index()]);
-            }
+        if order > Order::Position && is_signal && dependencies.drivers.is_empty() {
+            return BTreeMap::new();
         }
+        let parameters = dependencies.parameters.iter();
+        parameters
+            .map(|id| (self.parameters[id.index()], DependencyKind::Dependent))
+            .collect()
+    }
+
+    /// Returns whether a driver among the dependencies is an input.
+    fn has_input(&self, dependencies: &Dependencies) -> bool {
+        let mut drivers = dependencies.drivers.iter();
+        drivers.any(|id| self.inputs[id.index()].is_some())
     }
 
     /// Returns the inputs up to an order, and the time.
@@ -305,13 +305,10 @@ impl Indices {
         {
             indices.insert(index, DependencyKind::Constant);
         }
-        let mut add = |index: usize| {
-            indices.insert(index, DependencyKind::Dependent);
-        };
-        self.mechanism_parameters(quantity, dependencies, order, &mut add);
-        let mut drivers = dependencies.drivers.iter();
-        if order > Order::Position && drivers.any(|id| self.inputs[id.index()].is_some()) {
-            self.rate_source.into_iter().for_each(add);
+        indices.extend(self.mechanism_parameters(quantity, dependencies, order));
+        if order > Order::Position && self.has_input(dependencies) {
+            let rate_source = self.rate_source.into_iter();
+            indices.extend(rate_source.map(|index| (index, DependencyKind::Dependent)));
         }
         indices
     }

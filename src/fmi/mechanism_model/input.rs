@@ -94,23 +94,15 @@ impl DriverInput {
     /// Returns the derivatives of position, velocity and acceleration in force at an event by one of
     /// the three inputs: rates that are not given stay those of the last step.
     pub(super) fn change_at_event(&self, rates: RateSource, time: f64, order: Order) -> [f64; 3] {
-        let sources = self.sources(rates, time);
+        let (_, sources) = self.rates(rates, time, 0.0, 0.0);
         History::default().change(rates, sources, order)
-    }
-
-    /// Returns the rate inputs.
-    pub(super) fn given_rates(&self) -> DriverRates {
-        DriverRates {
-            velocity: self.values[1],
-            acceleration: self.values[2],
-        }
     }
 
     /// Returns velocity and acceleration of the position's path at the start of a step of size `h`
     /// from `time`.
     pub(super) fn path(&self, rule: Rule, time: f64, h: f64) -> DriverRates {
         if self.is_extrapolated(rule) {
-            return self.rates(rule.rates, time, h, 0.0, &mut Default::default());
+            return self.rates(rule.rates, time, h, 0.0).0;
         }
         let [velocity, acceleration] = self.derivatives[0].map(Option::unwrap_or_default);
         DriverRates {
@@ -124,45 +116,46 @@ impl DriverInput {
         rule.extrapolation == Extrapolation::Taylor && self.derivatives[0] == [None, None]
     }
 
-    /// Returns the rates in force at the end of a step of size `h` from `time`, and writes their
-    /// sources; with `h = 0` those at `time` itself.
-    pub(super) fn rates_after(
-        &self,
-        rule: Rule,
-        time: f64,
-        h: f64,
-        sources: &mut [Source; 2],
-    ) -> DriverRates {
-        if self.is_extrapolated(rule) {
-            let mut rates = self.rates(rule.rates, time, h, 0.0, sources);
+    /// Returns the rates in force at the end of a step of size `h` from `time`, and their sources;
+    /// with `h = 0` those at `time` itself.
+    pub(super) fn rates_after(&self, rule: Rule, time: f64, h: f64) -> (DriverRates, [Source; 2]) {
+        let extrapolated = self.is_extrapolated(rule);
+        let at = if extrapolated { 0.0 } else { h };
+        let (mut rates, sources) = self.rates(rule.rates, time, h, at);
+        if extrapolated {
             rates.velocity += h * rates.acceleration;
-            rates
-        } else {
-            self.rates(rule.rates, time, h, h, sources)
         }
+        (rates, sources)
     }
 
-    /// Returns the rates by the table above, at `at` in a step of size `h` from `time`, and writes
-    /// their sources.
-    fn rates(
-        &self,
-        rates: RateSource,
-        time: f64,
-        h: f64,
-        at: f64,
-        sources: &mut [Source; 2],
-    ) -> DriverRates {
+    /// Returns the rates by the table above, at `at` in a step of size `h` from `time`, and their
+    /// sources.
+    #[inline(always)]
+    fn rates(&self, rates: RateSource, time: f64, h: f64, at: f64) -> (DriverRates, [Source; 2]) {
         let velocity = self.given_velocity(rates, at);
         let acceleration = self.given_acceleration(rates, at);
         if let (Some((velocity, of_velocity)), Some((acceleration, of_acceleration))) =
             (velocity, acceleration)
         {
-            *sources = [of_velocity, of_acceleration];
-            return DriverRates {
+            let rates = DriverRates {
                 velocity,
                 acceleration,
             };
+            return (rates, [of_velocity, of_acceleration]);
         }
+        self.with_estimates(velocity, acceleration, rates, time, h)
+    }
+
+    /// Returns the rates by the table above, of which not both are given, at `time` before a step of
+    /// size `h`, and their sources.
+    fn with_estimates(
+        &self,
+        velocity: Option<(f64, Source)>,
+        acceleration: Option<(f64, Source)>,
+        rates: RateSource,
+        time: f64,
+        h: f64,
+    ) -> (DriverRates, [Source; 2]) {
         let mut history = self.history;
         history.push(self.sample(rates, time), h);
         let estimate = history.estimate();
@@ -171,18 +164,11 @@ impl DriverInput {
         let (acceleration, of_acceleration) = acceleration
             .or_else(difference)
             .unwrap_or((estimate.acceleration, Source::Estimate));
-        *sources = [of_velocity, of_acceleration];
-        DriverRates {
+        let rates = DriverRates {
             velocity,
             acceleration,
-        }
-    }
-
-    /// Returns the sources of the rates at `time`.
-    fn sources(&self, rates: RateSource, time: f64) -> [Source; 2] {
-        let mut sources = [Source::default(); 2];
-        self.rates(rates, time, 0.0, 0.0, &mut sources);
-        sources
+        };
+        (rates, [of_velocity, of_acceleration])
     }
 
     fn given_velocity(&self, rates: RateSource, h: f64) -> Option<(f64, Source)> {
@@ -258,7 +244,7 @@ impl DriverInput {
     /// Returns the derivatives of position, velocity and acceleration in force at `time`, before a
     /// step, by one of the three inputs.
     pub(super) fn change_by_value(&self, rates: RateSource, time: f64, order: Order) -> [f64; 3] {
-        let sources = self.sources(rates, time);
+        let (_, sources) = self.rates(rates, time, 0.0, 0.0);
         let mut history = self.history;
         history.push(self.sample(rates, time), 0.0);
         history.change(rates, sources, order)
@@ -350,7 +336,7 @@ mod tests {
     }
 
     fn rates_after(input: &DriverInput, rule: Rule, time: f64, h: f64) -> DriverRates {
-        input.rates_after(rule, time, h, &mut Default::default())
+        input.rates_after(rule, time, h).0
     }
 
     // Numbers whose sums and quotients are exact in binary throughout.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::MechanismModel;
 use super::monitor::Contradiction;
-use super::rule::{Extrapolation, RateSource, Rule, Source};
+use super::rule::{RateSource, Source};
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
@@ -97,10 +97,15 @@ impl MechanismModel {
 
     /// Reports once an angle that falls by more than half a turn on the path, as an angle does that
     /// the host wraps. Observes nothing for a host that wants no warnings.
+    #[inline]
     pub(super) fn report_falls(&mut self, log: &Logger) {
-        if !log.wants(Category::Warning) {
-            return;
+        if log.wants(Category::Warning) {
+            self.observe_falls(log);
         }
+    }
+
+    /// Observes the angles on the path, and reports once one that falls.
+    fn observe_falls(&mut self, log: &Logger) {
         let drivers = self.mechanism.drivers.iter().zip(&self.path.curves);
         let observed = self.course.inputs.iter().zip(&mut self.course.monitors);
         for ((driver, curve), (input, monitor)) in drivers.zip(observed) {
@@ -123,31 +128,12 @@ impl MechanismModel {
         }
     }
 
-    /// Ends a step of size `h` from `start`, or in model exchange an accepted step of the host:
-    /// records the inputs, and reports what the step brought about.
-    pub(super) fn complete_step(&mut self, start: f64, h: f64, log: &Logger) {
-        self.report_approach(log);
-        let (rule, advice) = match self.interface {
-            Interface::CoSimulation => {
-                let advice = ", or set `rates` to 3 (`estimated`)";
-                (self.settings.rule, advice)
-            }
-            Interface::ModelExchange => {
-                let rule = Rule {
-                    rates: RateSource::Inputs,
-                    extrapolation: Extrapolation::Hold,
-                };
-                (rule, "")
-            }
-        };
+    /// Reports to a host that wants messages what a step of size `h` from `start` brought about,
+    /// before the step is recorded.
+    #[inline(never)]
+    pub(super) fn report_step(&mut self, start: f64, h: f64, log: &Logger) {
         if log.wants(Category::Warning) || log.wants(Category::Events) {
-            self.report_inputs(rule, advice, start, h, log);
-        }
-        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            self.course.monitors[index].sources = self.sources[index];
-            if driver.motion().is_none() {
-                self.course.inputs[index].record(rule, start, h);
-            }
+            self.report_inputs(start, h, log);
         }
         self.report_contacts(log);
         self.log_crossings(log);
@@ -156,7 +142,12 @@ impl MechanismModel {
 
     /// Reports excursions of drivers beyond their limits, rates that come from another source than
     /// before, and given rates that contradict the motion.
-    fn report_inputs(&mut self, rule: Rule, advice: &str, start: f64, h: f64, log: &Logger) {
+    fn report_inputs(&mut self, start: f64, h: f64, log: &Logger) {
+        let rates = self.rule().rates;
+        let advice = match self.interface {
+            Interface::CoSimulation => ", or set `rates` to 3 (`estimated`)",
+            Interface::ModelExchange => "",
+        };
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             let (input, monitor) = (&self.course.inputs[index], &mut self.course.monitors[index]);
             let value = self.solver.pose().drivers[index];
@@ -167,12 +158,12 @@ impl MechanismModel {
                 continue;
             }
             for (order, source) in monitor.changes(self.sources[index]) {
-                if rule.rates == RateSource::Auto && log.wants(Category::Events) {
+                if rates == RateSource::Auto && log.wants(Category::Events) {
                     let message = describe_source(driver, order, source, start);
                     log.write(Status::Ok, Category::Events, &message);
                 }
             }
-            let now = input.sample(rule.rates, start);
+            let now = input.sample(rates, start);
             let last = input.last_sample(start);
             if let Some(contradiction) = last.and_then(|last| monitor.compare(last, &now)) {
                 log.advise(|| describe_contradiction(driver, contradiction, start, advice));

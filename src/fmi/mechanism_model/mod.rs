@@ -52,7 +52,7 @@ use super::model_description::DependencyKind;
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Carryover, Path, Pose, Progress, Rates, Solver};
-use crate::mechanism::{DriverSource, Jet, Mechanism, Order};
+use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism, Order, ParameterId};
 use force_input::ForceInput;
 use forces::ModelForces;
 use input::DriverInput;
@@ -212,6 +212,42 @@ impl MechanismModel {
         &self.mechanism
     }
 
+    /// Returns the rule in force. In model exchange the host integrates, and gives every input at
+    /// each time.
+    fn rule(&self) -> Rule {
+        match self.interface {
+            Interface::CoSimulation => self.settings.rule,
+            Interface::ModelExchange => Rule {
+                rates: RateSource::Inputs,
+                extrapolation: Extrapolation::Hold,
+            },
+        }
+    }
+
+    #[inline]
+    fn set_input(&mut self, driver: DriverId, order: Order, value: f64) {
+        let index = driver.index();
+        let input = &mut self.course.inputs[index];
+        if order == Order::Position && self.mechanism.drivers[index].wrapped {
+            input.set_wrapped(value, self.course.committed.drivers[index]);
+        } else {
+            input.set(order, value);
+        }
+        self.set_freshness(Freshness::Stale);
+    }
+
+    /// Sets an input of a force, on which no pose depends.
+    fn set_force_input(&mut self, place: usize, value: f64) {
+        self.course.force_inputs[place].set(value);
+        self.reals.invalidate();
+    }
+
+    /// Sets a parameter; those derived from it do not follow yet.
+    fn set_parameter(&mut self, parameter: ParameterId, value: f64) {
+        self.settings.parameters[parameter.index()] = value;
+        self.set_freshness(Freshness::Stale);
+    }
+
     /// Records the validity of the solver's pose after a change, which makes all output values out
     /// of date.
     #[inline]
@@ -265,28 +301,15 @@ impl Model for MechanismModel {
         self.parts = None;
     }
 
+    #[inline(always)]
     fn set_reals(&mut self, values: impl Iterator<Item = (Quantity, f64)>) {
-        let (mut inputs_changed, mut parameters_changed) = (false, false);
+        let mut parameters_changed = false;
         for (quantity, value) in values {
             match quantity {
-                Quantity::Input(driver, order) => {
-                    inputs_changed = true;
-                    let index = driver.index();
-                    let input = &mut self.course.inputs[index];
-                    if order == Order::Position && self.mechanism.drivers[index].wrapped {
-                        input.set_wrapped(value, self.course.committed.drivers[index]);
-                    } else {
-                        input.set(order, value);
-                    }
-                }
-                Quantity::ForceInput(place) => {
-                    self.course.force_inputs[place].set(value);
-                    // The pose does not depend on it.
-                    self.reals.invalidate();
-                    continue;
-                }
+                Quantity::Input(driver, order) => self.set_input(driver, order, value),
+                Quantity::ForceInput(place) => self.set_force_input(place, value),
                 Quantity::Parameter(parameter) => {
-                    self.settings.parameters[parameter.index()] = value;
+                    self.set_parameter(parameter, value);
                     parameters_changed = true;
                 }
                 _ => unreachable!("only inputs and parameters are settable"),
@@ -295,9 +318,6 @@ impl Model for MechanismModel {
         if parameters_changed {
             self.mechanism
                 .derive_parameters(&mut self.settings.parameters);
-        }
-        if inputs_changed || parameters_changed {
-            self.set_freshness(Freshness::Stale);
         }
     }
 
@@ -335,7 +355,7 @@ impl Model for MechanismModel {
         outputs::group(quantity)
     }
 
-    #[inline]
+    #[inline(always)]
     fn refresh(&mut self, groups: Groups, phase: Phase, log: &Logger) -> Result<(), Failure> {
         self.refresh_groups(groups, phase, log)
     }
@@ -383,6 +403,7 @@ impl Model for MechanismModel {
         self.course.progress = self.course.path_progress;
     }
 
+    #[inline(always)]
     fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
         self.take_step(size, end, log)
     }

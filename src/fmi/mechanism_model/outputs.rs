@@ -162,7 +162,7 @@ impl MechanismModel {
     /// # Errors
     ///
     /// No pose exists for the values set, or no rates exist at that pose.
-    #[inline]
+    #[inline(always)]
     pub(super) fn refresh_groups(
         &mut self,
         groups: Groups,
@@ -228,6 +228,7 @@ impl MechanismModel {
     }
 
     /// Fills in all values but those of bodies.
+    #[inline(never)]
     fn fill_others(&mut self, groups: Groups) {
         let reals = &mut self.reals;
         let values = &mut reals.values;

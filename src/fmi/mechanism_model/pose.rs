@@ -1,12 +1,12 @@
 //! Initialization, steps, and the pose and rates of the values set.
 
-use super::rule::{DriverRates, Source};
+use super::rule::Source;
 use super::{Freshness, MechanismModel, RateSource, failed};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve, Progress, Start};
-use crate::mechanism::{DriverId, DriverSource};
+use crate::mechanism::{DriverId, DriverSource, Jet};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
 /// input counts as continuous: a host's polynomials do not meet exactly.
@@ -20,6 +20,7 @@ impl MechanismModel {
     ///
     /// [`Failure::Discarded`] if no continuous motion leads to the end. The mechanism is then at
     /// the last time whose driver values it reached.
+    #[inline(always)]
     pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
         let start = self.course.time;
         match self.follow_step(h) {
@@ -71,6 +72,7 @@ impl MechanismModel {
     }
 
     /// Ends a step of size `h` from `start` that the solver has followed.
+    #[inline(always)]
     fn reach_end(&mut self, progress: Progress, start: f64, h: f64, end: f64, log: &Logger) {
         self.report_falls(log);
         self.course.path_progress = progress;
@@ -80,6 +82,25 @@ impl MechanismModel {
         self.course.time = end;
         self.commit_pose();
         self.complete_step(start, h, log);
+    }
+
+    /// Ends a step of size `h` from `start`, or in model exchange an accepted step of the host:
+    /// reports what it brought about, and records the inputs.
+    pub(super) fn complete_step(&mut self, start: f64, h: f64, log: &Logger) {
+        self.report_approach(log);
+        if log.is_on() {
+            self.report_step(start, h, log);
+        }
+        let rule = self.rule();
+        let course = &mut self.course;
+        let observed = course.monitors.iter_mut().zip(&self.sources);
+        let inputs = self.mechanism.drivers.iter().zip(&mut course.inputs);
+        for ((driver, input), (monitor, sources)) in inputs.zip(observed) {
+            monitor.sources = *sources;
+            if driver.motion().is_none() {
+                input.record(rule, start, h);
+            }
+        }
     }
 
     /// Notes the solver's choices at the committed pose, to which a step may have to return. Returns
@@ -105,6 +126,7 @@ impl MechanismModel {
     /// Sets the path from the committed pose to the values in force at the end of a step of size
     /// `h` from `start`; with `h = 0` to the values set.
     pub(super) fn set_path(&mut self, start: f64, h: f64) {
+        let rule = self.rule();
         let (path, committed) = (&mut self.path, &self.course.committed);
         path.start = start;
         path.duration = h;
@@ -120,11 +142,7 @@ impl MechanismModel {
                 jump,
             } = curve
             {
-                let rates = match self.interface {
-                    // The host integrates and sets each input at each time.
-                    Interface::ModelExchange => DriverRates::default(),
-                    Interface::CoSimulation => input.path(self.settings.rule, start, h),
-                };
+                let rates = input.path(rule, start, h);
                 *position = input.position();
                 *velocity = rates.velocity;
                 *acceleration = rates.acceleration;
@@ -135,26 +153,20 @@ impl MechanismModel {
 
     /// Sets the drivers' rates to those at the part `s` of a step of size `h` from `start`.
     pub(super) fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
+        let rule = self.rule();
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            let rates = &mut self.driver_rates[index];
-            match &driver.source {
+            self.driver_rates[index] = match driver.source {
                 DriverSource::Input { .. } => {
-                    let input = &self.course.inputs[index];
-                    let given = match self.interface {
-                        Interface::ModelExchange => input.given_rates(),
-                        // Writes the sources in place: copied on, they would be waited for.
-                        Interface::CoSimulation => {
-                            let sources = &mut self.sources[index];
-                            input.rates_after(self.settings.rule, start, s * h, sources)
-                        }
-                    };
-                    rates.value = 0.0;
-                    rates.derivatives = [given.velocity, given.acceleration];
+                    let (rates, sources) =
+                        self.course.inputs[index].rates_after(rule, start, s * h);
+                    self.sources[index] = sources;
+                    Jet {
+                        value: 0.0,
+                        derivatives: [rates.velocity, rates.acceleration],
+                    }
                 }
-                DriverSource::Motion(_) => {
-                    *rates = self.solver.motion(DriverId(index), start + s * h);
-                }
-            }
+                DriverSource::Motion(_) => self.solver.motion(DriverId(index), start + s * h),
+            };
         }
     }
 
@@ -307,10 +319,16 @@ impl MechanismModel {
     /// # Errors
     ///
     /// The pose does not exist.
+    #[inline]
     pub(super) fn refresh_pose(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
-        if self.freshness != Freshness::Stale {
-            return Ok(());
+        if self.freshness == Freshness::Stale {
+            self.find_pose(phase, log)?;
         }
+        Ok(())
+    }
+
+    /// Brings the solver to the pose of the values set, which it has left or never was at.
+    fn find_pose(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         match phase {
             Phase::Initialization => self.initialize(log)?,
             Phase::Running => self.evaluate()?,

@@ -9,13 +9,12 @@ use super::types::{
 };
 
 use super::host::HostLogger;
-use crate::fmi::abi::arguments::{slice, text};
+use crate::fmi::abi::arguments::text;
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::abi::component::{CallError, Component};
 use crate::fmi::abi::instantiation::{instantiate, texts};
-use crate::fmi::{
-    Call, Category, Error, Instance, Interface, Sink, Status, Version, resource_path,
-};
+use crate::fmi::abi::message::set_debug_logging;
+use crate::fmi::{Category, Error, Instance, Interface, Sink, Status, Version, resource_path};
 
 /// `fmi2GetTypesPlatform`: always `"default"`.
 #[unsafe(no_mangle)]
@@ -103,11 +102,7 @@ instance_calls! {
         n_categories: usize,
         categories: *const fmi2String,
     ) = |instance| {
-        instance.allow(Call::SetDebugLogging)?;
-        let categories = slice("categories", categories, n_categories)?;
-        let names = categories.iter().map(|&category| text("category", category));
-        let names: Vec<_> = names.collect::<Result<_, _>>()?;
-        Ok(instance.set_debug_logging(logging_on != 0, &names)?)
+        set_debug_logging(instance, logging_on != 0, categories, n_categories)
     };
     /// `fmi2SetupExperiment`.
     fmi2SetupExperiment(

@@ -9,48 +9,48 @@ use crate::fmi::abi::arguments::{Room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::{Call, DependencyKind};
 
+/// Defines the functions of partial derivatives, each with the lengths of its seed and of its
+/// sensitivity for some unknowns and knowns.
+macro_rules! partial_derivatives {
+    ($($(#[$doc:meta])* $function:ident = $method:ident, $lengths:expr;)*) => {
+        instance_calls! {
+            fmi3Instance => fmi3Status;
+            $(
+                $(#[$doc])*
+                $function(
+                    unknowns: *const fmi3ValueReference,
+                    n_unknowns: usize,
+                    knowns: *const fmi3ValueReference,
+                    n_knowns: usize,
+                    seed: *const fmi3Float64,
+                    n_seed: usize,
+                    sensitivity: *mut fmi3Float64,
+                    n_sensitivity: usize,
+                ) = |instance| {
+                    let [of_seed, of_sensitivity] = ($lengths)(n_unknowns, n_knowns);
+                    check_count("nSeed", n_seed, of_seed)?;
+                    check_count("nSensitivity", n_sensitivity, of_sensitivity)?;
+                    let unknowns = slice("unknowns", unknowns, n_unknowns)?;
+                    let knowns = slice("knowns", knowns, n_knowns)?;
+                    let seed = slice("seed", seed, n_seed)?;
+                    let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
+                    room.fill(instance.$method(unknowns, knowns, seed)?);
+                    Ok(())
+                };
+            )*
+        }
+    };
+}
+
+partial_derivatives! {
+    /// `fmi3GetDirectionalDerivative`.
+    fmi3GetDirectionalDerivative = directional_derivative, |unknowns, knowns| [knowns, unknowns];
+    /// `fmi3GetAdjointDerivative`.
+    fmi3GetAdjointDerivative = adjoint_derivative, |unknowns, knowns| [unknowns, knowns];
+}
+
 instance_calls! {
     fmi3Instance => fmi3Status;
-    /// `fmi3GetDirectionalDerivative`.
-    fmi3GetDirectionalDerivative(
-        unknowns: *const fmi3ValueReference,
-        n_unknowns: usize,
-        knowns: *const fmi3ValueReference,
-        n_knowns: usize,
-        seed: *const fmi3Float64,
-        n_seed: usize,
-        sensitivity: *mut fmi3Float64,
-        n_sensitivity: usize,
-    ) = |instance| {
-        check_count("nSeed", n_seed, n_knowns)?;
-        check_count("nSensitivity", n_sensitivity, n_unknowns)?;
-        let unknowns = slice("unknowns", unknowns, n_unknowns)?;
-        let knowns = slice("knowns", knowns, n_knowns)?;
-        let seed = slice("seed", seed, n_seed)?;
-        let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
-        room.fill(instance.directional_derivative(unknowns, knowns, seed)?);
-        Ok(())
-    };
-    /// `fmi3GetAdjointDerivative`.
-    fmi3GetAdjointDerivative(
-        unknowns: *const fmi3ValueReference,
-        n_unknowns: usize,
-        knowns: *const fmi3ValueReference,
-        n_knowns: usize,
-        seed: *const fmi3Float64,
-        n_seed: usize,
-        sensitivity: *mut fmi3Float64,
-        n_sensitivity: usize,
-    ) = |instance| {
-        check_count("nSeed", n_seed, n_unknowns)?;
-        check_count("nSensitivity", n_sensitivity, n_knowns)?;
-        let unknowns = slice("unknowns", unknowns, n_unknowns)?;
-        let knowns = slice("knowns", knowns, n_knowns)?;
-        let seed = slice("seed", seed, n_seed)?;
-        let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
-        room.fill(instance.adjoint_derivative(unknowns, knowns, seed)?);
-        Ok(())
-    };
     /// `fmi3GetOutputDerivatives`.
     fmi3GetOutputDerivatives(
         value_references: *const fmi3ValueReference,

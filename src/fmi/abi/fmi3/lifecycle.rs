@@ -9,11 +9,12 @@ use super::types::{
     fmi3IntermediateUpdateCallback, fmi3LockPreemptionCallback, fmi3LogMessageCallback, fmi3Status,
     fmi3String, fmi3UnlockPreemptionCallback, fmi3ValueReference,
 };
-use crate::fmi::abi::arguments::{slice, text};
+use crate::fmi::abi::arguments::slice;
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::abi::component::{CallError, Component, Instance};
 use crate::fmi::abi::instantiation::{instantiate, texts};
 use crate::fmi::abi::intermediate::IntermediateUpdate;
+use crate::fmi::abi::message::set_debug_logging;
 use crate::fmi::{Call, Category, CoSimulation, Interface, Sink, Status, Version};
 
 /// `fmi3GetVersion`: always `"3.0"`.
@@ -201,11 +202,7 @@ instance_calls! {
         n_categories: usize,
         categories: *const fmi3String,
     ) = |instance| {
-        instance.allow(Call::SetDebugLogging)?;
-        let categories = slice("categories", categories, n_categories)?;
-        let names = categories.iter().map(|&category| text("category", category));
-        let names: Vec<_> = names.collect::<Result<_, _>>()?;
-        Ok(instance.set_debug_logging(logging_on, &names)?)
+        set_debug_logging(instance, logging_on, categories, n_categories)
     };
     /// `fmi3EnterInitializationMode`.
     fmi3EnterInitializationMode(
