@@ -7,7 +7,8 @@
 //! | `runner` | a mechanism that moves along samples |
 //! | `run`, `film` | one motion with its gradients; its animation |
 //! | `sweep` | the same motion of many variants, on all cores |
-//! | `fit` | residuals of targets, with derivatives; costs of many variants |
+//! | `fit` | residuals of targets, with derivatives; costs of many variants; attempts |
+//! | `least_squares` | the method that improves attempts |
 //! | `mechanism` | the class `Mechanism` |
 //!
 //! Shapes, units and names of Python are the package's business; here arrays are flat.
@@ -15,6 +16,7 @@
 mod error;
 mod film;
 mod fit;
+mod least_squares;
 mod mechanism;
 mod run;
 mod runner;
