@@ -14,12 +14,15 @@ use biela::page::{Place, edit};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
+use crate::attempt::Attempt;
 use crate::error::{Failure, exception};
-use crate::fit::{Attempt, Fit, FreeDriver, Target, Targets};
+use crate::fit::Targets;
+use crate::follower::{Fit, Target};
 use crate::run::{Run, run};
 use crate::runner::Runner;
 use crate::scenario::{Drive, Home, Scenario, Value, parameter};
 use crate::sweep::{Sweep, sweep};
+use crate::timing::FreeDriver;
 
 /// A diagnostic: severity, code, message, help, line and column of the primary place, both from 1.
 type Problem = (
