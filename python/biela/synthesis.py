@@ -55,6 +55,8 @@ class Target:
         if not names or len({array.shape for array in arrays}) != 1 or arrays[0].ndim != 1:
             shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(names, arrays)) or "none"
             raise UsageError(f"target: expected arrays of one length; found {shapes}")
+        if not arrays[0].size or not np.isfinite(arrays).all():
+            raise UsageError(f"target: expected finite values of `{names[0]}` at one pose or more")
         return names, np.array(arrays)
 
 
@@ -71,7 +73,10 @@ def points(
     >>> points("coupler.P", [[3, 3], [2.759, 3.363]], free="crank_angle").values["coupler.P.y"]
     array([3.   , 3.363])
     """
-    x, y = np.asarray(xy, dtype=float).T
+    xy = np.asarray(xy, dtype=float)
+    if xy.ndim != 2 or xy.shape[1] != 2:
+        raise UsageError(f"points: expected rows of x and y; found an array of shape {xy.shape}")
+    x, y = xy.T
     return Target({f"{marker}.x": x, f"{marker}.y": y}, drive or {}, free, weight, in_order)
 
 
@@ -189,6 +194,8 @@ class Problem:
         self.tolerance, self.stop_at = tolerance, stop_at
         self.spent = 0  # Evaluations of attempts that were given up.
         self.targets = [targets] if isinstance(targets, Target) else list(targets)
+        if not self.targets:
+            raise UsageError("targets: there are none")
         self.free = list(free)
         known = mechanism.parameters
         for name in [*self.free, *bounds]:
@@ -197,6 +204,14 @@ class Problem:
                 raise UsageError(f"parameters: {meant}")
         self.own = np.array([known[name].value for name in self.free])
         limits = [bounds.get(name, (known[name].min, known[name].max)) for name in self.free]
+        for name, limit in zip(self.free, limits):
+            expected = f"bounds: expected two numbers for `{name}`, the smaller first; found {limit}"
+            try:
+                low, high = (None if end is None else float(end) for end in limit)
+            except (TypeError, ValueError):
+                raise UsageError(expected) from None
+            if low is not None and high is not None and not low <= high:
+                raise UsageError(expected)
         self.low = np.array([-np.inf if low is None else low for low, _ in limits], dtype=float)
         self.high = np.array([np.inf if high is None else high for _, high in limits], dtype=float)
         # The sizes of the parameters, by which the optimiser scales them.

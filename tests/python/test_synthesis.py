@@ -196,11 +196,18 @@ def test_wrong_targets_are_refused(generator):
         ({"targets": biela.points("coupler.P", TIMED, {"theta": [0.5]})}, "1 values for 5 poses"),
         ({"turns": "thita"}, "did you mean `theta`"),
         ({"starts": 2}, "random starts need limits of r2"),
+        ({"targets": []}, "there are none"),
+        ({"targets": biela.Target({"rocker.phi": []}, free="theta")}, "at one pose or more"),
+        ({"targets": biela.Target({"rocker.phi": [np.nan]}, free="theta")}, "expected finite values"),
+        ({"bounds": {"r2": (2.0, 1.0)}}, "two numbers for `r2`, the smaller first"),
+        ({"bounds": {"r2": ("1*m", 2.0)}}, "two numbers for `r2`"),
         ({"starts": 2, "free": []}, "random starts need the name of a parameter"),
     ]
     for arguments, message in refused:
         with pytest.raises(biela.UsageError, match=message):
             biela.fit(**{"mechanism": generator, "targets": point, "free": ["r2"], **arguments})
+    with pytest.raises(biela.UsageError, match=r"rows of x and y; found an array of shape \(3,\)"):
+        biela.points("coupler.P", [1, 2, 3])
     far = {"mechanism": generator, "targets": point, "free": ["r2"], "bounds": {"r2": (20.0, 21.0)}}
     with pytest.raises(biela.AssemblyError, match="the mechanism cannot close"):
         biela.fit(**far)
