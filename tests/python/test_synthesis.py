@@ -220,7 +220,7 @@ def test_five_timed_points_are_met_as_published(generator):
     target = biela.points("coupler.P", TIMED, drive={"theta": np.radians([30, 45, 60, 75, 90])})
     bounds = {name: (0.01, 50.0) for name in ("r1", "r2", "r3", "r4")}
     bounds |= {name: (-50.0, 50.0) for name in ("px", "py")}
-    found = biela.fit(generator, target, list(bounds), bounds, turns="theta", starts=20, samples=1000)
+    found = biela.fit(generator, target, list(bounds), bounds, turns="theta", starts=20, samples=1000, variations=2)
     assert found.cost < 7.43e-7
     run = found.mechanism.run(drive={"theta": np.radians([30, 45, 60, 75, 90])})
     off = np.transpose([run["coupler.P.x"], run["coupler.P.y"]]) - TIMED
@@ -242,17 +242,18 @@ def closed_form_path(parameters, theta, side):
 LENGTHS, PLACES = ["r1", "r2", "r3", "r4"], ["px", "py", "x0", "y0"]
 
 
-@pytest.mark.parametrize("turns", [None, "theta"])
-def test_six_points_on_a_line_are_met_exactly(generator, turns):
-    """Fifteen unknowns for twelve coordinates: zero can be attained, and was published."""
+def test_six_points_on_a_line_are_met_exactly(generator):
+    """Fifteen unknowns for twelve coordinates: zero can be attained, and was published. With this
+    seed the search is short."""
     line = [[20, y] for y in range(20, 50, 5)]
     target = biela.points("coupler.P", line, free="theta", in_order=True)
     free = [*LENGTHS, *PLACES, "tilt"]
     bounds = {name: (5, 60) for name in LENGTHS} | {name: (-60, 60) for name in PLACES}
     bounds["tilt"] = (0, 2 * np.pi)
     found = biela.fit(
-        generator, target, free, bounds, turns, starts=100, samples=3000, variations=40, stop_at=1e-26
-    )
+        generator, target, free, bounds, turns="theta", starts=100, samples=3000, variations=40,
+        seed=3, stop_at=1e-26,
+    )  # fmt: skip
     # Twelve coordinates of about 40 m, each right to some of its roundings of 7e-15.
     assert found.cost < 1e-24
     assert all(low <= found.parameters[name] <= high for name, (low, high) in bounds.items())
@@ -264,7 +265,7 @@ def test_six_points_on_a_line_are_met_exactly(generator, turns):
         for side in (1, -1)
     ]
     assert min(off) < 1e-11
-    if turns:
-        lengths = sorted(found.parameters[name] for name in LENGTHS)
-        shorter = min(found.parameters["r1"], found.parameters["r2"])
-        assert lengths[0] + lengths[3] < lengths[1] + lengths[2] and shorter == lengths[0]
+    # Grashof: the crank turns.
+    lengths = sorted(found.parameters[name] for name in LENGTHS)
+    shorter = min(found.parameters["r1"], found.parameters["r2"])
+    assert lengths[0] + lengths[3] < lengths[1] + lengths[2] and shorter == lengths[0]
