@@ -72,7 +72,9 @@ class Mechanism:
     def targets(
         self,
         motions: _Motions,
-        targets: Sequence[tuple[int, str | None, Sequence[int], Sequence[float], float]],
+        targets: Sequence[
+            tuple[int, tuple[str, bool] | None, Sequence[int], Sequence[float], float]
+        ],
         free: Sequence[str],
         turns: str | None,
     ) -> Targets: ...
@@ -124,8 +126,19 @@ class Sweep:
 
 class Targets:
     def costs(self, values: Any) -> list[tuple[int, int, float]]: ...
-    def attempt(self, values: Sequence[float], mode: int | None = None) -> Attempt: ...
+    def attempts(self, values: Any, modes: Sequence[int]) -> list[Attempt]: ...
+    def attempt(self, values: Sequence[float]) -> Attempt: ...
+    def improve(
+        self,
+        attempts: Sequence[Attempt],
+        bounds: tuple[Sequence[float], Sequence[float], Sequence[float]],
+        evaluations: int,
+        tolerance: float,
+        stop_at: float,
+    ) -> None: ...
 
 class Attempt:
-    timing: list[float]
+    unknowns: list[float]
+    cost: float
+    evaluations: int
     def evaluate(self, unknowns: Sequence[float]) -> tuple[_Floats, _Floats] | None: ...

@@ -193,7 +193,7 @@ class Mechanism:
         motions = self._motions(t, drive)
         names, units, indices = self._chosen(variables)
         by = [gradient] if isinstance(gradient, str) else list(gradient)
-        raw = self._inner.run(motions, list((parameters or {}).items()), indices, by)
+        raw = self._inner.run(motions, _given(parameters), indices, by)
         rows = raw.rows
         result = Result(
             raw,
@@ -291,7 +291,7 @@ class Mechanism:
         >>> str(four_bar.range("crank_angle").upper)
         'no limit'
         """
-        found = self._inner.range(driver, self._start(drive), list((parameters or {}).items()))
+        found = self._inner.range(driver, self._start(drive), _given(parameters))
         lower, upper, crossings, values, transmission, rcond, poses = found
         return Range(
             driver,
@@ -310,7 +310,7 @@ class Mechanism:
         >>> len(four_bar.modes().others)
         1
         """
-        others, complete = self._inner.modes(self._start(drive), list((parameters or {}).items()))
+        others, complete = self._inner.modes(self._start(drive), _given(parameters))
         pose = lambda q: dict(zip(self.bodies, np.reshape(q, (-1, 3))))
         return Modes(tuple(Mode(pose(q), rcond) for q, rcond in others), complete)
 
@@ -334,7 +334,7 @@ class Mechanism:
         `instant_centres` the instant centre of each body and ground, `forces` arrows for what joints
         and drivers exert, and for springs, dampers and loads.
         """
-        parameters = list((parameters or {}).items())
+        parameters = _given(parameters)
         start = self._start(drive)
         return Drawing(
             self._inner.draw(
@@ -356,7 +356,7 @@ class Mechanism:
         >>> print(longer.check().poses["rocker"].round(4))
         [0.42   0.     2.1897]
         """
-        given = list((parameters or {}).items())
+        given = _given(parameters)
         text = self._inner.edited(self._start(drive), given, None)
         return _reread(text, self._path, self._inner.has_tables)
 
@@ -474,6 +474,20 @@ class Mechanism:
         if missing == 2:
             return [velocity, acceleration]
         return [differentiate(times, given[1])[0]]
+
+
+def _given(parameters: Parameters | None) -> list[tuple[str, float | str]]:
+    """Returns the parameters' names and values."""
+    given: list[tuple[str, float | str]] = []
+    for name, value in (parameters or {}).items():
+        try:
+            given.append((name, value if isinstance(value, str) else float(value)))
+        except (TypeError, ValueError):
+            raise UsageError(
+                f"parameters: `{name}` is no number; expected one or an expression such as "
+                "'120*mm'; `sweep` takes arrays"
+            ) from None
+    return given
 
 
 def _orders(name: str, value: Any) -> list[NDArray]:

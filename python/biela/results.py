@@ -231,6 +231,9 @@ class Range:
         """Whether the driver turns without limit."""
         return self.upper.kind == "turns"
 
+    def __repr__(self) -> str:
+        return f"<biela.Range of {self.driver}: {self.lower} to {self.upper}>"
+
 
 @dataclass(frozen=True)
 class Mode:

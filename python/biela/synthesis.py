@@ -1,7 +1,8 @@
 """Synthesis: parameters with which a mechanism goes through given values.
 
-The optimiser is `scipy.optimize.least_squares` on exact residuals and derivatives of all targets,
-which one call computes. It starts from random variants, assembled in all their assembly modes.
+The method is that of Levenberg and Marquardt, on exact derivatives of all residuals. Free timing
+follows the parameters: each pose is the nearest to its target. The search starts from random
+variants, assembled in all their assembly modes, and from random changes of the best.
 """
 
 from __future__ import annotations
@@ -16,10 +17,18 @@ from . import _biela
 from .errors import AssemblyError, Error, UsageError
 from .mechanism import Drive, Mechanism, _orders, _reread
 
-REFUSED = 1e6
-"""Residual of a mechanism that does not reach a target: the optimiser steps back from it."""
-ROUNDS = ((12, 0.25), (30, 0.25), (100, 0.25), (400, 0.0))
+ROUNDS = ((12, 0.1), (40, 1.0))
 """Evaluations of each attempt in a round, and the part of the attempts that goes on to the next."""
+MOST_VARIED = 20
+"""Largest number of attempts that are varied."""
+VARIANTS = 4
+"""Number of random changes of each of these at a time."""
+CHANGES = (0.01, 0.3)
+"""Smallest and largest standard deviation of random changes, as part of the bounds' width."""
+PATIENCE = 25
+"""Evaluations of each change, which then replaces what it changed or is given up."""
+LAST = 400
+"""Evaluations of the best attempt at the end."""
 
 
 @dataclass(frozen=True)
@@ -29,13 +38,15 @@ class Target:
     `values` are by the names of variables, such as `{"coupler.P.x": […], "coupler.P.y": […]}` for
     points, with `coupler.phi` for poses, or `{"rocker.phi": […]}` for a function. `drive` has the
     drivers' values at these poses. `free` names a driver whose values are free: the points have no
-    timing then. `weight` multiplies the residuals.
+    timing then. With `in_order` these values ascend or descend from pose to pose, within a turn.
+    `weight` multiplies the residuals.
     """
 
     values: Mapping[str, ArrayLike]
     drive: Mapping[str, ArrayLike] = field(default_factory=dict)
     free: str | None = None
     weight: float = 1.0
+    in_order: bool = False
 
     def arrays(self) -> tuple[list[str], NDArray]:
         """Returns the names, and the values by name, then by pose."""
@@ -44,6 +55,8 @@ class Target:
         if not names or len({array.shape for array in arrays}) != 1 or arrays[0].ndim != 1:
             shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(names, arrays)) or "none"
             raise UsageError(f"target: expected arrays of one length; found {shapes}")
+        if not arrays[0].size or not np.isfinite(arrays).all():
+            raise UsageError(f"target: expected finite values of `{names[0]}` at one pose or more")
         return names, np.array(arrays)
 
 
@@ -53,14 +66,18 @@ def points(
     drive: Mapping[str, ArrayLike] | None = None,
     free: str | None = None,
     weight: float = 1.0,
+    in_order: bool = False,
 ) -> Target:
     """Returns the target of a marker that shall go through points, rows of x and y [m].
 
     >>> points("coupler.P", [[3, 3], [2.759, 3.363]], free="crank_angle").values["coupler.P.y"]
     array([3.   , 3.363])
     """
-    x, y = np.asarray(xy, dtype=float).T
-    return Target({f"{marker}.x": x, f"{marker}.y": y}, drive or {}, free, weight)
+    xy = np.asarray(xy, dtype=float)
+    if xy.ndim != 2 or xy.shape[1] != 2:
+        raise UsageError(f"points: expected rows of x and y; found an array of shape {xy.shape}")
+    x, y = xy.T
+    return Target({f"{marker}.x": x, f"{marker}.y": y}, drive or {}, free, weight, in_order)
 
 
 @dataclass(frozen=True)
@@ -94,6 +111,7 @@ def fit(
     turns: str | None = None,
     starts: int = 1,
     samples: int = 2000,
+    variations: int = 10,
     seed: int = 0,
     tolerance: float = 1e-15,
     stop_at: float = 0.0,
@@ -102,8 +120,9 @@ def fit(
 
     Minimises the sum of squared residuals. With `starts = 1` it improves the file's own values.
     With more, the best of `samples` random variants within `bounds` are improved too, in any of
-    their assembly modes; `seed` chooses the variants. Starts that fall behind are given up. It stops
-    early at a cost of `stop_at`.
+    their assembly modes. Starts that fall behind are given up; the others are changed at random and
+    improved again, `variations` times. `seed` chooses variants and changes. It stops early at a cost
+    of `stop_at`.
 
     `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused.
 
@@ -117,19 +136,42 @@ def fit(
     >>> round(found.parameters["crank_length"], 9), round(found.parameters["rocker_length"], 9)
     (0.11, 0.29)
     """
-    problem = Problem(mechanism, targets, free, bounds or {}, turns)
-    attempts = problem.attempts(starts, samples, np.random.default_rng(seed))
-    going_on = attempts
-    for evaluations, part in ROUNDS if len(attempts) > 1 else ROUNDS[-1:]:
-        for attempt in going_on:
-            attempt.improve(evaluations, tolerance)
-            if attempt.cost <= stop_at:
-                break
-        attempts.sort(key=lambda attempt: attempt.cost)
-        if attempts[0].cost <= stop_at:
-            break
-        going_on = attempts[: max(1, round(part * len(going_on)))]
+    problem = Problem(mechanism, targets, free, bounds or {}, turns, tolerance, stop_at)
+    random = np.random.default_rng(seed)
+    attempts = problem.attempts(starts, samples, random)
+    if starts > 1:
+        search(problem, attempts, variations, random)
+    problem.improve(attempts[:1], LAST)
     return problem.fit(attempts)
+
+
+def search(
+    problem: Problem,
+    attempts: list[_biela.Attempt],
+    variations: int,
+    random: np.random.Generator,
+) -> None:
+    """Improves attempts, the best of them longest; the best comes first."""
+    going_on = attempts
+    for evaluations, part in ROUNDS:
+        problem.improve(going_on, evaluations)
+        attempts.sort(key=lambda attempt: attempt.cost)
+        if attempts[0].cost <= problem.stop_at:
+            return
+        going_on = attempts[: max(1, min(MOST_VARIED, round(part * len(attempts))))]
+    varied = len(going_on)
+    for _ in range(variations):
+        children, parents = problem.variants(attempts[:varied], random)
+        problem.improve([attempts[0], *children], PATIENCE)
+        for child, parent in zip(children, parents):
+            if child.cost < attempts[parent].cost:
+                problem.spent += attempts[parent].evaluations
+                attempts[parent] = child
+            else:
+                problem.spent += child.evaluations
+        attempts.sort(key=lambda attempt: attempt.cost)
+        if attempts[0].cost <= problem.stop_at:
+            return
 
 
 class Problem:
@@ -145,9 +187,15 @@ class Problem:
         free: Sequence[str],
         bounds: Mapping[str, tuple[float, float]],
         turns: str | None,
+        tolerance: float = 1e-15,
+        stop_at: float = 0.0,
     ):
         self.mechanism = mechanism
+        self.tolerance, self.stop_at = tolerance, stop_at
+        self.spent = 0  # Evaluations of attempts that were given up.
         self.targets = [targets] if isinstance(targets, Target) else list(targets)
+        if not self.targets:
+            raise UsageError("targets: there are none")
         self.free = list(free)
         known = mechanism.parameters
         for name in [*self.free, *bounds]:
@@ -156,6 +204,14 @@ class Problem:
                 raise UsageError(f"parameters: {meant}")
         self.own = np.array([known[name].value for name in self.free])
         limits = [bounds.get(name, (known[name].min, known[name].max)) for name in self.free]
+        for name, limit in zip(self.free, limits):
+            expected = f"bounds: expected two numbers for `{name}`, the smaller first; found {limit}"
+            try:
+                low, high = (None if end is None else float(end) for end in limit)
+            except (TypeError, ValueError):
+                raise UsageError(expected) from None
+            if low is not None and high is not None and not low <= high:
+                raise UsageError(expected)
         self.low = np.array([-np.inf if low is None else low for low, _ in limits], dtype=float)
         self.high = np.array([np.inf if high is None else high for _, high in limits], dtype=float)
         # The sizes of the parameters, by which the optimiser scales them.
@@ -174,7 +230,8 @@ class Problem:
                     raise UsageError(f"target: {meant}")
             indices = [columns.index(name) for name in names]
             poses, wanted = values.shape[1], values.ravel().tolist()
-            rows.append((poses, target.free, indices, wanted, target.weight))
+            timing = None if target.free is None else (target.free, target.in_order)
+            rows.append((poses, timing, indices, wanted, target.weight))
         drive = self.drive()
         if turns is not None:
             driver = self.driver(turns)
@@ -223,99 +280,91 @@ class Problem:
             drive[name] = tuple(np.concatenate(orders) for orders in zip(*parts))
         return drive
 
-    def attempts(self, count: int, samples: int, random: np.random.Generator) -> list[Attempt]:
+    def attempts(
+        self, count: int, samples: int, random: np.random.Generator
+    ) -> list[_biela.Attempt]:
         """Returns attempts at the file's own values and at the best of random ones."""
         found = []
         try:
-            found.append(Attempt(self, np.clip(self.own, self.low, self.high), None))
+            found.append(self._inner.attempt(np.clip(self.own, self.low, self.high).tolist()))
         except Error:
             if count == 1:
                 raise
         if count > 1:
             infinite = ~np.isfinite(self.high - self.low)
+            if not self.free:
+                raise UsageError("free: random starts need the name of a parameter")
             if infinite.any():
                 unbounded = ", ".join(np.array(self.free)[infinite])
                 raise UsageError(f"bounds: random starts need limits of {unbounded}")
             values = random.uniform(self.low, self.high, (samples, len(self.free)))
             costs = sorted(self._inner.costs(values.ravel()), key=lambda cost: cost[2])
             chosen = costs[: count - 1]
-            found += [Attempt(self, values[variant], mode) for variant, mode, _ in chosen]
+            found += self.begin(values, chosen)
         if not found:
             raise AssemblyError(
                 "fit: no start reaches all targets; give wider bounds or more starts"
             )
         return found
 
-    def fit(self, attempts: Sequence[Attempt]) -> Fit:
+    def begin(
+        self, values: NDArray, chosen: Sequence[tuple[int, int, float]]
+    ) -> list[_biela.Attempt]:
+        """Returns attempts at variants in assembly modes, by their indices."""
+        variants = [variant for variant, _, _ in chosen]
+        modes = [mode for _, mode, _ in chosen]
+        return self._inner.attempts(values[variants].ravel(), modes)
+
+    def variants(
+        self, parents: Sequence[_biela.Attempt], random: np.random.Generator
+    ) -> tuple[list[_biela.Attempt], list[int]]:
+        """Returns attempts at random changes of the parents, each in the assembly mode in which it
+        fits best, and the indices of their parents."""
+        indices = np.repeat(np.arange(len(parents)), VARIANTS)
+        count = len(indices)
+        values = np.array([parent.unknowns[: len(self.free)] for parent in parents])[indices]
+        sizes = np.exp(random.uniform(*np.log(CHANGES), (count, 1)))
+        values += sizes * self.size * random.normal(size=(count, len(self.free)))
+        # What goes beyond a bound is reflected by it.
+        width = self.high - self.low
+        values = np.abs((values - self.low) % (2 * width))
+        values = self.low + np.where(values > width, 2 * width - values, values)
+        best = {}
+        for found in self._inner.costs(values.ravel()):
+            if found[0] not in best or found[2] < best[found[0]][2]:
+                best[found[0]] = found
+        return self.begin(values, list(best.values())), [int(indices[variant]) for variant in best]
+
+    def improve(self, attempts: Sequence[_biela.Attempt], evaluations: int) -> None:
+        """Improves attempts by least squares."""
+        bounds = self.low.tolist(), self.high.tolist(), self.size.tolist()
+        self._inner.improve(list(attempts), bounds, evaluations, self.tolerance, self.stop_at)
+
+    def fit(self, attempts: Sequence[_biela.Attempt]) -> Fit:
         """Returns the mechanism of the first of these attempts."""
         best = attempts[0]
+        unknowns = np.array(best.unknowns)
         # The mechanism goes to the unknowns once more: the last ones tried may be worse.
-        residuals, _ = best.evaluate(best.unknowns)
+        found = best.evaluate(unknowns.tolist())
+        if found is None:
+            raise AssemblyError("fit: the mechanism does not reach all targets")
+        residuals, _ = found
         inner = self.mechanism._inner
-        text = inner.fitted(best._inner, self.free)
+        text = inner.fitted(best, self.free)
         places = np.cumsum([len(self.free)] + [
             poses if target.free is not None else 0
             for target, poses in zip(self.targets, self.poses)
         ])  # fmt: skip
         timing = [
-            best.unknowns[first:last] if target.free is not None else None
+            unknowns[first:last] if target.free is not None else None
             for target, first, last in zip(self.targets, places, places[1:])
         ]
         return Fit(
             _reread(text, self.mechanism._path, inner.has_tables),
-            dict(zip(self.free, best.unknowns.tolist())),
+            dict(zip(self.free, unknowns.tolist())),
             float(residuals @ residuals),
             residuals,
             tuple(timing),
             np.array([attempt.cost for attempt in attempts]),
-            sum(attempt.evaluations for attempt in attempts),
+            self.spent + sum(attempt.evaluations for attempt in attempts),
         )
-
-
-class Attempt:
-    """Unknowns that the optimiser improves from one start, in one assembly mode."""
-
-    def __init__(self, problem: Problem, values: NDArray, mode: int | None):
-        self._inner = problem._inner.attempt(values.tolist(), mode)
-        self.unknowns = np.concatenate([values, self._inner.timing])
-        self.cost = np.inf
-        self.evaluations = 0
-        self.residuals = problem.residuals
-        count = len(values)
-        self.low = np.full(len(self.unknowns), -np.inf)
-        self.high = np.full(len(self.unknowns), np.inf)
-        self.low[:count], self.high[:count] = problem.low, problem.high
-        self.scale = np.ones(len(self.unknowns))
-        self.scale[:count] = problem.size
-        self.last: tuple[bytes, tuple[NDArray, NDArray]] | None = None
-
-    def evaluate(self, unknowns: NDArray) -> tuple[NDArray, NDArray]:
-        """Returns the residuals and their derivatives by the unknowns."""
-        key = unknowns.tobytes()
-        if self.last is None or self.last[0] != key:
-            self.evaluations += 1
-            found = self._inner.evaluate(unknowns.tolist())
-            if found is None:
-                refused = np.full(self.residuals, REFUSED)
-                return refused, np.zeros((self.residuals, len(unknowns)))
-            residuals, derivatives = found
-            self.last = key, (residuals, derivatives.reshape(len(residuals), -1))
-        return self.last[1]
-
-    def improve(self, evaluations: int, tolerance: float) -> None:
-        """Improves the unknowns by least squares."""
-        from scipy.optimize import least_squares
-
-        solution = least_squares(
-            lambda z: self.evaluate(z)[0],
-            # The optimiser starts inside the bounds.
-            np.clip(self.unknowns, self.low, self.high),
-            jac=lambda z: self.evaluate(z)[1],
-            bounds=(self.low, self.high),
-            x_scale=self.scale,
-            xtol=tolerance,
-            ftol=tolerance,
-            gtol=tolerance,
-            max_nfev=evaluations,
-        )
-        self.unknowns, self.cost = solution.x, 2 * solution.cost

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import UsageError
-from .mechanism import Drive, Mechanism, Parameters
+from .mechanism import Drive, Mechanism, Parameters, _given
 from .results import Result, Sweep
 
 MOST_CORNERS = 12
@@ -35,20 +35,29 @@ class Tolerances:
     """Motions of random variants, normally distributed with the tolerances as three standard
     deviations, cut there."""
 
+    def __repr__(self) -> str:
+        tried = sum(0 if sweep is None else sweep.ok.size for sweep in (self.corners, self.samples))
+        return (
+            f"<biela.Tolerances of {', '.join(self.tolerances)}: {len(self.result.t)} rows of "
+            f"{len(self.worst)} variables, {tried} variants>"
+        )
+
     def parts(self, variable: str) -> dict[str, NDArray]:
         """Returns the part of each parameter in the worst case of a variable."""
         gradient = self.result.gradient
         return {n: np.abs(gradient[variable, n]) * t for n, t in self.tolerances.items()}
 
     def extremes(self, variable: str) -> tuple[NDArray, NDArray]:
-        """Returns the smallest and the largest value of a variable over all corners."""
+        """Returns the smallest and the largest value of a variable over all corners; not a number
+        where a corner has stopped."""
         if self.corners is None:
             raise UsageError("tolerances: the corners were not asked for")
         values = self.corners[variable]
         return values.min(axis=0), values.max(axis=0)
 
     def deviation(self, variable: str) -> NDArray:
-        """Returns the standard deviation of a variable over the random variants."""
+        """Returns the standard deviation of a variable over the random variants; not a number where
+        one has stopped."""
         if self.samples is None:
             raise UsageError("tolerances: no samples were asked for")
         return self.samples[variable].std(axis=0)
@@ -60,6 +69,8 @@ class Tolerances:
         """
         import matplotlib.pyplot as pyplot
 
+        if len(self.result.t) < 2:
+            raise UsageError("tolerances: a path needs two poses")
         axes = pyplot.gca() if axes is None else axes
         x, y = self.result[f"{marker}.x"], self.result[f"{marker}.y"]
         along = np.stack([np.gradient(x), np.gradient(y)])
@@ -114,14 +125,18 @@ def tolerance(
             raise UsageError(
                 'no parameter has a tolerance; add for example `tolerance = "0.05*mm"` to one'
             )
-    tolerances = {name: float(value) for name, value in tolerances.items()}
+    tolerances = {name: _size(name, value) for name, value in tolerances.items()}
     names = list(tolerances)
     result = mechanism.run(t, drive, parameters, variables, gradient=names)
     sizes = np.array([tolerances[name] for name in names])
     deviations = np.abs(result.gradient.to_numpy()) * sizes[None, :, None]
     worst = deviations.sum(axis=1)
     statistical = np.sqrt((deviations**2).sum(axis=1))
-    nominal = {name: value for name, value in (parameters or {}).items()}
+    nominal = dict(_given(parameters))
+    if any(isinstance(nominal.get(name), str) for name in names):
+        # Expressions are evaluated, as deviations are added to their values.
+        values = mechanism.changed(nominal).parameters
+        nominal.update((name, values[name].value) for name in names if name in nominal)
     own = np.array([float(nominal.pop(name, known[name].value)) for name in names])
 
     def variants(factors: NDArray) -> Sweep:
@@ -143,3 +158,16 @@ def tolerance(
         variants(signs) if corners else None,
         variants(np.clip(random, -1.0, 1.0)) if samples else None,
     )
+
+
+def _size(name: str, tolerance: float) -> float:
+    """Returns the tolerance of a parameter, a number that is not negative."""
+    try:
+        size = float(tolerance)
+    except (TypeError, ValueError):
+        size = np.nan
+    if not 0 <= size < np.inf:
+        raise UsageError(
+            f"tolerances: `{name}` has {tolerance!r}; expected a number in SI units, not negative"
+        )
+    return size

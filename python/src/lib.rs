@@ -7,19 +7,25 @@
 //! | `runner` | a mechanism that moves along samples |
 //! | `run`, `film` | one motion with its gradients; its animation |
 //! | `sweep` | the same motion of many variants, on all cores |
-//! | `fit` | residuals of targets, with derivatives; costs of many variants |
+//! | `timing`, `follower` | drivers whose values are free; a mechanism that follows targets |
+//! | `least_squares`, `attempt` | the method of least squares; unknowns that it improves |
+//! | `fit` | targets: costs of many variants, attempts |
 //! | `mechanism` | the class `Mechanism` |
 //!
 //! Shapes, units and names of Python are the package's business; here arrays are flat.
 
+mod attempt;
 mod error;
 mod film;
 mod fit;
+mod follower;
+mod least_squares;
 mod mechanism;
 mod run;
 mod runner;
 mod scenario;
 mod sweep;
+mod timing;
 
 use std::ffi::OsString;
 
@@ -47,5 +53,5 @@ fn _biela(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<run::Run>()?;
     module.add_class::<sweep::Sweep>()?;
     module.add_class::<fit::Targets>()?;
-    module.add_class::<fit::Attempt>()
+    module.add_class::<attempt::Attempt>()
 }

@@ -14,12 +14,15 @@ use biela::page::{Place, edit};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
+use crate::attempt::Attempt;
 use crate::error::{Failure, exception};
-use crate::fit::{Attempt, Fit, FreeDriver, Target, Targets};
+use crate::fit::Targets;
+use crate::follower::{Fit, Target};
 use crate::run::{Run, run};
 use crate::runner::Runner;
 use crate::scenario::{Drive, Home, Scenario, Value, parameter};
 use crate::sweep::{Sweep, sweep};
+use crate::timing::FreeDriver;
 
 /// A diagnostic: severity, code, message, help, line and column of the primary place, both from 1.
 type Problem = (
@@ -76,9 +79,9 @@ type ModesRow = (Vec<(Vec<f64>, f64)>, bool);
 /// Times, and motions of drivers.
 type Motions = (Vec<f64>, Vec<(String, Drive)>);
 
-/// A target of a fit: number of poses, driver whose values are free, columns, values wanted by
-/// column, then by pose, and the factor of its residuals.
-type TargetRow = (usize, Option<String>, Vec<usize>, Vec<f64>, f64);
+/// A target of a fit: number of poses, driver whose values are free and whether they are in order,
+/// columns, values wanted by column, then by pose, and the factor of its residuals.
+type TargetRow = (usize, Option<(String, bool)>, Vec<usize>, Vec<f64>, f64);
 
 /// Contents of a drawing: traces, number of poses, driver that moves, dimensions, instant centres,
 /// forces.
@@ -296,8 +299,9 @@ impl Mechanism {
             let mut rows = 0;
             let targets = targets.into_iter();
             let targets = targets.map(|(poses, timing, columns, wanted, weight)| {
-                let timing =
-                    timing.map(|name| FreeDriver::new(&self.model, self.driver_named(&name)?));
+                let timing = timing.map(|(name, in_order)| {
+                    FreeDriver::new(&self.model, self.driver_named(&name)?, in_order)
+                });
                 rows += poses;
                 Ok(Target {
                     rows: rows - poses..rows,

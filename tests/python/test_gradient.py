@@ -13,10 +13,11 @@ from numpy.testing import assert_allclose
 
 # Central differences of order 8: the weights of f(+kh) − f(−kh).
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
-STEP = 2e-3
-"""Step of the differences, relative. The truncation is of order STEP^8 = 3e-22, the rounding
-1e-16 / STEP = 5e-14 times the condition of positions; rates lose some digits more."""
-TOLERANCE = 1e-8
+STEP = 1e-3
+"""Step of the differences, relative. The truncation is of order STEP^8 = 1e-24 times the ninth
+derivative, which a mechanism near a dead point has large; the rounding is 1e-16 / STEP = 1e-13
+times the condition of positions, and rates lose some digits more."""
+TOLERANCE = 1e-10
 TIMES = np.array([0.037, 0.353, 0.617, 0.911])
 """Times away from those at which the pieces of a prescribed motion meet, for all periods tried."""
 
@@ -38,25 +39,15 @@ def test_gradients_are_those_of_differences(any_mechanism):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", biela.MechanismWarning)
         result = any_mechanism.run(t=t, drive=drive, gradient=[p.name for p in free])
-        compared = 0
         for place, parameter in enumerate(free):
             scale = max(abs(parameter.value), 0.01)
-            low, high = parameter.value - 4 * STEP * scale, parameter.value + 4 * STEP * scale
-            if low < (parameter.min or -np.inf) or high > (parameter.max or np.inf):
-                continue
-            try:
-                expected = differences(
-                    any_mechanism, parameter.name, parameter.value, scale, t=t, drive=drive
-                )
-            except (biela.AssemblyError, biela.StoppedError):
-                # A redundant mechanism closes for its own numbers only.
-                continue
+            expected = differences(
+                any_mechanism, parameter.name, parameter.value, scale, t=t, drive=drive
+            )
             found = result.gradient.to_numpy()[:, place]
             # Each variable by its own size, and by that of its gradient.
             size = np.abs(result.to_numpy()).max(axis=0) / scale + np.abs(expected).max(axis=0)
             assert np.all(np.abs(found - expected) <= TOLERANCE * (size + 1)), parameter.name
-            compared += 1
-    assert compared or not free
 
 
 def test_a_four_bar_by_its_lengths_in_fifty_digits(four_bar):

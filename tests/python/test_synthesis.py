@@ -5,8 +5,9 @@ from __future__ import annotations
 import biela
 import numpy as np
 import pytest
-from biela.synthesis import Attempt, Problem
+from biela.synthesis import Problem
 from numpy.testing import assert_allclose
+from scipy.optimize import least_squares
 from shipped import ROOT
 
 DRIVE = {"crank_angle": np.linspace(1.0, 6.0, 11)}
@@ -47,15 +48,20 @@ def test_derivatives_are_those_of_the_residuals(four_bar):
         biela.Target({"rocker.omega": [0.1]}, drive={"crank_angle": ([2.0], 4.0)}),
     ]
     problem = Problem(four_bar, targets, ["base", "crank_length"], {}, None)
-    attempt = Attempt(problem, problem.own, None)
-    at = attempt.unknowns
+    attempt = problem._inner.attempt(problem.own.tolist())
+    at = np.array(attempt.unknowns)
+
+    def evaluate(unknowns):
+        found, derivatives = attempt.evaluate(unknowns.tolist())
+        return found, derivatives.reshape(len(found), -1)
+
     assert len(at) == 4
-    residuals, derivatives = attempt.evaluate(at)
+    residuals, derivatives = evaluate(at)
     assert residuals.shape == (9,) and derivatives.shape == (9, 4)
     step = 1e-6
     for unknown in range(4):
         off = step * np.eye(4)[unknown]
-        up, down = (attempt.evaluate(at + sign * off)[0] for sign in (1, -1))
+        up, down = (evaluate(at + sign * off)[0] for sign in (1, -1))
         # Third derivatives are of order 1e3 per metre cubed, and 1e4 for the velocity; rounding of
         # 1e-15 over the step is of the same size.
         assert_allclose(derivatives[:, unknown], (up - down) / (2 * step), atol=1e-7)
@@ -96,6 +102,91 @@ def test_a_fit_is_the_same_each_time(generator):
     assert np.all(np.diff(runs[0].costs) >= 0)
 
 
+def test_a_minimum_within_bounds_is_that_of_scipy(generator):
+    """SciPy's method for bounds follows other steps, with the same residuals and derivatives. At the
+    minimum a bound is active, and the cost is far from zero."""
+    drive = {"theta": np.radians([30, 45, 60, 75, 90])}
+    free = ["r2", "r3", "r4", "px", "py"]
+    low, high = np.array([0.5, 1.0, 1.0, 0.1, 0.1]), np.array([2.0, 4.0, 4.0, 1.2, 3.0])
+    problem = Problem(generator, biela.points("coupler.P", TIMED, drive), free, dict(zip(free, zip(low, high))), None)
+    attempt = problem._inner.attempt(problem.own.tolist())
+    reference = problem._inner.attempt(problem.own.tolist())
+
+    def linearised(unknowns):
+        residuals, derivatives = reference.evaluate(unknowns.tolist())
+        return residuals, derivatives.reshape(len(residuals), -1)
+
+    expected = least_squares(
+        lambda at: linearised(at)[0], problem.own, jac=lambda at: linearised(at)[1],
+        bounds=(low, high), x_scale=high - low, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=1000,
+    )  # fmt: skip
+    problem.improve([attempt], 400)
+    found = np.array(attempt.unknowns)
+    assert np.all((low <= found) & (found <= high)) and attempt.cost > 1e-3
+    # SciPy stays inside its bounds by a part of the last steps.
+    assert_allclose(attempt.cost, 2 * expected.cost, rtol=1e-6)
+    assert attempt.cost <= 2 * expected.cost * (1 + 1e-12)
+    # Kuhn and Tucker: the cost grows from an active bound inwards, and is level elsewhere.
+    residuals, derivatives = linearised(found)
+    slopes = (high - low) * (derivatives.T @ residuals)
+    at_low, at_high = found == low, found == high
+    assert (at_low | at_high).any()
+    assert np.all(slopes[at_low] >= 0) and np.all(slopes[at_high] <= 0)
+    # A cost that is right to rounding is flat within the root of rounding.
+    level = ~(at_low | at_high)
+    columns = np.linalg.norm((high - low) * derivatives, axis=0)[level]
+    assert np.all(np.abs(slopes[level]) <= 1e-7 * columns * np.sqrt(attempt.cost))
+
+
+def test_free_values_in_order_are_the_best_of_all(generator):
+    """The first timing of three points, which a full turn passes in another order, against all
+    choices among 36 poses of a turn."""
+    xy = generator.run(drive={"theta": [0.3, 2.5, 1.2]}, variables=["coupler.P"])
+    points = np.transpose([xy["coupler.P.x"], xy["coupler.P.y"]])
+    start = generator.drivers["theta"].start
+    turn = start + 2 * np.pi * np.arange(36) / 36
+    path = generator.run(drive={"theta": turn}, variables=["coupler.P"])
+    path = np.transpose([path["coupler.P.x"], path["coupler.P.y"]])
+    gaps = ((path[None] - points[:, None]) ** 2).sum(axis=2)
+    i, j, k = np.meshgrid(*[np.arange(36)] * 3, indexing="ij")
+    sums = gaps[0][i] + gaps[1][j] + gaps[2][k]
+    ascends = (j - i) % 36 <= (k - i) % 36
+    descends = (i - j) % 36 <= (i - k) % 36
+    for in_order, allowed in [(False, sums < np.inf), (True, ascends | descends)]:
+        target = biela.points("coupler.P", points, free="theta", in_order=in_order)
+        problem = Problem(generator, target, ["r2"], {}, None)
+        own = generator.parameters["r2"].value
+        found = [cost for _, _, cost in problem._inner.costs([own])]
+        # The other assembly mode has a cost too. Rounding of a few 1e-15 in squares of some metres.
+        assert min(abs(cost - sums[allowed].min()) for cost in found) < 1e-12
+
+
+@pytest.mark.parametrize("in_order", [False, True])
+def test_points_are_passed_in_order_where_asked_for(generator, in_order):
+    """Points of a known path in another order: met without an order only."""
+    path = generator.run(drive={"theta": [0.3, 2.5, 1.2, 4.0]}, variables=["coupler.P"])
+    points = np.transpose([path["coupler.P.x"], path["coupler.P.y"]])
+    target = biela.points("coupler.P", points, free="theta", in_order=in_order)
+    bounds = {"r2": (0.9, 1.1), "r3": (2.9, 3.1)}
+    found = biela.fit(generator, target, list(bounds), bounds, starts=4, samples=20, variations=2)
+    (timing,) = found.timing
+    steps = np.diff(timing)
+    ordered = np.all(steps >= 0) or np.all(steps <= 0)
+    assert ordered == in_order and (found.cost < 1e-24) == (not in_order)
+    assert np.ptp(timing) <= 2 * np.pi * (1 + 1e-15) or not in_order
+
+
+def test_free_values_stay_within_the_drivers_limits(mechanism):
+    text = mechanism("four_bar").text.replace('start = "60*deg"', 'start = "60*deg", min = "50*deg", max = "80*deg"')
+    limited = biela.loads(text)
+    assert limited.drivers["crank_angle"].max == pytest.approx(np.radians(80))
+    target = biela.Target({"rocker.phi": [2.0, 2.2, 2.6]}, free="crank_angle")
+    found = biela.fit(limited, target, free=["base"], bounds={"base": (0.39, 0.41)})
+    (timing,) = found.timing
+    assert np.all((np.radians(50) <= timing) & (timing <= np.radians(80)))
+    assert timing[2] == np.radians(80) and found.cost > 1e-3
+
+
 def test_wrong_targets_are_refused(generator):
     point = biela.points("coupler.P", TIMED[:2], drive={"theta": [0.5, 1.0]})
     refused = [
@@ -105,10 +196,18 @@ def test_wrong_targets_are_refused(generator):
         ({"targets": biela.points("coupler.P", TIMED, {"theta": [0.5]})}, "1 values for 5 poses"),
         ({"turns": "thita"}, "did you mean `theta`"),
         ({"starts": 2}, "random starts need limits of r2"),
+        ({"targets": []}, "there are none"),
+        ({"targets": biela.Target({"rocker.phi": []}, free="theta")}, "at one pose or more"),
+        ({"targets": biela.Target({"rocker.phi": [np.nan]}, free="theta")}, "expected finite values"),
+        ({"bounds": {"r2": (2.0, 1.0)}}, "two numbers for `r2`, the smaller first"),
+        ({"bounds": {"r2": ("1*m", 2.0)}}, "two numbers for `r2`"),
+        ({"starts": 2, "free": []}, "random starts need the name of a parameter"),
     ]
     for arguments, message in refused:
         with pytest.raises(biela.UsageError, match=message):
             biela.fit(**{"mechanism": generator, "targets": point, "free": ["r2"], **arguments})
+    with pytest.raises(biela.UsageError, match=r"rows of x and y; found an array of shape \(3,\)"):
+        biela.points("coupler.P", [1, 2, 3])
     far = {"mechanism": generator, "targets": point, "free": ["r2"], "bounds": {"r2": (20.0, 21.0)}}
     with pytest.raises(biela.AssemblyError, match="the mechanism cannot close"):
         biela.fit(**far)
@@ -121,9 +220,52 @@ def test_five_timed_points_are_met_as_published(generator):
     target = biela.points("coupler.P", TIMED, drive={"theta": np.radians([30, 45, 60, 75, 90])})
     bounds = {name: (0.01, 50.0) for name in ("r1", "r2", "r3", "r4")}
     bounds |= {name: (-50.0, 50.0) for name in ("px", "py")}
-    found = biela.fit(generator, target, list(bounds), bounds, turns="theta", starts=20, samples=1000)
+    found = biela.fit(generator, target, list(bounds), bounds, turns="theta", starts=20, samples=1000, variations=2)
     assert found.cost < 7.43e-7
     run = found.mechanism.run(drive={"theta": np.radians([30, 45, 60, 75, 90])})
     off = np.transpose([run["coupler.P.x"], run["coupler.P.y"]]) - TIMED
     # The residuals are of the order of 1e-4; rounding of 1e-14 in them.
     assert_allclose((off**2).sum(), found.cost, rtol=1e-9)
+
+
+def closed_form_path(parameters, theta, side):
+    """Returns the coupler point of a four-bar linkage by the intersection of two circles."""
+    r1, r2, r3, r4, px, py, x0, y0, tilt = parameters
+    crank = r2 * np.exp(1j * theta)
+    diagonal = r1 - crank
+    length = np.abs(diagonal)
+    cosine = (r3**2 + length**2 - r4**2) / (2 * r3 * length)
+    coupler = diagonal / length * (cosine + side * 1j * np.sqrt(1 - cosine**2))
+    return x0 + 1j * y0 + np.exp(1j * tilt) * (crank + (px + 1j * py) * coupler)
+
+
+LENGTHS, PLACES = ["r1", "r2", "r3", "r4"], ["px", "py", "x0", "y0"]
+
+
+def test_six_points_on_a_line_are_met_exactly(generator):
+    """Fifteen unknowns for twelve coordinates: zero can be attained, and was published. With this
+    seed the search is short."""
+    line = [[20, y] for y in range(20, 50, 5)]
+    target = biela.points("coupler.P", line, free="theta", in_order=True)
+    free = [*LENGTHS, *PLACES, "tilt"]
+    bounds = {name: (5, 60) for name in LENGTHS} | {name: (-60, 60) for name in PLACES}
+    bounds["tilt"] = (0, 2 * np.pi)
+    found = biela.fit(
+        generator, target, free, bounds, turns="theta", starts=100, samples=3000, variations=40,
+        seed=3, stop_at=1e-26,
+    )  # fmt: skip
+    # Twelve coordinates of about 40 m, each right to some of its roundings of 7e-15.
+    assert found.cost < 1e-24
+    assert all(low <= found.parameters[name] <= high for name, (low, high) in bounds.items())
+    (timing,) = found.timing
+    assert np.all(np.diff(timing) > 0) or np.all(np.diff(timing) < 0)
+    wanted = np.array(line) @ [1, 1j]
+    off = [
+        np.abs(closed_form_path(found.parameters.values(), timing, side) - wanted).max()
+        for side in (1, -1)
+    ]
+    assert min(off) < 1e-11
+    # Grashof: the crank turns.
+    lengths = sorted(found.parameters[name] for name in LENGTHS)
+    shorter = min(found.parameters["r1"], found.parameters["r2"])
+    assert lengths[0] + lengths[3] < lengths[1] + lengths[2] and shorter == lengths[0]

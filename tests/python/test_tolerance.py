@@ -43,6 +43,73 @@ def test_tolerances_come_from_the_file(four_bar):
         biela.tolerance(four_bar, drive=DRIVE)
 
 
+def test_expressions_are_nominal_values_too(four_bar):
+    found, expected = (
+        biela.tolerance(
+            four_bar, drive=DRIVE, tolerances=TOLERANCES, corners=True, samples=3,
+            parameters={"base": base, "coupler_length": length}, variables=["rocker.phi"],
+        )
+        for base, length in [("410*mm", "0.26"), (0.41, 0.26)]
+    )  # fmt: skip
+    assert_allclose(found.worst["rocker.phi"], expected.worst["rocker.phi"], rtol=1e-14)
+    # The two values may differ by a rounding.
+    assert_allclose(found.extremes("rocker.phi"), expected.extremes("rocker.phi"), rtol=1e-14)
+    assert repr(found) == "<biela.Tolerances of crank_length, base: 11 rows of 1 variables, 7 variants>"
+
+
+def test_wrong_tolerances_are_refused(four_bar):
+    for size in (-1e-5, np.nan, "0.05*mm"):
+        with pytest.raises(biela.UsageError, match="expected a number in SI units, not negative"):
+            biela.tolerance(four_bar, drive=DRIVE, tolerances={"base": size})
+    single = biela.tolerance(four_bar, drive={"crank_angle": [1.0]}, tolerances=TOLERANCES)
+    with pytest.raises(biela.UsageError, match="a path needs two poses"):
+        single.plot("coupler.P")
+    with pytest.raises(biela.UsageError, match="`base` is no number"):
+        biela.tolerance(four_bar, drive=DRIVE, tolerances=TOLERANCES, parameters={"base": [0.4, 0.41]})
+
+
+def test_corners_that_stop_leave_no_extremes(four_bar):
+    """At base 0.55 the crank meets a dead point: coupler and rocker reach 0.55 together."""
+    found = biela.tolerance(
+        four_bar, drive=DRIVE, tolerances={"base": 0.15}, corners=True, samples=50, variables=["rocker.phi"]
+    )
+    assert list(found.corners.ok) == [True, False]
+    low, high = found.extremes("rocker.phi")
+    reached = found.corners.rows.min()
+    assert 0 < reached < 11
+    assert np.isfinite(low[:reached]).all() and np.isnan(high[reached:]).all()
+    assert np.isnan(found.deviation("rocker.phi")[-1])
+
+
+def test_the_band_is_the_worst_case_along_the_normal(four_bar):
+    """The band of the path is as wide as the largest deviation of any corner across the path."""
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    import matplotlib.pyplot as pyplot
+
+    theta = np.linspace(0, 2 * np.pi, 361)
+    scale = 20.0
+    found = biela.tolerance(
+        four_bar, drive={"crank_angle": theta}, tolerances=TOLERANCES, corners=True, variables=["coupler.P"]
+    )
+    _, axes = pyplot.subplots()
+    found.plot("coupler.P", axes=axes, scale=scale)
+    (band,) = axes.patches
+    (line,) = axes.lines
+    path = np.transpose([found.result["coupler.P.x"], found.result["coupler.P.y"]])
+    assert_allclose(line.get_xydata(), path, rtol=1e-15)
+    edges = band.get_xy()[: 2 * len(path)]
+    outer, inner = edges[: len(path)], edges[len(path) :][::-1]
+    assert_allclose((outer + inner) / 2, path, atol=1e-15)
+    normal = (outer - inner) / np.linalg.norm(outer - inner, axis=1)[:, None]
+    corners = np.stack([found.corners["coupler.P.x"], found.corners["coupler.P.y"]], axis=-1)
+    across = np.abs(((corners - path) * normal).sum(axis=-1)).max(axis=0)
+    width = np.linalg.norm(outer - inner, axis=1) / 2 / scale
+    # Second derivatives are of order 100 per metre squared: 100 (7e-5)^2 = 5e-7.
+    assert_allclose(across, width, atol=5e-7)
+    pyplot.close("all")
+
+
 def test_a_changed_file_keeps_its_comments(four_bar):
     changed = four_bar.changed({"base": 0.41}, drive={"crank_angle": 1.0})
     assert changed.parameters["base"].value == 0.41

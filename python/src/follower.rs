@@ -1,0 +1,312 @@
+//! A mechanism that follows targets.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use biela::cli::check_parameter;
+use biela::kinematics::{Direction, Output, Pose};
+use biela::mechanism::{DriverId, Jet, ParameterId};
+
+use crate::error::Failure;
+use crate::runner::Runner;
+use crate::scenario::Scenario;
+use crate::timing::{FreeDriver, STEPS};
+
+/// Largest number of steps to the nearest pose to a target.
+const NEARER: usize = 2;
+/// Decrease of the gap to a target, as part of it, that is worth a step.
+const WORTH: f64 = 1e-3;
+
+/// Values that variables shall take at rows of a motion.
+pub(crate) struct Target {
+    /// The rows of the scenario, one per pose.
+    pub(crate) rows: Range<usize>,
+    /// The driver whose values at these rows are free; those of the scenario are where the search
+    /// for them begins.
+    pub(crate) timing: Option<FreeDriver>,
+    pub(crate) columns: Vec<Output>,
+    /// The values wanted, by column, then by row.
+    pub(crate) wanted: Vec<f64>,
+    /// Factor of the residuals.
+    pub(crate) weight: f64,
+}
+
+/// All targets of a fit. The unknowns are the free parameters, then the free values of drivers.
+pub(crate) struct Fit {
+    pub(crate) scenario: Scenario,
+    pub(crate) targets: Vec<Target>,
+    pub(crate) free: Vec<ParameterId>,
+    /// The directions in which each of these grows.
+    pub(crate) directions: Vec<Direction>,
+    /// The driver that shall turn fully.
+    pub(crate) turns: Option<DriverId>,
+}
+
+impl Fit {
+    pub(crate) fn new(
+        scenario: Scenario,
+        targets: Vec<Target>,
+        free: Vec<ParameterId>,
+        turns: Option<DriverId>,
+    ) -> Self {
+        let directions = free
+            .iter()
+            .map(|p| Direction::by_parameter(&scenario.own, *p));
+        Self {
+            directions: directions.collect(),
+            scenario,
+            targets,
+            free,
+            turns,
+        }
+    }
+}
+
+/// The cause why a variant has no residuals.
+pub(crate) struct Refused;
+
+/// A mechanism that follows the targets.
+pub(crate) struct Follower {
+    pub(crate) fit: Arc<Fit>,
+    pub(crate) runner: Runner<Box<Scenario>>,
+}
+
+impl Follower {
+    pub(crate) fn new(fit: &Arc<Fit>) -> Result<Self, Failure> {
+        let targets = fit.targets.iter();
+        let columns: Vec<Output> = targets.flat_map(|t| t.columns.iter().cloned()).collect();
+        let scenario = Box::new(fit.scenario.clone());
+        let mut runner = Runner::new(scenario, &columns)?;
+        runner.gives_up = true;
+        Ok(Self {
+            fit: Arc::clone(fit),
+            runner,
+        })
+    }
+
+    /// Returns all parameters in force for values of the free ones.
+    pub(crate) fn parameters(&self, values: &[f64]) -> Result<Vec<f64>, String> {
+        let own = &self.fit.scenario.own;
+        let mut parameters = own.default_parameters();
+        for (&id, &value) in self.fit.free.iter().zip(values) {
+            check_parameter(own, id, value)?;
+            parameters[id.index()] = value;
+        }
+        own.derive_parameters(&mut parameters);
+        Ok(parameters)
+    }
+
+    /// Returns the costs of a variant in each of its assembly modes that reach all targets.
+    pub(crate) fn costs(&mut self, values: &[f64]) -> Vec<(usize, f64)> {
+        let Ok(parameters) = self.parameters(values) else {
+            return Vec::new();
+        };
+        self.forget_timing();
+        let poses = self.runner.poses(0, &parameters);
+        let mut costs = Vec::with_capacity(poses.len());
+        for (mode, pose) in poses.iter().enumerate() {
+            self.forget_timing();
+            self.runner.return_to(pose);
+            if let Ok((cost, _)) = self.place()
+                && cost.is_finite()
+            {
+                costs.push((mode, cost));
+            }
+        }
+        costs
+    }
+
+    /// Sets the free values of drivers to where the search for them begins.
+    fn forget_timing(&mut self) {
+        let Self { fit, runner } = self;
+        runner.scenario.samples.clone_from(&fit.scenario.samples);
+    }
+
+    /// Follows the targets from the present pose. Returns the sum of squared residuals, and the
+    /// free values of drivers, which are those of the nearest poses.
+    pub(crate) fn place(&mut self) -> Result<(f64, Vec<f64>), Refused> {
+        let fit = Arc::clone(&self.fit);
+        self.check_turn()?;
+        let mut cost = 0.0;
+        let mut free_values = Vec::new();
+        for target in &fit.targets {
+            match &target.timing {
+                None => {
+                    for (pose, row) in target.rows.clone().enumerate() {
+                        self.go(row)?;
+                        cost += target.gap(pose, &self.values(target));
+                    }
+                }
+                Some(timing) => {
+                    let mut curve = self.scan(target, timing)?;
+                    curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    let gaps = (0..target.rows.len()).map(|pose| {
+                        let gaps = curve.iter().map(|(_, values)| target.gap(pose, values));
+                        gaps.collect()
+                    });
+                    let gaps: Vec<Vec<f64>> = gaps.collect();
+                    let values: Vec<f64> = curve.iter().map(|(at, _)| *at).collect();
+                    let (sum, timing) = timing.nearest(&values, &gaps);
+                    cost += sum;
+                    free_values.extend(timing);
+                }
+            }
+        }
+        Ok((cost, free_values))
+    }
+
+    /// Returns the values of a target's variables along the motion of its free driver, from the
+    /// present pose both ways: over a turn, or between the driver's limits.
+    fn scan(
+        &mut self,
+        target: &Target,
+        timing: &FreeDriver,
+    ) -> Result<Vec<(f64, Vec<f64>)>, Refused> {
+        let row = target.rows.start;
+        self.go(row)?;
+        let middle = self.runner.solver.pose().clone();
+        let start = middle.drivers[timing.driver.index()];
+        let [low, high] = timing.bounds;
+        let mut curve = vec![(start, self.values(target))];
+        for step in [timing.step, -timing.step] {
+            self.runner.return_to(&middle);
+            let mut at = start + step;
+            while curve.len() <= STEPS && (low..=high).contains(&at) {
+                self.set_value(row, timing.driver, at);
+                if self.go(row).is_err() {
+                    break;
+                }
+                curve.push((at, self.values(target)));
+                at += step;
+            }
+        }
+        Ok(curve)
+    }
+
+    /// Sets the value of a driver at a row.
+    pub(crate) fn set_value(&mut self, row: usize, driver: DriverId, value: f64) {
+        let samples = self.runner.scenario.samples.iter_mut();
+        for samples in samples.filter(|samples| samples.driver == driver) {
+            samples.set(row, value);
+        }
+    }
+
+    /// Moves on to a row, and solves the rates there.
+    pub(crate) fn go(&mut self, row: usize) -> Result<(), Refused> {
+        self.runner.advance_to(row).map_err(|_| Refused)?;
+        self.runner.solve(row).map_err(|_| Refused)
+    }
+
+    /// Returns the values of a target's variables.
+    pub(crate) fn values(&self, target: &Target) -> Vec<f64> {
+        let columns = target.columns.iter();
+        columns.map(|column| self.runner.value(column)).collect()
+    }
+
+    /// Refuses a mechanism whose driver does not turn fully; goes back to the present pose.
+    pub(crate) fn check_turn(&mut self) -> Result<(), Refused> {
+        let Some(driver) = self.fit.turns else {
+            return Ok(());
+        };
+        let pose = self.runner.solver.pose().clone();
+        let turns = self.runner.turns(driver);
+        self.runner.return_to(&pose);
+        if turns { Ok(()) } else { Err(Refused) }
+    }
+
+    /// Sets the timing of all targets, which stands behind the free parameters.
+    pub(crate) fn set_timing(&mut self, unknowns: &[f64]) {
+        let fit = Arc::clone(&self.fit);
+        let mut values = unknowns[fit.free.len()..].iter();
+        for target in &fit.targets {
+            if let Some(timing) = &target.timing {
+                for (row, value) in target.rows.clone().zip(&mut values) {
+                    self.set_value(row, timing.driver, *value);
+                }
+            }
+        }
+    }
+
+    /// Goes to the pose that is nearest to a target's pose, by steps of Gauss and Newton from the
+    /// pose at its row, within a range of the free driver. Returns its value there.
+    pub(crate) fn go_nearer(
+        &mut self,
+        target: &Target,
+        timing: &FreeDriver,
+        pose: usize,
+        (start, [low, high]): (f64, [f64; 2]),
+    ) -> Result<f64, Refused> {
+        let row = target.rows.start + pose;
+        let mut value = start;
+        let mut values = self.values(target);
+        let mut gap = target.gap(pose, &values);
+        let mut changes = Vec::with_capacity(values.len());
+        let mut along = Direction::zero(&self.fit.scenario.own);
+        along.drivers[timing.driver.index()] = Jet::constant(1.0);
+        for _ in 0..NEARER {
+            changes.clear();
+            let along = std::slice::from_ref(&along);
+            let differentiated = (self.runner).differentiate(&target.columns, along, &mut changes);
+            differentiated.map_err(|_| Refused)?;
+            let (mut slope, mut steepness) = (0.0, 0.0);
+            for (column, (value, change)) in values.iter().zip(&changes).enumerate() {
+                let weight = target.weight * target.weight;
+                slope += weight * change * (value - target.wanted[target.index(column, pose)]);
+                steepness += weight * change * change;
+            }
+            // The driver may have no effect.
+            if slope * slope <= WORTH * gap * steepness {
+                break;
+            }
+            let step = (-slope / steepness).clamp(-timing.step, timing.step);
+            let next = (value + step).clamp(low, high);
+            let before = self.runner.solver.pose().clone();
+            self.set_value(row, timing.driver, next);
+            if self.go(row).is_ok() {
+                let tried = self.values(target);
+                let nearer = target.gap(pose, &tried);
+                if nearer < gap {
+                    (value, values, gap) = (next, tried, nearer);
+                    continue;
+                }
+            }
+            self.runner.return_to(&before);
+            self.set_value(row, timing.driver, value);
+            self.runner.solve(row).map_err(|_| Refused)?;
+            break;
+        }
+        Ok(value)
+    }
+
+    /// Returns the pose at the file's start values of the drivers, or `base` if they cannot be
+    /// reached.
+    pub(crate) fn at_home(&mut self, base: &Pose) -> Pose {
+        self.runner.return_to(base);
+        let home = self.fit.scenario.home.0.drivers.clone();
+        for (index, value) in home.into_iter().enumerate() {
+            self.set_value(0, DriverId(index), value);
+        }
+        let reached = self.runner.advance_to(0);
+        self.forget_timing();
+        match reached {
+            Ok(()) => self.runner.solver.pose().clone(),
+            Err(_) => base.clone(),
+        }
+    }
+}
+
+impl Target {
+    /// Returns the index of a value wanted.
+    pub(crate) fn index(&self, column: usize, pose: usize) -> usize {
+        column * self.rows.len() + pose
+    }
+
+    /// Returns the sum of squared residuals at a pose.
+    pub(crate) fn gap(&self, pose: usize, values: &[f64]) -> f64 {
+        let squares = values.iter().enumerate().map(|(column, value)| {
+            let residual = self.weight * (value - self.wanted[self.index(column, pose)]);
+            residual * residual
+        });
+        squares.sum()
+    }
+}
