@@ -40,15 +40,21 @@ impl Constraint for Projection {
     }
 
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        self.value_and_gradient(at, row);
+    }
+
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let (i, j, k) = (
             at.marker(self.from),
             at.marker(self.to),
             at.marker(self.axes),
         );
-        let e = self.direction(at);
+        let e = self.axis.of(k.axis);
+        let d = j.point - i.point;
         row.add_point(j, e);
         row.add_point(i, -e);
-        row.add_direction(k, perp(e).dot(&(j.point - i.point)));
+        row.add_direction(k, perp(e).dot(&d));
+        e.dot(&d)
     }
 
     /// Returns ë · d + 2 ė · ḋ + e · d̈ with ė = omega_k perp(e) and, for q̈ = 0, ë = −omega_k² e.
