@@ -142,7 +142,13 @@ impl SolveBlock for CoupledBlock {
         100.0 * order + 0.1 * inverse
     }
 
-    fn set_parameters(&mut self, at: &Configuration, _targets: &Targets, _pivots: &mut Pivots) {
+    fn set_parameters(
+        &mut self,
+        _system: &System,
+        at: &Configuration,
+        _targets: &Targets,
+        _pivots: &mut Pivots,
+    ) {
         self.forget_proofs();
         self.equations.set_size(at.size());
         let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());

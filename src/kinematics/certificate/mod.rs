@@ -22,7 +22,7 @@
 //!
 //! A test is *proved* unless [`StepBounds::checked`] says that some bound in it was an estimate:
 //! the norm of an inverse that is too large to be written down, or the effect of moving
-//! parameters on the equations of a block without straight code.
+//! parameters on the equations of a block without straight code or on a linear row.
 
 mod parameters;
 #[cfg(test)]

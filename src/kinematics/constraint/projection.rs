@@ -2,7 +2,9 @@
 
 use nalgebra::Vector2;
 
-use super::definition::{Axis, Constraint, Dimension, Incidence, axis_components};
+use super::definition::{
+    Axis, Constraint, Dimension, Incidence, axis_components, is_origin_or_ground,
+};
 use super::gradient::Gradient;
 use super::point::{angular_velocity, centripetal, point_velocity};
 use super::region::{Region, centripetal_bound, speed_bound};
@@ -75,6 +77,15 @@ impl Constraint for Projection {
     fn along(&self, at: &VariedConfiguration) -> Varied {
         let d = subtract(at.marker(self.to).point, at.marker(self.from).point);
         dot(self.axis.of_varied(at.marker(self.axes).axis), d)
+    }
+
+    /// Returns true for points that no angle moves on an axis at rest with literal components.
+    fn is_linear(&self, mechanism: &Mechanism) -> bool {
+        let axes = &mechanism.markers[self.axes.index()];
+        let rests = axes.body.is_none() && axes.angle.literal().is_some();
+        rests
+            && [self.from, self.to].map(|marker| is_origin_or_ground(mechanism, marker))
+                == [true; 2]
     }
 
     /// Bounds the turns of the axis and of the arms, and the growth of d by the reach of both

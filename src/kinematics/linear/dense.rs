@@ -116,7 +116,11 @@ impl DenseLu {
         }
         for k in 0..order {
             let (known, below) = b.split_at_mut(k + 1);
-            subtract(below, known[k], &entries[k * order + k + 1..(k + 1) * order]);
+            subtract(
+                below,
+                known[k],
+                &entries[k * order + k + 1..(k + 1) * order],
+            );
         }
         for k in (0..order).rev() {
             let column = &entries[k * order..(k + 1) * order];

@@ -122,7 +122,8 @@ impl BlockEquations {
         owners: Arc<[ColumnOwner]>,
     ) -> Self {
         let EliminationOrder { rows, columns, .. } = order;
-        let part = |column: usize| (!system.is_angle(column)).then(|| system.column_scale(column, 1.0));
+        let part =
+            |column: usize| (!system.is_angle(column)).then(|| system.column_scale(column, 1.0));
         let mut equations = Self {
             index,
             layouts: Vec::new(),
@@ -237,7 +238,12 @@ impl BlockEquations {
                 }
             }
             if let Some((column, partial)) = gradient.joint_unknown() {
-                add(&layout.joint_unknown, column, partial, at.coordinate(column));
+                add(
+                    &layout.joint_unknown,
+                    column,
+                    partial,
+                    at.coordinate(column),
+                );
             }
             let value = RowValue {
                 value: (value - target) * row_scale,
