@@ -193,7 +193,7 @@ fn square(x: Jet3) -> Jet3 {
 /// Returns √x: the derivatives of its square are those of x.
 #[inline(always)]
 fn sqrt(x: Jet3) -> Jet3 {
-    if !(x.value > 0.0) {
+    if x.value <= 0.0 || x.value.is_nan() {
         return x.apply(Unary::Sqrt);
     }
     let [x1, x2, x3] = x.derivatives;
