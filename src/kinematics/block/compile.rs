@@ -8,6 +8,7 @@ use petgraph::graph::{DiGraph, NodeIndex};
 
 use super::coupled::{CoupledBlock, column_owners};
 use super::elimination::EliminationOrder;
+use super::explicit::ExplicitUnknown;
 use super::pinned::{self, PinnedBody};
 use super::revolute::Revolute;
 use super::revolute_graph::RevoluteGraph;
@@ -16,7 +17,7 @@ use super::rrr_dyad::{self, RrrDyad, SideParts};
 use super::{BlockPlan, BlockSolver};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::constraint::{Axis, Relation};
-use crate::kinematics::structure::Structure;
+use crate::kinematics::structure::{Block, Structure};
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{MarkerId, Mechanism};
 
@@ -32,6 +33,7 @@ enum Recipe {
     PinnedBody(pinned::Parts),
     RrrDyad(rrr_dyad::Parts),
     RrpDyad(rrp_dyad::Parts),
+    ExplicitUnknown { row: usize, column: usize },
     CoupledBlock,
 }
 
@@ -150,9 +152,20 @@ impl Search<'_> {
         for block in 0..self.group_of.len() {
             if self.group_of[block].is_none() {
                 self.group_of[block] = Some(self.groups.len());
+                let Block { rows, columns, .. } = &self.structure.blocks()[block];
+                let is_linear = |row: usize| {
+                    let constraint = &self.system.equations()[row].constraint;
+                    constraint.is_linear(self.mechanism)
+                };
+                let recipe = match (&rows[..], &columns[..]) {
+                    (&[row], &[column]) if is_linear(row) => {
+                        Recipe::ExplicitUnknown { row, column }
+                    }
+                    _ => Recipe::CoupledBlock,
+                };
                 self.groups.push(Group {
                     blocks: vec![block],
-                    recipe: Recipe::CoupledBlock,
+                    recipe,
                 });
             }
         }
@@ -508,7 +521,7 @@ impl Search<'_> {
                         slides_in[second.body] = Some(index);
                     }
                 }
-                Recipe::PinnedBody(_) => {}
+                Recipe::PinnedBody(_) | Recipe::ExplicitUnknown { .. } => {}
             }
             let blocks = group.blocks.iter();
             for &row in blocks.flat_map(|&block| &self.structure.blocks()[block].rows) {
@@ -547,6 +560,9 @@ impl Search<'_> {
             }
             Recipe::RrpDyad(parts) => {
                 BlockSolver::RrpDyad(Box::new(RrpDyad::new(self.mechanism, parts, slide_is_read)))
+            }
+            Recipe::ExplicitUnknown { row, column } => {
+                BlockSolver::ExplicitUnknown(ExplicitUnknown::new(self.system, row, column))
             }
             Recipe::CoupledBlock => coupled.next().expect("each coupled group has its order"),
         });

@@ -60,20 +60,19 @@ impl CoupledBlock {
     ) -> Self {
         let lu = order.matrix(system);
         let test = Box::new(ContractionTest::new(system, &order, &lu, owners, index));
-        let EliminationOrder { rows, columns, .. } = order;
-        let part = rows
-            .first()
-            .map_or(1.0, |&row| system.equations()[row].part());
-        let order = rows.len();
+        let first = order.rows.first();
+        let part = first.map_or(1.0, |&row| system.equations()[row].part());
         let bodies = &system.mechanism().bodies;
+        let columns = order.columns.iter();
         let mut own: Vec<_> = columns
-            .iter()
             .filter_map(|column| bodies.get(column / 3))
             .collect();
         own.dedup_by_key(|body| &body.name);
         let markers = own.iter().flat_map(|body| &body.markers).copied().collect();
+        let equations = BlockEquations::new(index, order, system, Arc::clone(owners));
+        let order = equations.rows.len();
         Self {
-            equations: BlockEquations::new(index, rows, columns, Arc::clone(owners)),
+            equations,
             jacobian: Jacobian::new(lu),
             condition: Condition::new(order),
             residual: vec![0.0; order],
@@ -104,20 +103,20 @@ impl CoupledBlock {
         // A row that hardly depends on the block's own unknowns makes them run away, however
         // well the rows of the block agree with each other.
         let Jacobian { lu, upstream } = &mut self.jacobian;
-        let upstream = upstream.iter().map(|(_, _, value)| value.abs());
+        let upstream = upstream.iter().map(|entry| entry.value.abs());
         lu.factorise(upstream.fold(0.0, f64::max))
             .map_err(|_| Rejected)
     }
 
     /// Solves for the block's entries of `rates`, those of earlier blocks being known, with the
     /// scaled right-hand side in `correction`.
-    fn solve(&mut self, system: &System, size: f64, rates: &mut [f64]) {
-        for &(row, column, value) in &self.jacobian.upstream {
-            self.correction[row] -= value * rates[column] / system.column_scale(column, size);
+    fn solve(&mut self, rates: &mut [f64]) {
+        for entry in &self.jacobian.upstream {
+            self.correction[entry.row] -= entry.by_row * rates[entry.column];
         }
         self.jacobian.lu.solve(&mut self.correction);
-        for (&column, scaled) in self.equations.columns.iter().zip(&self.correction) {
-            rates[column] = scaled * system.column_scale(column, size);
+        for ((&column, scale), scaled) in self.equations.scaled_columns().zip(&self.correction) {
+            rates[column] = scaled * scale;
         }
     }
 }
@@ -143,8 +142,15 @@ impl SolveBlock for CoupledBlock {
         100.0 * order + 0.1 * inverse
     }
 
-    fn set_parameters(&mut self, at: &Configuration, _targets: &Targets, _pivots: &mut Pivots) {
+    fn set_parameters(
+        &mut self,
+        _system: &System,
+        at: &Configuration,
+        _targets: &Targets,
+        _pivots: &mut Pivots,
+    ) {
         self.forget_proofs();
+        self.equations.set_size(at.size());
         let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());
         let longest = arms.fold(0.0, f64::max);
         self.length = if longest > 0.0 {
@@ -206,10 +212,9 @@ impl SolveBlock for CoupledBlock {
             }
             self.correction.copy_from_slice(&self.residual);
             self.jacobian.lu.solve(&mut self.correction);
-            let size = state.at.size();
-            for (&column, scaled) in self.equations.columns.iter().zip(&self.correction) {
-                let step = scaled * state.system.column_scale(column, size);
-                let value = state.at.coordinate(column) - step;
+            for ((&column, scale), scaled) in self.equations.scaled_columns().zip(&self.correction)
+            {
+                let value = state.at.coordinate(column) - scaled * scale;
                 state.at.set_coordinate(column, value);
             }
             last_excess = excess;
@@ -233,22 +238,32 @@ impl SolveBlock for CoupledBlock {
     /// Solves Phi_q q̇ = u̇ in the drivers' rows (Eq. 3.6.10), then
     /// Phi_q q̈ = ü − q̇ᵀ (∂²c/∂q²) q̇ (Eq. 3.6.11).
     fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]) {
-        let driver = |row: usize| state.system.equations()[row].target_rates(drivers);
-        let scale = |row: usize| state.system.equations()[row].row_scale(state.at);
-        for (side, &row) in self.correction.iter_mut().zip(&self.equations.rows) {
-            *side = driver(row).first() * scale(row);
+        let Self {
+            equations,
+            correction,
+            ..
+        } = self;
+        let equation = |row: usize| &state.system.equations()[row];
+        let rows = || equations.rows.iter().zip(&equations.row_scales);
+        for (side, (&row, scale)) in correction.iter_mut().zip(rows()) {
+            *side = equation(row).target_rates(drivers).first() * scale;
         }
         let (velocity, _) = state.tangent.both_mut();
-        self.solve(state.system, state.at.size(), velocity);
-        for (side, &row) in self.correction.iter_mut().zip(&self.equations.rows) {
-            let equation = &state.system.equations()[row];
-            let quadratic = equation
-                .constraint
-                .quadratic(state.at, state.tangent.velocity());
-            *side = (driver(row).second() - quadratic) * scale(row);
+        self.solve(velocity);
+        let Self {
+            equations,
+            correction,
+            ..
+        } = self;
+        let rows = equations.rows.iter().zip(&equations.row_scales);
+        for (side, (&row, scale)) in correction.iter_mut().zip(rows) {
+            let equation = equation(row);
+            let velocity = state.tangent.velocity();
+            let quadratic = equation.constraint.quadratic(state.at, velocity);
+            *side = (equation.target_rates(drivers).second() - quadratic) * scale;
         }
         let (_, acceleration) = state.tangent.both_mut();
-        self.solve(state.system, state.at.size(), acceleration);
+        self.solve(acceleration);
     }
 
     fn rcond(&mut self) -> f64 {

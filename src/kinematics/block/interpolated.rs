@@ -83,7 +83,10 @@ impl InterpolatedBlock {
         let driver = self.crossing.driver.index();
         let way = state.drivers[driver] - self.value;
         let bodies = 3 * state.system.mechanism().bodies.len();
-        let has_pivots = !matches!(self.block, BlockSolver::CoupledBlock(_));
+        let has_pivots = !matches!(
+            self.block,
+            BlockSolver::CoupledBlock(_) | BlockSolver::ExplicitUnknown(_)
+        );
         let driver_deviation = bounds.drivers[driver];
         // Angles first: the turn of a body moves its pivot.
         for phi in [true, false] {

@@ -9,6 +9,7 @@
 //! | [`PinnedBody`] | x, y, phi of a body with a revolute and a known angle | explicit |
 //! | [`RrrDyad`] | x, y, phi of two bodies between three revolutes | Newton on two angles, 2×2 in closed form |
 //! | [`RrpDyad`] | x, y, phi of one or two bodies, one point on a line | Newton on one angle |
+//! | [`ExplicitUnknown`] | one, in a linear row | explicit |
 //! | [`CoupledBlock`] | those of any block | Newton on all rows |
 //! | [`InterpolatedBlock`] | those of any block near a change point | interpolation of the motion |
 //!
@@ -22,6 +23,7 @@ mod compile;
 mod coupled;
 mod crossing;
 mod elimination;
+mod explicit;
 mod factors;
 mod interpolated;
 mod load;
@@ -49,6 +51,7 @@ pub use carryover::{BlockCarryover, CheckedSegment};
 pub(super) use coupled::CoupledBlock;
 pub use crossing::{Crossing, Polynomial};
 pub(super) use crossing::{INNER, SEAM, divided_differences};
+use explicit::ExplicitUnknown;
 pub(super) use factors::JacobianFactors;
 pub(super) use interpolated::InterpolatedBlock;
 use pinned::PinnedBody;
@@ -77,6 +80,7 @@ pub(super) enum BlockSolver {
     PinnedBody(Box<PinnedBody>),
     RrrDyad(RrrDyad),
     RrpDyad(Box<RrpDyad>),
+    ExplicitUnknown(ExplicitUnknown),
     CoupledBlock(Box<CoupledBlock>),
     InterpolatedBlock(Box<InterpolatedBlock>),
 }
@@ -89,6 +93,7 @@ impl Deref for BlockSolver {
             Self::PinnedBody(block) => &**block,
             Self::RrrDyad(block) => block,
             Self::RrpDyad(block) => &**block,
+            Self::ExplicitUnknown(block) => block,
             Self::CoupledBlock(block) => &**block,
             Self::InterpolatedBlock(block) => &**block,
         }
@@ -101,6 +106,7 @@ impl DerefMut for BlockSolver {
             Self::PinnedBody(block) => &mut **block,
             Self::RrrDyad(block) => block,
             Self::RrpDyad(block) => &mut **block,
+            Self::ExplicitUnknown(block) => block,
             Self::CoupledBlock(block) => &mut **block,
             Self::InterpolatedBlock(block) => &mut **block,
         }
@@ -121,7 +127,7 @@ impl BlockPlan {
         targets: &Targets,
     ) {
         for block in &mut self.blocks {
-            block.set_parameters(at, targets, &mut self.pivots);
+            block.set_parameters(system, at, targets, &mut self.pivots);
         }
         if !std::mem::replace(&mut self.has_pivots, true) {
             self.choose_pivots(system, at, targets);
@@ -339,6 +345,7 @@ mod tests {
             BlockSolver::PinnedBody(_) => "P".to_owned(),
             BlockSolver::RrrDyad(_) => "D".to_owned(),
             BlockSolver::RrpDyad(_) => "S".to_owned(),
+            BlockSolver::ExplicitUnknown(_) => "E".to_owned(),
             BlockSolver::CoupledBlock(coupled) => format!("C{}", coupled.columns().len()),
             BlockSolver::InterpolatedBlock(_) => "B".to_owned(),
         });
@@ -359,7 +366,9 @@ mod tests {
             ("five_bar_robot", "P P D"),
             ("hart_inversor", "P D D"),
             // Driven between coupler and rocker: all three angles at once.
-            ("double_rocker", "C1 C1 C1 C1 C5"),
+            ("double_rocker", "E E E E C5"),
+            ("cam_roller", "E E P C2"),
+            ("cam_knife", "E E P C1"),
         ] {
             assert_eq!(blocks(name), expected, "{name}");
         }

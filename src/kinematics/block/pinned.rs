@@ -87,7 +87,13 @@ impl SolveBlock for PinnedBody {
         &self.columns
     }
 
-    fn set_parameters(&mut self, at: &Configuration, _targets: &Targets, pivots: &mut Pivots) {
+    fn set_parameters(
+        &mut self,
+        _system: &System,
+        at: &Configuration,
+        _targets: &Targets,
+        pivots: &mut Pivots,
+    ) {
         self.s = at.local(self.parts.pin).0;
         self.anchor.set_parameters(at, pivots, self.parts.anchor);
         pivots.set(self.parts.body, self.s);

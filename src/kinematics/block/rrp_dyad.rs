@@ -241,7 +241,13 @@ impl SolveBlock for RrpDyad {
         &self.parts.columns
     }
 
-    fn set_parameters(&mut self, at: &Configuration, targets: &Targets, pivots: &mut Pivots) {
+    fn set_parameters(
+        &mut self,
+        _system: &System,
+        at: &Configuration,
+        targets: &Targets,
+        pivots: &mut Pivots,
+    ) {
         self.take_over_parameters(at, targets, pivots);
         self.size = at.size() * self.parts.part;
     }

@@ -323,7 +323,13 @@ impl SolveBlock for RrrDyad {
         &self.parts.columns
     }
 
-    fn set_parameters(&mut self, at: &Configuration, _targets: &Targets, pivots: &mut Pivots) {
+    fn set_parameters(
+        &mut self,
+        _system: &System,
+        at: &Configuration,
+        _targets: &Targets,
+        pivots: &mut Pivots,
+    ) {
         for (side, parts) in self.sides.iter_mut().zip(&self.parts.sides) {
             side.set_parameters(at, pivots, parts);
         }

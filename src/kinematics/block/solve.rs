@@ -41,8 +41,14 @@ pub(in crate::kinematics) trait SolveBlock:
 
     /// Takes over all that depends on the parameters alone, and sets the pivots of its bodies.
     /// Allocates nothing.
-    fn set_parameters(&mut self, at: &Configuration, targets: &Targets, pivots: &mut Pivots) {
-        let _ = (at, targets, pivots);
+    fn set_parameters(
+        &mut self,
+        system: &System,
+        at: &Configuration,
+        targets: &Targets,
+        pivots: &mut Pivots,
+    ) {
+        let _ = (system, at, targets, pivots);
     }
 
     /// Predicts the unknowns at the end of a sub-step, corrects them, and proves that one motion

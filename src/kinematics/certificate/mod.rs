@@ -22,7 +22,7 @@
 //!
 //! A test is *proved* unless [`StepBounds::checked`] says that some bound in it was an estimate:
 //! the norm of an inverse that is too large to be written down, or the effect of moving
-//! parameters on the equations of a block without straight code.
+//! parameters on the equations of a block without straight code or on a linear row.
 
 mod parameters;
 #[cfg(test)]
@@ -209,7 +209,9 @@ impl StepBounds {
     pub(super) fn set_origin(&mut self, body: usize, component: usize, deviation: f64) {
         let origin = &mut self.origins[body];
         origin[component] = deviation;
-        self.bodies[body].point_deviation = origin[0].hypot(origin[1]);
+        // Their squares do not vanish: each contains a rounding.
+        let square = origin[0] * origin[0] + origin[1] * origin[1];
+        self.bodies[body].point_deviation = square.sqrt();
     }
 
     /// Sets the largest deviation of a joint unknown.

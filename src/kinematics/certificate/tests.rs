@@ -276,7 +276,14 @@ fn large_lifts_stay_within_their_bounds() {
     let (mut other, _) = assembled(&source);
     let mut home = solver.pose().clone();
     let mut reused = 0;
-    for (steps, by) in [(40, 4e-4), (10, 1e-5), (30, -5e-4), (3, 0.05), (20, 1e-3)] {
+    for (steps, by) in [
+        (40, 4e-4),
+        (60, 1e-5),
+        (30, -5e-4),
+        (60, -1e-5),
+        (3, 0.05),
+        (20, 1e-3),
+    ] {
         for step in 0..steps {
             solver.save(&mut home);
             let path = move_drivers(&solver, by);

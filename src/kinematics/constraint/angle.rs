@@ -39,6 +39,10 @@ impl Constraint for Angle {
         at.marker(self.to).theta - at.marker(self.from).theta
     }
 
+    fn is_linear(&self, _mechanism: &Mechanism) -> bool {
+        true
+    }
+
     fn turn_effect(&self) -> TurnEffect {
         TurnEffect::Whole
     }

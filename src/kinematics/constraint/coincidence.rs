@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::definition::{Axis, Constraint, Dimension, Incidence};
+use super::definition::{Axis, Constraint, Dimension, Incidence, is_origin_or_ground};
 use super::gradient::Gradient;
 use super::point::centripetal;
 use super::region::{Region, centripetal_bound};
@@ -44,8 +44,15 @@ impl Constraint for Coincidence {
     }
 
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        row.add_point(at.marker(self.to), self.direction());
-        row.add_point(at.marker(self.from), -self.direction());
+        self.value_and_gradient(at, row);
+    }
+
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
+        let (i, j) = (at.marker(self.from), at.marker(self.to));
+        let e = self.direction();
+        row.add_point(j, e);
+        row.add_point(i, -e);
+        e.dot(&(j.point - i.point))
     }
 
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
@@ -57,6 +64,10 @@ impl Constraint for Coincidence {
     fn along(&self, at: &VariedConfiguration) -> Varied {
         let component = self.axis as usize;
         at.marker(self.to).point[component] - at.marker(self.from).point[component]
+    }
+
+    fn is_linear(&self, mechanism: &Mechanism) -> bool {
+        [self.from, self.to].map(|marker| is_origin_or_ground(mechanism, marker)) == [true; 2]
     }
 
     /// Bounds the turn of the arms: e · perp(A s) changes by at most the chord of the turn times

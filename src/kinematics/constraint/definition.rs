@@ -86,6 +86,13 @@ pub trait Constraint: Any + std::fmt::Debug + Send + Sync {
         false
     }
 
+    /// Returns whether c is linear in q, with coefficients that are not zero for any values of the
+    /// parameters.
+    fn is_linear(&self, mechanism: &Mechanism) -> bool {
+        let _ = mechanism;
+        false
+    }
+
     /// Returns whether c can have this value; a distance must be positive.
     fn admits(&self, value: f64) -> bool {
         let _ = value;
@@ -170,6 +177,14 @@ impl Incidence {
             .extend(marker.body.map(|body| 3 * body.index() + 2));
         self.expression(&marker.angle);
     }
+}
+
+/// Returns whether a marker's point does not depend on an angle: it is on ground, or the origin of
+/// its body.
+pub(super) fn is_origin_or_ground(mechanism: &Mechanism, marker: MarkerId) -> bool {
+    let marker = &mechanism.markers[marker.index()];
+    let at_origin = || marker.position.iter().all(|s| s.literal() == Some(0.0));
+    marker.body.is_none() || at_origin()
 }
 
 /// Returns whether a marker's axis can have components along the global x and y.

@@ -45,9 +45,14 @@ impl Constraint for Distance {
     }
 
     fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        let (_, e) = self.span(at);
+        self.value_and_gradient(at, row);
+    }
+
+    fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
+        let (length, e) = self.span(at);
         row.add_point(at.marker(self.to), e);
         row.add_point(at.marker(self.from), -e);
+        length
     }
 
     /// Returns (|ḋ|² − (e · ḋ)²) / ‖d‖ + e · d̈ with e = d / ‖d‖.

@@ -74,6 +74,16 @@ impl Gradient {
             .chain(self.joint_unknown)
     }
 
+    /// Returns the entries body by body: its index, and those at x, y and phi.
+    pub(in crate::kinematics) fn bodies(&self) -> &[(usize, [f64; 3])] {
+        &self.parts[..self.len]
+    }
+
+    /// Returns the index in q of the joint unknown, and its entry.
+    pub(in crate::kinematics) fn joint_unknown(&self) -> Option<(usize, f64)> {
+        self.joint_unknown
+    }
+
     /// Returns the entries at x, y and phi of a body.
     #[must_use]
     pub fn of_body(&self, body: BodyId) -> [f64; 3] {

@@ -194,6 +194,13 @@ proptest! {
             };
             let at = std::cell::RefCell::new(&mut at);
             let (_, rate, quadratic) = along(&mut at.borrow_mut(), 0.0);
+            if constraint.is_linear(&mechanism) {
+                let (_, moved, quadratic) = along(&mut at.borrow_mut(), 1.0);
+                prop_assert!(
+                    (rate - moved).abs() < 1e-12 && quadratic.abs() < f64::EPSILON,
+                    "{constraint:?}: {rate} {moved} {quadratic}"
+                );
+            }
             let difference = derivative(|s| along(&mut at.borrow_mut(), s).0);
             prop_assert!((rate - difference).abs() < DIFFERENCE, "{constraint:?}: {rate} {difference}");
             let difference = derivative(|s| along(&mut at.borrow_mut(), s).1);

@@ -49,15 +49,31 @@ impl DenseLu {
     /// [`Singular`] on a pivot that is zero or not finite. A matrix that is singular up to rounding
     /// passes; its condition is then near zero.
     pub fn factorise(&mut self, least_norm: f64) -> Result<(), Singular> {
-        let order = self.pivots.len();
+        // Compiled once for each of the orders that occur most.
+        match self.pivots.len() {
+            1 => self.decompose(1, least_norm),
+            2 => self.decompose(2, least_norm),
+            3 => self.decompose(3, least_norm),
+            4 => self.decompose(4, least_norm),
+            order => self.decompose(order, least_norm),
+        }
+    }
+
+    /// Factorises the matrix, which is of this order.
+    #[inline(always)]
+    fn decompose(&mut self, order: usize, least_norm: f64) -> Result<(), Singular> {
         if order == 0 {
             return Ok(());
         }
-        let columns = self.entries.chunks_exact(order);
+        let (entries, pivots) = (
+            &mut self.entries[..order * order],
+            &mut self.pivots[..order],
+        );
+        let columns = entries.chunks_exact(order);
         let norms = columns.map(|column| column.iter().map(|entry| entry.abs()).sum());
         self.norm = norms.fold(least_norm, f64::max);
         for k in 0..order {
-            let column = &self.entries[k * order..(k + 1) * order];
+            let column = &entries[k * order..(k + 1) * order];
             let mut pivot_row = k;
             if k >= self.fixed {
                 for row in k + 1..order {
@@ -70,13 +86,13 @@ impl DenseLu {
             if pivot == 0.0 || !pivot.is_finite() {
                 return Err(Singular);
             }
-            self.pivots[k] = pivot_row;
+            pivots[k] = pivot_row;
             if pivot_row != k {
-                for column in self.entries.chunks_exact_mut(order) {
+                for column in entries.chunks_exact_mut(order) {
                     column.swap(k, pivot_row);
                 }
             }
-            let (left, right) = self.entries.split_at_mut((k + 1) * order);
+            let (left, right) = entries.split_at_mut((k + 1) * order);
             let factors = &mut left[k * order + k + 1..];
             let per_pivot = 1.0 / pivot;
             factors.iter_mut().for_each(|factor| *factor *= per_pivot);
@@ -88,6 +104,30 @@ impl DenseLu {
             }
         }
         Ok(())
+    }
+
+    /// Solves A x = b, which is of this order.
+    #[inline(always)]
+    fn substitute(&self, order: usize, b: &mut [f64]) {
+        let (entries, pivots) = (&self.entries[..order * order], &self.pivots[..order]);
+        let b = &mut b[..order];
+        for (k, &pivot_row) in pivots.iter().enumerate() {
+            b.swap(k, pivot_row);
+        }
+        for k in 0..order {
+            let (known, below) = b.split_at_mut(k + 1);
+            subtract(
+                below,
+                known[k],
+                &entries[k * order + k + 1..(k + 1) * order],
+            );
+        }
+        for k in (0..order).rev() {
+            let column = &entries[k * order..(k + 1) * order];
+            b[k] /= column[k];
+            let (above, known) = b.split_at_mut(k);
+            subtract(above, known[0], &column[..k]);
+        }
     }
 
     /// Returns column k of the factors.
@@ -116,18 +156,12 @@ impl Factors for DenseLu {
     }
 
     fn solve(&mut self, b: &mut [f64]) {
-        for (k, &pivot_row) in self.pivots.iter().enumerate() {
-            b.swap(k, pivot_row);
-        }
-        for k in 0..b.len() {
-            let (known, below) = b.split_at_mut(k + 1);
-            subtract(below, known[k], &self.column(k)[k + 1..]);
-        }
-        for k in (0..b.len()).rev() {
-            let column = self.column(k);
-            b[k] /= column[k];
-            let (above, known) = b.split_at_mut(k);
-            subtract(above, known[0], &column[..k]);
+        match self.pivots.len() {
+            1 => self.substitute(1, b),
+            2 => self.substitute(2, b),
+            3 => self.substitute(3, b),
+            4 => self.substitute(4, b),
+            order => self.substitute(order, b),
         }
     }
 

@@ -11,6 +11,7 @@ mod dimension;
 mod display;
 mod error;
 mod function;
+mod in_force;
 mod parse;
 mod pieces;
 mod polar;
@@ -24,6 +25,7 @@ use function::Binary;
 #[cfg(feature = "page")]
 pub(crate) use function::constant;
 pub(super) use function::{CONSTANTS, function_names};
+pub(super) use in_force::ExpressionInForce;
 pub(super) use parse::{Parsed, Scope};
 
 use super::number::{self, Interval, Jet3, Number, Unary};

@@ -6,6 +6,7 @@ mod sectors;
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
+use super::expression::ExpressionInForce;
 use super::{Dual, Expression, Interpolation, Interval, Jet3, ParameterId, Table};
 use closed_points::ClosedPoints;
 use sectors::{Contour, Sectors, overlapping};
@@ -144,13 +145,14 @@ impl ContourPoint {
         let v = square.sqrt();
         // The angle from the radial direction to the tangent is atan(R/R′): the derivative of the
         // tangent's direction is (R² + 2R′² − R R″)/(R² + R′²).
-        let turn = (square + r1 * r1 - r * r2) / square;
+        let (per_v, per_square) = (1.0 / v, 1.0 / square);
+        let turn = (square + r1 * r1 - r * r2) * per_square;
         let numerator_rate = 2.0 * r * r1 + 3.0 * r1 * r2 - r * r3;
-        let turn_rate = (numerator_rate - 2.0 * turn * (r * r1 + r1 * r2)) / square;
+        let turn_rate = (numerator_rate - 2.0 * turn * (r * r1 + r1 * r2)) * per_square;
         Self {
             arm: [r * cos, r * sin],
-            tangent: [(r1 * cos - r * sin) / v, (r1 * sin + r * cos) / v],
-            speed: [v, (r * r1 + r1 * r2) / v],
+            tangent: [(r1 * cos - r * sin) * per_v, (r1 * sin + r * cos) * per_v],
+            speed: [v, (r * r1 + r1 * r2) * per_v],
             turn: [turn, turn_rate],
         }
     }
@@ -179,6 +181,7 @@ impl ProfileBounds {
 enum Curve {
     Expression {
         expression: Expression,
+        in_force: Box<ExpressionInForce>,
         sectors: Sectors,
     },
     Points {
@@ -206,6 +209,7 @@ impl ProfileInForce {
         let curve = match profile {
             Profile::Expression(expression) => Curve::Expression {
                 expression: expression.clone(),
+                in_force: Box::default(),
                 sectors: Sectors::new(),
             },
             Profile::Table {
@@ -247,7 +251,14 @@ impl ProfileInForce {
         }
         match &mut self.curve {
             Curve::Points { table, points } => points.set(table, &parameter)?,
-            Curve::Expression { sectors, .. } => sectors.forget(),
+            Curve::Expression {
+                expression,
+                in_force,
+                sectors,
+            } => {
+                in_force.set(expression, &|p| self.parameters[p.index()]);
+                sectors.forget();
+            }
         }
         self.check()?;
         self.joint = Joint::Kink;
@@ -381,8 +392,14 @@ impl ProfileInForce {
             Some((last, radius)) if last == theta.to_bits() => radius,
             _ => {
                 let radius = match &self.curve {
-                    Curve::Expression { expression, .. } => {
-                        self.evaluate(expression, theta.rem_euclid(TAU))
+                    Curve::Expression {
+                        expression,
+                        in_force,
+                        ..
+                    } => {
+                        let turned = theta.rem_euclid(TAU);
+                        let radius = in_force.evaluate(turned);
+                        radius.unwrap_or_else(|| self.evaluate(expression, turned))
                     }
                     Curve::Points { points, .. } => points.radius(theta),
                 };
@@ -430,6 +447,7 @@ impl ProfileInForce {
             Curve::Expression {
                 expression,
                 sectors,
+                ..
             } => {
                 let contour = Contour {
                     expression,

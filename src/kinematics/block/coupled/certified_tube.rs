@@ -24,6 +24,7 @@
 use std::f64::consts::TAU;
 
 use super::CoupledBlock;
+use crate::kinematics::block::anchor::larger;
 use crate::kinematics::block::step::{BlockState, Step};
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::newton::STALLED;
@@ -256,13 +257,13 @@ impl CoupledBlock {
         let (mut moved, mut far, mut uncertain) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (&column, reach) in columns.iter().chain(&test.known).zip(&tube.unknowns) {
             let ends = [step.from[column], state.at.coordinate(column)];
-            moved = moved.max((ends[1] - ends[0]).abs() * reach.inverse_move);
+            moved = larger(moved, (ends[1] - ends[0]).abs() * reach.inverse_move);
             let off = |end: f64, s: f64| (end - (reach.centre + s * reach.way)).abs();
-            let farther = off(ends[0], from).max(off(ends[1], to));
-            far = far.max(farther * reach.inverse_width);
+            let farther = larger(off(ends[0], from), off(ends[1], to));
+            far = larger(far, farther * reach.inverse_width);
         }
         for (&column, reach) in test.known.iter().zip(&tube.unknowns[columns.len()..]) {
-            uncertain = uncertain.max(step.deviation(column) * reach.inverse_width);
+            uncertain = larger(uncertain, step.deviation(column) * reach.inverse_width);
         }
         let mut driven = 0.0_f64;
         for &driver in &test.drivers {
@@ -278,9 +279,8 @@ impl CoupledBlock {
         if !inside || far + radius.max(uncertain) > 1.0 || (far + radius).is_nan() {
             return false;
         }
-        let size = state.at.size();
-        for ((next, &column), reach) in test.next.iter_mut().zip(columns).zip(&tube.unknowns) {
-            let scale = state.system.column_scale(column, size);
+        let scales = &equations.column_scales;
+        for ((next, scale), reach) in test.next.iter_mut().zip(scales).zip(&tube.unknowns) {
             *next = radius / (reach.inverse_width * scale);
         }
         tubes.last = index;

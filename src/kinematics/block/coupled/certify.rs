@@ -289,9 +289,8 @@ impl CoupledBlock {
     fn write_bounds(&mut self, state: &BlockState<'_>, step: &mut Step<'_>) {
         let Step { from, bounds, .. } = step;
         let bodies = 3 * state.system.mechanism().bodies.len();
-        let size = state.at.size();
-        for (&column, radius) in self.equations.columns.iter().zip(&self.test.next) {
-            let deviation = radius * state.system.column_scale(column, size);
+        for ((&column, scale), radius) in self.equations.scaled_columns().zip(&self.test.next) {
+            let deviation = radius * scale;
             if column >= bodies {
                 bounds.set_joint_unknown(column, deviation);
                 continue;

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use crate::kinematics::block::anchor::compact;
 use crate::kinematics::block::elimination::EliminationOrder;
 use crate::kinematics::block::step::BlockState;
 use crate::kinematics::certificate::StepBounds;
-use crate::kinematics::constraint::{Gradient, Region};
+use crate::kinematics::constraint::{Dimension, Gradient, Region};
 use crate::kinematics::linear::{Factors, Lu};
-use crate::kinematics::system::RowValue;
+use crate::kinematics::system::{RowValue, System, Values};
 
 /// Most entries of a row: of three bodies and one joint unknown.
 pub(super) const ENTRIES: usize = 10;
@@ -45,6 +46,36 @@ pub(super) struct BlockEquations {
     pub(super) rows: Vec<usize>,
     pub(super) columns: Vec<usize>,
     owners: Arc<[ColumnOwner]>,
+    /// The places of the entries of each row.
+    layouts: Vec<RowLayout>,
+    /// Scale factor of each unknown, as a part of the mechanism's size for a length.
+    parts: Vec<Part>,
+    /// Scale factors of rows and unknowns for the size in force.
+    pub(super) row_scales: Vec<f64>,
+    pub(super) column_scales: Vec<f64>,
+}
+
+/// The size of the part of the mechanism to which a length belongs, as a part of the mechanism's
+/// size; `None` for an angle.
+type Part = Option<f64>;
+
+/// The places of the entries of a row.
+#[derive(Clone, Debug, Default)]
+struct RowLayout {
+    part: Part,
+    /// The bodies with their entries at x, y and phi.
+    bodies: Vec<(usize, [Place; 3])>,
+    joint_unknown: Place,
+}
+
+/// The place of an entry.
+#[derive(Clone, Copy, Debug, Default)]
+struct Place {
+    /// Index of the unknown in the block; `None` if an earlier block finds it.
+    own: Option<u32>,
+    part: Part,
+    /// Scale factor of the unknown for the size in force.
+    scale: f64,
 }
 
 /// The gradients of a block's rows, scaled by [`System::evaluate_row`].
@@ -54,8 +85,19 @@ pub(super) struct BlockEquations {
 pub(super) struct Jacobian {
     /// The matrix of the block's own unknowns, or its factors.
     pub(super) lu: Lu,
-    /// Entries at unknowns of earlier blocks: row of the block, column, value.
-    pub(super) upstream: Vec<(usize, usize, f64)>,
+    /// Entries at unknowns of earlier blocks.
+    pub(super) upstream: Vec<UpstreamEntry>,
+}
+
+/// An entry of the Jacobian at an unknown of an earlier block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UpstreamEntry {
+    /// Row of the block.
+    pub(super) row: usize,
+    pub(super) column: usize,
+    /// The value, scaled by row and column, and by its row alone.
+    pub(super) value: f64,
+    pub(super) by_row: f64,
 }
 
 /// The bend of a row in a region, scaled as the row is.
@@ -67,18 +109,70 @@ pub(super) struct Bend {
     change: Gradient,
 }
 
+/// Returns the scale factor of an unknown in a mechanism of this size.
+fn scale(part: Part, size: f64) -> f64 {
+    part.map_or(1.0, |part| size * part)
+}
+
 impl BlockEquations {
     pub(super) fn new(
         index: usize,
-        rows: Vec<usize>,
-        columns: Vec<usize>,
+        order: EliminationOrder,
+        system: &System,
         owners: Arc<[ColumnOwner]>,
     ) -> Self {
-        Self {
+        let EliminationOrder { rows, columns, .. } = order;
+        let part =
+            |column: usize| (!system.is_angle(column)).then(|| system.column_scale(column, 1.0));
+        let mut equations = Self {
             index,
+            layouts: Vec::new(),
+            parts: columns.iter().map(|&column| part(column)).collect(),
+            row_scales: vec![1.0; rows.len()],
+            column_scales: vec![1.0; columns.len()],
             rows,
             columns,
             owners,
+        };
+        let of_bodies = 3 * system.mechanism().bodies.len();
+        let place = |column: usize| Place {
+            own: equations.own(column).map(compact),
+            part: part(column),
+            scale: 1.0,
+        };
+        let layout = |&row: &usize| {
+            let equation = &system.equations()[row];
+            let mut layout = RowLayout {
+                part: (equation.constraint.dimension() == Dimension::Length)
+                    .then(|| equation.part()),
+                ..RowLayout::default()
+            };
+            for column in system.incidence(row).unknowns {
+                let body = column / 3;
+                if column >= of_bodies {
+                    layout.joint_unknown = place(column);
+                } else if layout.bodies.last().is_none_or(|(last, _)| *last != body) {
+                    let columns = [0, 1, 2].map(|k| 3 * body + k);
+                    layout.bodies.push((body, columns.map(place)));
+                }
+            }
+            layout
+        };
+        equations.layouts = equations.rows.iter().map(layout).collect();
+        equations
+    }
+
+    /// Takes over the size of the mechanism. Allocates nothing.
+    pub(super) fn set_size(&mut self, size: f64) {
+        for (layout, row_scale) in self.layouts.iter_mut().zip(&mut self.row_scales) {
+            *row_scale = 1.0 / scale(layout.part, size);
+            let bodies = layout.bodies.iter_mut().flat_map(|(_, places)| places);
+            for place in bodies.chain([&mut layout.joint_unknown]) {
+                place.scale = scale(place.part, size);
+            }
+        }
+        for (column_scale, &part) in self.column_scales.iter_mut().zip(&self.parts) {
+            *column_scale = scale(part, size);
         }
     }
 
@@ -86,6 +180,11 @@ impl BlockEquations {
     pub(super) fn own(&self, column: usize) -> Option<usize> {
         let owner = self.owners[column];
         (owner.block == self.index).then_some(owner.local)
+    }
+
+    /// Returns the unknowns with their scale factors.
+    pub(super) fn scaled_columns(&self) -> impl Iterator<Item = (&usize, f64)> {
+        self.columns.iter().zip(self.column_scales.iter().copied())
     }
 
     /// Evaluates the rows at the pose in `state`, each value going to `found`, and their Jacobian,
@@ -99,16 +198,57 @@ impl BlockEquations {
         let Jacobian { lu, upstream } = jacobian;
         lu.clear();
         upstream.clear();
-        for (local, &row) in self.rows.iter().enumerate() {
-            let value = state
-                .system
-                .evaluate_row(row, state.values(), |column, value| {
-                    match self.own(column) {
-                        Some(own) => lu.add(local, own, value),
-                        None if value != 0.0 => upstream.push((local, column, value)),
-                        None => {}
-                    }
-                });
+        let Values {
+            at,
+            targets,
+            drivers,
+        } = state.values();
+        let frames = at.frames();
+        let rows = self.rows.iter().zip(&self.layouts).zip(&self.row_scales);
+        for (local, ((&row, layout), &row_scale)) in rows.enumerate() {
+            let target = state.system.target(row, targets, drivers);
+            let mut gradient = Gradient::new();
+            let constraint = &state.system.equations()[row].constraint;
+            let value = constraint.value_and_gradient(at, &mut gradient);
+            let mut magnitude = target.abs() * row_scale + 1.0;
+            let mut add = |place: &Place, column: usize, partial: f64, coordinate: f64| {
+                // Zero at unknowns that later blocks find, too.
+                if partial == 0.0 {
+                    return;
+                }
+                magnitude += (partial * coordinate).abs() * row_scale;
+                let by_row = partial * row_scale;
+                let value = by_row * place.scale;
+                match place.own {
+                    Some(own) => lu.add(local, own as usize, value),
+                    None => upstream.push(UpstreamEntry {
+                        row: local,
+                        column,
+                        value,
+                        by_row,
+                    }),
+                }
+            };
+            for &(body, [x, y, phi]) in gradient.bodies() {
+                if let Some((_, places)) = layout.bodies.iter().find(|(index, _)| *index == body) {
+                    let frame = &frames[body];
+                    add(&places[0], 3 * body, x, frame.origin.x);
+                    add(&places[1], 3 * body + 1, y, frame.origin.y);
+                    add(&places[2], 3 * body + 2, phi, frame.phi);
+                }
+            }
+            if let Some((column, partial)) = gradient.joint_unknown() {
+                add(
+                    &layout.joint_unknown,
+                    column,
+                    partial,
+                    at.coordinate(column),
+                );
+            }
+            let value = RowValue {
+                value: (value - target) * row_scale,
+                rounding: magnitude * f64::EPSILON,
+            };
             found(local, value);
         }
     }
@@ -126,7 +266,7 @@ impl BlockEquations {
         on_chord: bool,
     ) -> Option<Bend> {
         let equation = &state.system.equations()[self.rows[local]];
-        let row_scale = equation.row_scale(state.at);
+        let row_scale = self.row_scales[local];
         let region = Region {
             radii: &bounds.region,
             line: on_chord.then_some(&bounds.chord),
@@ -167,8 +307,8 @@ impl Jacobian {
     /// Returns the product of a vector, one entry per row, with the gradients at an unknown of an
     /// earlier block.
     pub(super) fn upstream_product(&self, rows: &[f64], column: usize) -> f64 {
-        let entries = self.upstream.iter().filter(|entry| entry.1 == column);
-        entries.map(|(local, _, value)| rows[*local] * value).sum()
+        let entries = self.upstream.iter().filter(|entry| entry.column == column);
+        entries.map(|entry| rows[entry.row] * entry.value).sum()
     }
 }
 

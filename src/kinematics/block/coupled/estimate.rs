@@ -227,9 +227,9 @@ impl CoupledBlock {
             }
             (test.open[local], test.row[local]) = (open, change);
         }
-        for &(local, column, value) in &test.middle.upstream {
-            if let Ok(place) = test.known.binary_search(&column) {
-                test.open[local] += value.abs() * test.known_radii[place];
+        for entry in &test.middle.upstream {
+            if let Ok(place) = test.known.binary_search(&entry.column) {
+                test.open[entry.row] += entry.value.abs() * test.known_radii[place];
             }
         }
         let ContractionTest {

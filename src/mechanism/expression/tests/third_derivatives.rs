@@ -24,6 +24,44 @@ fn assert_jets3_near(found: Jet3, expected: Jet3, tolerance: f64, what: &str) {
     );
 }
 
+/// An expression in force computes the same by fewer operations: they differ by some roundings of
+/// derivatives that are up to a thousand times the value.
+#[test]
+fn expressions_in_force_agree_with_plain_ones() {
+    let others = [
+        ("b*cos(t) + sqrt(a^2 - (length*sin(t))^2)", -7.0, 7.0),
+        ("a + length/2*(1 - cos(t - b))", -7.0, 7.0),
+        ("sin(t*t)*cos(t*t) - sin(t*t)^2", -2.0, 2.0),
+        ("-sqrt(exp(t) + 1)", -2.0, 2.0),
+        ("a + b", -1.0, 1.0),
+        ("t", -1.0, 1.0),
+    ];
+    let mut in_force = ExpressionInForce::default();
+    for &(text, low, high) in SMOOTH.iter().chain(&others) {
+        let expression = parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        in_force.set(&expression, &|id: ParameterId| VALUES[id.index()]);
+        for k in 0..=40 {
+            let t = low + (high - low) * f64::from(k) / 40.0;
+            let found = in_force.evaluate(t).expect("it is short");
+            let expected = jet3(text, t);
+            if expected.is_finite() {
+                assert_jets3_near(found, expected, 1e-12, text);
+            } else {
+                assert!(!found.is_finite(), "{text} at {t}: {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn long_expressions_have_no_program_in_force() {
+    let terms: Vec<_> = (1..20).map(|k| format!("sin({k}*t)")).collect();
+    let expression = parse(&terms.join(" + ")).expect("it parses");
+    let mut in_force = ExpressionInForce::default();
+    in_force.set(&expression, &|_| 0.0);
+    assert_eq!(in_force.evaluate(1.0), None);
+}
+
 #[test]
 fn third_derivatives_are_those_of_the_closed_forms() {
     for t in [0.15, 0.3, 0.7, 0.95_f64] {
