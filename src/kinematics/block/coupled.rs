@@ -69,7 +69,7 @@ impl CoupledBlock {
             .collect();
         own.dedup_by_key(|body| &body.name);
         let markers = own.iter().flat_map(|body| &body.markers).copied().collect();
-        let equations = BlockEquations::new(index, order, system, Arc::clone(owners));
+        let equations = BlockEquations::new(index, order, Arc::clone(owners));
         let order = equations.rows.len();
         Self {
             equations,
@@ -144,13 +144,13 @@ impl SolveBlock for CoupledBlock {
 
     fn set_parameters(
         &mut self,
-        _system: &System,
+        system: &System,
         at: &Configuration,
         _targets: &Targets,
         _pivots: &mut Pivots,
     ) {
         self.forget_proofs();
-        self.equations.set_size(at.size());
+        self.equations.set_size(system, at);
         let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());
         let longest = arms.fold(0.0, f64::max);
         self.length = if longest > 0.0 {

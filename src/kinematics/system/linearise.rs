@@ -28,12 +28,29 @@ pub(in crate::kinematics) struct RowValue {
 }
 
 impl System {
-    /// Evaluates a row of Phi and its gradient, scaled. `entry(column, value)` is called for each
-    /// entry of the row of the Jacobian (Eq. 3.6.4); two calls for the same column add up.
+    /// Evaluates a row of Phi and its gradient, scaled. `entry(column, value)` is called for the
+    /// entries of the row of the Jacobian (Eq. 3.6.4) that are not zero, once for each column.
     #[inline]
     pub(in crate::kinematics) fn evaluate_row(
         &self,
         row: usize,
+        values: Values<'_>,
+        mut entry: impl FnMut(usize, f64),
+    ) -> RowValue {
+        let size = values.at.size();
+        let row_scale = self.equations[row].row_scale(values.at);
+        self.evaluate_scaled_row(row, row_scale, values, |column, value| {
+            entry(column, value * self.column_scale(column, size));
+        })
+    }
+
+    /// Evaluates a row of Phi and its gradient, both multiplied by `row_scale`: its entries that are
+    /// not zero, for columns in radians and metres.
+    #[inline]
+    pub(in crate::kinematics) fn evaluate_scaled_row(
+        &self,
+        row: usize,
+        row_scale: f64,
         values: Values<'_>,
         mut entry: impl FnMut(usize, f64),
     ) -> RowValue {
@@ -42,30 +59,35 @@ impl System {
             targets,
             drivers,
         } = values;
-        let equation = &self.equations[row];
-        let size = at.size();
-        let row_scale = equation.row_scale(at);
         let target = self.target(row, targets, drivers);
         // To first order each coordinate's own rounding moves the value by gradient times
         // q eps; the sines and products inside add some eps of the size.
         let mut magnitude = target.abs() * row_scale + 1.0;
         let mut gradient = Gradient::new();
-        let value = equation.constraint.value_and_gradient(at, &mut gradient);
-        let value = (value - target) * row_scale;
-        for (column, partial) in gradient.entries() {
-            magnitude += (partial * at.coordinate(column)).abs() * row_scale;
-            entry(
-                column,
-                partial * row_scale * self.column_scale(column, size),
-            );
+        let constraint = &self.equations[row].constraint;
+        let value = constraint.value_and_gradient(at, &mut gradient);
+        let mut add = |column: usize, partial: f64, coordinate: f64| {
+            if partial != 0.0 {
+                magnitude += (partial * coordinate).abs() * row_scale;
+                entry(column, partial * row_scale);
+            }
+        };
+        for &(body, [x, y, phi]) in gradient.bodies() {
+            let frame = &at.frames()[body];
+            add(3 * body, x, frame.origin.x);
+            add(3 * body + 1, y, frame.origin.y);
+            add(3 * body + 2, phi, frame.phi);
+        }
+        if let Some((column, partial)) = gradient.joint_unknown() {
+            add(column, partial, at.coordinate(column));
         }
         RowValue {
-            value,
+            value: (value - target) * row_scale,
             rounding: magnitude * f64::EPSILON,
         }
     }
 
-    /// Evaluates a row of Phi and writes the entries of its gradient, each column once.
+    /// Evaluates a row of Phi and writes the entries of its gradient.
     pub(in crate::kinematics) fn sparse_row(
         &self,
         row: usize,
@@ -73,13 +95,7 @@ impl System {
         entries: &mut Row,
     ) -> RowValue {
         entries.clear();
-        self.evaluate_row(row, values, |column, value| {
-            match entries.iter_mut().find(|(c, _)| *c == column) {
-                Some((_, sum)) => *sum += value,
-                None if value != 0.0 => entries.push((column, value)),
-                None => {}
-            }
-        })
+        self.evaluate_row(row, values, |column, value| entries.push((column, value)))
     }
 
     /// Evaluates rows of Phi and their Jacobian in `order` unknowns, of which `place` returns the

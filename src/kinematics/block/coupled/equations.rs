@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::kinematics::block::anchor::compact;
 use crate::kinematics::block::elimination::EliminationOrder;
 use crate::kinematics::block::step::BlockState;
 use crate::kinematics::certificate::StepBounds;
-use crate::kinematics::constraint::{Dimension, Gradient, Region};
+use crate::kinematics::configuration::Configuration;
+use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::linear::{Factors, Lu};
-use crate::kinematics::system::{RowValue, System, Values};
+use crate::kinematics::system::{RowValue, System};
 
 /// Most entries of a row: of three bodies and one joint unknown.
 pub(super) const ENTRIES: usize = 10;
@@ -46,36 +46,9 @@ pub(super) struct BlockEquations {
     pub(super) rows: Vec<usize>,
     pub(super) columns: Vec<usize>,
     owners: Arc<[ColumnOwner]>,
-    /// The places of the entries of each row.
-    layouts: Vec<RowLayout>,
-    /// Scale factor of each unknown, as a part of the mechanism's size for a length.
-    parts: Vec<Part>,
     /// Scale factors of rows and unknowns for the size in force.
     pub(super) row_scales: Vec<f64>,
     pub(super) column_scales: Vec<f64>,
-}
-
-/// The size of the part of the mechanism to which a length belongs, as a part of the mechanism's
-/// size; `None` for an angle.
-type Part = Option<f64>;
-
-/// The places of the entries of a row.
-#[derive(Clone, Debug, Default)]
-struct RowLayout {
-    part: Part,
-    /// The bodies with their entries at x, y and phi.
-    bodies: Vec<(usize, [Place; 3])>,
-    joint_unknown: Place,
-}
-
-/// The place of an entry.
-#[derive(Clone, Copy, Debug, Default)]
-struct Place {
-    /// Index of the unknown in the block; `None` if an earlier block finds it.
-    own: Option<u32>,
-    part: Part,
-    /// Scale factor of the unknown for the size in force.
-    scale: f64,
 }
 
 /// The gradients of a block's rows, scaled by [`System::evaluate_row`].
@@ -109,70 +82,26 @@ pub(super) struct Bend {
     change: Gradient,
 }
 
-/// Returns the scale factor of an unknown in a mechanism of this size.
-fn scale(part: Part, size: f64) -> f64 {
-    part.map_or(1.0, |part| size * part)
-}
-
 impl BlockEquations {
-    pub(super) fn new(
-        index: usize,
-        order: EliminationOrder,
-        system: &System,
-        owners: Arc<[ColumnOwner]>,
-    ) -> Self {
+    pub(super) fn new(index: usize, order: EliminationOrder, owners: Arc<[ColumnOwner]>) -> Self {
         let EliminationOrder { rows, columns, .. } = order;
-        let part =
-            |column: usize| (!system.is_angle(column)).then(|| system.column_scale(column, 1.0));
-        let mut equations = Self {
+        Self {
             index,
-            layouts: Vec::new(),
-            parts: columns.iter().map(|&column| part(column)).collect(),
             row_scales: vec![1.0; rows.len()],
             column_scales: vec![1.0; columns.len()],
             rows,
             columns,
             owners,
-        };
-        let of_bodies = 3 * system.mechanism().bodies.len();
-        let place = |column: usize| Place {
-            own: equations.own(column).map(compact),
-            part: part(column),
-            scale: 1.0,
-        };
-        let layout = |&row: &usize| {
-            let equation = &system.equations()[row];
-            let mut layout = RowLayout {
-                part: (equation.constraint.dimension() == Dimension::Length)
-                    .then(|| equation.part()),
-                ..RowLayout::default()
-            };
-            for column in system.incidence(row).unknowns {
-                let body = column / 3;
-                if column >= of_bodies {
-                    layout.joint_unknown = place(column);
-                } else if layout.bodies.last().is_none_or(|(last, _)| *last != body) {
-                    let columns = [0, 1, 2].map(|k| 3 * body + k);
-                    layout.bodies.push((body, columns.map(place)));
-                }
-            }
-            layout
-        };
-        equations.layouts = equations.rows.iter().map(layout).collect();
-        equations
+        }
     }
 
     /// Takes over the size of the mechanism. Allocates nothing.
-    pub(super) fn set_size(&mut self, size: f64) {
-        for (layout, row_scale) in self.layouts.iter_mut().zip(&mut self.row_scales) {
-            *row_scale = 1.0 / scale(layout.part, size);
-            let bodies = layout.bodies.iter_mut().flat_map(|(_, places)| places);
-            for place in bodies.chain([&mut layout.joint_unknown]) {
-                place.scale = scale(place.part, size);
-            }
+    pub(super) fn set_size(&mut self, system: &System, at: &Configuration) {
+        for (scale, &row) in self.row_scales.iter_mut().zip(&self.rows) {
+            *scale = system.equations()[row].row_scale(at);
         }
-        for (column_scale, &part) in self.column_scales.iter_mut().zip(&self.parts) {
-            *column_scale = scale(part, size);
+        for (scale, &column) in self.column_scales.iter_mut().zip(&self.columns) {
+            *scale = system.column_scale(column, at.size());
         }
     }
 
@@ -198,57 +127,19 @@ impl BlockEquations {
         let Jacobian { lu, upstream } = jacobian;
         lu.clear();
         upstream.clear();
-        let Values {
-            at,
-            targets,
-            drivers,
-        } = state.values();
-        let frames = at.frames();
-        let rows = self.rows.iter().zip(&self.layouts).zip(&self.row_scales);
-        for (local, ((&row, layout), &row_scale)) in rows.enumerate() {
-            let target = state.system.target(row, targets, drivers);
-            let mut gradient = Gradient::new();
-            let constraint = &state.system.equations()[row].constraint;
-            let value = constraint.value_and_gradient(at, &mut gradient);
-            let mut magnitude = target.abs() * row_scale + 1.0;
-            let mut add = |place: &Place, column: usize, partial: f64, coordinate: f64| {
-                // Zero at unknowns that later blocks find, too.
-                if partial == 0.0 {
-                    return;
-                }
-                magnitude += (partial * coordinate).abs() * row_scale;
-                let by_row = partial * row_scale;
-                let value = by_row * place.scale;
-                match place.own {
-                    Some(own) => lu.add(local, own as usize, value),
+        let (system, values) = (state.system, state.values());
+        for (local, (&row, &row_scale)) in self.rows.iter().zip(&self.row_scales).enumerate() {
+            let value = system.evaluate_scaled_row(row, row_scale, values, |column, by_row| {
+                match self.own(column) {
+                    Some(own) => lu.add(local, own, by_row * self.column_scales[own]),
                     None => upstream.push(UpstreamEntry {
                         row: local,
                         column,
-                        value,
+                        value: by_row * system.column_scale(column, values.at.size()),
                         by_row,
                     }),
                 }
-            };
-            for &(body, [x, y, phi]) in gradient.bodies() {
-                if let Some((_, places)) = layout.bodies.iter().find(|(index, _)| *index == body) {
-                    let frame = &frames[body];
-                    add(&places[0], 3 * body, x, frame.origin.x);
-                    add(&places[1], 3 * body + 1, y, frame.origin.y);
-                    add(&places[2], 3 * body + 2, phi, frame.phi);
-                }
-            }
-            if let Some((column, partial)) = gradient.joint_unknown() {
-                add(
-                    &layout.joint_unknown,
-                    column,
-                    partial,
-                    at.coordinate(column),
-                );
-            }
-            let value = RowValue {
-                value: (value - target) * row_scale,
-                rounding: magnitude * f64::EPSILON,
-            };
+            });
             found(local, value);
         }
     }
