@@ -100,7 +100,7 @@ impl Anchor {
     pub(super) fn set_parameters(&mut self, at: &Configuration, pivots: &Pivots, marker: MarkerId) {
         self.s = at.local(marker).0;
         if self.body != GROUND {
-            self.length = (self.s - pivots.get(self.body as usize)).norm();
+            self.length = (self.s - pivots.or_origin(self.body as usize)).norm();
         }
     }
 
@@ -143,7 +143,7 @@ impl Anchor {
             let parts = ends.map(|e| e.dot(&slide.direction).abs());
             slide.across + slide.along * (larger(parts[0], parts[1]) + sagitta(turn))
         });
-        let lever = self.s - pivots.get(body);
+        let lever = self.s - pivots.or_origin(body);
         let arms = [
             rotate(bound.cos, bound.sin, lever),
             frames[body].rotate(lever),

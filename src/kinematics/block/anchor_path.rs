@@ -126,7 +126,7 @@ impl AnchorPath {
         let vector = |leg: &Leg| {
             let end = |end: Option<MarkerId>| match (end, leg.body) {
                 (Some(marker), _) => at.local(marker).0,
-                (None, Some(body)) => pivots.get(body),
+                (None, Some(body)) => pivots.or_origin(body),
                 (None, None) => Vector2::zeros(),
             };
             end(leg.to) - end(leg.from)

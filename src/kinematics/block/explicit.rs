@@ -134,13 +134,11 @@ impl SolveBlock for ExplicitUnknown {
         self.locate(state);
         let before = step.from[column];
         let deviation = self.deviation(state, step, before);
+        let moved = state.at.coordinate(column) - before;
+        step.bounds.set_unknown(column, moved, deviation);
         if component == 2 {
-            let turn = state.at.coordinate(column) - before;
             let bound = step.bounds.body_mut(body);
             (bound.cos, bound.sin) = (frame.cos, frame.sin);
-            (bound.turn, bound.angle_deviation) = (turn, deviation);
-        } else {
-            step.bounds.set_origin(body, component, deviation);
         }
         // One correction solves linear equations.
         Ok(Correction {

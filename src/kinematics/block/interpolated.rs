@@ -82,43 +82,37 @@ impl InterpolatedBlock {
         let bounds = &mut *step.bounds;
         let driver = self.crossing.driver.index();
         let way = state.drivers[driver] - self.value;
-        let bodies = 3 * state.system.mechanism().bodies.len();
-        let has_pivots = !matches!(
-            self.block,
-            BlockSolver::CoupledBlock(_) | BlockSolver::ExplicitUnknown(_)
-        );
+        let bodies = state.system.mechanism().bodies.len();
         let driver_deviation = bounds.drivers[driver];
         // Angles first: the turn of a body moves its pivot.
-        for phi in [true, false] {
+        for angles in [true, false] {
             for (local, &column) in self.block.columns().iter().enumerate() {
-                let (before, now) = (step.from[column], state.at.coordinate(column));
+                if state.system.is_angle(column) != angles {
+                    continue;
+                }
+                let (body, before) = (column / 3, step.from[column]);
+                let now = state.at.coordinate(column);
                 let [slope, bend] = self.crossing.steepest(local);
                 let deviation = 0.125 * bend * way * way
                     + slope * driver_deviation
                     + ROUNDING * (1.0 + before.abs() + now.abs());
-                if column >= bodies {
-                    bounds.set_joint_unknown(column, deviation);
-                } else if column % 3 == 2 {
-                    if phi {
-                        bounds.set_spread(column / 3, f64::INFINITY);
-                        let (sin, cos) = before.sin_cos();
-                        *bounds.body_mut(column / 3) = ChordBound {
-                            cos,
-                            sin,
-                            turn: now - before,
-                            angle_deviation: deviation,
-                            point_deviation: 0.0,
-                        };
-                    }
-                } else if !phi && has_pivots {
-                    let body = column / 3;
-                    let arm = step.pivots.get(body).norm();
+                if angles && body < bodies {
+                    bounds.set_spread(body, f64::INFINITY);
+                    let (sin, cos) = before.sin_cos();
+                    *bounds.body_mut(body) = ChordBound {
+                        cos,
+                        sin,
+                        ..ChordBound::default()
+                    };
+                }
+                let pivot = if angles { None } else { step.pivots.of(body) };
+                if let Some(pivot) = pivot {
                     let bound = bounds.body_mut(body);
                     bound.point_deviation = bound
                         .point_deviation
-                        .max(1.5 * deviation + bound.arc_deviation(arm));
-                } else if !phi {
-                    bounds.set_origin(column / 3, column % 3, deviation);
+                        .max(1.5 * deviation + bound.arc_deviation(pivot.norm()));
+                } else {
+                    bounds.set_unknown(column, now - before, deviation);
                 }
             }
         }

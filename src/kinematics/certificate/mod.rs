@@ -108,8 +108,13 @@ impl Pivots {
         Self(vec![None; bodies])
     }
 
+    /// Returns the pivot of a body; `None` if straight code does not place it.
+    pub(super) fn of(&self, body: usize) -> Option<Vector2<f64>> {
+        self.0[body]
+    }
+
     /// Returns the pivot of a body, its origin if it has none.
-    pub(super) fn get(&self, body: usize) -> Vector2<f64> {
+    pub(super) fn or_origin(&self, body: usize) -> Vector2<f64> {
         self.0[body].unwrap_or_default()
     }
 
@@ -198,7 +203,7 @@ impl StepBounds {
         let Some(bound) = self.bodies.get(body) else {
             return self.joint_unknowns[column - 3 * self.bodies.len()];
         };
-        match (column % 3, pivots.0[body]) {
+        match (column % 3, pivots.of(body)) {
             (2, _) => bound.angle_deviation,
             (component, None) => self.origins[body][component],
             (_, Some(pivot)) => bound.point_deviation + bound.arc_deviation(pivot.norm()),
@@ -206,7 +211,7 @@ impl StepBounds {
     }
 
     /// Sets the largest deviation of the origin of a body without a pivot, in x (0) or y (1).
-    pub(super) fn set_origin(&mut self, body: usize, component: usize, deviation: f64) {
+    fn set_origin(&mut self, body: usize, component: usize, deviation: f64) {
         let origin = &mut self.origins[body];
         origin[component] = deviation;
         // Their squares do not vanish: each contains a rounding.
@@ -214,9 +219,15 @@ impl StepBounds {
         self.bodies[body].point_deviation = square.sqrt();
     }
 
-    /// Sets the largest deviation of a joint unknown.
-    pub(super) fn set_joint_unknown(&mut self, column: usize, deviation: f64) {
-        self.joint_unknowns[column - 3 * self.bodies.len()] = deviation;
+    /// Sets the largest deviation of a joint unknown, or of an unknown of a body without a pivot;
+    /// an angle turns by `moved`.
+    pub(super) fn set_unknown(&mut self, column: usize, moved: f64, deviation: f64) {
+        let body = column / 3;
+        match (self.bodies.get_mut(body), column % 3) {
+            (None, _) => self.joint_unknowns[column - 3 * self.bodies.len()] = deviation,
+            (Some(bound), 2) => (bound.turn, bound.angle_deviation) = (moved, deviation),
+            (Some(_), component) => self.set_origin(body, component, deviation),
+        }
     }
 
     /// Notes the squared ratio of this step to the longest step that a block can certify. Bounds

@@ -54,7 +54,7 @@ struct Filled {
 
 /// Returns the pivot of a body in the pose `q`.
 fn pivot(solver: &Solver, body: usize, q: &[f64]) -> Vector2<f64> {
-    let s = solver.model.plan.pivots.get(body);
+    let s = solver.model.plan.pivots.or_origin(body);
     Vector2::new(q[3 * body], q[3 * body + 1]) + Rotation2::new(q[3 * body + 2]) * s
 }
 

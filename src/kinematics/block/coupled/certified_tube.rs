@@ -235,18 +235,17 @@ impl CoupledBlock {
     /// `next`. Returns false without a proof.
     fn certify_in_tube(
         &mut self,
-        tube: usize,
+        index: usize,
         state: &BlockState<'_>,
         step: &mut Step<'_>,
     ) -> bool {
-        let leading = self.tube_column(self.tubes.kept[tube].leading);
+        let leading = self.tube_column(self.tubes.kept[index].leading);
         let Self {
             equations,
             test,
             tubes,
             ..
         } = self;
-        let index = tube;
         let tube = &tubes.kept[index];
         if !tube.holds {
             return false;

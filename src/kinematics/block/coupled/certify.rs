@@ -287,22 +287,9 @@ impl CoupledBlock {
 
     /// Writes the chord bounds of the block's unknowns. The bodies are at their ends.
     fn write_bounds(&mut self, state: &BlockState<'_>, step: &mut Step<'_>) {
-        let Step { from, bounds, .. } = step;
-        let bodies = 3 * state.system.mechanism().bodies.len();
         for ((&column, scale), radius) in self.equations.scaled_columns().zip(&self.test.next) {
-            let deviation = radius * scale;
-            if column >= bodies {
-                bounds.set_joint_unknown(column, deviation);
-                continue;
-            }
-            match column % 3 {
-                2 => {
-                    let turn = state.at.coordinate(column) - from[column];
-                    let bound = bounds.body_mut(column / 3);
-                    (bound.angle_deviation, bound.turn) = (deviation, turn);
-                }
-                component => bounds.set_origin(column / 3, component, deviation),
-            }
+            let moved = state.at.coordinate(column) - step.from[column];
+            step.bounds.set_unknown(column, moved, radius * scale);
         }
     }
 }
