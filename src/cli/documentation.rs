@@ -19,7 +19,7 @@ use crate::drawing::{Scene, Sheet, png};
 use crate::fmi::{Causality, Document, Kind, Quantity, Variable, Version, variables};
 use crate::kinematics::{End, Range, RangeSettings, Solver};
 use crate::mechanism::{
-    DriverId, DriverSource, Mechanism, Motion as Prescribed, Unit, Variable as Of, rounded,
+    DriverId, DriverSource, Mechanism, Motion as Prescribed, Source, Unit, Variable as Of, rounded,
 };
 
 const MAIN: &str = include_str!("documentation.html");
@@ -108,7 +108,10 @@ pub(super) fn documents(
     ];
     if let Some(page_solver) = page_solver {
         let solver = live::solver(page_solver);
-        let page = live::page(&input.source, &input.mechanism, &solver);
+        // The FMU depends on what is in the file, not on the file's name.
+        let name = format!("{}.toml", input.mechanism.name);
+        let source = Source::new(name, input.source.text());
+        let page = live::page(&source, &input.mechanism, &solver);
         documents.push(document("documentation/page.html", page.into_bytes()));
     }
     Ok(documents)
@@ -459,4 +462,33 @@ fn table<const N: usize>(header: &[&str; N], rows: impl Iterator<Item = [String;
     }
     html.push_str("</tbody>\n</table></div>");
     html
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn documents_do_not_depend_on_the_name_of_the_file() {
+        let text = include_str!("../../mechanisms/pendulum.toml");
+        let contents = |name: &str| -> Vec<_> {
+            let source = Source::new(name, text);
+            let (mechanism, _) = Mechanism::parse(&source).expect("it is the example");
+            let mechanism = Arc::new(mechanism);
+            let input = Input { source, mechanism };
+            let home = input.assemble().expect("it closes");
+            let documents = documents(&input, &home, Version::Fmi2, Some(b"\0asm"));
+            let documents = documents.expect("it can be drawn").into_iter();
+            documents
+                .map(|document| (document.path, document.content))
+                .collect()
+        };
+        let first = contents("pendulum.toml");
+        assert!(
+            first
+                .iter()
+                .any(|(path, _)| path == "documentation/page.html")
+        );
+        assert!(first == contents("a folder/copy of it.toml"));
+    }
 }
