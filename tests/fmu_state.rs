@@ -482,7 +482,7 @@ fn what_is_wrong_with_bytes_is_told() {
             version,
             StateError::Version {
                 given: 21,
-                expected: 5
+                expected: 6
             }
         ),
         "{version}"

@@ -180,8 +180,8 @@ impl<M: Model> Instance<M> {
         match error {
             // A warning has given the reason.
             Error::Model(Failure::Discarded(_)) => {
-                let message = format!("{call}: discarded");
-                self.logger.write(status, Category::Discard, &message);
+                let discarded = format!("{call}: discarded");
+                self.logger.write(status, Category::Discard, &discarded);
             }
             Error::StatusKind { .. } => self.logger.write(status, Category::Discard, &message),
             Error::Range { .. } | Error::Item { .. } => self.logger.warn(&message),

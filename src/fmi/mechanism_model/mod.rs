@@ -297,6 +297,7 @@ impl Model for MechanismModel {
         self.course = Course::new(&self.mechanism, self.forces.as_deref(), start, carryover);
         self.return_to_committed();
         self.driver_rates.fill(Jet::constant(0.0));
+        self.sources.fill([Source::default(); 2]);
         self.set_freshness(Freshness::Stale);
         self.parts = None;
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::rule::{Extrapolation, RateSource};
+use super::rule::{Extrapolation, RateSource, Source};
 use super::{Course, Freshness, MechanismModel, Quantity, Settings};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
@@ -27,6 +27,7 @@ pub struct MechanismState {
     present_carryover: Carryover,
     at_committed: bool,
     driver_rates: Vec<Jet>,
+    sources: Vec<[Source; 2]>,
     /// [`Freshness::Stale`] or [`Freshness::Pose`]: rates follow from the pose.
     freshness: Freshness,
 }
@@ -53,8 +54,6 @@ impl MechanismModel {
             parts: _,
             // Used within the call that sets it.
             dead_point: _,
-            // Computed with the rates of the drivers.
-            sources: _,
             // Computed from the pose.
             rates: _,
             reals: _,
@@ -65,6 +64,7 @@ impl MechanismModel {
             solver,
             at_committed,
             driver_rates,
+            sources,
             freshness,
         } = self;
         let mut present_carryover = Carryover::default();
@@ -85,6 +85,7 @@ impl MechanismModel {
             present,
             at_committed: *at_committed,
             driver_rates: driver_rates.clone(),
+            sources: sources.clone(),
             freshness: *freshness,
         }
     }
@@ -109,6 +110,7 @@ impl MechanismModel {
         debug_assert!(resumed, "the choices were checked when the state was read");
         self.at_committed = state.at_committed;
         self.driver_rates.clone_from(&state.driver_rates);
+        self.sources.clone_from(&state.sources);
         self.set_freshness(state.freshness);
         self.parts = None;
     }
@@ -182,6 +184,7 @@ impl MechanismState {
             present_carryover,
             at_committed,
             driver_rates,
+            sources,
             freshness,
         } = self;
         let Course {
@@ -234,6 +237,9 @@ impl MechanismState {
             for rate in &mut rates.derivatives {
                 codec.real(rate)?;
             }
+        }
+        for source in sources.iter_mut().flatten() {
+            codec.one_of(source, &Source::ALL)?;
         }
         let (rows, unknowns) = (committed.turns.len(), committed.q.len());
         for carryover in [committed_carryover, present_carryover] {
