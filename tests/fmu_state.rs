@@ -481,7 +481,7 @@ fn what_is_wrong_with_bytes_is_told() {
         matches!(
             version,
             StateError::Version {
-                given: 21,
+                given: 22,
                 expected: 6
             }
         ),

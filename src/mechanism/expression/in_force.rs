@@ -7,6 +7,9 @@ use crate::mechanism::number::{Jet3, Number, Unary};
 /// Most numbers that vary in a program: more than most contours have.
 const MOST: usize = 16;
 
+/// Most operands that wait for their operation.
+const MOST_WAITING: usize = 16;
+
 /// An expression of one variable, prepared for these values of its parameters: parts that do not
 /// vary are computed, equal parts are one, and a sine comes with its cosine.
 #[derive(Clone, Debug, Default)]
@@ -63,7 +66,7 @@ impl ExpressionInForce {
         expression: &Expression,
         parameter: &impl Fn(ParameterId) -> f64,
     ) -> Option<Operand> {
-        let mut stack = [Operand::Constant(0.0); MOST];
+        let mut stack = [Operand::Constant(0.0); MOST_WAITING];
         let mut height = 0;
         for &operation in &expression.program {
             let first = height - operation.arity();
@@ -105,18 +108,16 @@ impl ExpressionInForce {
             (Operation::Unary(Unary::Sqrt), [Place(x), _]) => Step::Sqrt(x),
             (Operation::Unary(Unary::Sin), [Place(x), _]) => Step::SineAndCosine(x),
             (Operation::Unary(Unary::Cos), [Place(x), _]) => {
-                let Place(sine) = self.add(Step::SineAndCosine(x))? else {
-                    return None;
-                };
+                let sine = self.add(Step::SineAndCosine(x))?;
                 return Some(Place(sine + 1));
             }
             _ => Step::Other(operation, operands),
         };
-        self.add(step)
+        self.add(step).map(Place)
     }
 
-    /// Returns the number that a step computes.
-    fn add(&mut self, step: Step) -> Option<Operand> {
+    /// Adds a step unless it is there. Returns the place of the number that it computes.
+    fn add(&mut self, step: Step) -> Option<u8> {
         let known = self.steps[..self.count].iter().position(|s| *s == step);
         let place = match known {
             Some(place) => place,
@@ -131,7 +132,7 @@ impl ExpressionInForce {
                 place
             }
         };
-        u8::try_from(place + 1).ok().map(Operand::Place)
+        u8::try_from(place + 1).ok()
     }
 
     /// Returns the value and its first three derivatives; `None` if the expression is too long.
@@ -140,6 +141,7 @@ impl ExpressionInForce {
         let mut numbers = [Jet3::constant(0.0); MOST];
         numbers[0] = Jet3::variable(variable);
         for (k, step) in self.steps[..self.count].iter().enumerate() {
+            // All places are below MOST; the remainder spares their check.
             let x = |place: u8| numbers[usize::from(place) % MOST];
             numbers[k + 1] = match *step {
                 Step::Done => continue,
@@ -176,6 +178,9 @@ impl ExpressionInForce {
         })
     }
 }
+
+// The usual operations of a contour: straight code takes a part of the time of the chain rule for any
+// function ([`Jet3::apply`]).
 
 /// Returns x².
 #[inline(always)]
