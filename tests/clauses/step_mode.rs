@@ -1,31 +1,42 @@
 //! Steps, events and intermediate update of FMI 3.0 co-simulation (4.2).
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use biela::fmi::{Call, Category};
 use biela::fmi::{
     CoSimulation, Error, Failure, Interface, MechanismModel, State, Status, StepOutcome,
     StepProgress, Version,
 };
+use biela::mechanism::Mechanism;
 
 use crate::common::log::Heard;
-use crate::common::{Instance, shipped};
+use crate::common::{Instance, parse, shipped};
 use crate::{get, set, vr};
 
 /// The two-link arm with a cylinder reaches 0.7 m at most: base and arm in a line.
 const CYLINDER: &str = "tlv";
 
-fn instance_of(name: &str, agreed: CoSimulation, heard: &Heard) -> Instance {
-    let model = MechanismModel::new(shipped(name), Interface::CoSimulation).expect("it assembles");
+fn new_instance(mechanism: Arc<Mechanism>, heard: &Heard) -> Instance {
+    let model = MechanismModel::new(mechanism, Interface::CoSimulation).expect("it assembles");
     let sink = Box::new(heard.clone());
-    let mut instance = Instance::of_version(Version::Fmi3, model, sink, true);
+    Instance::of_version(Version::Fmi3, model, sink, true)
+}
+
+fn instance_of(name: &str, agreed: CoSimulation, heard: &Heard) -> Instance {
+    let mut instance = new_instance(shipped(name), heard);
     instance.agree(agreed).expect("known variables");
     instance
 }
 
 fn running(name: &str, agreed: CoSimulation) -> Instance {
+    start(new_instance(shipped(name), &Heard::default()), agreed)
+}
+
+/// Starts an instance, up to its first step.
+fn start(mut instance: Instance, agreed: CoSimulation) -> Instance {
     let event_mode_used = agreed.event_mode_used;
-    let mut instance = instance_of(name, agreed, &Heard::default());
+    instance.agree(agreed).expect("known variables");
     instance
         .enter_initialization_mode_at(0.0, None)
         .expect("legal");
@@ -186,6 +197,24 @@ fn a_jump_at_an_event_resets_the_estimate() {
     instance.enter_step_mode().unwrap();
     step(&mut instance, 0.4, 0.1);
     assert_eq!(get(&mut instance, ["arm.omega"]), [0.0]);
+}
+
+/// The rates of a prescribed motion are exact, in event mode too.
+#[test]
+fn a_prescribed_motion_has_its_rates_at_an_event() {
+    let text = "format = 1\nname = 'turning'\n\
+        [parameters]\nrate = { value = 2.0, unit = 'rad/s', tunable = true }\n\
+        [ground.markers]\nO = [0, 0]\n[bodies.arm.markers]\nO = [0, 0]\n\
+        [joints]\nO = { type = 'revolute', markers = ['ground.O', 'arm.O'] }\n\
+        [drivers]\nq = { coordinate = 'angle', markers = ['ground.O', 'arm.O'], motion = 'rate*t' }";
+    let instance = new_instance(parse(text), &Heard::default());
+    let mut instance = start(instance, agreed(true, false));
+    let rates = ["arm.phi", "q.velocity", "arm.omega"];
+    step(&mut instance, 0.0, 0.5);
+    assert_eq!(get(&mut instance, rates), [1.0, 2.0, 2.0]);
+    instance.enter_event_mode().unwrap();
+    set(&mut instance, [("rate", 4.0)]);
+    assert_eq!(get(&mut instance, rates), [2.0, 4.0, 4.0]);
 }
 
 /// 4.2.1.1: the state before the call, inputs included.

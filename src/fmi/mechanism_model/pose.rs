@@ -174,10 +174,14 @@ impl MechanismModel {
     /// step, since no estimate is made from values that no step has reached.
     fn set_driver_rates_at_event(&mut self) {
         self.set_driver_rates(self.course.time, 0.0, 0.0);
-        let now = self.driver_rates.iter_mut().zip(&self.sources);
-        for ((rates, sources), last) in now.zip(&self.course.committed_rates) {
-            let last = last.derivatives;
-            for ((rate, last), source) in rates.derivatives.iter_mut().zip(last).zip(sources) {
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            // The rates of a prescribed motion are exact.
+            if driver.motion().is_some() {
+                continue;
+            }
+            let rates = self.driver_rates[index].derivatives.iter_mut();
+            let last = self.course.committed_rates[index].derivatives;
+            for ((rate, last), source) in rates.zip(last).zip(self.sources[index]) {
                 if matches!(source, Source::Estimate | Source::Difference) {
                     *rate = last;
                 }
