@@ -1,11 +1,14 @@
 //! A mechanism that moves along the motions of its drivers.
 
+use std::sync::Arc;
+
 use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
 use crate::drawing::ForcePlace;
 use crate::kinematics::{
-    Blocked, Curve, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Path, Rates, Solver,
+    Blocked, Curve, Direction, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Output,
+    OutputSource, Path, Rates, Solver,
 };
 use crate::mechanism::{DriverId, Jet};
 
@@ -75,6 +78,37 @@ impl Motion {
     pub(super) fn force(&self, quantity: ForceQuantity) -> f64 {
         let acting = self.forces.as_ref();
         acting.map_or(f64::NAN, |acting| acting.forces.value(quantity))
+    }
+
+    /// Returns the changes of outputs along a direction, those of forces only
+    /// [with forces](Self::with_forces); inputs of forces stay.
+    pub(super) fn changes(
+        &mut self,
+        outputs: &[Output],
+        direction: &Direction,
+    ) -> Result<Vec<f64>, Error> {
+        let (solver, rates, driver_rates) = (&mut self.solver, &self.rates, &self.driver_rates);
+        let of_forces = match &mut self.forces {
+            None => None,
+            Some(ActingForces { forces, inputs, .. }) => {
+                let motion = KnownMotion {
+                    rates,
+                    driver_rates,
+                    inputs,
+                };
+                let still = vec![0.0; inputs.len()];
+                Some(solver.force_sensitivity(motion, direction, &still, forces)?)
+            }
+        };
+        let mechanism = Arc::clone(solver.mechanism());
+        let change = solver.sensitivity(rates, driver_rates, direction)?;
+        let changes = outputs
+            .iter()
+            .map(|output| match (output.source, &of_forces) {
+                (OutputSource::Force(quantity), Some(forces)) => forces.change(quantity),
+                _ => output.change(&mechanism, &change),
+            });
+        Ok(changes.collect())
     }
 
     /// Returns the forces that a picture shows; none without [forces](Self::with_forces).

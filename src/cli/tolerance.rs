@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
 
@@ -38,19 +37,19 @@ pub(super) struct Tolerance {
     #[command(flatten)]
     span: Span,
     /// Variables of the table, separated by commas: one such as crank.phi, or all variables of a
-    /// body, marker or measure by its name [default: positions of points of interest and measures,
+    /// body, marker, measure, driver or joint by its name [default: positions of points of interest and measures,
     /// or of bodies].
     #[arg(short, long, value_name = "NAMES", value_delimiter = ',')]
     variables: Vec<String>,
 }
 
-/// The largest deviations of one variable over a motion \[SI\].
+/// The largest deviations of one variable over a motion, from times at which it has a value \[SI\].
 #[derive(Clone, Debug, Default)]
 struct Deviation {
     worst: f64,
     /// Time of the worst case \[s\].
     time: f64,
-    /// Part of each parameter in the worst case.
+    /// Part of each parameter in the worst case; none if the variable has no value at any time.
     parts: Vec<f64>,
     statistical: f64,
 }
@@ -63,7 +62,10 @@ impl Tolerance {
         let mechanism = scenario.mechanism.clone();
         let tolerances = tolerances(&mechanism)?;
         let columns = self.columns(&mechanism)?;
-        let motion = Motion::start(input.assemble()?, scenario);
+        let mut motion = Motion::start(input.assemble()?, scenario);
+        if columns.iter().any(Output::is_force) {
+            motion = motion.and_then(Motion::with_forces);
+        }
         let mut motion = motion.map_err(|error| input.error(error))?;
         let mut deviations = vec![Deviation::default(); columns.len()];
         for row in 0..=times.steps {
@@ -82,11 +84,7 @@ impl Tolerance {
     /// Returns the columns of the table; drivers are given and do not deviate.
     fn columns(&self, mechanism: &Mechanism) -> Result<Vec<Output>, Error> {
         let mut columns = Output::all(mechanism);
-        columns.retain(|column| match column.source {
-            Source::Signal(signal, _) => !matches!(signal, Signal::Motion(_)),
-            Source::Derived(_) => true,
-            Source::Force(_) => false,
-        });
+        columns.retain(|column| !matches!(column.source, Source::Signal(Signal::Motion(_), _)));
         if !self.variables.is_empty() {
             return Output::named(&columns, &self.variables, mechanism);
         }
@@ -121,7 +119,6 @@ fn add(
     columns: &[Output],
     tolerances: &[(ParameterId, f64)],
 ) -> Result<(), crate::kinematics::Error> {
-    let mechanism = Arc::clone(motion.solver.mechanism());
     let time = motion.solver.pose().time;
     let mut direction = Direction {
         drivers: vec![Jet::constant(0.0); motion.driver_rates.len()],
@@ -131,18 +128,17 @@ fn add(
     let mut parts = vec![Vec::with_capacity(tolerances.len()); columns.len()];
     for (parameter, tolerance) in tolerances {
         direction.parameters[parameter.index()] = *tolerance;
-        let rates = (&motion.rates, &motion.driver_rates);
-        let change = motion.solver.sensitivity(rates.0, rates.1, &direction)?;
-        for (parts, column) in parts.iter_mut().zip(columns) {
-            parts.push(column.change(&mechanism, &change).abs());
+        let changes = motion.changes(columns, &direction)?;
+        for (parts, change) in parts.iter_mut().zip(changes) {
+            parts.push(change.abs());
         }
         direction.parameters[parameter.index()] = 0.0;
     }
     for (deviation, parts) in deviations.iter_mut().zip(parts) {
         let squares: f64 = parts.iter().map(|part| part * part).sum();
         deviation.statistical = deviation.statistical.max(squares.sqrt());
-        let worst = parts.iter().sum();
-        if worst > deviation.worst || deviation.parts.is_empty() {
+        let worst: f64 = parts.iter().sum();
+        if worst > deviation.worst || deviation.parts.is_empty() && worst.is_finite() {
             (deviation.worst, deviation.time, deviation.parts) = (worst, time, parts);
         }
     }
@@ -162,6 +158,10 @@ fn table(
         "variable", "worst case", "statistical", "unit", "at t [s]"
     );
     for (column, deviation) in columns.iter().zip(deviations) {
+        if deviation.parts.is_empty() {
+            let _ = writeln!(out, "{:<width$}  no value at any time", column.name);
+            continue;
+        }
         let (factor, unit) = shown_in(column.unit);
         let [worst, statistical] =
             [deviation.worst, deviation.statistical].map(|value| scientific(value * factor, 3));

@@ -72,3 +72,63 @@ fn a_file_without_tolerances_is_told_what_to_add() {
     let assert = biela(&["tolerance", "mechanisms/four_bar.toml"]).code(2);
     assert!(stderr(&assert).contains("add for example `tolerance = \"0.05*mm\"`"));
 }
+
+/// Runs `biela tolerance` with a mechanism and returns the row of a variable.
+fn row_of(text: &str, variable: &str, options: &[&str]) -> Vec<String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file.toml");
+    std::fs::write(&file, text).expect("written");
+    let mut arguments = vec![
+        "tolerance",
+        file.to_str().expect("UTF-8"),
+        "--variables",
+        variable,
+    ];
+    arguments.extend(options);
+    let told = stdout(&biela(&arguments).success());
+    let row = told.lines().nth(1).expect("a row").split_whitespace();
+    row.map(str::to_owned).collect()
+}
+
+/// The measure is 0/0 in the first row, where the driver rests.
+#[test]
+fn times_without_a_value_are_passed_over() {
+    let text = format!(
+        "{ARM}\n[measures]\nx = {{ coordinate = 'x', markers = ['ground.O', 'lower.P'] }}\n\
+        ratio = {{ value = 'x.velocity/u.velocity', unit = 'm' }}\n"
+    );
+    let drives = ["--drive", "u = t^2", "--stop", "1", "--step", "0.5"];
+    // dx/du = -a sin u: its tolerance is largest at u = 1.
+    let row = row_of(&text, "ratio", &drives);
+    let worst: f64 = row[1].parse().unwrap();
+    // Millimetres.
+    assert!(
+        (worst / (0.2 * 1.0_f64.sin()) - 1.0).abs() < 5.1e-4,
+        "{row:?}"
+    );
+    assert_eq!(&row[3..], ["mm", "1", "a", "100", "%"]);
+    // At rest throughout there is none.
+    assert_eq!(
+        row_of(&text, "ratio", &["--stop", "1"])[1..].join(" "),
+        "no value at any time"
+    );
+}
+
+/// A point mass m at the end of an arm that holds it: the effort is m g a cos u.
+#[test]
+fn forces_have_tolerances() {
+    let text = "format = 1\nname = 'arm'\n\
+        [parameters]\na = { value = 0.3, unit = 'm', tolerance = '0.2*mm' }\n\
+        [ground.markers]\nO = [0, 0]\n\
+        [bodies.arm]\nmarkers = { O = [0, 0] }\nmass = 2\ncenter = ['a', 0]\n\
+        [joints]\nO = { type = 'revolute', markers = ['ground.O', 'arm.O'] }\n\
+        [drivers]\nu = { coordinate = 'angle', markers = ['ground.O', 'arm.O'], start = 0 }\n\
+        [simulation]\ngravity = [0, -10]\n";
+    let row = row_of(text, "u.effort", &["--stop", "0"]);
+    let worst: f64 = row[1].parse().unwrap();
+    assert!(
+        (worst / (2.0 * 10.0 * 0.2e-3) - 1.0).abs() < 5.1e-4,
+        "{row:?}"
+    );
+    assert_eq!(&row[3..], ["N.m", "0", "a", "100", "%"]);
+}
