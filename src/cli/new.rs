@@ -99,7 +99,7 @@ impl New {
         if !is_identifier(&self.name) {
             return Err(Error::Usage(format!(
                 "`{}` is no name of a mechanism: letters, digits and `_`, not starting with a \
-                 digit, and no word of the C language",
+                 digit, no word of the C language, and no device of Windows such as `con`",
                 self.name
             )));
         }

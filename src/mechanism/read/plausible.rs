@@ -1,5 +1,7 @@
 //! Warnings of values that are legal but probably in another unit than meant.
 
+use std::borrow::Cow;
+
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::wording::{large_angle, quoted, shown};
 use crate::mechanism::{Dimension, DisplayUnit, Span, Unit};
@@ -150,10 +152,17 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Returns the text of a quantity that is a bare number.
-    fn bare_text(&self, quantity: &Quantity) -> Option<&'a str> {
+    /// Returns the text of a quantity that is a bare number, as expressions write it: they have no
+    /// `0x10` and no `1_000`.
+    fn bare_text(&self, quantity: &Quantity) -> Option<Cow<'a, str>> {
         let text = self.source.text().get(quantity.span.clone())?;
-        (!text.starts_with(['"', '\''])).then_some(text)
+        if text.starts_with(['"', '\'']) {
+            return None;
+        }
+        match text.parse::<f64>() {
+            Ok(_) => Some(text.into()),
+            Err(_) => Some(quantity.value?.to_string().into()),
+        }
     }
 }
 
