@@ -69,7 +69,25 @@ pub fn edit(
             set(body, "estimate", Value::Array(estimate));
         }
     }
-    Ok(document.to_string())
+    Ok(laid_out_as(text, document.to_string()))
+}
+
+/// Returns an edited text with the byte order mark and the line ends of the old one, which a
+/// document does not keep.
+fn laid_out_as(old: &str, edited: String) -> String {
+    const MARK: char = '\u{feff}';
+    let mark = if old.starts_with(MARK) {
+        "\u{feff}"
+    } else {
+        ""
+    };
+    let lines = old.matches('\n').count();
+    let edited = edited.trim_start_matches(MARK).replace("\r\n", "\n");
+    if lines > 0 && old.matches("\r\n").count() == lines {
+        mark.to_owned() + &edited.replace('\n', "\r\n")
+    } else {
+        mark.to_owned() + &edited
+    }
 }
 
 /// Returns the table that an item of a mechanism file is.
@@ -103,4 +121,31 @@ fn in_unit_of(old: &Value, value: f64) -> Option<Value> {
     let is_near = |number: &f64| (number * factor - value).abs() <= NEAR * value.abs();
     let shown = Some(round).filter(is_near).unwrap_or(number);
     Some(format!("{shown}*{}", unit.trim()).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Path, Solver};
+    use crate::mechanism::Source;
+
+    #[test]
+    fn an_edited_file_keeps_its_line_ends_and_its_byte_order_mark() {
+        let shipped = include_str!("../../mechanisms/four_bar.toml").replace("\r\n", "\n");
+        for text in [
+            shipped.clone(),
+            shipped.replace('\n', "\r\n"),
+            format!("\u{feff}{}", shipped.replace('\n', "\r\n")),
+        ] {
+            let source = Source::new("four_bar.toml", text.clone());
+            let (mechanism, _) = Mechanism::parse(&source).expect("it is the example");
+            let mechanism = std::sync::Arc::new(mechanism);
+            let mut solver = Solver::new(std::sync::Arc::clone(&mechanism)).expect("it is sound");
+            solver.assemble(&Path::new(&mechanism)).expect("it closes");
+            let pose = solver.pose();
+            let names = ["coupler_length".to_owned()];
+            let same = edit(&text, &mechanism, &names, pose, Place::Keep).expect("its own text");
+            assert_eq!(same, text);
+        }
+    }
 }
