@@ -48,6 +48,18 @@ pub enum Error {
         /// The quantity that the expression gives.
         what: String,
     },
+    /// A parameter that follows from others is outside its limits.
+    #[error("`{name}` = {value} is {beyond} = {limit}; it follows from other parameters")]
+    Limit {
+        /// Name of the parameter.
+        name: String,
+        /// The value \[SI\].
+        value: f64,
+        /// The key of the limit, and on which side of it the value is.
+        beyond: &'static str,
+        /// The limit \[SI\].
+        limit: f64,
+    },
     /// The motion of a driver has no finite value, or no finite rates.
     #[error("{driver} has no finite {quantity}")]
     NoMotion {

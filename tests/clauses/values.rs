@@ -63,6 +63,36 @@ fn a_parameter_outside_its_limits_is_discarded() {
     instance.terminate().expect("nothing has failed");
 }
 
+/// A calculated parameter keeps to its limits too, judged with all values set.
+#[test]
+fn derived_parameters_keep_to_their_limits() {
+    let text = "format = 1\nname = 'limited'\n[parameters]\n\
+        half = { value = 0.3, unit = 'm', tunable = true }\n\
+        whole = { value = '2*half', unit = 'm', min = 0.5, max = 0.8 }\n\
+        [ground.markers]\nO = [0, 0]\n[bodies.arm.markers]\nO = [0, 0]\nP = ['whole', 0]\n\
+        [joints]\nO = { type = 'revolute', markers = ['ground.O', 'arm.O'] }\n\
+        [drivers]\nq = { coordinate = 'angle', markers = ['ground.O', 'arm.O'], start = 0 }";
+    let mut instance = instance_of(parse(text), Interface::CoSimulation);
+    set(&mut instance, [("half", 0.2)]);
+    instance.setup_experiment(0.0, None).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
+    let refused = instance.exit_initialization_mode().unwrap_err().to_string();
+    let expected = "`whole` = 0.4 is below `min` = 0.5; it follows from other parameters";
+    assert!(refused.contains(expected), "{refused}");
+
+    let mut instance = started(instance_of(parse(text), Interface::CoSimulation));
+    // The limit itself is a value.
+    set(&mut instance, [("half", 0.4)]);
+    instance.do_step(0.0, 0.1).expect("it may be 0.8");
+    set(&mut instance, [("half", 0.41)]);
+    let refused = instance.do_step(0.1, 0.1).unwrap_err();
+    assert_eq!(refused.status(), Status::Discard);
+    assert!(
+        refused.to_string().contains("is above `max` = 0.8"),
+        "{refused}"
+    );
+}
+
 /// The names of types and variables of a mechanism.
 fn names(xml: &str, element: &str) -> BTreeSet<String> {
     let start = format!("<{element} name=\"");

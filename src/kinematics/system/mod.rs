@@ -242,15 +242,17 @@ impl System {
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] where an expression leaves its domain, [`Error::NotPositive`] where a
-    /// distance is held at a value that is not positive. Configuration and targets are then
-    /// without use until valid values are set.
+    /// [`Error::Limit`] if a derived parameter is outside its limits, [`Error::NotFinite`] where an
+    /// expression leaves its domain, [`Error::NotPositive`] where a distance is held at a value
+    /// that is not positive. Configuration and targets are then without use until valid values are
+    /// set.
     pub fn set_parameters(
         &self,
         parameters: &[f64],
         at: &mut Configuration,
         targets: &mut Targets,
     ) -> Result<(), Error> {
+        self.check_derived(parameters)?;
         at.set_parameters(&self.mechanism, &self.joint_parts.coefficients, parameters)?;
         for (equation, constant) in self.equations.iter().zip(&mut targets.constants) {
             let Target::Constant(expression) = &equation.target else {
@@ -270,6 +272,32 @@ impl System {
             }
             if equation.constraint.dimension() == Dimension::Length {
                 at.enlarge(constant.abs());
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks the limits of derived parameters; those of others are checked where they are set.
+    fn check_derived(&self, parameters: &[f64]) -> Result<(), Error> {
+        /// Rounding of a value between two others, in parts of a limit.
+        const ROUNDING: f64 = 4.0 * f64::EPSILON;
+        let all = self.mechanism.parameters.iter().zip(parameters);
+        for (parameter, &value) in all.filter(|(parameter, _)| parameter.derived) {
+            let limits = [
+                (parameter.min, "below `min`", 1.0),
+                (parameter.max, "above `max`", -1.0),
+            ];
+            for (limit, beyond, inwards) in limits {
+                if let Some(limit) = limit
+                    && inwards * (value - limit) < -ROUNDING * limit.abs()
+                {
+                    return Err(Error::Limit {
+                        name: parameter.name.clone(),
+                        value,
+                        beyond,
+                        limit,
+                    });
+                }
             }
         }
         Ok(())
