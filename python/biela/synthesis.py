@@ -217,7 +217,8 @@ class Problem:
         # The sizes of the parameters, by which the optimiser scales them.
         width = self.high - self.low
         size = np.maximum(np.abs(self.own), np.abs(self.own).max(initial=0.0) * 1e-3)
-        self.size = np.where(np.isfinite(width), width, np.where(size > 0, size, 1.0))
+        bounded = np.isfinite(width) & (width > 0)
+        self.size = np.where(bounded, width, np.where(size > 0, size, 1.0))
         arrays = [target.arrays() for target in self.targets]
         self.poses = [values.shape[1] for _, values in arrays]
         self.residuals = sum(values.size for _, values in arrays)
@@ -324,11 +325,11 @@ class Problem:
         count = len(indices)
         values = np.array([parent.unknowns[: len(self.free)] for parent in parents])[indices]
         sizes = np.exp(random.uniform(*np.log(CHANGES), (count, 1)))
-        values += sizes * self.size * random.normal(size=(count, len(self.free)))
-        # What goes beyond a bound is reflected by it.
         width = self.high - self.low
-        values = np.abs((values - self.low) % (2 * width))
-        values = self.low + np.where(values > width, 2 * width - values, values)
+        values += sizes * width * random.normal(size=(count, len(self.free)))
+        # Values beyond a bound are reflected by it; equal bounds fix a parameter.
+        values = (values - self.low) % np.where(width > 0, 2 * width, 1.0)
+        values = self.low + np.minimum(values, 2 * width - values)
         best = {}
         for found in self._inner.costs(values.ravel()):
             if found[0] not in best or found[2] < best[found[0]][2]:

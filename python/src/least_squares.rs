@@ -47,7 +47,7 @@ pub(crate) struct Point {
 pub(crate) struct Outer {
     pub(crate) low: Vec<f64>,
     pub(crate) high: Vec<f64>,
-    /// Sizes by which steps are scaled.
+    /// Sizes by which steps are scaled, greater than zero.
     pub(crate) size: Vec<f64>,
 }
 
@@ -149,7 +149,7 @@ impl Point {
 struct System {
     jacobian: DMatrix<f64>,
     residuals: DVector<f64>,
-    /// Whether each outer unknown stays at its bound.
+    /// Whether each outer unknown stays: it is fixed, or at a bound.
     stays: Vec<bool>,
     /// Square of the largest column of outer unknowns.
     largest: f64,
@@ -167,8 +167,8 @@ impl System {
             column *= outer.size[index];
             let uphill = column.dot(&residuals);
             let at = at.unknowns[index];
-            *stays = (at <= outer.low[index] && uphill > 0.0)
-                || (at >= outer.high[index] && uphill < 0.0);
+            let [low, high] = [outer.low[index], outer.high[index]];
+            *stays = low >= high || (at <= low && uphill > 0.0) || (at >= high && uphill < 0.0);
             if *stays {
                 column.fill(0.0);
             }

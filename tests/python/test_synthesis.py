@@ -138,6 +138,21 @@ def test_a_minimum_within_bounds_is_that_of_scipy(generator):
     assert np.all(np.abs(slopes[level]) <= 1e-7 * columns * np.sqrt(attempt.cost))
 
 
+def test_equal_bounds_fix_a_parameter(four_bar):
+    """A parameter that is fixed costs no evaluation, and random changes leave it alone."""
+    target = biela.Target({"rocker.phi": [2.2, 2.4]}, drive={"crank_angle": [1.0, 1.3]})
+    free, fixed = {"crank_length": (0.05, 0.2)}, {"base": (0.4, 0.4)}
+    for arguments in ({}, {"starts": 3, "samples": 20, "variations": 2}):
+        alone, beside = (
+            biela.fit(four_bar, target, list(bounds), bounds, **arguments)
+            for bounds in (free, {**free, **fixed})
+        )
+        assert beside.parameters["base"] == 0.4
+        assert_allclose(beside.cost, alone.cost, rtol=1e-12)
+        # With random starts other numbers are drawn for two parameters than for one.
+        assert beside.evaluations == alone.evaluations or arguments
+
+
 def test_free_values_in_order_are_the_best_of_all(generator):
     """The first timing of three points, which a full turn passes in another order, against all
     choices among 36 poses of a turn."""
