@@ -10,7 +10,7 @@ use biela::mechanism::{DriverId, Jet, ParameterId};
 use crate::error::Failure;
 use crate::runner::Runner;
 use crate::scenario::Scenario;
-use crate::timing::{FreeDriver, STEPS};
+use crate::timing::{Curve, FreeDriver};
 
 /// Largest number of steps to the nearest pose to a target.
 const NEARER: usize = 2;
@@ -138,15 +138,13 @@ impl Follower {
                     }
                 }
                 Some(timing) => {
-                    let mut curve = self.scan(target, timing)?;
-                    curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    let curve = self.scan(target, timing)?;
                     let gaps = (0..target.rows.len()).map(|pose| {
-                        let gaps = curve.iter().map(|(_, values)| target.gap(pose, values));
-                        gaps.collect()
+                        let points = curve.points.iter();
+                        points.map(|(_, values)| target.gap(pose, values)).collect()
                     });
                     let gaps: Vec<Vec<f64>> = gaps.collect();
-                    let values: Vec<f64> = curve.iter().map(|(at, _)| *at).collect();
-                    let (sum, timing) = timing.nearest(&values, &gaps);
+                    let (sum, timing) = timing.nearest(&curve, &gaps);
                     cost += sum;
                     free_values.extend(timing);
                 }
@@ -156,30 +154,31 @@ impl Follower {
     }
 
     /// Returns the values of a target's variables along the motion of its free driver, from the
-    /// present pose both ways: over a turn, or between the driver's limits.
-    fn scan(
-        &mut self,
-        target: &Target,
-        timing: &FreeDriver,
-    ) -> Result<Vec<(f64, Vec<f64>)>, Refused> {
+    /// present pose both ways: between the driver's limits, or over as many turns as the curve needs
+    /// to close.
+    fn scan(&mut self, target: &Target, timing: &FreeDriver) -> Result<Curve, Refused> {
         let row = target.rows.start;
         self.go(row)?;
         let middle = self.runner.solver.pose().clone();
         let start = middle.drivers[timing.driver.index()];
         let [low, high] = timing.bounds;
-        let mut curve = vec![(start, self.values(target))];
+        let mut curve = Curve::new(start, self.values(target));
         for step in [timing.step, -timing.step] {
             self.runner.return_to(&middle);
             let mut at = start + step;
-            while curve.len() <= STEPS && (low..=high).contains(&at) {
+            while curve.is_short() && (low..=high).contains(&at) {
                 self.set_value(row, timing.driver, at);
                 if self.go(row).is_err() {
                     break;
                 }
-                curve.push((at, self.values(target)));
+                curve.points.push((at, self.values(target)));
+                if timing.is_unlimited() && step > 0.0 {
+                    curve.close();
+                }
                 at += step;
             }
         }
+        curve.points.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(curve)
     }
 

@@ -176,6 +176,38 @@ def test_free_values_in_order_are_the_best_of_all(generator):
         assert min(abs(cost - sums[allowed].min()) for cost in found) < 1e-12
 
 
+@pytest.mark.parametrize(
+    ("angles", "met"),
+    [((300, 330, 400), True), ((640, 700, 980), True), ((980, 700, 640), True), ((300, 330, 40), False)],
+)
+def test_a_path_that_closes_after_two_turns_is_followed(mechanism, angles, met):
+    """Points that the first crank passes within a turn of its own, and others. The angles are 10°
+    apart from its start at 40°, as the poses at which the search looks."""
+    geared = mechanism("geared_five_bar")
+    path = geared.run(drive={"crank_angle": np.radians(angles)}, variables=["left_link.C"])
+    xy = np.transpose([path["left_link.C.x"], path["left_link.C.y"]])
+    target = biela.points("left_link.C", xy, free="crank_angle", in_order=True)
+    problem = Problem(geared, target, ["link"], {}, None)
+    costs = [cost for _, _, cost in problem._inner.costs(problem.own)]
+    attempt = problem._inner.attempt(problem.own.tolist())
+    residuals, _ = attempt.evaluate(attempt.unknowns)
+    # Rounding of a few 1e-16 in squares of some centimetres.
+    assert min(abs(cost - residuals @ residuals) for cost in costs) < 1e-15
+    assert (residuals @ residuals < 1e-24) == met
+    if met:
+        assert biela.fit(geared, target, ["link"]).cost < 1e-24
+
+
+def test_an_angle_that_winds_has_the_value_of_its_turn(generator):
+    target = biela.Target({"crank.phi": [6.0, 7.5, 1.0]}, free="theta", in_order=True)
+    problem = Problem(generator, target, ["r2"], {}, None)
+    attempt = problem._inner.attempt(problem.own.tolist())
+    residuals, _ = attempt.evaluate(attempt.unknowns)
+    ((_, _, cost), *_) = problem._inner.costs(problem.own)
+    # Rounding of some 1e-16 in squares of radians.
+    assert_allclose(residuals @ residuals, cost, atol=1e-14)
+
+
 @pytest.mark.parametrize("in_order", [False, True])
 def test_points_are_passed_in_order_where_asked_for(generator, in_order):
     """Points of a known path in another order: met without an order only."""
