@@ -132,16 +132,13 @@ def tolerance(
     deviations = np.abs(result.gradient.to_numpy()) * sizes[None, :, None]
     worst = deviations.sum(axis=1)
     statistical = np.sqrt((deviations**2).sum(axis=1))
-    nominal = dict(_given(parameters))
-    if any(isinstance(nominal.get(name), str) for name in names):
-        # Expressions are evaluated, as deviations are added to their values.
-        values = mechanism.changed(nominal).parameters
-        nominal.update((name, values[name].value) for name in names if name in nominal)
-    own = np.array([float(nominal.pop(name, known[name].value)) for name in names])
+    given = _given(parameters)
+    values = dict(zip(known, mechanism._inner.values(given)))
+    nominal = np.array([values[name] for name in names])
 
     def variants(factors: NDArray) -> Sweep:
-        swept = dict(zip(names, (own + factors * sizes).T))
-        return mechanism.sweep({**nominal, **swept}, t, drive, variables)
+        swept = dict(zip(names, (nominal + factors * sizes).T))
+        return mechanism.sweep({**dict(given), **swept}, t, drive, variables)
 
     if corners and len(names) > MOST_CORNERS:
         raise UsageError(
