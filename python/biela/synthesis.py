@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _biela
-from .errors import AssemblyError, Error, UsageError
-from .mechanism import Drive, Mechanism, _orders, _reread
+from .errors import AssemblyError, UsageError
+from .mechanism import Drive, Mechanism, _count, _orders, _reread
 
 ROUNDS = ((12, 0.1), (40, 1.0))
 """Evaluations of each attempt in a round, and the part of the attempts that goes on to the next."""
@@ -51,12 +51,15 @@ class Target:
     def arrays(self) -> tuple[list[str], NDArray]:
         """Returns the names, and the values by name, then by pose."""
         names = list(self.values)
-        arrays = [np.atleast_1d(np.asarray(value, dtype=float)) for value in self.values.values()]
+        arrays = [_numbers("target", name, value) for name, value in self.values.items()]
         if not names or len({array.shape for array in arrays}) != 1 or arrays[0].ndim != 1:
             shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(names, arrays)) or "none"
             raise UsageError(f"target: expected arrays of one length; found {shapes}")
         if not arrays[0].size or not np.isfinite(arrays).all():
             raise UsageError(f"target: expected finite values of `{names[0]}` at one pose or more")
+        weight = _numbers("target", "weight", self.weight)
+        if np.ndim(self.weight) or not np.isfinite(weight[0]):
+            raise UsageError(f"target: expected a finite number as `weight`; found {self.weight!r}")
         return names, np.array(arrays)
 
 
@@ -73,11 +76,20 @@ def points(
     >>> points("coupler.P", [[3, 3], [2.759, 3.363]], free="crank_angle").values["coupler.P.y"]
     array([3.   , 3.363])
     """
-    xy = np.asarray(xy, dtype=float)
+    xy = _numbers("points", marker, xy)
     if xy.ndim != 2 or xy.shape[1] != 2:
         raise UsageError(f"points: expected rows of x and y; found an array of shape {xy.shape}")
     x, y = xy.T
     return Target({f"{marker}.x": x, f"{marker}.y": y}, drive or {}, free, weight, in_order)
+
+
+def _numbers(argument: str, name: str, value: ArrayLike) -> NDArray:
+    """Returns the numbers of an argument, in one dimension or more."""
+    try:
+        # Text of digits is no number here either.
+        return np.atleast_1d(np.asarray(value) * 1.0).astype(float)
+    except (TypeError, ValueError):
+        raise UsageError(f"{argument}: expected numbers as `{name}`; found {value!r}") from None
 
 
 @dataclass(frozen=True)
@@ -136,6 +148,8 @@ def fit(
     >>> round(found.parameters["crank_length"], 9), round(found.parameters["rocker_length"], 9)
     (0.11, 0.29)
     """
+    starts, samples = _count("starts", starts, 1), _count("samples", samples)
+    variations = _count("variations", variations)
     problem = Problem(mechanism, targets, free, bounds or {}, turns, tolerance, stop_at)
     random = np.random.default_rng(seed)
     attempts = problem.attempts(starts, samples, random)
@@ -202,6 +216,12 @@ class Problem:
             if name not in known:
                 meant = _biela.unknown_name("parameter", name, list(known))
                 raise UsageError(f"parameters: {meant}")
+        for name in self.free:
+            if self.free.count(name) > 1:
+                raise UsageError(f"free: `{name}` is named twice")
+        for name in bounds:
+            if name not in self.free:
+                raise UsageError(f"bounds: `{name}` is not free; name it in `free` too")
         self.own = np.array([known[name].value for name in self.free])
         limits = [bounds.get(name, (known[name].min, known[name].max)) for name in self.free]
         for name, limit in zip(self.free, limits):
@@ -288,7 +308,7 @@ class Problem:
         found = []
         try:
             found.append(self._inner.attempt(np.clip(self.own, self.low, self.high).tolist()))
-        except Error:
+        except AssemblyError:
             if count == 1:
                 raise
         if count > 1:
@@ -347,7 +367,7 @@ class Problem:
         unknowns = np.array(best.unknowns)
         # The mechanism goes to the unknowns once more: the last ones tried may be worse.
         found = best.evaluate(unknowns.tolist())
-        if found is None:
+        if found is None or not np.isfinite(best.cost):
             raise AssemblyError("fit: the mechanism does not reach all targets")
         residuals, _ = found
         inner = self.mechanism._inner

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import UsageError
-from .mechanism import Drive, Mechanism, Parameters, _given
+from .mechanism import Drive, Mechanism, Parameters, _count, _given
 from .results import Result, Sweep
 
 MOST_CORNERS = 12
@@ -118,6 +118,7 @@ def tolerance(
     >>> bool(np.allclose((high - low) / 2, worst, rtol=1e-3))
     True
     """
+    samples = _count("samples", samples)
     known = mechanism.parameters
     if tolerances is None:
         tolerances = {n: p.tolerance for n, p in known.items() if p.tolerance is not None}

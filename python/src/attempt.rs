@@ -87,7 +87,9 @@ impl Attempt {
     ) -> Result<Self, Failure> {
         let mut follower = Follower::new(fit)?;
         let refused = || Failure::Assembly("the mechanism does not reach all targets".to_owned());
-        let parameters = follower.parameters(&values).map_err(Failure::Usage)?;
+        let parameters = follower.parameters(&values);
+        let parameters =
+            parameters.map_err(|error| Failure::Usage(format!("parameters: {error}")))?;
         let base = match mode {
             Some(mode) => {
                 let poses = follower.runner.poses(0, &parameters);

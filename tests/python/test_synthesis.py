@@ -236,6 +236,9 @@ def test_free_values_stay_within_the_drivers_limits(mechanism):
 
 def test_wrong_targets_are_refused(generator):
     point = biela.points("coupler.P", TIMED[:2], drive={"theta": [0.5, 1.0]})
+    target = lambda values=[1.9], drive={"theta": [0.5]}, **more: biela.Target(
+        {"rocker.phi": values}, drive, **more
+    )
     refused = [
         ({"free": ["r9"]}, "did you mean `r1`"),
         ({"targets": biela.points("coupler.Q", TIMED, free="theta")}, "did you mean `coupler.P.x`"),
@@ -249,15 +252,33 @@ def test_wrong_targets_are_refused(generator):
         ({"bounds": {"r2": (2.0, 1.0)}}, "two numbers for `r2`, the smaller first"),
         ({"bounds": {"r2": ("1*m", 2.0)}}, "two numbers for `r2`"),
         ({"starts": 2, "free": []}, "random starts need the name of a parameter"),
+        ({"targets": target(weight=np.nan)}, "expected a finite number as `weight`; found nan"),
+        ({"targets": target(weight="2")}, "target: expected numbers as `weight`; found '2'"),
+        ({"targets": target(["far"])}, r"target: expected numbers as `rocker.phi`; found \['far'\]"),
+        ({"targets": target(None)}, "target: expected numbers as `rocker.phi`; found None"),
+        ({"targets": target([[1.0], [1.0, 2.0]])}, "target: expected numbers as `rocker.phi`"),
+        ({"targets": target(drive={"theta": "1*rad"})}, "drive: expected numbers as `theta`; found '1"),
+        ({"starts": 0}, "starts: expected a whole number, at least 1; found 0"),
+        ({"starts": 2.5}, "starts: expected a whole number, at least 1; found 2.5"),
+        ({"samples": -1}, "samples: expected a whole number, at least 0; found -1"),
+        ({"variations": -1}, "variations: expected a whole number, at least 0; found -1"),
+        ({"free": ["r2", "r3", "r2"]}, "free: `r2` is named twice"),
+        ({"bounds": {"r3": (1.0, 2.0)}}, "bounds: `r3` is not free; name it in `free` too"),
+        ({"bounds": {"r2": (-5.0, -1.0)}}, "^parameters: .*`r2`"),
+        ({"bounds": {"r2": (-5.0, -1.0)}, "starts": 3, "samples": 20}, "^parameters: .*`r2`"),
     ]
     for arguments, message in refused:
         with pytest.raises(biela.UsageError, match=message):
             biela.fit(**{"mechanism": generator, "targets": point, "free": ["r2"], **arguments})
     with pytest.raises(biela.UsageError, match=r"rows of x and y; found an array of shape \(3,\)"):
         biela.points("coupler.P", [1, 2, 3])
+    with pytest.raises(biela.UsageError, match="points: expected numbers as `coupler.P`; found"):
+        biela.points("coupler.P", [[1, 2], [3]])
     far = {"mechanism": generator, "targets": point, "free": ["r2"], "bounds": {"r2": (20.0, 21.0)}}
     with pytest.raises(biela.AssemblyError, match="the mechanism cannot close"):
         biela.fit(**far)
+    with pytest.raises(biela.AssemblyError, match="the mechanism does not reach all targets"):
+        biela.fit(generator, target([1e200]), ["r2"])
     with pytest.raises(biela.AssemblyError, match="no start reaches all targets"):
         biela.fit(**far, starts=3, samples=20)
 

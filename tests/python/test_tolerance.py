@@ -76,6 +76,8 @@ def test_wrong_tolerances_are_refused(four_bar):
     for size in (-1e-5, np.nan, "0.05*mm"):
         with pytest.raises(biela.UsageError, match="expected a number in SI units, not negative"):
             biela.tolerance(four_bar, drive=DRIVE, tolerances={"base": size})
+    with pytest.raises(biela.UsageError, match="samples: expected a whole number, at least 0; found -1"):
+        biela.tolerance(four_bar, drive=DRIVE, tolerances=TOLERANCES, samples=-1)
     single = biela.tolerance(four_bar, drive={"crank_angle": [1.0]}, tolerances=TOLERANCES)
     with pytest.raises(biela.UsageError, match="a path needs two poses"):
         single.plot("coupler.P")
