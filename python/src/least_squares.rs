@@ -4,6 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 /// Damping of the first step, as part of the largest squared column of the Jacobian.
 const FIRST_DAMPING: f64 = 1e-4;
+/// Damping that changes a step by rounding only; less would have to be raised many times before a
+/// refused step becomes shorter.
+const LEAST_DAMPING: f64 = f64::EPSILON;
 /// Damping at which a step is shorter than rounding.
 const MOST_DAMPING: f64 = 1e16;
 /// Factor of the damping after a step that is refused.
@@ -127,6 +130,7 @@ impl Point {
                     // Nielsen's rule: the better the prediction, the less damping.
                     let gain = 2.0 * (before - cost) / expected - 1.0;
                     self.damping *= (1.0 - gain.powi(3)).clamp(LOWER, 2.0);
+                    self.damping = self.damping.max(LEAST_DAMPING);
                     self.done = !kept || before - cost <= limits.tolerance * before;
                     break;
                 }
@@ -191,14 +195,14 @@ impl System {
         let (rows, count) = self.jacobian.shape();
         let mut system = DMatrix::zeros(rows + count, count);
         system.rows_mut(0, rows).copy_from(&self.jacobian);
-        let floor = f64::EPSILON * self.largest;
         for index in 0..count {
             let damping = match self.stays.get(index) {
                 Some(true) => 1.0,
                 Some(false) => at.damping * self.largest,
-                None => INNER * at.damping * self.largest,
+                None => (INNER * at.damping).max(LEAST_DAMPING) * self.largest,
             };
-            system[(rows + index, index)] = damping.max(floor).max(f64::MIN_POSITIVE).sqrt();
+            // Without any effect of the outer unknowns the largest column is zero.
+            system[(rows + index, index)] = damping.max(f64::MIN_POSITIVE).sqrt();
         }
         let mut right = DVector::zeros(rows + count);
         right.rows_mut(0, rows).copy_from(&(-&self.residuals));

@@ -138,6 +138,17 @@ def test_a_minimum_within_bounds_is_that_of_scipy(generator):
     assert np.all(np.abs(slopes[level]) <= 1e-7 * columns * np.sqrt(attempt.cost))
 
 
+def test_a_fit_ends_without_repeating_a_step(generator):
+    """Each good step lowers the damping, here to less than rounding. The refused step at the end
+    shall not be tried again while the damping rises to where it changes the step."""
+    points = [[-1.074, 2.023], [-0.075, 2.286], [-0.498, 2.322], [-1.243, 1.808]]
+    target = biela.points("coupler.P", points, free="theta")
+    found = biela.fit(generator, target, ["r3", "r4", "r1"])
+    assert_allclose(found.cost, 1.4433485630621e-3, rtol=1e-12)
+    # Without a limit of the damping: 42.
+    assert found.evaluations <= 38
+
+
 def test_equal_bounds_fix_a_parameter(four_bar):
     """A parameter that is fixed costs no evaluation, and random changes leave it alone."""
     target = biela.Target({"rocker.phi": [2.2, 2.4]}, drive={"crank_angle": [1.0, 1.3]})
