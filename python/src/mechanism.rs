@@ -332,8 +332,7 @@ impl Mechanism {
     /// Returns the text of the file with the parameters of these names at their values in an
     /// attempt, and its pose as estimates.
     fn fitted(&self, py: Python<'_>, attempt: &Attempt, names: Vec<String>) -> PyResult<String> {
-        let pose = attempt.home();
-        self.text_at(&names, &pose)
+        py.detach(|| self.text_at(&names, &attempt.home()))
             .map_err(|failure| failure.raise(py))
     }
 
