@@ -27,12 +27,14 @@ struct Moving {
 /// A mechanism that tries unknowns.
 struct Trial {
     follower: Follower,
-    /// Pose at the first row for the best unknowns so far.
+    /// Pose from which an evaluation starts: at the first row, for the unknowns kept last, before
+    /// their timing was improved.
     base: Pose,
-    /// Poses for the unknowns tried last: at the first row before its timing was improved, and at
-    /// all rows.
+    /// Pose at the first row for the unknowns tried last, before their timing was improved.
     first: Pose,
+    /// Poses at all rows for the unknowns tried last.
     poses: Vec<Pose>,
+    /// Number of evaluations by improvements.
     evaluations: usize,
 }
 
@@ -54,14 +56,14 @@ impl Attempt {
         self.moving().point.cost
     }
 
-    /// Number of times that residuals were computed.
+    /// Number of evaluations of the residuals by improvements; those of `evaluate` do not count.
     #[getter]
     fn evaluations(&self) -> usize {
         self.moving().trial.evaluations
     }
 
-    /// Returns the residuals and their derivatives at unknowns, and moves there; `None` for unknowns
-    /// that the mechanism does not reach.
+    /// Returns the residuals and their derivatives at unknowns, and moves there. Returns `None` and
+    /// stays where the mechanism does not reach the unknowns, or has no derivatives there.
     fn evaluate<'py>(&self, py: Python<'py>, unknowns: Vec<f64>) -> Option<Linearised<'py>> {
         let found = py.detach(|| {
             let Moving { trial, point } = &mut *self.moving();
@@ -126,7 +128,7 @@ impl Attempt {
         trial.evaluations += point.improve(trial, outer, limits);
     }
 
-    /// Returns the pose for the unknowns evaluated last: at the file's start values of the drivers if
+    /// Returns the pose for the unknowns kept last: at the file's start values of the drivers if
     /// the mechanism reaches them, otherwise at the first row.
     pub(crate) fn home(&self) -> Pose {
         let Trial { follower, base, .. } = &mut self.moving().trial;
@@ -251,7 +253,10 @@ impl Residuals for Trial {
     }
 
     fn keep(&mut self, unknowns: &[f64], derivatives: &mut [f64]) -> bool {
-        self.base.clone_from(&self.first);
-        self.differentiate(unknowns, derivatives).is_ok()
+        let kept = self.differentiate(unknowns, derivatives).is_ok();
+        if kept {
+            self.base.clone_from(&self.first);
+        }
+        kept
     }
 }

@@ -26,8 +26,8 @@ pub(crate) trait Residuals {
     /// there are no residuals.
     fn try_at(&mut self, unknowns: &mut [f64], residuals: &mut [f64]) -> bool;
 
-    /// Keeps the unknowns tried last, and sets the derivatives of their residuals, by residual,
-    /// then by unknown. Returns false if there are none.
+    /// Sets the derivatives of the residuals at the unknowns tried last, by residual, then by
+    /// unknown, and keeps these unknowns. Returns false and keeps none if there are no derivatives.
     fn keep(&mut self, unknowns: &[f64], derivatives: &mut [f64]) -> bool;
 }
 

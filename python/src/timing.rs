@@ -19,8 +19,9 @@ const CLOSED: f64 = 1e-6;
 /// A driver whose values at the rows of a target are free.
 pub(crate) struct FreeDriver {
     pub(crate) driver: DriverId,
-    /// Range in which the nearest poses are looked for, and distance between two of them.
+    /// Limits of the values; infinite for an angle without limits.
     pub(crate) bounds: [f64; 2],
+    /// Distance between two values at which the nearest poses are looked for.
     pub(crate) step: f64,
     /// Whether its values at the rows ascend or descend, within a turn or its range.
     in_order: bool,
