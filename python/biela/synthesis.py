@@ -188,6 +188,21 @@ def search(
             return
 
 
+def _limits(name: str, ends: tuple[float | None, float | None]) -> tuple[float, float]:
+    """Returns the limits of a parameter, infinite where there is none."""
+    try:
+        low, high = ends
+        low = -np.inf if low is None else float(low)
+        high = np.inf if high is None else float(high)
+    except (TypeError, ValueError):
+        low, high = np.nan, np.nan
+    if not low <= high:
+        raise UsageError(
+            f"bounds: expected two numbers for `{name}`, the smaller first; found {ends}"
+        )
+    return low, high
+
+
 class Problem:
     """Targets of a mechanism as a problem of least squares.
 
@@ -223,17 +238,10 @@ class Problem:
             if name not in self.free:
                 raise UsageError(f"bounds: `{name}` is not free; name it in `free` too")
         self.own = np.array([known[name].value for name in self.free])
-        limits = [bounds.get(name, (known[name].min, known[name].max)) for name in self.free]
-        for name, limit in zip(self.free, limits):
-            expected = f"bounds: expected two numbers for `{name}`, the smaller first; found {limit}"
-            try:
-                low, high = (None if end is None else float(end) for end in limit)
-            except (TypeError, ValueError):
-                raise UsageError(expected) from None
-            if low is not None and high is not None and not low <= high:
-                raise UsageError(expected)
-        self.low = np.array([-np.inf if low is None else low for low, _ in limits], dtype=float)
-        self.high = np.array([np.inf if high is None else high for _, high in limits], dtype=float)
+        limits = [
+            _limits(name, bounds.get(name, (known[name].min, known[name].max))) for name in self.free
+        ]
+        self.low, self.high = np.array(limits).reshape(-1, 2).T
         # The sizes of the parameters, by which the optimiser scales them.
         width = self.high - self.low
         size = np.maximum(np.abs(self.own), np.abs(self.own).max(initial=0.0) * 1e-3)
@@ -241,7 +249,6 @@ class Problem:
         self.size = np.where(bounded, width, np.where(size > 0, size, 1.0))
         arrays = [target.arrays() for target in self.targets]
         self.poses = [values.shape[1] for _, values in arrays]
-        self.residuals = sum(values.size for _, values in arrays)
         columns = list(mechanism.variables)
         rows = []
         for target, (names, values) in zip(self.targets, arrays):

@@ -32,7 +32,7 @@ pub(crate) trait Residuals {
 }
 
 /// A point of the search: unknowns with residuals and derivatives.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Point {
     pub(crate) unknowns: Vec<f64>,
     residuals: Vec<f64>,
