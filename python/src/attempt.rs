@@ -2,8 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use biela::kinematics::{Direction, Pose};
-use biela::mechanism::Jet;
+use biela::kinematics::Pose;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -186,7 +185,7 @@ impl Trial {
                 }
                 for (column, value) in follower.values(target).into_iter().enumerate() {
                     let index = target.index(column, pose);
-                    residuals[before + index] = target.weight * (value - target.wanted[index]);
+                    residuals[before + index] = target.residual(column, pose, value);
                 }
                 follower.runner.solver.save(&mut poses[row]);
             }
@@ -212,11 +211,7 @@ impl Trial {
         for target in &fit.targets {
             let columns = target.columns.len();
             let mut directions = fit.directions.clone();
-            if let Some(free) = &target.timing {
-                let mut by_value = Direction::zero(&fit.scenario.own);
-                by_value.drivers[free.driver.index()] = Jet::constant(1.0);
-                directions.push(by_value);
-            }
+            directions.extend(target.timing.iter().map(|free| free.direction.clone()));
             for (pose, row) in target.rows.clone().enumerate() {
                 follower.runner.return_to(&poses[row]);
                 follower.runner.solve(row).map_err(|_| Refused)?;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use biela::cli::check_parameter;
 use biela::kinematics::{Direction, Output, Pose};
-use biela::mechanism::{DriverId, Jet, ParameterId};
+use biela::mechanism::{DriverId, ParameterId};
 
 use crate::error::Failure;
 use crate::runner::Runner;
@@ -240,18 +240,16 @@ impl Follower {
         let mut values = self.values(target);
         let mut gap = target.gap(pose, &values);
         let mut changes = Vec::with_capacity(values.len());
-        let mut along = Direction::zero(&self.fit.scenario.own);
-        along.drivers[timing.driver.index()] = Jet::constant(1.0);
+        let along = std::slice::from_ref(&timing.direction);
         for _ in 0..NEARER {
             changes.clear();
-            let along = std::slice::from_ref(&along);
             let differentiated = (self.runner).differentiate(&target.columns, along, &mut changes);
             differentiated.map_err(|_| Refused)?;
             let (mut slope, mut steepness) = (0.0, 0.0);
             for (column, (value, change)) in values.iter().zip(&changes).enumerate() {
-                let weight = target.weight * target.weight;
-                slope += weight * change * (value - target.wanted[target.index(column, pose)]);
-                steepness += weight * change * change;
+                let change = target.weight * change;
+                slope += change * target.residual(column, pose, *value);
+                steepness += change * change;
             }
             // The driver may have no effect.
             if slope * slope <= WORTH * gap * steepness {
@@ -300,10 +298,15 @@ impl Target {
         column * self.rows.len() + pose
     }
 
+    /// Returns the residual of a value at a pose.
+    pub(crate) fn residual(&self, column: usize, pose: usize, value: f64) -> f64 {
+        self.weight * (value - self.wanted[self.index(column, pose)])
+    }
+
     /// Returns the sum of squared residuals at a pose.
     pub(crate) fn gap(&self, pose: usize, values: &[f64]) -> f64 {
         let squares = values.iter().enumerate().map(|(column, value)| {
-            let residual = self.weight * (value - self.wanted[self.index(column, pose)]);
+            let residual = self.residual(column, pose, *value);
             residual * residual
         });
         squares.sum()

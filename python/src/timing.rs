@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use biela::mechanism::{DriverId, Mechanism};
+use biela::kinematics::Direction;
+use biela::mechanism::{DriverId, Jet, Mechanism};
 
 use crate::error::Failure;
 
@@ -19,6 +20,8 @@ const CLOSED: f64 = 1e-6;
 /// A driver whose values at the rows of a target are free.
 pub(crate) struct FreeDriver {
     pub(crate) driver: DriverId,
+    /// Direction in which its value grows.
+    pub(crate) direction: Direction,
     /// Limits of the values; infinite for an angle without limits.
     pub(crate) bounds: [f64; 2],
     /// Distance between two values at which the nearest poses are looked for.
@@ -98,8 +101,11 @@ impl FreeDriver {
                 )));
             }
         };
+        let mut direction = Direction::zero(mechanism);
+        direction.drivers[id.index()] = Jet::constant(1.0);
         Ok(Self {
             driver: id,
+            direction,
             bounds,
             step: range / STEPS as f64,
             in_order,
