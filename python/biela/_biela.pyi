@@ -140,6 +140,7 @@ class Targets:
 
 class Attempt:
     unknowns: list[float]
+    timing: list[_Floats | None]
     cost: float
     evaluations: int
     def evaluate(self, unknowns: Sequence[float]) -> tuple[_Floats, _Floats] | None: ...

@@ -371,28 +371,20 @@ class Problem:
     def fit(self, attempts: Sequence[_biela.Attempt]) -> Fit:
         """Returns the mechanism of the first of these attempts."""
         best = attempts[0]
-        unknowns = np.array(best.unknowns)
+        unknowns = best.unknowns
         # The mechanism goes to the unknowns once more: the last ones tried may be worse.
-        found = best.evaluate(unknowns.tolist())
+        found = best.evaluate(unknowns)
         if found is None or not np.isfinite(best.cost):
             raise AssemblyError("fit: the mechanism does not reach all targets")
         residuals, _ = found
         inner = self.mechanism._inner
         text = inner.fitted(best, self.free)
-        places = np.cumsum([len(self.free)] + [
-            poses if target.free is not None else 0
-            for target, poses in zip(self.targets, self.poses)
-        ])  # fmt: skip
-        timing = [
-            unknowns[first:last] if target.free is not None else None
-            for target, first, last in zip(self.targets, places, places[1:])
-        ]
         return Fit(
             _reread(text, self.mechanism._path, inner.has_tables),
-            dict(zip(self.free, unknowns.tolist())),
+            dict(zip(self.free, unknowns)),
             float(residuals @ residuals),
             residuals,
-            tuple(timing),
+            tuple(best.timing),
             np.array([attempt.cost for attempt in attempts]),
             self.spent + sum(attempt.evaluations for attempt in attempts),
         )

@@ -49,6 +49,22 @@ impl Attempt {
         self.moving().point.unknowns.clone()
     }
 
+    /// Returns the free values of the driver of each target; `None` for prescribed timing.
+    #[getter]
+    fn timing<'py>(&self, py: Python<'py>) -> Vec<Option<Bound<'py, PyArray1<f64>>>> {
+        let Moving { trial, point } = &*self.moving();
+        let targets = trial.follower.fit.targets.iter();
+        let values = targets.map(|target| {
+            let free = target.timing.as_ref();
+            free.map(|_| {
+                point.unknowns[target.unknowns.clone()]
+                    .to_vec()
+                    .into_pyarray(py)
+            })
+        });
+        values.collect()
+    }
+
     /// Sum of squared residuals; infinite before the first improvement.
     #[getter]
     fn cost(&self) -> f64 {
@@ -105,7 +121,7 @@ impl Attempt {
         let (_, timing) = follower.place().map_err(|Refused| refused())?;
         let mut unknowns = values;
         unknowns.extend(timing);
-        let residuals = fit.targets.iter().map(|t| t.wanted.len()).sum();
+        let residuals = fit.targets.last().map_or(0, |target| target.residuals.end);
         let rows = fit.scenario.times.len();
         Ok(Self {
             moving: Mutex::new(Moving {
@@ -167,31 +183,27 @@ impl Trial {
         changed.map_err(|_| Refused)?;
         follower.check_turn()?;
         follower.runner.solver.save(first);
-        let (mut before, mut place) = (0, count);
         for target in &fit.targets {
-            let rows = target.rows.clone();
-            let ascend = unknowns.get(place + rows.len().saturating_sub(1)) >= unknowns.get(place);
-            for (pose, row) in rows.enumerate() {
+            let residuals = &mut residuals[target.residuals.clone()];
+            let free_values = &mut unknowns[target.unknowns.clone()];
+            let ascend = free_values.last() >= free_values.first();
+            for (pose, row) in target.rows.clone().enumerate() {
                 match &target.timing {
                     Some(timing) if nearest => {
-                        let range = timing.range(&unknowns[place..place + pose], ascend);
-                        let value = unknowns[place + pose].clamp(range[0], range[1]);
+                        let range = timing.range(&free_values[..pose], ascend);
+                        let value = free_values[pose].clamp(range[0], range[1]);
                         follower.set_value(row, timing.driver, value);
                         follower.go(row)?;
-                        unknowns[place + pose] =
+                        free_values[pose] =
                             follower.go_nearer(target, timing, pose, (value, range))?;
                     }
                     _ => follower.go(row)?,
                 }
                 for (column, value) in follower.values(target).into_iter().enumerate() {
                     let index = target.index(column, pose);
-                    residuals[before + index] = target.residual(column, pose, value);
+                    residuals[index] = target.residual(column, pose, value);
                 }
                 follower.runner.solver.save(&mut poses[row]);
-            }
-            before += target.wanted.len();
-            if target.timing.is_some() {
-                place += target.rows.len();
             }
         }
         Ok(())
@@ -206,7 +218,6 @@ impl Trial {
         let count = fit.free.len();
         follower.set_timing(unknowns);
         derivatives.fill(0.0);
-        let (mut before, mut place) = (0, count);
         let mut changes = Vec::new();
         for target in &fit.targets {
             let columns = target.columns.len();
@@ -221,21 +232,18 @@ impl Trial {
                     runner.differentiate(&target.columns, &directions, &mut changes);
                 differentiated.map_err(|_| Refused)?;
                 for column in 0..columns {
-                    let row = (before + target.index(column, pose)) * unknowns.len();
+                    let residual = target.residuals.start + target.index(column, pose);
+                    let row = residual * unknowns.len();
                     for (direction, changes) in changes.chunks_exact(columns).enumerate() {
                         // Behind the parameters comes the value of this pose.
                         let unknown = if direction < count {
                             direction
                         } else {
-                            place + pose
+                            target.unknowns.start + pose
                         };
                         derivatives[row + unknown] = target.weight * changes[column];
                     }
                 }
-            }
-            before += target.wanted.len();
-            if target.timing.is_some() {
-                place += target.rows.len();
             }
         }
         Ok(())

@@ -29,6 +29,10 @@ pub(crate) struct Target {
     pub(crate) wanted: Vec<f64>,
     /// Factor of the residuals.
     pub(crate) weight: f64,
+    /// Indices of its residuals among those of all targets.
+    pub(crate) residuals: Range<usize>,
+    /// Indices of the free values of its driver among the unknowns; none for prescribed timing.
+    pub(crate) unknowns: Range<usize>,
 }
 
 /// All targets of a fit. The unknowns are the free parameters, then the free values of drivers.
@@ -43,12 +47,20 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
+    /// Prepares a fit, and gives each target its places among residuals and unknowns.
     pub(crate) fn new(
         scenario: Scenario,
-        targets: Vec<Target>,
+        mut targets: Vec<Target>,
         free: Vec<ParameterId>,
         turns: Option<DriverId>,
     ) -> Self {
+        let (mut residuals, mut unknowns) = (0, free.len());
+        for target in &mut targets {
+            let values = target.timing.as_ref().map_or(0, |_| target.rows.len());
+            target.residuals = residuals..residuals + target.wanted.len();
+            target.unknowns = unknowns..unknowns + values;
+            (residuals, unknowns) = (target.residuals.end, target.unknowns.end);
+        }
         let directions = free
             .iter()
             .map(|p| Direction::by_parameter(&scenario.own, *p));
@@ -216,10 +228,10 @@ impl Follower {
     /// Sets the timing of all targets, which stands behind the free parameters.
     pub(crate) fn set_timing(&mut self, unknowns: &[f64]) {
         let fit = Arc::clone(&self.fit);
-        let mut values = unknowns[fit.free.len()..].iter();
         for target in &fit.targets {
             if let Some(timing) = &target.timing {
-                for (row, value) in target.rows.clone().zip(&mut values) {
+                let values = &unknowns[target.unknowns.clone()];
+                for (row, value) in target.rows.clone().zip(values) {
                     self.set_value(row, timing.driver, *value);
                 }
             }

@@ -315,6 +315,9 @@ impl Mechanism {
                     columns: self.chosen(&columns),
                     wanted,
                     weight,
+                    // The fit sets both.
+                    residuals: 0..0,
+                    unknowns: 0..0,
                 })
             });
             let targets = targets.collect::<Result<_, Failure>>()?;
