@@ -22,7 +22,7 @@ ROUNDS = ((12, 0.1), (40, 1.0))
 MOST_VARIED = 20
 """Largest number of attempts that are varied."""
 VARIANTS = 4
-"""Number of random changes of each of these at a time."""
+"""Number of random changes of each attempt that is varied, per variation."""
 CHANGES = (0.01, 0.3)
 """Smallest and largest standard deviation of random changes, as part of the bounds' width."""
 PATIENCE = 25
@@ -258,8 +258,8 @@ class Problem:
                     raise UsageError(f"target: {meant}")
             indices = [columns.index(name) for name in names]
             poses, wanted = values.shape[1], values.ravel().tolist()
-            timing = None if target.free is None else (target.free, target.in_order)
-            rows.append((poses, timing, indices, wanted, target.weight))
+            free_driver = None if target.free is None else (target.free, target.in_order)
+            rows.append((poses, free_driver, indices, wanted, target.weight))
         drive = self.drive()
         if turns is not None:
             driver = self.driver(turns)

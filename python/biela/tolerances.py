@@ -108,8 +108,8 @@ def tolerance(
 ) -> Tolerances:
     """Finds the deviations of a motion for deviations of parameters.
 
-    `tolerances` are by the parameters' names [SI], by default those of the file. `corners` runs
-    all corners of the box of tolerances, too, and `samples` so many random variants.
+    `tolerances` are by the parameters' names [SI], by default those of the file. `corners` also
+    runs all corners of the box of tolerances; `samples` is the number of random variants to run.
 
     >>> found = tolerance(four_bar, drive={"crank_angle": [1.0]}, corners=True,
     ...     tolerances={"base": 1e-4, "crank_length": 5e-5})

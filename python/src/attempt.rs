@@ -55,7 +55,7 @@ impl Attempt {
         let Moving { trial, point } = &*self.moving();
         let targets = trial.follower.fit.targets.iter();
         let values = targets.map(|target| {
-            let free = target.timing.as_ref();
+            let free = target.free_driver.as_ref();
             free.map(|_| {
                 point.unknowns[target.unknowns.clone()]
                     .to_vec()
@@ -188,14 +188,14 @@ impl Trial {
             let free_values = &mut unknowns[target.unknowns.clone()];
             let ascend = free_values.last() >= free_values.first();
             for (pose, row) in target.rows.clone().enumerate() {
-                match &target.timing {
-                    Some(timing) if nearest => {
-                        let range = timing.range(&free_values[..pose], ascend);
+                match &target.free_driver {
+                    Some(free) if nearest => {
+                        let range = free.range(&free_values[..pose], ascend);
                         let value = free_values[pose].clamp(range[0], range[1]);
-                        follower.set_value(row, timing.driver, value);
+                        follower.set_value(row, free.driver, value);
                         follower.go(row)?;
                         free_values[pose] =
-                            follower.go_nearer(target, timing, pose, (value, range))?;
+                            follower.go_nearer(target, free, pose, (value, range))?;
                     }
                     _ => follower.go(row)?,
                 }
@@ -222,7 +222,7 @@ impl Trial {
         for target in &fit.targets {
             let columns = target.columns.len();
             let mut directions = fit.directions.clone();
-            directions.extend(target.timing.iter().map(|free| free.direction.clone()));
+            directions.extend(target.free_driver.iter().map(|free| free.direction.clone()));
             for (pose, row) in target.rows.clone().enumerate() {
                 follower.runner.return_to(&poses[row]);
                 follower.runner.solve(row).map_err(|_| Refused)?;

@@ -75,8 +75,8 @@ impl Targets {
     }
 
     /// Improves attempts by least squares, on all cores. The free parameters have bounds, and sizes
-    /// by which steps are scaled. An attempt ends after so many evaluations, or where the cost falls
-    /// by a smaller part than `tolerance`, or at a cost of `stop_at`.
+    /// by which steps are scaled. An attempt ends after this number of evaluations, where a step
+    /// lowers the cost by a smaller part than `tolerance`, or at a cost of `stop_at`.
     fn improve(
         &self,
         py: Python<'_>,

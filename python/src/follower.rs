@@ -23,7 +23,7 @@ pub(crate) struct Target {
     pub(crate) rows: Range<usize>,
     /// The driver whose values at these rows are free; those of the scenario are where the search
     /// for them begins.
-    pub(crate) timing: Option<FreeDriver>,
+    pub(crate) free_driver: Option<FreeDriver>,
     pub(crate) columns: Vec<Output>,
     /// The values wanted, by column, then by row.
     pub(crate) wanted: Vec<f64>,
@@ -56,7 +56,7 @@ impl Fit {
     ) -> Self {
         let (mut residuals, mut unknowns) = (0, free.len());
         for target in &mut targets {
-            let values = target.timing.as_ref().map_or(0, |_| target.rows.len());
+            let values = target.free_driver.as_ref().map_or(0, |_| target.rows.len());
             target.residuals = residuals..residuals + target.wanted.len();
             target.unknowns = unknowns..unknowns + values;
             (residuals, unknowns) = (target.residuals.end, target.unknowns.end);
@@ -142,21 +142,21 @@ impl Follower {
         let mut cost = 0.0;
         let mut free_values = Vec::new();
         for target in &fit.targets {
-            match &target.timing {
+            match &target.free_driver {
                 None => {
                     for (pose, row) in target.rows.clone().enumerate() {
                         self.go(row)?;
                         cost += target.gap(pose, &self.values(target));
                     }
                 }
-                Some(timing) => {
-                    let curve = self.scan(target, timing)?;
+                Some(free) => {
+                    let curve = self.scan(target, free)?;
                     let gaps = (0..target.rows.len()).map(|pose| {
                         let points = curve.points.iter();
                         points.map(|(_, values)| target.gap(pose, values)).collect()
                     });
                     let gaps: Vec<Vec<f64>> = gaps.collect();
-                    let (sum, timing) = timing.nearest(&curve, &gaps);
+                    let (sum, timing) = free.nearest(&curve, &gaps);
                     cost += sum;
                     free_values.extend(timing);
                 }
@@ -168,23 +168,23 @@ impl Follower {
     /// Returns the values of a target's variables along the motion of its free driver, from the
     /// present pose both ways: between the driver's limits, or over as many turns as the curve needs
     /// to close.
-    fn scan(&mut self, target: &Target, timing: &FreeDriver) -> Result<Curve, Refused> {
+    fn scan(&mut self, target: &Target, free: &FreeDriver) -> Result<Curve, Refused> {
         let row = target.rows.start;
         self.go(row)?;
         let middle = self.runner.solver.pose().clone();
-        let start = middle.drivers[timing.driver.index()];
-        let [low, high] = timing.bounds;
+        let start = middle.drivers[free.driver.index()];
+        let [low, high] = free.bounds;
         let mut curve = Curve::new(start, self.values(target));
-        for step in [timing.step, -timing.step] {
+        for step in [free.step, -free.step] {
             self.runner.return_to(&middle);
             let mut at = start + step;
             while curve.is_short() && (low..=high).contains(&at) {
-                self.set_value(row, timing.driver, at);
+                self.set_value(row, free.driver, at);
                 if self.go(row).is_err() {
                     break;
                 }
                 curve.points.push((at, self.values(target)));
-                if timing.is_unlimited() && step > 0.0 {
+                if free.is_unlimited() && step > 0.0 {
                     curve.close();
                 }
                 at += step;
@@ -229,10 +229,10 @@ impl Follower {
     pub(crate) fn set_timing(&mut self, unknowns: &[f64]) {
         let fit = Arc::clone(&self.fit);
         for target in &fit.targets {
-            if let Some(timing) = &target.timing {
+            if let Some(free) = &target.free_driver {
                 let values = &unknowns[target.unknowns.clone()];
                 for (row, value) in target.rows.clone().zip(values) {
-                    self.set_value(row, timing.driver, *value);
+                    self.set_value(row, free.driver, *value);
                 }
             }
         }
@@ -243,7 +243,7 @@ impl Follower {
     pub(crate) fn go_nearer(
         &mut self,
         target: &Target,
-        timing: &FreeDriver,
+        free: &FreeDriver,
         pose: usize,
         (start, [low, high]): (f64, [f64; 2]),
     ) -> Result<f64, Refused> {
@@ -252,7 +252,7 @@ impl Follower {
         let mut values = self.values(target);
         let mut gap = target.gap(pose, &values);
         let mut changes = Vec::with_capacity(values.len());
-        let along = std::slice::from_ref(&timing.direction);
+        let along = std::slice::from_ref(&free.direction);
         for _ in 0..NEARER {
             changes.clear();
             let differentiated = (self.runner).differentiate(&target.columns, along, &mut changes);
@@ -267,10 +267,10 @@ impl Follower {
             if slope * slope <= WORTH * gap * steepness {
                 break;
             }
-            let step = (-slope / steepness).clamp(-timing.step, timing.step);
+            let step = (-slope / steepness).clamp(-free.step, free.step);
             let next = (value + step).clamp(low, high);
             let before = self.runner.solver.pose().clone();
-            self.set_value(row, timing.driver, next);
+            self.set_value(row, free.driver, next);
             if self.go(row).is_ok() {
                 let tried = self.values(target);
                 let nearer = target.gap(pose, &tried);
@@ -280,7 +280,7 @@ impl Follower {
                 }
             }
             self.runner.return_to(&before);
-            self.set_value(row, timing.driver, value);
+            self.set_value(row, free.driver, value);
             self.runner.solve(row).map_err(|_| Refused)?;
             break;
         }

@@ -304,14 +304,14 @@ impl Mechanism {
         py.detach(|| {
             let mut rows = 0;
             let targets = targets.into_iter();
-            let targets = targets.map(|(poses, timing, columns, wanted, weight)| {
-                let timing = timing.map(|(name, in_order)| {
+            let targets = targets.map(|(poses, free_driver, columns, wanted, weight)| {
+                let free_driver = free_driver.map(|(name, in_order)| {
                     FreeDriver::new(&self.model, self.driver_named(&name)?, in_order)
                 });
                 rows += poses;
                 Ok(Target {
                     rows: rows - poses..rows,
-                    timing: timing.transpose()?,
+                    free_driver: free_driver.transpose()?,
                     columns: self.chosen(&columns),
                     wanted,
                     weight,
