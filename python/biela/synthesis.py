@@ -136,7 +136,8 @@ def fit(
     improved again, `variations` times. `seed` chooses variants and changes. It stops early at a cost
     of `stop_at`.
 
-    `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused.
+    `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused. Equal
+    bounds keep a parameter at their value.
 
     Raises `AssemblyError` if no start reaches all targets.
 
