@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
@@ -490,6 +491,17 @@ def _given(parameters: Parameters | None) -> list[tuple[str, float | str]]:
     return given
 
 
+def _count(name: str, value: int, least: int = 0) -> int:
+    """Returns a count, a whole number that is not too small."""
+    try:
+        count = operator.index(value)
+    except TypeError:
+        count = least - 1
+    if count < least:
+        raise UsageError(f"{name}: expected a whole number, at least {least}; found {value!r}")
+    return count
+
+
 def _orders(name: str, value: Any) -> list[NDArray]:
     """Returns position and the given rates of a driver as arrays."""
     parts = value if isinstance(value, tuple) else (value,)
@@ -498,7 +510,10 @@ def _orders(name: str, value: Any) -> list[NDArray]:
             f"drive: `{name}` is a tuple of {len(parts)}; "
             "expected (position, velocity, acceleration)"
         )
-    orders = [np.asarray(part, dtype=float) for part in parts]
+    try:
+        orders = [np.asarray(part, dtype=float) for part in parts]
+    except (TypeError, ValueError):
+        raise UsageError(f"drive: expected numbers as `{name}`; found {value!r}") from None
     if any(order.ndim > 1 for order in orders):
         raise UsageError(f"drive: `{name}` has several dimensions; expected one value per time")
     return orders

@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _biela
-from .errors import AssemblyError, Error, UsageError
-from .mechanism import Drive, Mechanism, _orders, _reread
+from .errors import AssemblyError, UsageError
+from .mechanism import Drive, Mechanism, _count, _orders, _reread
 
 ROUNDS = ((12, 0.1), (40, 1.0))
 """Evaluations of each attempt in a round, and the part of the attempts that goes on to the next."""
 MOST_VARIED = 20
 """Largest number of attempts that are varied."""
 VARIANTS = 4
-"""Number of random changes of each of these at a time."""
+"""Number of random changes of each attempt that is varied, per variation."""
 CHANGES = (0.01, 0.3)
 """Smallest and largest standard deviation of random changes, as part of the bounds' width."""
 PATIENCE = 25
@@ -51,12 +51,15 @@ class Target:
     def arrays(self) -> tuple[list[str], NDArray]:
         """Returns the names, and the values by name, then by pose."""
         names = list(self.values)
-        arrays = [np.atleast_1d(np.asarray(value, dtype=float)) for value in self.values.values()]
+        arrays = [_numbers("target", name, value) for name, value in self.values.items()]
         if not names or len({array.shape for array in arrays}) != 1 or arrays[0].ndim != 1:
             shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(names, arrays)) or "none"
             raise UsageError(f"target: expected arrays of one length; found {shapes}")
         if not arrays[0].size or not np.isfinite(arrays).all():
             raise UsageError(f"target: expected finite values of `{names[0]}` at one pose or more")
+        weight = _numbers("target", "weight", self.weight)
+        if np.ndim(self.weight) or not np.isfinite(weight[0]):
+            raise UsageError(f"target: expected a finite number as `weight`; found {self.weight!r}")
         return names, np.array(arrays)
 
 
@@ -73,11 +76,20 @@ def points(
     >>> points("coupler.P", [[3, 3], [2.759, 3.363]], free="crank_angle").values["coupler.P.y"]
     array([3.   , 3.363])
     """
-    xy = np.asarray(xy, dtype=float)
+    xy = _numbers("points", marker, xy)
     if xy.ndim != 2 or xy.shape[1] != 2:
         raise UsageError(f"points: expected rows of x and y; found an array of shape {xy.shape}")
     x, y = xy.T
     return Target({f"{marker}.x": x, f"{marker}.y": y}, drive or {}, free, weight, in_order)
+
+
+def _numbers(argument: str, name: str, value: ArrayLike) -> NDArray:
+    """Returns the numbers of an argument, in one dimension or more."""
+    try:
+        # Text of digits is no number here either.
+        return np.atleast_1d(np.asarray(value) * 1.0).astype(float)
+    except (TypeError, ValueError):
+        raise UsageError(f"{argument}: expected numbers as `{name}`; found {value!r}") from None
 
 
 @dataclass(frozen=True)
@@ -124,7 +136,8 @@ def fit(
     improved again, `variations` times. `seed` chooses variants and changes. It stops early at a cost
     of `stop_at`.
 
-    `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused.
+    `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused. Equal
+    bounds keep a parameter at their value.
 
     Raises `AssemblyError` if no start reaches all targets.
 
@@ -136,6 +149,8 @@ def fit(
     >>> round(found.parameters["crank_length"], 9), round(found.parameters["rocker_length"], 9)
     (0.11, 0.29)
     """
+    starts, samples = _count("starts", starts, 1), _count("samples", samples)
+    variations = _count("variations", variations)
     problem = Problem(mechanism, targets, free, bounds or {}, turns, tolerance, stop_at)
     random = np.random.default_rng(seed)
     attempts = problem.attempts(starts, samples, random)
@@ -174,6 +189,21 @@ def search(
             return
 
 
+def _limits(name: str, ends: tuple[float | None, float | None]) -> tuple[float, float]:
+    """Returns the limits of a parameter, infinite where there is none."""
+    try:
+        low, high = ends
+        low = -np.inf if low is None else float(low)
+        high = np.inf if high is None else float(high)
+    except (TypeError, ValueError):
+        low, high = np.nan, np.nan
+    if not low <= high:
+        raise UsageError(
+            f"bounds: expected two numbers for `{name}`, the smaller first; found {ends}"
+        )
+    return low, high
+
+
 class Problem:
     """Targets of a mechanism as a problem of least squares.
 
@@ -202,25 +232,24 @@ class Problem:
             if name not in known:
                 meant = _biela.unknown_name("parameter", name, list(known))
                 raise UsageError(f"parameters: {meant}")
+        for name in self.free:
+            if self.free.count(name) > 1:
+                raise UsageError(f"free: `{name}` is named twice")
+        for name in bounds:
+            if name not in self.free:
+                raise UsageError(f"bounds: `{name}` is not free; name it in `free` too")
         self.own = np.array([known[name].value for name in self.free])
-        limits = [bounds.get(name, (known[name].min, known[name].max)) for name in self.free]
-        for name, limit in zip(self.free, limits):
-            expected = f"bounds: expected two numbers for `{name}`, the smaller first; found {limit}"
-            try:
-                low, high = (None if end is None else float(end) for end in limit)
-            except (TypeError, ValueError):
-                raise UsageError(expected) from None
-            if low is not None and high is not None and not low <= high:
-                raise UsageError(expected)
-        self.low = np.array([-np.inf if low is None else low for low, _ in limits], dtype=float)
-        self.high = np.array([np.inf if high is None else high for _, high in limits], dtype=float)
+        limits = [
+            _limits(name, bounds.get(name, (known[name].min, known[name].max))) for name in self.free
+        ]
+        self.low, self.high = np.array(limits).reshape(-1, 2).T
         # The sizes of the parameters, by which the optimiser scales them.
         width = self.high - self.low
         size = np.maximum(np.abs(self.own), np.abs(self.own).max(initial=0.0) * 1e-3)
-        self.size = np.where(np.isfinite(width), width, np.where(size > 0, size, 1.0))
+        bounded = np.isfinite(width) & (width > 0)
+        self.size = np.where(bounded, width, np.where(size > 0, size, 1.0))
         arrays = [target.arrays() for target in self.targets]
         self.poses = [values.shape[1] for _, values in arrays]
-        self.residuals = sum(values.size for _, values in arrays)
         columns = list(mechanism.variables)
         rows = []
         for target, (names, values) in zip(self.targets, arrays):
@@ -230,8 +259,8 @@ class Problem:
                     raise UsageError(f"target: {meant}")
             indices = [columns.index(name) for name in names]
             poses, wanted = values.shape[1], values.ravel().tolist()
-            timing = None if target.free is None else (target.free, target.in_order)
-            rows.append((poses, timing, indices, wanted, target.weight))
+            free_driver = None if target.free is None else (target.free, target.in_order)
+            rows.append((poses, free_driver, indices, wanted, target.weight))
         drive = self.drive()
         if turns is not None:
             driver = self.driver(turns)
@@ -287,7 +316,7 @@ class Problem:
         found = []
         try:
             found.append(self._inner.attempt(np.clip(self.own, self.low, self.high).tolist()))
-        except Error:
+        except AssemblyError:
             if count == 1:
                 raise
         if count > 1:
@@ -324,11 +353,11 @@ class Problem:
         count = len(indices)
         values = np.array([parent.unknowns[: len(self.free)] for parent in parents])[indices]
         sizes = np.exp(random.uniform(*np.log(CHANGES), (count, 1)))
-        values += sizes * self.size * random.normal(size=(count, len(self.free)))
-        # What goes beyond a bound is reflected by it.
         width = self.high - self.low
-        values = np.abs((values - self.low) % (2 * width))
-        values = self.low + np.where(values > width, 2 * width - values, values)
+        values += sizes * width * random.normal(size=(count, len(self.free)))
+        # Values beyond a bound are reflected by it; equal bounds fix a parameter.
+        values = (values - self.low) % np.where(width > 0, 2 * width, 1.0)
+        values = self.low + np.minimum(values, 2 * width - values)
         best = {}
         for found in self._inner.costs(values.ravel()):
             if found[0] not in best or found[2] < best[found[0]][2]:
@@ -343,28 +372,20 @@ class Problem:
     def fit(self, attempts: Sequence[_biela.Attempt]) -> Fit:
         """Returns the mechanism of the first of these attempts."""
         best = attempts[0]
-        unknowns = np.array(best.unknowns)
+        unknowns = best.unknowns
         # The mechanism goes to the unknowns once more: the last ones tried may be worse.
-        found = best.evaluate(unknowns.tolist())
-        if found is None:
+        found = best.evaluate(unknowns)
+        if found is None or not np.isfinite(best.cost):
             raise AssemblyError("fit: the mechanism does not reach all targets")
         residuals, _ = found
         inner = self.mechanism._inner
         text = inner.fitted(best, self.free)
-        places = np.cumsum([len(self.free)] + [
-            poses if target.free is not None else 0
-            for target, poses in zip(self.targets, self.poses)
-        ])  # fmt: skip
-        timing = [
-            unknowns[first:last] if target.free is not None else None
-            for target, first, last in zip(self.targets, places, places[1:])
-        ]
         return Fit(
             _reread(text, self.mechanism._path, inner.has_tables),
-            dict(zip(self.free, unknowns.tolist())),
+            dict(zip(self.free, unknowns)),
             float(residuals @ residuals),
             residuals,
-            tuple(timing),
+            tuple(best.timing),
             np.array([attempt.cost for attempt in attempts]),
             self.spent + sum(attempt.evaluations for attempt in attempts),
         )

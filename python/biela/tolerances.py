@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import UsageError
-from .mechanism import Drive, Mechanism, Parameters, _given
+from .mechanism import Drive, Mechanism, Parameters, _count, _given
 from .results import Result, Sweep
 
 MOST_CORNERS = 12
@@ -108,8 +108,8 @@ def tolerance(
 ) -> Tolerances:
     """Finds the deviations of a motion for deviations of parameters.
 
-    `tolerances` are by the parameters' names [SI], by default those of the file. `corners` runs
-    all corners of the box of tolerances, too, and `samples` so many random variants.
+    `tolerances` are by the parameters' names [SI], by default those of the file. `corners` also
+    runs all corners of the box of tolerances; `samples` is the number of random variants to run.
 
     >>> found = tolerance(four_bar, drive={"crank_angle": [1.0]}, corners=True,
     ...     tolerances={"base": 1e-4, "crank_length": 5e-5})
@@ -118,6 +118,7 @@ def tolerance(
     >>> bool(np.allclose((high - low) / 2, worst, rtol=1e-3))
     True
     """
+    samples = _count("samples", samples)
     known = mechanism.parameters
     if tolerances is None:
         tolerances = {n: p.tolerance for n, p in known.items() if p.tolerance is not None}
@@ -132,16 +133,13 @@ def tolerance(
     deviations = np.abs(result.gradient.to_numpy()) * sizes[None, :, None]
     worst = deviations.sum(axis=1)
     statistical = np.sqrt((deviations**2).sum(axis=1))
-    nominal = dict(_given(parameters))
-    if any(isinstance(nominal.get(name), str) for name in names):
-        # Expressions are evaluated, as deviations are added to their values.
-        values = mechanism.changed(nominal).parameters
-        nominal.update((name, values[name].value) for name in names if name in nominal)
-    own = np.array([float(nominal.pop(name, known[name].value)) for name in names])
+    given = _given(parameters)
+    values = dict(zip(known, mechanism._inner.values(given)))
+    nominal = np.array([values[name] for name in names])
 
     def variants(factors: NDArray) -> Sweep:
-        swept = dict(zip(names, (own + factors * sizes).T))
-        return mechanism.sweep({**nominal, **swept}, t, drive, variables)
+        swept = dict(zip(names, (nominal + factors * sizes).T))
+        return mechanism.sweep({**dict(given), **swept}, t, drive, variables)
 
     if corners and len(names) > MOST_CORNERS:
         raise UsageError(

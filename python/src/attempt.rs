@@ -2,8 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use biela::kinematics::{Direction, Pose};
-use biela::mechanism::Jet;
+use biela::kinematics::Pose;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -27,12 +26,14 @@ struct Moving {
 /// A mechanism that tries unknowns.
 struct Trial {
     follower: Follower,
-    /// Pose at the first row for the best unknowns so far.
+    /// Pose from which an evaluation starts: at the first row, for the unknowns kept last, before
+    /// their timing was improved.
     base: Pose,
-    /// Poses for the unknowns tried last: at the first row before its timing was improved, and at
-    /// all rows.
+    /// Pose at the first row for the unknowns tried last, before their timing was improved.
     first: Pose,
+    /// Poses at all rows for the unknowns tried last.
     poses: Vec<Pose>,
+    /// Number of evaluations by improvements.
     evaluations: usize,
 }
 
@@ -48,20 +49,36 @@ impl Attempt {
         self.moving().point.unknowns.clone()
     }
 
+    /// Returns the free values of the driver of each target; `None` for prescribed timing.
+    #[getter]
+    fn timing<'py>(&self, py: Python<'py>) -> Vec<Option<Bound<'py, PyArray1<f64>>>> {
+        let Moving { trial, point } = &*self.moving();
+        let targets = trial.follower.fit.targets.iter();
+        let values = targets.map(|target| {
+            let free = target.free_driver.as_ref();
+            free.map(|_| {
+                point.unknowns[target.unknowns.clone()]
+                    .to_vec()
+                    .into_pyarray(py)
+            })
+        });
+        values.collect()
+    }
+
     /// Sum of squared residuals; infinite before the first improvement.
     #[getter]
     fn cost(&self) -> f64 {
         self.moving().point.cost
     }
 
-    /// Number of times that residuals were computed.
+    /// Number of evaluations of the residuals by improvements; those of `evaluate` do not count.
     #[getter]
     fn evaluations(&self) -> usize {
         self.moving().trial.evaluations
     }
 
-    /// Returns the residuals and their derivatives at unknowns, and moves there; `None` for unknowns
-    /// that the mechanism does not reach.
+    /// Returns the residuals and their derivatives at unknowns, and moves there. Returns `None` and
+    /// stays where the mechanism does not reach the unknowns, or has no derivatives there.
     fn evaluate<'py>(&self, py: Python<'py>, unknowns: Vec<f64>) -> Option<Linearised<'py>> {
         let found = py.detach(|| {
             let Moving { trial, point } = &mut *self.moving();
@@ -87,7 +104,9 @@ impl Attempt {
     ) -> Result<Self, Failure> {
         let mut follower = Follower::new(fit)?;
         let refused = || Failure::Assembly("the mechanism does not reach all targets".to_owned());
-        let parameters = follower.parameters(&values).map_err(Failure::Usage)?;
+        let parameters = follower.parameters(&values);
+        let parameters =
+            parameters.map_err(|error| Failure::Usage(format!("parameters: {error}")))?;
         let base = match mode {
             Some(mode) => {
                 let poses = follower.runner.poses(0, &parameters);
@@ -102,7 +121,7 @@ impl Attempt {
         let (_, timing) = follower.place().map_err(|Refused| refused())?;
         let mut unknowns = values;
         unknowns.extend(timing);
-        let residuals = fit.targets.iter().map(|t| t.wanted.len()).sum();
+        let residuals = fit.targets.last().map_or(0, |target| target.residuals.end);
         let rows = fit.scenario.times.len();
         Ok(Self {
             moving: Mutex::new(Moving {
@@ -124,7 +143,7 @@ impl Attempt {
         trial.evaluations += point.improve(trial, outer, limits);
     }
 
-    /// Returns the pose for the unknowns evaluated last: at the file's start values of the drivers if
+    /// Returns the pose for the unknowns kept last: at the file's start values of the drivers if
     /// the mechanism reaches them, otherwise at the first row.
     pub(crate) fn home(&self) -> Pose {
         let Trial { follower, base, .. } = &mut self.moving().trial;
@@ -164,31 +183,27 @@ impl Trial {
         changed.map_err(|_| Refused)?;
         follower.check_turn()?;
         follower.runner.solver.save(first);
-        let (mut before, mut place) = (0, count);
         for target in &fit.targets {
-            let rows = target.rows.clone();
-            let ascend = unknowns.get(place + rows.len().saturating_sub(1)) >= unknowns.get(place);
-            for (pose, row) in rows.enumerate() {
-                match &target.timing {
-                    Some(timing) if nearest => {
-                        let range = timing.range(&unknowns[place..place + pose], ascend);
-                        let value = unknowns[place + pose].clamp(range[0], range[1]);
-                        follower.set_value(row, timing.driver, value);
+            let residuals = &mut residuals[target.residuals.clone()];
+            let free_values = &mut unknowns[target.unknowns.clone()];
+            let ascend = free_values.last() >= free_values.first();
+            for (pose, row) in target.rows.clone().enumerate() {
+                match &target.free_driver {
+                    Some(free) if nearest => {
+                        let range = free.range(&free_values[..pose], ascend);
+                        let value = free_values[pose].clamp(range[0], range[1]);
+                        follower.set_value(row, free.driver, value);
                         follower.go(row)?;
-                        unknowns[place + pose] =
-                            follower.go_nearer(target, timing, pose, (value, range))?;
+                        free_values[pose] =
+                            follower.go_nearer(target, free, pose, (value, range))?;
                     }
                     _ => follower.go(row)?,
                 }
                 for (column, value) in follower.values(target).into_iter().enumerate() {
                     let index = target.index(column, pose);
-                    residuals[before + index] = target.weight * (value - target.wanted[index]);
+                    residuals[index] = target.residual(column, pose, value);
                 }
                 follower.runner.solver.save(&mut poses[row]);
-            }
-            before += target.wanted.len();
-            if target.timing.is_some() {
-                place += target.rows.len();
             }
         }
         Ok(())
@@ -203,16 +218,11 @@ impl Trial {
         let count = fit.free.len();
         follower.set_timing(unknowns);
         derivatives.fill(0.0);
-        let (mut before, mut place) = (0, count);
         let mut changes = Vec::new();
         for target in &fit.targets {
             let columns = target.columns.len();
             let mut directions = fit.directions.clone();
-            if let Some(free) = &target.timing {
-                let mut by_value = Direction::zero(&fit.scenario.own);
-                by_value.drivers[free.driver.index()] = Jet::constant(1.0);
-                directions.push(by_value);
-            }
+            directions.extend(target.free_driver.iter().map(|free| free.direction.clone()));
             for (pose, row) in target.rows.clone().enumerate() {
                 follower.runner.return_to(&poses[row]);
                 follower.runner.solve(row).map_err(|_| Refused)?;
@@ -222,21 +232,18 @@ impl Trial {
                     runner.differentiate(&target.columns, &directions, &mut changes);
                 differentiated.map_err(|_| Refused)?;
                 for column in 0..columns {
-                    let row = (before + target.index(column, pose)) * unknowns.len();
+                    let residual = target.residuals.start + target.index(column, pose);
+                    let row = residual * unknowns.len();
                     for (direction, changes) in changes.chunks_exact(columns).enumerate() {
                         // Behind the parameters comes the value of this pose.
                         let unknown = if direction < count {
                             direction
                         } else {
-                            place + pose
+                            target.unknowns.start + pose
                         };
                         derivatives[row + unknown] = target.weight * changes[column];
                     }
                 }
-            }
-            before += target.wanted.len();
-            if target.timing.is_some() {
-                place += target.rows.len();
             }
         }
         Ok(())
@@ -249,7 +256,10 @@ impl Residuals for Trial {
     }
 
     fn keep(&mut self, unknowns: &[f64], derivatives: &mut [f64]) -> bool {
-        self.base.clone_from(&self.first);
-        self.differentiate(unknowns, derivatives).is_ok()
+        let kept = self.differentiate(unknowns, derivatives).is_ok();
+        if kept {
+            self.base.clone_from(&self.first);
+        }
+        kept
     }
 }

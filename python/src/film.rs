@@ -29,8 +29,8 @@ pub(crate) struct Film {
 }
 
 impl Film {
-    /// Returns an empty film of a run of so many rows, which tells the columns in numbers and can
-    /// show forces by arrows.
+    /// Returns an empty film of a run with this number of rows, which tells the columns in numbers
+    /// and can show forces by arrows.
     pub(crate) fn new(
         columns: Vec<Output>,
         forces: Vec<ForcePlace>,

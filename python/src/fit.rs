@@ -9,9 +9,7 @@ use crate::attempt::Attempt;
 use crate::error::Failure;
 use crate::follower::{Fit, Follower};
 use crate::least_squares::{Limits, Outer};
-
-/// Number of variants that one solver takes in turn: far more work than making the solver.
-const TURN: usize = 32;
+use crate::runner::BATCH;
 
 /// Targets of a fit, for Python.
 #[pyclass(frozen)]
@@ -33,15 +31,15 @@ impl Targets {
     fn costs(&self, py: Python<'_>, values: Vec<f64>) -> PyResult<Vec<(usize, usize, f64)>> {
         let costs = py.detach(|| {
             let size = self.fit.free.len();
-            let turns = values.par_chunks(TURN * size).enumerate();
-            let costs: Vec<Vec<_>> = turns
-                .map(|(turn, values)| {
+            let batches = values.par_chunks(BATCH * size).enumerate();
+            let costs: Vec<Vec<_>> = batches
+                .map(|(batch, values)| {
                     let mut follower = Follower::new(&self.fit)?;
                     let variants = values.chunks_exact(size).enumerate();
                     Ok(variants
                         .flat_map(|(index, values)| {
                             let costs = follower.costs(values).into_iter();
-                            costs.map(move |(mode, cost)| (TURN * turn + index, mode, cost))
+                            costs.map(move |(mode, cost)| (BATCH * batch + index, mode, cost))
                         })
                         .collect())
                 })
@@ -77,8 +75,8 @@ impl Targets {
     }
 
     /// Improves attempts by least squares, on all cores. The free parameters have bounds, and sizes
-    /// by which steps are scaled. An attempt ends after so many evaluations, or where the cost falls
-    /// by a smaller part than `tolerance`, or at a cost of `stop_at`.
+    /// by which steps are scaled. An attempt ends after this number of evaluations, where a step
+    /// lowers the cost by a smaller part than `tolerance`, or at a cost of `stop_at`.
     fn improve(
         &self,
         py: Python<'_>,

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use biela::cli::check_parameter;
 use biela::kinematics::{Direction, Output, Pose};
-use biela::mechanism::{DriverId, Jet, ParameterId};
+use biela::mechanism::{DriverId, ParameterId};
 
 use crate::error::Failure;
 use crate::runner::Runner;
 use crate::scenario::Scenario;
-use crate::timing::{FreeDriver, STEPS};
+use crate::timing::{Curve, FreeDriver};
 
 /// Largest number of steps to the nearest pose to a target.
 const NEARER: usize = 2;
@@ -23,12 +23,16 @@ pub(crate) struct Target {
     pub(crate) rows: Range<usize>,
     /// The driver whose values at these rows are free; those of the scenario are where the search
     /// for them begins.
-    pub(crate) timing: Option<FreeDriver>,
+    pub(crate) free_driver: Option<FreeDriver>,
     pub(crate) columns: Vec<Output>,
     /// The values wanted, by column, then by row.
     pub(crate) wanted: Vec<f64>,
     /// Factor of the residuals.
     pub(crate) weight: f64,
+    /// Indices of its residuals among those of all targets.
+    pub(crate) residuals: Range<usize>,
+    /// Indices of the free values of its driver among the unknowns; none for prescribed timing.
+    pub(crate) unknowns: Range<usize>,
 }
 
 /// All targets of a fit. The unknowns are the free parameters, then the free values of drivers.
@@ -43,12 +47,20 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
+    /// Prepares a fit, and gives each target its places among residuals and unknowns.
     pub(crate) fn new(
         scenario: Scenario,
-        targets: Vec<Target>,
+        mut targets: Vec<Target>,
         free: Vec<ParameterId>,
         turns: Option<DriverId>,
     ) -> Self {
+        let (mut residuals, mut unknowns) = (0, free.len());
+        for target in &mut targets {
+            let values = target.free_driver.as_ref().map_or(0, |_| target.rows.len());
+            target.residuals = residuals..residuals + target.wanted.len();
+            target.unknowns = unknowns..unknowns + values;
+            (residuals, unknowns) = (target.residuals.end, target.unknowns.end);
+        }
         let directions = free
             .iter()
             .map(|p| Direction::by_parameter(&scenario.own, *p));
@@ -130,23 +142,21 @@ impl Follower {
         let mut cost = 0.0;
         let mut free_values = Vec::new();
         for target in &fit.targets {
-            match &target.timing {
+            match &target.free_driver {
                 None => {
                     for (pose, row) in target.rows.clone().enumerate() {
                         self.go(row)?;
                         cost += target.gap(pose, &self.values(target));
                     }
                 }
-                Some(timing) => {
-                    let mut curve = self.scan(target, timing)?;
-                    curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+                Some(free) => {
+                    let curve = self.scan(target, free)?;
                     let gaps = (0..target.rows.len()).map(|pose| {
-                        let gaps = curve.iter().map(|(_, values)| target.gap(pose, values));
-                        gaps.collect()
+                        let points = curve.points.iter();
+                        points.map(|(_, values)| target.gap(pose, values)).collect()
                     });
                     let gaps: Vec<Vec<f64>> = gaps.collect();
-                    let values: Vec<f64> = curve.iter().map(|(at, _)| *at).collect();
-                    let (sum, timing) = timing.nearest(&values, &gaps);
+                    let (sum, timing) = free.nearest(&curve, &gaps);
                     cost += sum;
                     free_values.extend(timing);
                 }
@@ -156,30 +166,31 @@ impl Follower {
     }
 
     /// Returns the values of a target's variables along the motion of its free driver, from the
-    /// present pose both ways: over a turn, or between the driver's limits.
-    fn scan(
-        &mut self,
-        target: &Target,
-        timing: &FreeDriver,
-    ) -> Result<Vec<(f64, Vec<f64>)>, Refused> {
+    /// present pose both ways: between the driver's limits, or over as many turns as the curve needs
+    /// to close.
+    fn scan(&mut self, target: &Target, free: &FreeDriver) -> Result<Curve, Refused> {
         let row = target.rows.start;
         self.go(row)?;
         let middle = self.runner.solver.pose().clone();
-        let start = middle.drivers[timing.driver.index()];
-        let [low, high] = timing.bounds;
-        let mut curve = vec![(start, self.values(target))];
-        for step in [timing.step, -timing.step] {
+        let start = middle.drivers[free.driver.index()];
+        let [low, high] = free.bounds;
+        let mut curve = Curve::new(start, self.values(target));
+        for step in [free.step, -free.step] {
             self.runner.return_to(&middle);
             let mut at = start + step;
-            while curve.len() <= STEPS && (low..=high).contains(&at) {
-                self.set_value(row, timing.driver, at);
+            while curve.is_short() && (low..=high).contains(&at) {
+                self.set_value(row, free.driver, at);
                 if self.go(row).is_err() {
                     break;
                 }
-                curve.push((at, self.values(target)));
+                curve.points.push((at, self.values(target)));
+                if free.is_unlimited() && step > 0.0 {
+                    curve.close();
+                }
                 at += step;
             }
         }
+        curve.points.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(curve)
     }
 
@@ -217,11 +228,11 @@ impl Follower {
     /// Sets the timing of all targets, which stands behind the free parameters.
     pub(crate) fn set_timing(&mut self, unknowns: &[f64]) {
         let fit = Arc::clone(&self.fit);
-        let mut values = unknowns[fit.free.len()..].iter();
         for target in &fit.targets {
-            if let Some(timing) = &target.timing {
-                for (row, value) in target.rows.clone().zip(&mut values) {
-                    self.set_value(row, timing.driver, *value);
+            if let Some(free) = &target.free_driver {
+                let values = &unknowns[target.unknowns.clone()];
+                for (row, value) in target.rows.clone().zip(values) {
+                    self.set_value(row, free.driver, *value);
                 }
             }
         }
@@ -232,7 +243,7 @@ impl Follower {
     pub(crate) fn go_nearer(
         &mut self,
         target: &Target,
-        timing: &FreeDriver,
+        free: &FreeDriver,
         pose: usize,
         (start, [low, high]): (f64, [f64; 2]),
     ) -> Result<f64, Refused> {
@@ -241,27 +252,25 @@ impl Follower {
         let mut values = self.values(target);
         let mut gap = target.gap(pose, &values);
         let mut changes = Vec::with_capacity(values.len());
-        let mut along = Direction::zero(&self.fit.scenario.own);
-        along.drivers[timing.driver.index()] = Jet::constant(1.0);
+        let along = std::slice::from_ref(&free.direction);
         for _ in 0..NEARER {
             changes.clear();
-            let along = std::slice::from_ref(&along);
             let differentiated = (self.runner).differentiate(&target.columns, along, &mut changes);
             differentiated.map_err(|_| Refused)?;
             let (mut slope, mut steepness) = (0.0, 0.0);
             for (column, (value, change)) in values.iter().zip(&changes).enumerate() {
-                let weight = target.weight * target.weight;
-                slope += weight * change * (value - target.wanted[target.index(column, pose)]);
-                steepness += weight * change * change;
+                let change = target.weight * change;
+                slope += change * target.residual(column, pose, *value);
+                steepness += change * change;
             }
             // The driver may have no effect.
             if slope * slope <= WORTH * gap * steepness {
                 break;
             }
-            let step = (-slope / steepness).clamp(-timing.step, timing.step);
+            let step = (-slope / steepness).clamp(-free.step, free.step);
             let next = (value + step).clamp(low, high);
             let before = self.runner.solver.pose().clone();
-            self.set_value(row, timing.driver, next);
+            self.set_value(row, free.driver, next);
             if self.go(row).is_ok() {
                 let tried = self.values(target);
                 let nearer = target.gap(pose, &tried);
@@ -271,7 +280,7 @@ impl Follower {
                 }
             }
             self.runner.return_to(&before);
-            self.set_value(row, timing.driver, value);
+            self.set_value(row, free.driver, value);
             self.runner.solve(row).map_err(|_| Refused)?;
             break;
         }
@@ -301,10 +310,15 @@ impl Target {
         column * self.rows.len() + pose
     }
 
+    /// Returns the residual of a value at a pose.
+    pub(crate) fn residual(&self, column: usize, pose: usize, value: f64) -> f64 {
+        self.weight * (value - self.wanted[self.index(column, pose)])
+    }
+
     /// Returns the sum of squared residuals at a pose.
     pub(crate) fn gap(&self, pose: usize, values: &[f64]) -> f64 {
         let squares = values.iter().enumerate().map(|(column, value)| {
-            let residual = self.weight * (value - self.wanted[self.index(column, pose)]);
+            let residual = self.residual(column, pose, *value);
             residual * residual
         });
         squares.sum()

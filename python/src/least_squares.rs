@@ -4,6 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 /// Damping of the first step, as part of the largest squared column of the Jacobian.
 const FIRST_DAMPING: f64 = 1e-4;
+/// Damping that changes a step by rounding only; less would have to be raised many times before a
+/// refused step becomes shorter.
+const LEAST_DAMPING: f64 = f64::EPSILON;
 /// Damping at which a step is shorter than rounding.
 const MOST_DAMPING: f64 = 1e16;
 /// Factor of the damping after a step that is refused.
@@ -23,13 +26,13 @@ pub(crate) trait Residuals {
     /// there are no residuals.
     fn try_at(&mut self, unknowns: &mut [f64], residuals: &mut [f64]) -> bool;
 
-    /// Keeps the unknowns tried last, and sets the derivatives of their residuals, by residual,
-    /// then by unknown. Returns false if there are none.
+    /// Sets the derivatives of the residuals at the unknowns tried last, by residual, then by
+    /// unknown, and keeps these unknowns. Returns false and keeps none if there are no derivatives.
     fn keep(&mut self, unknowns: &[f64], derivatives: &mut [f64]) -> bool;
 }
 
 /// A point of the search: unknowns with residuals and derivatives.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Point {
     pub(crate) unknowns: Vec<f64>,
     residuals: Vec<f64>,
@@ -47,7 +50,7 @@ pub(crate) struct Point {
 pub(crate) struct Outer {
     pub(crate) low: Vec<f64>,
     pub(crate) high: Vec<f64>,
-    /// Sizes by which steps are scaled.
+    /// Sizes by which steps are scaled, greater than zero.
     pub(crate) size: Vec<f64>,
 }
 
@@ -127,6 +130,7 @@ impl Point {
                     // Nielsen's rule: the better the prediction, the less damping.
                     let gain = 2.0 * (before - cost) / expected - 1.0;
                     self.damping *= (1.0 - gain.powi(3)).clamp(LOWER, 2.0);
+                    self.damping = self.damping.max(LEAST_DAMPING);
                     self.done = !kept || before - cost <= limits.tolerance * before;
                     break;
                 }
@@ -149,7 +153,7 @@ impl Point {
 struct System {
     jacobian: DMatrix<f64>,
     residuals: DVector<f64>,
-    /// Whether each outer unknown stays at its bound.
+    /// Whether each outer unknown stays: it is fixed, or at a bound.
     stays: Vec<bool>,
     /// Square of the largest column of outer unknowns.
     largest: f64,
@@ -167,8 +171,8 @@ impl System {
             column *= outer.size[index];
             let uphill = column.dot(&residuals);
             let at = at.unknowns[index];
-            *stays = (at <= outer.low[index] && uphill > 0.0)
-                || (at >= outer.high[index] && uphill < 0.0);
+            let [low, high] = [outer.low[index], outer.high[index]];
+            *stays = low >= high || (at <= low && uphill > 0.0) || (at >= high && uphill < 0.0);
             if *stays {
                 column.fill(0.0);
             }
@@ -191,14 +195,14 @@ impl System {
         let (rows, count) = self.jacobian.shape();
         let mut system = DMatrix::zeros(rows + count, count);
         system.rows_mut(0, rows).copy_from(&self.jacobian);
-        let floor = f64::EPSILON * self.largest;
         for index in 0..count {
             let damping = match self.stays.get(index) {
                 Some(true) => 1.0,
                 Some(false) => at.damping * self.largest,
-                None => INNER * at.damping * self.largest,
+                None => (INNER * at.damping).max(LEAST_DAMPING) * self.largest,
             };
-            system[(rows + index, index)] = damping.max(floor).max(f64::MIN_POSITIVE).sqrt();
+            // Without any effect of the outer unknowns the largest column is zero.
+            system[(rows + index, index)] = damping.max(f64::MIN_POSITIVE).sqrt();
         }
         let mut right = DVector::zeros(rows + count);
         right.rows_mut(0, rows).copy_from(&(-&self.residuals));

@@ -20,7 +20,7 @@ use crate::fit::Targets;
 use crate::follower::{Fit, Target};
 use crate::run::{Run, run};
 use crate::runner::Runner;
-use crate::scenario::{Drive, Home, Scenario, Value, parameter};
+use crate::scenario::{Drive, Home, Scenario, Value, parameter, parameters};
 use crate::sweep::{Sweep, sweep};
 use crate::timing::FreeDriver;
 
@@ -242,6 +242,12 @@ impl Mechanism {
         (simulation.start, simulation.stop, simulation.step)
     }
 
+    /// Returns the values of all parameters \[SI\] where some are set, in the order of `parameters`.
+    fn values(&self, py: Python<'_>, parameters: Vec<(String, Value)>) -> PyResult<Vec<f64>> {
+        self.in_force(parameters)
+            .map_err(|failure| failure.raise(py))
+    }
+
     /// Runs the mechanism; `columns` are indices, `by` names of parameters.
     fn run(
         &self,
@@ -253,7 +259,7 @@ impl Mechanism {
     ) -> PyResult<Run> {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
-            let parameters = scenario.parameters(parameters)?;
+            let parameters = self.in_force(parameters)?;
             let by = by.iter().map(|name| self.free(name));
             let by: Vec<ParameterId> = by.collect::<Result<_, _>>()?;
             let told = self.all_columns().iter().filter(|column| column.is_told());
@@ -275,7 +281,7 @@ impl Mechanism {
     ) -> PyResult<Sweep> {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
-            let parameters = scenario.parameters(parameters)?;
+            let parameters = self.in_force(parameters)?;
             let swept = swept.into_iter();
             let swept = swept.map(|(name, values)| Ok((self.free(&name)?, values)));
             let swept: Vec<_> = swept.collect::<Result<_, Failure>>()?;
@@ -298,17 +304,20 @@ impl Mechanism {
         py.detach(|| {
             let mut rows = 0;
             let targets = targets.into_iter();
-            let targets = targets.map(|(poses, timing, columns, wanted, weight)| {
-                let timing = timing.map(|(name, in_order)| {
+            let targets = targets.map(|(poses, free_driver, columns, wanted, weight)| {
+                let free_driver = free_driver.map(|(name, in_order)| {
                     FreeDriver::new(&self.model, self.driver_named(&name)?, in_order)
                 });
                 rows += poses;
                 Ok(Target {
                     rows: rows - poses..rows,
-                    timing: timing.transpose()?,
+                    free_driver: free_driver.transpose()?,
                     columns: self.chosen(&columns),
                     wanted,
                     weight,
+                    // The fit sets both.
+                    residuals: 0..0,
+                    unknowns: 0..0,
                 })
             });
             let targets = targets.collect::<Result<_, Failure>>()?;
@@ -326,8 +335,7 @@ impl Mechanism {
     /// Returns the text of the file with the parameters of these names at their values in an
     /// attempt, and its pose as estimates.
     fn fitted(&self, py: Python<'_>, attempt: &Attempt, names: Vec<String>) -> PyResult<String> {
-        let pose = attempt.home();
-        self.text_at(&names, &pose)
+        py.detach(|| self.text_at(&names, &attempt.home()))
             .map_err(|failure| failure.raise(py))
     }
 
@@ -343,7 +351,7 @@ impl Mechanism {
             let scenario = self.scenario(motions)?;
             let id = self.driver_named(driver)?;
             let mut runner = Runner::new(&scenario, &[])?;
-            runner.start(&scenario.parameters(parameters)?)?;
+            runner.start(&self.in_force(parameters)?)?;
             Ok((id, runner.solver.range(id, &RangeSettings::default())))
         });
         let (id, range) = found.map_err(|failure: Failure| failure.raise(py))?;
@@ -380,7 +388,7 @@ impl Mechanism {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
             let mut runner = Runner::new(&scenario, &[])?;
-            runner.start(&scenario.parameters(parameters)?)?;
+            runner.start(&self.in_force(parameters)?)?;
             let modes = runner.solver.modes()?;
             let count = 3 * self.model.bodies.len();
             let others = modes.others.into_iter();
@@ -414,7 +422,7 @@ impl Mechanism {
                 return Err(Failure::Usage(message.to_owned()));
             }
             let mut runner = Runner::new(&scenario, &columns)?;
-            runner.start(&scenario.parameters(parameters)?)?;
+            runner.start(&self.in_force(parameters)?)?;
             let driver = driver.map(|name| self.driver_named(&name)).transpose()?;
             let followed = driver.map(|driver| Followed {
                 driver,
@@ -454,7 +462,7 @@ impl Mechanism {
                 Some(q) => pose.q[..q.len()].copy_from_slice(&q),
                 None => {
                     let mut runner = Runner::new(&scenario, &[])?;
-                    let values = scenario.parameters(parameters)?;
+                    let values = self.in_force(parameters)?;
                     runner.start(&values)?;
                     pose = runner.solver.pose().clone();
                 }
@@ -497,6 +505,11 @@ impl Mechanism {
 
     fn scenario(&self, (times, drives): Motions) -> Result<Scenario, Failure> {
         Scenario::new(&self.model, &self.home()?, times, drives)
+    }
+
+    /// Returns all parameters in force for values of some.
+    fn in_force(&self, set: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
+        parameters(&self.model, set)
     }
 
     /// Returns the pose of the file's own values.

@@ -14,6 +14,9 @@ use biela::mechanism::{DriverId, Jet, Motion, Order, ParameterId};
 use crate::error::Failure;
 use crate::scenario::Scenario;
 
+/// Number of variants that one solver runs in a batch: far more work than making the solver.
+pub(crate) const BATCH: usize = 32;
+
 /// A mechanism that moves from one time to the next.
 pub(crate) struct Runner<S> {
     pub(crate) scenario: S,

@@ -106,26 +106,26 @@ impl Scenario {
             samples,
         })
     }
+}
 
-    /// Returns all parameters in force for values of some \[SI\].
-    ///
-    /// # Errors
-    ///
-    /// A parameter is unknown or derived, or its value is beyond its limits.
-    pub(crate) fn parameters(&self, set: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
-        let mut values = self.own.default_parameters();
-        for (name, value) in set {
-            let id = parameter(&self.own, &name)?;
-            let value = match value {
-                Value::Number(value) => check_parameter(&self.own, id, value).map(|()| value),
-                Value::Text(text) => parameter_value(&self.own, id, &text),
-            };
-            values[id.index()] =
-                value.map_err(|error| Failure::Usage(format!("parameters: {error}")))?;
-        }
-        self.own.derive_parameters(&mut values);
-        Ok(values)
+/// Returns all parameters in force for values of some \[SI\].
+///
+/// # Errors
+///
+/// A parameter is unknown or derived, or its value is beyond its limits.
+pub(crate) fn parameters(own: &Mechanism, set: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
+    let mut values = own.default_parameters();
+    for (name, value) in set {
+        let id = parameter(own, &name)?;
+        let value = match value {
+            Value::Number(value) => check_parameter(own, id, value).map(|()| value),
+            Value::Text(text) => parameter_value(own, id, &text),
+        };
+        values[id.index()] =
+            value.map_err(|error| Failure::Usage(format!("parameters: {error}")))?;
     }
+    own.derive_parameters(&mut values);
+    Ok(values)
 }
 
 /// Returns the parameter of a name.

@@ -8,11 +8,8 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::error::Failure;
-use crate::runner::{Beginning, Runner};
+use crate::runner::{BATCH, Beginning, Runner};
 use crate::scenario::Scenario;
-
-/// Number of variants that one solver takes in turn: far more work than making the solver.
-const TURN: usize = 32;
 
 /// The rows of many variants.
 #[pyclass]
@@ -100,13 +97,13 @@ pub(crate) fn sweep(
         }
         outcome
     };
-    let turns = values.par_chunks_mut((TURN * size).max(1)).enumerate();
-    let outcomes: Vec<Vec<Outcome>> = turns
-        .map(|(turn, values)| {
+    let batches = values.par_chunks_mut((BATCH * size).max(1)).enumerate();
+    let outcomes: Vec<Vec<Outcome>> = batches
+        .map(|(batch, values)| {
             let mut runner = Runner::new(scenario, columns)?;
             let variants = values.chunks_exact_mut(size).enumerate();
             Ok(variants
-                .map(|(index, values)| run(&mut runner, TURN * turn + index, values))
+                .map(|(index, values)| run(&mut runner, BATCH * batch + index, values))
                 .collect())
         })
         .collect::<Result<_, Failure>>()?;

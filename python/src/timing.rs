@@ -2,22 +2,76 @@
 
 use std::f64::consts::TAU;
 
-use biela::mechanism::{DriverId, Mechanism};
+use biela::kinematics::Direction;
+use biela::mechanism::{DriverId, Jet, Mechanism};
 
 use crate::error::Failure;
 
-/// Number of steps along the motion of a driver, at whose ends the nearest pose to each target is
-/// looked for.
-pub(crate) const STEPS: usize = 36;
+/// Number of steps per turn of a driver, or in the range of a length, at whose ends the nearest pose
+/// to each target is looked for.
+const STEPS: usize = 36;
+/// Largest number of turns that are scanned: some paths, such as those of geared cranks, close after
+/// two.
+const TURNS: usize = 2;
+/// Largest distance between the ends of a closed curve, as part of its extent. Next to a singular
+/// position rounding is the root of machine precision, 1.5e-8.
+const CLOSED: f64 = 1e-6;
 
 /// A driver whose values at the rows of a target are free.
 pub(crate) struct FreeDriver {
     pub(crate) driver: DriverId,
-    /// Range in which the nearest poses are looked for, and distance between two of them.
+    /// Direction in which its value grows.
+    pub(crate) direction: Direction,
+    /// Limits of the values; infinite for an angle without limits.
     pub(crate) bounds: [f64; 2],
+    /// Distance between two values at which the nearest poses are looked for.
     pub(crate) step: f64,
     /// Whether its values at the rows ascend or descend, within a turn or its range.
     in_order: bool,
+}
+
+/// Values of a target's variables along the motion of its free driver, at equal steps.
+pub(crate) struct Curve {
+    /// The driver's value and the values of the variables at each point.
+    pub(crate) points: Vec<(f64, Vec<f64>)>,
+    /// Whether the last point is the first one again, after full turns of the driver.
+    closes: bool,
+}
+
+impl Curve {
+    pub(crate) fn new(driver: f64, values: Vec<f64>) -> Self {
+        Self {
+            points: vec![(driver, values)],
+            closes: false,
+        }
+    }
+
+    /// Returns whether the curve needs further points: it is open and covers fewer than [`TURNS`].
+    pub(crate) fn is_short(&self) -> bool {
+        !self.closes && self.points.len() <= TURNS * STEPS + 1
+    }
+
+    /// Closes the curve if its last two points, after full turns, are the first two again. One point
+    /// may be the same by chance or by symmetry.
+    pub(crate) fn close(&mut self) {
+        let [(_, first), (_, second), .., (_, last), (_, next)] = &self.points[..] else {
+            return;
+        };
+        let distance = |a: &[f64], b: &[f64]| -> f64 {
+            let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+            squares.sum()
+        };
+        let extents = self
+            .points
+            .iter()
+            .map(|(_, values)| distance(first, values));
+        let same = CLOSED * CLOSED * extents.fold(0.0, f64::max);
+        let turns_fully = self.points.len() % STEPS == 2;
+        if turns_fully && distance(first, last) <= same && distance(second, next) <= same {
+            self.points.pop();
+            self.closes = true;
+        }
+    }
 }
 
 impl FreeDriver {
@@ -47,12 +101,20 @@ impl FreeDriver {
                 )));
             }
         };
+        let mut direction = Direction::zero(mechanism);
+        direction.drivers[id.index()] = Jet::constant(1.0);
         Ok(Self {
             driver: id,
+            direction,
             bounds,
             step: range / STEPS as f64,
             in_order,
         })
+    }
+
+    /// Returns whether the driver has no limits.
+    pub(crate) fn is_unlimited(&self) -> bool {
+        self.bounds == [-f64::INFINITY, f64::INFINITY]
     }
 
     /// Returns the range of the value at a pose, whose predecessors have these values. Values in
@@ -74,43 +136,54 @@ impl FreeDriver {
 
     /// Chooses a point of a curve for each pose, so that the sum of gaps is smallest. The points of
     /// the curve are in the order of the driver's values, `gaps` by pose, then by point. Returns the
-    /// sum and the values.
-    pub(crate) fn nearest(&self, curve: &[f64], gaps: &[Vec<f64>]) -> (f64, Vec<f64>) {
+    /// sum and the driver's values.
+    pub(crate) fn nearest(&self, curve: &Curve, gaps: &[Vec<f64>]) -> (f64, Vec<f64>) {
+        let points = &curve.points;
         if !self.in_order {
             let nearest = gaps.iter().map(|gaps| {
-                let points = gaps.iter().zip(curve);
-                points.fold((f64::INFINITY, f64::NAN), |best, (gap, at)| {
+                let points = gaps.iter().zip(points);
+                points.fold((f64::INFINITY, f64::NAN), |best, (gap, (at, _))| {
                     if *gap < best.0 { (*gap, *at) } else { best }
                 })
             });
             let (gaps, values): (Vec<f64>, Vec<f64>) = nearest.unzip();
             return (gaps.iter().sum(), values);
         }
-        let count = curve.len();
-        // On a curve that closes, the first pose may be at any point.
-        let closes = count > STEPS && self.bounds == [-f64::INFINITY, f64::INFINITY];
-        let turn = self.step * STEPS as f64;
+        // The poses are within a turn, which begins at any point; on a curve that closes it goes on
+        // from the end to the start.
+        let count = points.len().min(STEPS + 1);
+        let steps = points.len() - 1;
+        let starts = if curve.closes {
+            steps
+        } else {
+            points.len() - count + 1
+        };
         let point = |place: usize| {
-            if closes {
-                (place % STEPS, (place / STEPS) as f64 * turn)
+            if curve.closes {
+                (
+                    place % steps,
+                    (place / steps) as f64 * self.step * steps as f64,
+                )
             } else {
                 (place, 0.0)
             }
         };
         let mut best = (f64::INFINITY, vec![f64::NAN; gaps.len()]);
-        for start in 0..if closes { STEPS } else { 1 } {
-            let mut places: Vec<usize> = (start..start + count).collect();
-            for _ in ["ascending", "descending"] {
-                let gap = |pose: usize, index: usize| gaps[pose][point(places[index]).0];
+        for start in 0..starts {
+            for ascend in [true, false] {
+                let point = |index: usize| {
+                    let ahead = if ascend { index } else { count - 1 - index };
+                    point(start + ahead)
+                };
+                let gap = |pose: usize, index: usize| gaps[pose][point(index).0];
                 let (sum, chosen) = in_order(gaps.len(), count, gap);
                 if sum < best.0 {
                     let values = chosen.iter().map(|&index| {
-                        let (index, laps) = point(places[index]);
-                        curve[index] + laps
+                        let (index, laps) = point(index);
+                        points[index].0 + laps
                     });
                     best = (sum, values.collect());
                 }
-                places.reverse();
             }
         }
         best

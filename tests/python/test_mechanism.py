@@ -79,6 +79,7 @@ def test_the_range_of_a_triangle_ends_at_dead_points(mechanism):
 def test_a_crank_turns_fully(four_bar):
     found = four_bar.range("crank_angle", drive={"crank_angle": 1.0})
     assert found.turns and found.upper.turns == 1
+    assert repr(found) == "<biela.Range of crank_angle: no limit to no limit>"
     with pytest.raises(biela.UsageError, match="did you mean `crank_angle`"):
         four_bar.range("crank")
 

@@ -67,8 +67,8 @@ def test_derivatives_are_those_of_the_residuals(four_bar):
         assert_allclose(derivatives[:, unknown], (up - down) / (2 * step), atol=1e-7)
     run = four_bar.run(drive={"crank_angle": ([2.0], 4.0, 0.0)}, variables=["rocker.omega"])
     assert_allclose(residuals[8], run["rocker.omega"][0] - 0.1, rtol=1e-12)
-    # The timing starts at the nearest of 73 poses of a turn.
-    timing = np.arange(73) * 2 * np.pi / 72 + four_bar.drivers["crank_angle"].start
+    # The timing starts at the nearest of 36 poses of a turn.
+    timing = np.arange(37) * 2 * np.pi / 36 + four_bar.drivers["crank_angle"].start
     assert all(np.abs(timing - value).min() < 1e-9 for value in at[2:])
 
 
@@ -138,6 +138,32 @@ def test_a_minimum_within_bounds_is_that_of_scipy(generator):
     assert np.all(np.abs(slopes[level]) <= 1e-7 * columns * np.sqrt(attempt.cost))
 
 
+def test_a_fit_ends_without_repeating_a_step(generator):
+    """Each good step lowers the damping, here to less than rounding. The refused step at the end
+    shall not be tried again while the damping rises to where it changes the step."""
+    points = [[-1.074, 2.023], [-0.075, 2.286], [-0.498, 2.322], [-1.243, 1.808]]
+    target = biela.points("coupler.P", points, free="theta")
+    found = biela.fit(generator, target, ["r3", "r4", "r1"])
+    assert_allclose(found.cost, 1.4433485630621e-3, rtol=1e-12)
+    # Without a limit of the damping: 42.
+    assert found.evaluations <= 38
+
+
+def test_equal_bounds_fix_a_parameter(four_bar):
+    """A parameter that is fixed costs no evaluation, and random changes leave it alone."""
+    target = biela.Target({"rocker.phi": [2.2, 2.4]}, drive={"crank_angle": [1.0, 1.3]})
+    free, fixed = {"crank_length": (0.05, 0.2)}, {"base": (0.4, 0.4)}
+    for arguments in ({}, {"starts": 3, "samples": 20, "variations": 2}):
+        alone, beside = (
+            biela.fit(four_bar, target, list(bounds), bounds, **arguments)
+            for bounds in (free, {**free, **fixed})
+        )
+        assert beside.parameters["base"] == 0.4
+        assert_allclose(beside.cost, alone.cost, rtol=1e-12)
+        # With random starts other numbers are drawn for two parameters than for one.
+        assert beside.evaluations == alone.evaluations or arguments
+
+
 def test_free_values_in_order_are_the_best_of_all(generator):
     """The first timing of three points, which a full turn passes in another order, against all
     choices among 36 poses of a turn."""
@@ -158,7 +184,39 @@ def test_free_values_in_order_are_the_best_of_all(generator):
         own = generator.parameters["r2"].value
         found = [cost for _, _, cost in problem._inner.costs([own])]
         # The other assembly mode has a cost too. Rounding of a few 1e-15 in squares of some metres.
-        assert min(abs(cost - sums[allowed].min()) for cost in found) < 1e-12
+        assert min(abs(cost - sums[allowed].min()) for cost in found) < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("angles", "met"),
+    [((300, 330, 400), True), ((640, 700, 980), True), ((980, 700, 640), True), ((300, 330, 40), False)],
+)
+def test_a_path_that_closes_after_two_turns_is_followed(mechanism, angles, met):
+    """Points that the first crank passes within a turn of its own, and others. The angles are 10°
+    apart from its start at 40°, as the poses at which the search looks."""
+    geared = mechanism("geared_five_bar")
+    path = geared.run(drive={"crank_angle": np.radians(angles)}, variables=["left_link.C"])
+    xy = np.transpose([path["left_link.C.x"], path["left_link.C.y"]])
+    target = biela.points("left_link.C", xy, free="crank_angle", in_order=True)
+    problem = Problem(geared, target, ["link"], {}, None)
+    costs = [cost for _, _, cost in problem._inner.costs(problem.own)]
+    attempt = problem._inner.attempt(problem.own.tolist())
+    residuals, _ = attempt.evaluate(attempt.unknowns)
+    # Rounding of a few 1e-16 in squares of some centimetres.
+    assert min(abs(cost - residuals @ residuals) for cost in costs) < 1e-15
+    assert (residuals @ residuals < 1e-24) == met
+    if met:
+        assert biela.fit(geared, target, ["link"]).cost < 1e-24
+
+
+def test_an_angle_that_winds_has_the_value_of_its_turn(generator):
+    target = biela.Target({"crank.phi": [6.0, 7.5, 1.0]}, free="theta", in_order=True)
+    problem = Problem(generator, target, ["r2"], {}, None)
+    attempt = problem._inner.attempt(problem.own.tolist())
+    residuals, _ = attempt.evaluate(attempt.unknowns)
+    ((_, _, cost), *_) = problem._inner.costs(problem.own)
+    # Rounding of some 1e-16 in squares of radians.
+    assert_allclose(residuals @ residuals, cost, atol=1e-14)
 
 
 @pytest.mark.parametrize("in_order", [False, True])
@@ -189,6 +247,9 @@ def test_free_values_stay_within_the_drivers_limits(mechanism):
 
 def test_wrong_targets_are_refused(generator):
     point = biela.points("coupler.P", TIMED[:2], drive={"theta": [0.5, 1.0]})
+    target = lambda values=[1.9], drive={"theta": [0.5]}, **more: biela.Target(
+        {"rocker.phi": values}, drive, **more
+    )
     refused = [
         ({"free": ["r9"]}, "did you mean `r1`"),
         ({"targets": biela.points("coupler.Q", TIMED, free="theta")}, "did you mean `coupler.P.x`"),
@@ -202,15 +263,33 @@ def test_wrong_targets_are_refused(generator):
         ({"bounds": {"r2": (2.0, 1.0)}}, "two numbers for `r2`, the smaller first"),
         ({"bounds": {"r2": ("1*m", 2.0)}}, "two numbers for `r2`"),
         ({"starts": 2, "free": []}, "random starts need the name of a parameter"),
+        ({"targets": target(weight=np.nan)}, "expected a finite number as `weight`; found nan"),
+        ({"targets": target(weight="2")}, "target: expected numbers as `weight`; found '2'"),
+        ({"targets": target(["far"])}, r"target: expected numbers as `rocker.phi`; found \['far'\]"),
+        ({"targets": target(None)}, "target: expected numbers as `rocker.phi`; found None"),
+        ({"targets": target([[1.0], [1.0, 2.0]])}, "target: expected numbers as `rocker.phi`"),
+        ({"targets": target(drive={"theta": "1*rad"})}, "drive: expected numbers as `theta`; found '1"),
+        ({"starts": 0}, "starts: expected a whole number, at least 1; found 0"),
+        ({"starts": 2.5}, "starts: expected a whole number, at least 1; found 2.5"),
+        ({"samples": -1}, "samples: expected a whole number, at least 0; found -1"),
+        ({"variations": -1}, "variations: expected a whole number, at least 0; found -1"),
+        ({"free": ["r2", "r3", "r2"]}, "free: `r2` is named twice"),
+        ({"bounds": {"r3": (1.0, 2.0)}}, "bounds: `r3` is not free; name it in `free` too"),
+        ({"bounds": {"r2": (-5.0, -1.0)}}, "^parameters: .*`r2`"),
+        ({"bounds": {"r2": (-5.0, -1.0)}, "starts": 3, "samples": 20}, "^parameters: .*`r2`"),
     ]
     for arguments, message in refused:
         with pytest.raises(biela.UsageError, match=message):
             biela.fit(**{"mechanism": generator, "targets": point, "free": ["r2"], **arguments})
     with pytest.raises(biela.UsageError, match=r"rows of x and y; found an array of shape \(3,\)"):
         biela.points("coupler.P", [1, 2, 3])
+    with pytest.raises(biela.UsageError, match="points: expected numbers as `coupler.P`; found"):
+        biela.points("coupler.P", [[1, 2], [3]])
     far = {"mechanism": generator, "targets": point, "free": ["r2"], "bounds": {"r2": (20.0, 21.0)}}
     with pytest.raises(biela.AssemblyError, match="the mechanism cannot close"):
         biela.fit(**far)
+    with pytest.raises(biela.AssemblyError, match="the mechanism does not reach all targets"):
+        biela.fit(generator, target([1e200]), ["r2"])
     with pytest.raises(biela.AssemblyError, match="no start reaches all targets"):
         biela.fit(**far, starts=3, samples=20)
 

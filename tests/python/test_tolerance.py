@@ -57,10 +57,27 @@ def test_expressions_are_nominal_values_too(four_bar):
     assert repr(found) == "<biela.Tolerances of crank_length, base: 11 rows of 1 variables, 7 variants>"
 
 
+def test_expressions_need_not_close_at_the_files_own_start(four_bar):
+    """A base that closes where the motion is, but not at the crank angle of the file."""
+    with pytest.raises(biela.AssemblyError):
+        four_bar.changed({"base": 0.6})
+    found, expected = (
+        biela.tolerance(
+            four_bar, drive={"crank_angle": [0.3]}, tolerances={"base": 1e-4}, corners=True,
+            parameters={"base": base}, variables=["rocker.phi"],
+        )
+        for base in ("600*mm", 0.6)
+    )  # fmt: skip
+    # The two values may differ by a rounding.
+    assert_allclose(found.extremes("rocker.phi"), expected.extremes("rocker.phi"), rtol=1e-14)
+
+
 def test_wrong_tolerances_are_refused(four_bar):
     for size in (-1e-5, np.nan, "0.05*mm"):
         with pytest.raises(biela.UsageError, match="expected a number in SI units, not negative"):
             biela.tolerance(four_bar, drive=DRIVE, tolerances={"base": size})
+    with pytest.raises(biela.UsageError, match="samples: expected a whole number, at least 0; found -1"):
+        biela.tolerance(four_bar, drive=DRIVE, tolerances=TOLERANCES, samples=-1)
     single = biela.tolerance(four_bar, drive={"crank_angle": [1.0]}, tolerances=TOLERANCES)
     with pytest.raises(biela.UsageError, match="a path needs two poses"):
         single.plot("coupler.P")
