@@ -241,7 +241,7 @@ class Mechanism:
         if not names:
             raise UsageError("variables: no variable is named")
         fixed = {n: v for n, v in parameters.items() if isinstance(v, str)}
-        arrays = {n: np.asarray(v, dtype=float) for n, v in parameters.items() if n not in fixed}
+        arrays = {n: _numbers("parameters", v, n) for n, v in parameters.items() if n not in fixed}
         try:
             series = dict(zip(arrays, np.broadcast_arrays(*arrays.values())))
         except ValueError:
@@ -337,15 +337,8 @@ class Mechanism:
         """
         parameters = _given(parameters)
         start = self._start(drive)
-        return Drawing(
-            self._inner.draw(
-                start,
-                parameters,
-                width,
-                transparent,
-                (traces, poses, driver, dimensions, instant_centres, forces),
-            )
-        )
+        options = (traces, _count("poses", poses), driver, dimensions, instant_centres, forces)
+        return Drawing(self._inner.draw(start, parameters, width, transparent, options))
 
     def changed(self, parameters: Parameters | None = None, drive: Drive | None = None) -> Mechanism:
         """Returns the mechanism with other parameters and start values of drivers.
@@ -395,7 +388,8 @@ class Mechanism:
         """
         path = Path(path) if path is not None else Path(f"{self.name}.fmu")
         folder = os.fspath(runtime) if runtime is not None else None
-        path.write_bytes(bytes(self._inner.fmu(str(fmi), folder, list(platforms))))
+        names = [platforms] if isinstance(platforms, str) else list(platforms)
+        path.write_bytes(bytes(self._inner.fmu(str(fmi), folder, names)))
         return path
 
     def _chosen(self, wanted: Sequence[str] | None) -> tuple[list[str], list[str], list[int]]:
@@ -418,10 +412,14 @@ class Mechanism:
     def _start(self, drive: Drive | None) -> tuple[list[float], list]:
         """Returns the motions at the file's start time, where drivers have single values."""
         start = self._inner.simulation[0]
-        constant = {
-            name: value if isinstance(value, str) else (float(value), 0.0, 0.0)
-            for name, value in (drive or {}).items()
-        }
+        constant = {}
+        for name, value in (drive or {}).items():
+            if not isinstance(value, str):
+                number = _numbers("drive", value, name)
+                if number.ndim:
+                    raise UsageError(f"drive: expected one number as `{name}`; found {value!r}")
+                value = (number, 0.0, 0.0)
+            constant[name] = value
         return self._motions([start], constant)
 
     def _motions(self, t: ArrayLike | None, drive: Drive | None) -> tuple[list[float], list]:
@@ -435,7 +433,7 @@ class Mechanism:
             raise UsageError(f"drive: the arrays have different lengths: {counts}")
         timeless = t is None and bool(orders)
         if t is not None:
-            times = np.atleast_1d(np.asarray(t, dtype=float))
+            times = np.atleast_1d(_numbers("t", t))
             if times.ndim != 1:
                 raise UsageError(f"t has {times.ndim} dimensions; expected an array of times")
         elif timeless:
@@ -491,6 +489,15 @@ def _given(parameters: Parameters | None) -> list[tuple[str, float | str]]:
     return given
 
 
+def _numbers(argument: str, value: Any, name: str | None = None) -> NDArray:
+    """Returns the numbers of an argument, or of its part `name`. Text of digits is no number."""
+    try:
+        return (np.asarray(value) * 1.0).astype(float)
+    except (TypeError, ValueError):
+        part = f" as `{name}`" if name else ""
+        raise UsageError(f"{argument}: expected numbers{part}; found {value!r}") from None
+
+
 def _count(name: str, value: int, least: int = 0) -> int:
     """Returns a count, a whole number that is not too small."""
     try:
@@ -510,10 +517,7 @@ def _orders(name: str, value: Any) -> list[NDArray]:
             f"drive: `{name}` is a tuple of {len(parts)}; "
             "expected (position, velocity, acceleration)"
         )
-    try:
-        orders = [np.asarray(part, dtype=float) for part in parts]
-    except (TypeError, ValueError):
-        raise UsageError(f"drive: expected numbers as `{name}`; found {value!r}") from None
+    orders = [_numbers("drive", part, name) for part in parts]
     if any(order.ndim > 1 for order in orders):
         raise UsageError(f"drive: `{name}` has several dimensions; expected one value per time")
     return orders

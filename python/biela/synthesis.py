@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _biela
 from .errors import AssemblyError, UsageError
-from .mechanism import Drive, Mechanism, _count, _orders, _reread
+from .mechanism import Drive, Mechanism, _count, _numbers, _orders, _reread
 
 ROUNDS = ((12, 0.1), (40, 1.0))
 """Evaluations of each attempt in a round, and the part of the attempts that goes on to the next."""
@@ -51,14 +51,14 @@ class Target:
     def arrays(self) -> tuple[list[str], NDArray]:
         """Returns the names, and the values by name, then by pose."""
         names = list(self.values)
-        arrays = [_numbers("target", name, value) for name, value in self.values.items()]
+        arrays = [np.atleast_1d(_numbers("target", v, n)) for n, v in self.values.items()]
         if not names or len({array.shape for array in arrays}) != 1 or arrays[0].ndim != 1:
             shapes = ", ".join(f"{n} {a.shape}" for n, a in zip(names, arrays)) or "none"
             raise UsageError(f"target: expected arrays of one length; found {shapes}")
         if not arrays[0].size or not np.isfinite(arrays).all():
             raise UsageError(f"target: expected finite values of `{names[0]}` at one pose or more")
-        weight = _numbers("target", "weight", self.weight)
-        if np.ndim(self.weight) or not np.isfinite(weight[0]):
+        weight = _numbers("target", self.weight, "weight")
+        if weight.ndim or not np.isfinite(weight):
             raise UsageError(f"target: expected a finite number as `weight`; found {self.weight!r}")
         return names, np.array(arrays)
 
@@ -76,20 +76,11 @@ def points(
     >>> points("coupler.P", [[3, 3], [2.759, 3.363]], free="crank_angle").values["coupler.P.y"]
     array([3.   , 3.363])
     """
-    xy = _numbers("points", marker, xy)
+    xy = _numbers("points", xy, marker)
     if xy.ndim != 2 or xy.shape[1] != 2:
         raise UsageError(f"points: expected rows of x and y; found an array of shape {xy.shape}")
     x, y = xy.T
     return Target({f"{marker}.x": x, f"{marker}.y": y}, drive or {}, free, weight, in_order)
-
-
-def _numbers(argument: str, name: str, value: ArrayLike) -> NDArray:
-    """Returns the numbers of an argument, in one dimension or more."""
-    try:
-        # Text of digits is no number here either.
-        return np.atleast_1d(np.asarray(value) * 1.0).astype(float)
-    except (TypeError, ValueError):
-        raise UsageError(f"{argument}: expected numbers as `{name}`; found {value!r}") from None
 
 
 @dataclass(frozen=True)

@@ -82,6 +82,8 @@ def test_a_crank_turns_fully(four_bar):
     assert repr(found) == "<biela.Range of crank_angle: no limit to no limit>"
     with pytest.raises(biela.UsageError, match="did you mean `crank_angle`"):
         four_bar.range("crank")
+    with pytest.raises(biela.UsageError, match="drive: expected one number as `crank_angle`"):
+        four_bar.range("crank_angle", drive={"crank_angle": [1.0, 2.0]})
 
 
 def test_the_other_mode_of_a_four_bar_mirrors_the_dyad(four_bar):
@@ -105,6 +107,8 @@ def test_pictures_are_shown_in_notebooks(four_bar):
     assert 'class="poses"' in full and "lengths in mm" in full and "I coupler" in full
     with pytest.raises(biela.UsageError, match="did you mean `crank_angle`"):
         four_bar.draw(poses=4, driver="crank_angel")
+    with pytest.raises(biela.UsageError, match="poses: expected a whole number, at least 0"):
+        four_bar.draw(poses=-3)
     result = four_bar.run(t=[0, 0.1, 0.3], drive={"crank_angle": "1 + t"})
     assert "four_bar" in result.to_html() and result._repr_html_().startswith("<iframe srcdoc=")
     assert four_bar.run(drive={"crank_angle": [1.0, 1.1]}).to_html()

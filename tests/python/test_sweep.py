@@ -92,5 +92,7 @@ def test_the_number_of_cores_has_no_effect(tmp_path):
 
 
 def test_shapes_that_do_not_fit_are_told(four_bar):
+    with pytest.raises(biela.UsageError, match="parameters: expected numbers as `base`; found"):
+        four_bar.sweep({"base": ["wide"]}, drive={"crank_angle": 1.0})
     with pytest.raises(biela.UsageError, match=r"base \(3,\), crank_length \(2,\)"):
         four_bar.sweep({"base": [0.4] * 3, "crank_length": [0.1] * 2})
