@@ -147,7 +147,10 @@ fn times_that_parameters_disorder_are_refused_and_lose_nothing() {
     let Reason::Value(error) = &blocked.reason else {
         panic!("{blocked:?}");
     };
-    assert_eq!(error.to_string(), "driver `x` has no finite value");
+    assert_eq!(
+        error.to_string(),
+        "driver `x` has no finite value: the times of its table must rise"
+    );
     // It stands where the second and third time meet, and can go back.
     assert!((solver.pose().parameters[0] - 1.0).abs() < 1e-9);
     solver.restore(&before);

@@ -18,7 +18,7 @@ use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, Turn
 use crate::kinematics::linear::nan_or_larger;
 use crate::kinematics::variation::{Varied, VariedConfiguration};
 use crate::kinematics::{Element, Error};
-use crate::mechanism::{DriverId, Expression, Jet, Mechanism, ParameterId};
+use crate::mechanism::{DriverId, Expression, Jet, Mechanism, Motion, ParameterId};
 
 /// The target of c(q).
 #[derive(Clone, Debug)]
@@ -309,13 +309,18 @@ impl System {
     ///
     /// [`Error::NoMotion`] or [`Error::NotPositive`], naming the driver.
     pub fn check_drivers(&self, drivers: &[f64]) -> Result<(), Error> {
-        for (&row, &value) in self.driver_rows.iter().zip(drivers) {
+        let rows = self.driver_rows.iter().zip(&self.mechanism.drivers);
+        for ((&row, driver), &value) in rows.zip(drivers) {
             let equation = &self.equations[row];
             let what = || equation.element.describe(&self.mechanism);
             if !value.is_finite() {
+                let quantity = match driver.motion() {
+                    Some(Motion::Table(_)) => "value: the times of its table must rise",
+                    _ => "value",
+                };
                 return Err(Error::NoMotion {
                     driver: what(),
-                    quantity: "value",
+                    quantity,
                 });
             }
             if !equation.constraint.admits(value) {
