@@ -1,6 +1,8 @@
 //! `biela range`
 
+mod follower;
 mod forces;
+mod search;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
