@@ -251,3 +251,53 @@ fn the_largest_effort_is_found_between_samples() {
         "no forces at 90 of 181 poses, first at -90 deg: force `f` has no finite value here\n";
     assert!(text.contains(expected), "{text}");
 }
+
+#[test]
+fn computed_measures_have_their_range() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, csv, plot] =
+        ["lever.toml", "range.csv", "range.svg"].map(|name| folder.path().join(name));
+    let measures = "[measures]\n\
+                    rise = { value = \"sin(q.position)\", unit = \"m\" }\n\
+                    reach = { value = \"-(a.omega/q.velocity)*cos(2*(q.position - 0.5*deg))\" }\n\
+                    power = { value = \"2*q.velocity\", unit = \"W\" }\n\
+                    pole = { value = \"1/(q.position - 10*deg)\" }\n\
+                    root = { value = \"sqrt(q.position - 1)\" }\n";
+    let (unloaded, _) = LEVER.split_once("[forces]").unwrap();
+    std::fs::write(&file, format!("{unloaded}{measures}")).unwrap();
+    let [file, csv, plot] = [&file, &csv, &plot].map(|path| path.to_str().unwrap());
+    let range = |more: &[&str]| {
+        let arguments = [&["range", file, "--drive", "q = 60*deg"][..], more].concat();
+        stdout(&biela(&arguments).success())
+    };
+    let text = range(&["--csv", csv, "--plot", plot]);
+    for expected in [
+        "  rise from -1 m, at -90 deg, to 1 m, at 90 deg\n",
+        "  at 1 rad/s, reach from -1, at 0.5 deg, to 1, at -89.5 deg\n",
+        "  at 1 rad/s, power 2 W everywhere\n",
+        "  pole from -infinity, at 10 deg, to infinity, at 10 deg\n",
+        ", at 57.2958 deg, to 0.755511, at 90 deg\n",
+        "  root has no value at 148 of 181 poses, first at -90 deg\n",
+    ] {
+        assert!(text.contains(expected), "{expected}{text}");
+    }
+    let table = std::fs::read_to_string(csv).unwrap();
+    let angles = column(&table, "q.position");
+    for (angle, rise) in angles.iter().zip(column(&table, "rise")) {
+        assert!((rise - angle.sin()).abs() < 1e-12);
+    }
+    assert!(column(&table, "root")[0].is_nan());
+    let picture = std::fs::read_to_string(plot).unwrap();
+    assert!(picture.contains(">rise<") && picture.contains(">power<"));
+    // Velocities are those of the speed that is given, also without forces.
+    let text = range(&["--speed", "-3"]);
+    assert!(
+        text.contains("  at -3 rad/s, power -6 W everywhere\n"),
+        "{text}"
+    );
+    let text = range(&["--speed", "0"]);
+    assert!(
+        text.contains("  at rest, reach has no value at 181 of 181 poses"),
+        "{text}"
+    );
+}

@@ -51,11 +51,15 @@ impl<'a> Follower<'a> {
         self.solve_rates()
     }
 
-    /// Follows the driver to a value. `None` without velocities there.
+    /// Follows the driver to a value. `None` without velocities there, or where it cannot go; then
+    /// it starts from home again, because two motions may meet where it stopped.
     pub(super) fn follow(&mut self, value: f64) -> Option<()> {
         let index = self.driver.index();
         self.path.curves[index] = Curve::held(value, self.solver.pose().drivers[index]);
-        self.solver.track(&self.path).ok()?;
+        if self.solver.track(&self.path).is_err() {
+            self.restore();
+            return None;
+        }
         self.solve_rates().ok()
     }
 

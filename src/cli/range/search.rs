@@ -43,23 +43,22 @@ pub(super) fn largest<T: Copy>(
             && (index == 0 || of(index) > of(index - 1))
             && (index == last || of(index) >= of(index + 1))
     };
-    let mut peaks: Vec<usize> = (0..=last).filter(is_peak).collect();
-    peaks.sort_by(|a, b| of(*b).total_cmp(&of(*a)));
-    let (mut place, most) = samples[*peaks.first()?];
-    let mut most = most?;
     let rounding = ROUNDING * (samples[last].0 - samples[0].0);
     let rounded = |place: f64| if place.abs() < rounding { 0.0 } else { place };
+    let mut peaks: Vec<usize> = (0..=last).filter(is_peak).collect();
+    peaks.sort_by(|a, b| of(*b).total_cmp(&of(*a)));
+    let mut most = None;
     for &peak in peaks.iter().take(MOST_PEAKS) {
-        let ends = [peak.saturating_sub(1), last.min(peak + 1)].map(|index| samples[index].0);
-        match climb(ends, of(peak), &mut at) {
-            Some(Largest::Value(found, there)) if found.0 > most.0 => {
-                (most, place) = (found, there);
+        let beside = [peak.saturating_sub(1), last.min(peak + 1)];
+        match climb(samples, peak, beside, &mut at)? {
+            Largest::Value(found, there) if size(Some(found)) > size(most.map(|(m, _)| m)) => {
+                most = Some((found, there));
             }
-            Some(Largest::Unbounded(there)) => return Some(Largest::Unbounded(rounded(there))),
-            _ => {}
+            Largest::Value(..) => {}
+            Largest::Unbounded(there) => return Some(Largest::Unbounded(rounded(there))),
         }
     }
-    Some(Largest::Value(most, rounded(place)))
+    most.map(|(most, place)| Largest::Value(most, rounded(place)))
 }
 
 /// Returns the size, below all others where there is none.
@@ -67,13 +66,15 @@ fn size<T>(of: Option<Measured<T>>) -> f64 {
     of.map_or(f64::NEG_INFINITY, |(size, _)| size)
 }
 
-/// Returns the largest size between two values of the driver by golden section, right where there
-/// is one peak; `sample` is the size of the peak's sample. `None` without any size.
+/// Returns the largest size between the samples beside a peak, or at the peak, by golden section:
+/// right where there is one peak. `None` if the peak has no size.
 fn climb<T: Copy>(
-    [low, high]: [f64; 2],
-    sample: f64,
+    samples: &[(f64, Option<Measured<T>>)],
+    peak: usize,
+    beside: [usize; 2],
     at: &mut impl FnMut(f64) -> Option<Measured<T>>,
 ) -> Option<Largest<T>> {
+    let [low, high] = beside.map(|index| samples[index].0);
     let width = high - low;
     let [mut a, mut b] = [low, high];
     let mut inner = [b - GOLDEN * width, a + GOLDEN * width];
@@ -90,16 +91,27 @@ fn climb<T: Copy>(
         }
     }
     let best = usize::from(size(found[1]) > size(found[0]));
-    let (most, place) = (found[best]?, inner[best]);
-    let beside = [place - NEAR * width, place + NEAR * width];
-    let beside = beside.into_iter().filter(|at| (low..=high).contains(at));
-    let nearby = beside.map(|beside| size(at(beside)));
-    let nearby = nearby.fold(f64::NEG_INFINITY, f64::max);
-    if nearby.is_finite() && most.0 - nearby > nearby.abs().max(sample.abs()) {
-        Some(Largest::Unbounded(place))
-    } else {
-        Some(Largest::Value(most, place))
+    let (mut place, mut most) = (inner[best], found[best]);
+    let (of_peak, sample) = samples[peak];
+    if size(sample) >= size(most) {
+        (place, most) = (of_peak, sample);
     }
+    let most = most?;
+    // A pole is far above the places beside it, and above the samples beside it, one of which may
+    // be a pole of the other sign.
+    let near = [place - NEAR * width, place + NEAR * width];
+    let near = near.into_iter().filter(|near| (low..=high).contains(near));
+    let near = near.map(|near| size(at(near)));
+    let near = near.fold(f64::NEG_INFINITY, f64::max);
+    let others = beside.into_iter().filter(|index| *index != peak);
+    let others = others.filter_map(|index| samples[index].1);
+    let around = others.map(|(other, _)| other.abs()).reduce(f64::min);
+    let around = around.unwrap_or(0.0).max(near.abs());
+    Some(if near.is_finite() && most.0 - near > around {
+        Largest::Unbounded(place)
+    } else {
+        Largest::Value(most, place)
+    })
 }
 
 #[cfg(test)]
@@ -148,8 +160,8 @@ mod tests {
 
     #[test]
     fn a_pole_has_no_largest_value() {
-        // At a sample, between two, at one end, and of a root.
-        for at in [0.0, 0.3, 20.0] {
+        // At a sample, almost at one, between two, at one end, and of a root.
+        for at in [0.0, 1e-15, 0.3, 20.0] {
             for power in [-1.0, -0.5] {
                 let found = over(|x| (x - at).abs().powf(power));
                 let is_there =
@@ -157,6 +169,13 @@ mod tests {
                 assert!(is_there, "{at}, {power}: {found:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_pole_may_have_the_other_sign_at_a_sample_beside_it() {
+        let found = over(|x| 1.0 / (x - 1e-16));
+        let is_there = matches!(found, Some(Largest::Unbounded(p)) if p.abs() < 1e-6);
+        assert!(is_there, "{found:?}");
     }
 
     #[test]
