@@ -5,8 +5,8 @@ use std::ops::Deref;
 
 use biela::drawing::ForcePlace;
 use biela::kinematics::{
-    Blocked, Carryover, Curve, Direction, Error, ForceParts, ForceQuantity, ForceSensitivity,
-    Forces, KnownMotion, Path, Pose, Rates, Solver, Start,
+    Blocked, Carryover, Curve, Direction, Error, ForceParts, ForceSensitivity, Forces, KnownMotion,
+    Path, Pose, Rates, Solver, Start,
 };
 use biela::kinematics::{Output, OutputSource};
 use biela::mechanism::{DriverId, Jet, Motion, Order, ParameterId};
@@ -268,24 +268,11 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
         Some(samples.at(row))
     }
 
-    /// Returns the value of a column \[SI\]. Inertia and bias of a driver are no numbers if its
-    /// motion is an expression, whose acceleration is not free.
+    /// Returns the value of a column \[SI\].
     pub(crate) fn value(&self, column: &Output) -> f64 {
         match (column.source, &self.forces) {
-            (OutputSource::Force(quantity), Some(acting)) if self.exists(quantity) => {
-                acting.forces.value(quantity)
-            }
+            (OutputSource::Force(quantity), Some(acting)) => acting.forces.value(quantity),
             _ => column.value(&self.solver, &self.rates, &self.driver_rates),
-        }
-    }
-
-    fn exists(&self, quantity: ForceQuantity) -> bool {
-        match quantity {
-            ForceQuantity::Inertia(driver) | ForceQuantity::Bias(driver) => {
-                let drivers = &self.solver.mechanism().drivers;
-                drivers[driver.index()].motion().is_none()
-            }
-            _ => true,
         }
     }
 
@@ -327,13 +314,6 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
         direction: &Direction,
         derivatives: &mut Vec<f64>,
     ) -> Result<(), Error> {
-        let exists: Vec<bool> = columns
-            .iter()
-            .map(|column| match column.source {
-                OutputSource::Force(quantity) => self.exists(quantity),
-                _ => true,
-            })
-            .collect();
         let Self {
             scenario,
             solver,
@@ -355,13 +335,11 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
             None => None,
         };
         let change = solver.sensitivity(rates, driver_rates, direction)?;
-        let columns = columns.iter().zip(exists);
-        derivatives.extend(
-            columns.map(|(column, exists)| match (column.source, &along) {
-                (OutputSource::Force(quantity), Some(along)) if exists => along.change(quantity),
-                _ => column.change(&scenario.own, &change),
-            }),
-        );
+        let changes = columns.iter().map(|column| match (column.source, &along) {
+            (OutputSource::Force(quantity), Some(along)) => along.change(quantity),
+            _ => column.change(&scenario.own, &change),
+        });
+        derivatives.extend(changes);
         Ok(())
     }
 

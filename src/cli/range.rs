@@ -1,12 +1,17 @@
 //! `biela range`
 
+mod derived;
+mod follower;
 mod forces;
+mod search;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
+use derived::{DerivedRange, uses_rates};
+use follower::{at_speed, without_value};
 use forces::describe_largest;
 
 use super::check::scientific;
@@ -30,7 +35,8 @@ use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounde
 /// biela follows the driver both ways from the start, and holds the others, until the mechanism
 /// returns to its pose or meets a limit. A dead point is located to rounding, and the bodies that
 /// line up there are named. A driver's `min` and `max` are limits too, unless --from and --to say
-/// otherwise. The least and the greatest value of each measure are told with their places. The
+/// otherwise. The least and the greatest value of each measure are told with their places; one
+/// computed from velocities has those of a driver that moves at 1 m/s or 1 rad/s, or at --speed. The
 /// transmission angle is that of the worst pair of links, from 0 deg at a dead point to 90 deg at
 /// best; the reciprocal condition is that of `check`.
 #[derive(Args, Debug)]
@@ -46,7 +52,7 @@ pub(super) struct Range {
     #[command(flatten)]
     conditions: Conditions,
     /// Speed of the driver in m/s or rad/s, for the largest effort and reaction of a mechanism with
-    /// masses or forces [default: at rest].
+    /// masses or forces [default: at rest], and for measures computed from velocities [default: 1].
     #[arg(long, value_name = "SPEED", allow_negative_numbers = true)]
     speed: Option<f64>,
     /// Write the poses of the motion: the driver's value, transmission angle, reciprocal condition,
@@ -85,24 +91,25 @@ impl Range {
         for &driver in &drivers {
             let start = solver.pose().drivers[driver.index()];
             let range = solver.range(driver, &settings);
-            describe(&mut text, &driven, driver, start, &range);
+            let derived = DerivedRange::all(&mut solver, driver, &range, self.speed);
+            describe(&mut text, &driven, driver, start, &range, &derived);
             if driven.has_dynamics() {
                 let speed = self.speed.unwrap_or(0.0);
                 describe_largest(&mut text, &mut solver, driver, &range, speed);
             }
             if let Some(path) = &self.csv {
-                write(path, table(&driven, driver, &range).as_bytes())?;
+                write(path, table(&driven, driver, &range, &derived).as_bytes())?;
                 tell_written(path);
             }
             if let (Some(path), Some(format)) = (&self.plot, format) {
                 let turning = turning(&driven, driver, &range).count();
-                if driven.measures.is_empty() && turning > MOST_BODIES {
+                if !has_measures(&driven) && turning > MOST_BODIES {
                     let note = format!(
                         "the plot shows {MOST_BODIES} of {turning} bodies that turn; --csv has all"
                     );
                     Message::Note(note).show();
                 }
-                let sheet = Sheet::chart(&chart(&driven, driver, &range));
+                let sheet = Sheet::chart(&chart(&driven, driver, &range, &derived));
                 format.write_chart(path, &sheet)?;
             }
         }
@@ -123,10 +130,13 @@ impl Range {
             Some(speed) if !speed.is_finite() => Err(Error::Usage(format!(
                 "--speed is {speed}; expected a finite number"
             ))),
-            Some(_) if !mechanism.has_dynamics() => Err(Error::Usage(
-                "--speed is of forces, but the mechanism has neither `mass` nor `[forces]`"
-                    .to_owned(),
-            )),
+            Some(_) if !mechanism.has_dynamics() && !mechanism.derived.iter().any(uses_rates) => {
+                Err(Error::Usage(
+                    "--speed is of forces and of measures computed from velocities, but the \
+                     mechanism has neither `mass` nor `[forces]` nor such a measure"
+                        .to_owned(),
+                ))
+            }
             _ => Ok(()),
         }
     }
@@ -157,6 +167,7 @@ fn describe(
     driver: DriverId,
     start: f64,
     range: &Motion,
+    derived: &[DerivedRange],
 ) {
     let of_driver = &mechanism.drivers[driver.index()];
     let kind = of_driver.coordinate.kind;
@@ -202,6 +213,23 @@ fn describe(
         let places = extremes.each_ref().map(|extreme| extreme.driver);
         tell_extremes(&measure.name, extremes.each_ref().map(value), places);
     }
+    let mut missing = String::new();
+    for (measure, found) in mechanism.derived.iter().zip(derived) {
+        let moving = found.speed.map_or_else(String::new, |speed| {
+            at_speed(mechanism, driver, speed) + ", "
+        });
+        let name = format!("{moving}{}", measure.name);
+        if let (Some(shown), Some(extremes)) = (found.shown(measure), found.extremes) {
+            tell_extremes(&name, shown, extremes.map(|extreme| extreme.driver));
+        }
+        let samples = range.samples.iter().zip(&found.values);
+        let without = samples.filter(|(_, value)| value.is_nan());
+        let without: Vec<f64> = without.map(|(sample, _)| sample.driver).collect();
+        if !without.is_empty() {
+            let place = without_value(&without, range.samples.len(), |at| about(kind, at));
+            let _ = writeln!(missing, "  {name} has no value {place}");
+        }
+    }
     let extreme = |of: fn(&Sample) -> Option<f64>| {
         let known = range
             .samples
@@ -223,6 +251,7 @@ fn describe(
             writeln!(text, "  reciprocal condition {worst} at worst, at {at}")
         };
     }
+    text.push_str(&missing);
 }
 
 pub(super) fn end_text(end: &End, driver: &Driver, id: DriverId) -> String {
@@ -285,7 +314,12 @@ fn in_unit(kind: CoordinateKind, value: f64) -> (f64, &'static str) {
     }
 }
 
-fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
+fn table(
+    mechanism: &Mechanism,
+    driver: DriverId,
+    range: &Motion,
+    derived: &[DerivedRange],
+) -> String {
     let has_transmission = range.samples.iter().all(|s| s.transmission.is_some());
     let mut text = format!("{}.position", mechanism.drivers[driver.index()].name);
     if has_transmission {
@@ -295,17 +329,21 @@ fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
     for measure in &mechanism.measures {
         let _ = write!(text, ",{}.position", measure.name);
     }
+    for measure in &mechanism.derived {
+        let _ = write!(text, ",{}", measure.name);
+    }
     for body in &mechanism.bodies {
         let name = &body.name;
         let _ = write!(text, ",{name}.x,{name}.y,{name}.phi");
     }
-    for sample in &range.samples {
+    for (index, sample) in range.samples.iter().enumerate() {
         let _ = write!(text, "\n{:?}", sample.driver);
         if let Some(transmission) = sample.transmission.filter(|_| has_transmission) {
             let _ = write!(text, ",{transmission:?}");
         }
         let _ = write!(text, ",{:?}", sample.rcond);
-        for value in &sample.measures {
+        let derived = derived.iter().map(|measure| &measure.values[index]);
+        for value in sample.measures.iter().chain(derived) {
             let _ = write!(text, ",{value:?}");
         }
         for value in &sample.q[..3 * mechanism.bodies.len()] {
@@ -314,6 +352,11 @@ fn table(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> String {
     }
     text.push('\n');
     text
+}
+
+/// Returns whether there are measures to plot.
+fn has_measures(mechanism: &Mechanism) -> bool {
+    !(mechanism.measures.is_empty() && mechanism.derived.is_empty())
 }
 
 /// Returns the bodies whose angles change, other than as the driver does.
@@ -333,7 +376,12 @@ fn turning(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> impl Iter
 
 /// Returns the chart: the measures by unit or, without any, angles of bodies; and the transmission
 /// angle.
-fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
+fn chart(
+    mechanism: &Mechanism,
+    driver: DriverId,
+    range: &Motion,
+    derived: &[DerivedRange],
+) -> Chart {
     let of_driver = &mechanism.drivers[driver.index()];
     let [x_unit, angle] = [of_driver.coordinate.kind.unit(), Unit::RADIAN];
     let line = |name: &str, look: usize, unit: Unit, of: &dyn Fn(&Sample) -> f64| Line {
@@ -344,22 +392,40 @@ fn chart(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> Chart {
             .collect(),
         marks: Vec::new(),
     };
+    let mark = |line: &mut Line, unit: Unit, extremes: &[Extreme; 2]| {
+        if varies(&line.values) {
+            let finite = extremes.iter().filter(|extreme| extreme.value.is_finite());
+            line.marks.extend(finite.map(|extreme| {
+                let at = x_unit.display_factor() * extreme.driver;
+                let value = unit.display_factor() * extreme.value;
+                (at, value, shown(value))
+            }));
+        }
+    };
     let mut panels: Vec<(Unit, Panel)> = Vec::new();
     let mut add = |unit: Unit, line: Line| panel(&mut panels, unit, unit).lines.push(line);
     for (index, (measure, extremes)) in mechanism.measures.iter().zip(&range.measures).enumerate() {
         let kind = measure.coordinate.kind;
         let unit = kind.unit();
         let mut line = line(&measure.name, index, unit, &|s| s.measures[index]);
-        if varies(&line.values) {
-            line.marks.extend(extremes.iter().map(|extreme| {
-                let at = x_unit.display_factor() * extreme.driver;
-                let value = unit.display_factor() * extreme.value;
-                (at, value, shown(value))
-            }));
+        mark(&mut line, unit, extremes);
+        add(unit, line);
+    }
+    for (index, (measure, found)) in mechanism.derived.iter().zip(derived).enumerate() {
+        let unit = measure.unit.unwrap_or(Unit::ONE);
+        let factor = unit.display_factor();
+        let mut line = Line {
+            name: measure.name.clone(),
+            look: mechanism.measures.len() + index,
+            values: found.values.iter().map(|value| factor * value).collect(),
+            marks: Vec::new(),
+        };
+        if let Some(extremes) = &found.extremes {
+            mark(&mut line, unit, extremes);
         }
         add(unit, line);
     }
-    if mechanism.measures.is_empty() {
+    if !has_measures(mechanism) {
         for body in turning(mechanism, driver, range).take(MOST_BODIES) {
             let name = format!("{}.phi", mechanism.bodies[body].name);
             add(angle, line(&name, body, angle, &|s| s.q[3 * body + 2]));

@@ -45,8 +45,9 @@ pub(super) struct Run {
     ///
     /// Values are linear between two rows, constant before the first and after the last, and jump
     /// at a time that occurs twice, as in FMPy. Velocities of drivers are those of the columns .velocity, or
-    /// else the slopes; accelerations those of .acceleration, or else zero. Columns are separated
-    /// by commas, semicolons, tabs or blanks.
+    /// else the slopes; accelerations those of .acceleration, or else zero. A position of a wrapped
+    /// angle means the turn nearest the last one. Columns are separated by commas, semicolons, tabs
+    /// or blanks.
     #[arg(short, long, value_name = "CSV")]
     input: Option<PathBuf>,
     #[command(flatten)]

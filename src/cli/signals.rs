@@ -1,5 +1,6 @@
 //! Values of drivers and of inputs of forces over time from a CSV file.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use super::error::Error;
@@ -10,7 +11,7 @@ use crate::mechanism::{
 
 /// Values of drivers and of inputs of forces over time: linear between two points, constant before
 /// the first and after the last. At a time that occurs twice the value jumps to that of the later
-/// row.
+/// row. Wrapped angles count turns here.
 #[derive(Debug, Default)]
 pub(super) struct Signals {
     times: Vec<f64>,
@@ -113,7 +114,26 @@ impl Signals {
                 "it has rates of `{name}` but no column `{name}.position`"
             ));
         }
+        signals.unwrap(mechanism);
         Ok(signals)
+    }
+
+    /// Puts each position of a wrapped angle on the turn nearest the last value, the first on that
+    /// nearest the file's start, as the FMU does.
+    fn unwrap(&mut self, mechanism: &Mechanism) {
+        for signal in &mut self.signals {
+            let driver = &mechanism.drivers[signal.driver.index()];
+            let DriverSource::Input { start } = driver.source else {
+                continue;
+            };
+            if driver.wrapped {
+                let mut last = start;
+                for value in signal.columns[0].iter_mut().flatten() {
+                    *value += TAU * ((last - *value) / TAU).round();
+                    last = *value;
+                }
+            }
+        }
     }
 
     /// Adds an empty column; returns its place.

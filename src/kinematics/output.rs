@@ -260,7 +260,7 @@ impl List {
             self.add_force(name, "effort", exerted.clone(), quantity, effort);
             let power = format!("power of driver `{name}`");
             self.add_force(name, "power", power, ForceQuantity::Power(id), Unit::WATT);
-            if driver.motion().is_none() {
+            if driver.is_input {
                 let felt = format!("inertia that driver `{name}` feels");
                 let quantity = ForceQuantity::Inertia(id);
                 self.add_force(name, "inertia", felt, quantity, kind.inertia_unit());

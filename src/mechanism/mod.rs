@@ -299,6 +299,9 @@ pub struct Driver {
     pub coordinate: Coordinate,
     /// Source of its value.
     pub source: DriverSource,
+    /// Whether the file makes it an FMI input, whose acceleration is free, also where a run gives
+    /// it another source.
+    pub is_input: bool,
     /// Smallest value that is meant \[m or rad\], evaluated with the file's parameter values. No
     /// wall: a value beyond it is followed.
     pub min: Option<f64>,
@@ -310,7 +313,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// Returns the prescribed motion, `None` for an FMI input.
+    /// Returns the prescribed motion in force, `None` for a driver that follows given values.
     #[must_use]
     pub fn motion(&self) -> Option<&Motion> {
         match &self.source {

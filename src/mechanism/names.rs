@@ -93,6 +93,14 @@ impl<'a, T: Copy> NameTable<'a, T> {
         did_you_mean(name, &[&self.candidates()?, further].concat())
     }
 
+    /// Returns help for a name that is none of its owner's: "expected `crank.phi`, `crank.x`…".
+    pub(super) fn of_same_owner(&self, name: &str) -> Option<String> {
+        let (owner, _) = name.rsplit_once('.')?;
+        let mut names = self.candidates()?;
+        names.retain(|known| known.rsplit_once('.').is_some_and(|(of, _)| of == owner));
+        list(&names)
+    }
+
     /// Returns the names in order, `None` after too many suggestions.
     fn candidates(&self) -> Option<Vec<&'a str>> {
         let left = self.suggestions_left.get().checked_sub(1)?;

@@ -228,3 +228,41 @@ fn run_sets_inputs_of_forces_by_a_file() {
         assert!(message.contains(expected), "{message}");
     }
 }
+
+#[test]
+fn a_value_of_a_wrapped_angle_means_the_turn_nearest_the_last_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turns.csv");
+    let run = |extra: &str, content: &str| {
+        std::fs::write(&path, content).unwrap();
+        let start = format!("start = \"60*deg\"{extra}");
+        let file = altered(folder.path(), "four_bar", &[("start = \"60*deg\"", &start)]);
+        let input = ["--input", path.to_str().unwrap()];
+        let span = ["--stop", "0.4", "--step", "0.1"];
+        let arguments = [&["run", &file][..], &input, &span].concat();
+        let csv = stdout(&biela(&arguments).success());
+        ["position", "velocity"].map(|order| column(&csv, &format!("crank_angle.{order}")))
+    };
+    let turn = std::f64::consts::TAU;
+    let expected = [0.7, 3.7, 6.2, 0.1 + turn, 1.0 + turn];
+    let near = |found: &[f64], expected: &[f64]| {
+        let mut pairs = found.iter().zip(expected);
+        found.len() == expected.len() && pairs.all(|(a, b)| (a - b).abs() < 1e-12)
+    };
+    let rows = "0.1,3.7\n0.2,6.2\n0.3,0.1\n0.4,1.0\n";
+    // The first value is nearest the file's start, whatever turn it is on.
+    for first in [0.7, 0.7 + turn] {
+        let content = format!("time,crank_angle.position\n0,{first}\n{rows}");
+        let [position, velocity] = run(", wrapped = true", &content);
+        assert!(near(&position, &expected), "{position:?}");
+        assert!((velocity[2] - (0.1 + turn - 6.2) / 0.1).abs() < 1e-9);
+    }
+    // Also where the value jumps.
+    let content = "time,crank_angle\n0,6.2\n0.2,6.2\n0.2,0.1\n0.4,0.1\n";
+    let [position, _] = run(", wrapped = true", content);
+    let at = [6.2 - turn, 6.2 - turn, 0.1, 0.1, 0.1];
+    assert!(near(&position, &at), "{position:?}");
+    // Other angles count turns.
+    let [position, _] = run("", &format!("time,crank_angle\n0,0.7\n{rows}"));
+    assert!(near(&position, &[0.7, 3.7, 6.2, 0.1, 1.0]), "{position:?}");
+}

@@ -168,3 +168,136 @@ fn a_dead_point_of_one_body_names_its_link_or_cylinder() {
     let line = "dead point, where body `lever` and joint `rod` line up\n";
     assert_eq!(told.matches(line).count(), 2, "{told}");
 }
+
+/// A cam that lifts a knife edge by 0.5 mm within 3 deg: the steepest place of the cycloid, twice
+/// the mean slope, lies between two degrees.
+const CAM: &str = r#"
+format = 1
+name = "steep"
+[ground.markers]
+O = [0, 0]
+G = [0, 0, "90*deg"]
+[bodies.cam]
+markers = { O = [0, 0] }
+[bodies.follower]
+markers = { K = [0, 0, "90*deg"] }
+estimate = [0, 0.1, 0]
+mass = 1
+[joints]
+O = { type = "revolute", markers = ["ground.O", "cam.O"] }
+G = { type = "translational", markers = ["ground.G", "follower.K"] }
+[joints.contact]
+type = "cam"
+markers = ["cam.O", "follower.K"]
+follower = "knife"
+profile = { table = [[0, 0.1], [3, 0.1005], [90, 0.1005], [200, 0.1]], scale = ["deg", 1], law = "cycloidal" }
+[drivers]
+q = { coordinate = "angle", markers = ["ground.O", "cam.O"], start = 0 }
+"#;
+
+/// A lever without mass, loaded along its own angle.
+const LEVER: &str = r#"
+format = 1
+name = "lever"
+[ground.markers]
+O = [0, 0]
+[bodies.a]
+markers = { O = [0, 0] }
+[joints]
+O = { type = "revolute", markers = ["ground.O", "a.O"] }
+[drivers]
+q = { coordinate = "angle", markers = ["ground.O", "a.O"], start = 1, min = "-90*deg", max = "90*deg" }
+[forces]
+f = { coordinate = "angle", markers = ["ground.O", "a.O"], value = "LOAD" }
+"#;
+
+#[test]
+fn the_largest_effort_is_found_between_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mechanism.toml");
+    let range = |text: &str, more: &[&str]| {
+        std::fs::write(&file, text).unwrap();
+        let arguments = [&["range", file.to_str().unwrap()][..], more].concat();
+        stdout(&biela(&arguments).success())
+    };
+    // Effort = weight · slope; below the follower the cam has turned 90 deg − 1.5 deg.
+    let slope = 2.0 * 0.0005 / 3_f64.to_radians();
+    let effort = format!("{:.6}", -9.81 * slope);
+    let text = range(CAM, &[]);
+    let expected = format!("at rest, largest effort {effort} N.m, at 88.5 deg\n");
+    assert!(text.contains(&expected), "{expected}{text}");
+    // A peak of 2 at 0.4 deg and one of 1 at 40.4 deg; a pole at a sample and one between two.
+    let load = |load: &str, more: &[&str]| range(&LEVER.replace("LOAD", load), more);
+    let bells = "-2*exp(-((position - 0.4*deg)/(1*deg))^2) - exp(-((position - 40.4*deg)/deg)^2)";
+    let text = load(bells, &[]);
+    assert!(
+        text.contains("largest effort 2 N.m, at 0.4 deg\n"),
+        "{text}"
+    );
+    let text = load("1/position", &["--drive", "q = 1*deg"]);
+    let missing = "  at rest, no forces at 0 deg: force `f` has no finite value here\n";
+    for expected in ["  at rest, effort grows without bound at 0 deg\n", missing] {
+        assert!(text.contains(expected), "{expected}{text}");
+    }
+    let text = load("1/(position - 0.5*deg)", &["--drive", "q = 1*deg"]);
+    assert!(
+        text.contains("effort grows without bound at 0.5 deg\n"),
+        "{text}"
+    );
+    let text = load("sqrt(position)", &["--drive", "q = 1*deg"]);
+    let expected = "largest effort -1.25331 N.m, at 90 deg\n";
+    assert!(text.contains(expected), "{text}");
+    let expected =
+        "no forces at 90 of 181 poses, first at -90 deg: force `f` has no finite value here\n";
+    assert!(text.contains(expected), "{text}");
+}
+
+#[test]
+fn computed_measures_have_their_range() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, csv, plot] =
+        ["lever.toml", "range.csv", "range.svg"].map(|name| folder.path().join(name));
+    let measures = "[measures]\n\
+                    rise = { value = \"sin(q.position)\", unit = \"m\" }\n\
+                    reach = { value = \"-(a.omega/q.velocity)*cos(2*(q.position - 0.5*deg))\" }\n\
+                    power = { value = \"2*q.velocity\", unit = \"W\" }\n\
+                    pole = { value = \"1/(q.position - 10*deg)\" }\n\
+                    root = { value = \"sqrt(q.position - 1)\" }\n";
+    let (unloaded, _) = LEVER.split_once("[forces]").unwrap();
+    std::fs::write(&file, format!("{unloaded}{measures}")).unwrap();
+    let [file, csv, plot] = [&file, &csv, &plot].map(|path| path.to_str().unwrap());
+    let range = |more: &[&str]| {
+        let arguments = [&["range", file, "--drive", "q = 60*deg"][..], more].concat();
+        stdout(&biela(&arguments).success())
+    };
+    let text = range(&["--csv", csv, "--plot", plot]);
+    for expected in [
+        "  rise from -1 m, at -90 deg, to 1 m, at 90 deg\n",
+        "  at 1 rad/s, reach from -1, at 0.5 deg, to 1, at -89.5 deg\n",
+        "  at 1 rad/s, power 2 W everywhere\n",
+        "  pole from -infinity, at 10 deg, to infinity, at 10 deg\n",
+        ", at 57.2958 deg, to 0.755511, at 90 deg\n",
+        "  root has no value at 148 of 181 poses, first at -90 deg\n",
+    ] {
+        assert!(text.contains(expected), "{expected}{text}");
+    }
+    let table = std::fs::read_to_string(csv).unwrap();
+    let angles = column(&table, "q.position");
+    for (angle, rise) in angles.iter().zip(column(&table, "rise")) {
+        assert!((rise - angle.sin()).abs() < 1e-12);
+    }
+    assert!(column(&table, "root")[0].is_nan());
+    let picture = std::fs::read_to_string(plot).unwrap();
+    assert!(picture.contains(">rise<") && picture.contains(">power<"));
+    // Velocities are those of the speed that is given, also without forces.
+    let text = range(&["--speed", "-3"]);
+    assert!(
+        text.contains("  at -3 rad/s, power -6 W everywhere\n"),
+        "{text}"
+    );
+    let text = range(&["--speed", "0"]);
+    assert!(
+        text.contains("  at rest, reach has no value at 181 of 181 poses"),
+        "{text}"
+    );
+}

@@ -259,3 +259,66 @@ fn the_motion_proposed_for_a_driver_with_limits_keeps_to_them() {
         assert!(still.contains(&format!("--drive '{proposal}'")), "{still}");
     }
 }
+
+/// Two links in line, each with its driver; without gravity all biases are zero at rest.
+const ARM: &str = r#"
+format = 1
+name = "arm"
+[ground.markers]
+O = [0, 0]
+[bodies.a]
+markers = { O = [0, 0], T = [1, 0] }
+mass = 1
+[bodies.b]
+markers = { O = [0, 0], T = [1, 0] }
+estimate = [1, 0, 0]
+mass = 1
+inertia = 0.1
+center = [0.5, 0]
+[joints]
+O = { type = "revolute", markers = ["ground.O", "a.O"] }
+P = { type = "revolute", markers = ["a.T", "b.O"] }
+[drivers]
+q = { coordinate = "angle", markers = ["ground.O", "a.O"], start = 0 }
+r = { coordinate = "angle", markers = ["a.O", "b.O"], start = 0 }
+[simulation]
+gravity = [0, 0]
+stop = 1
+step = 0.5
+"#;
+
+#[test]
+fn inputs_keep_inertia_and_bias_however_they_are_moved() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, content: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let run = |arguments: &[&str]| stdout(&biela(&[&["run"], arguments].concat()).success());
+    let same = |one: &str, other: &str| {
+        assert_eq!(one.lines().next(), other.lines().next());
+        for name in one.lines().next().unwrap().split(',') {
+            for (a, b) in column(one, name).iter().zip(column(other, name)) {
+                assert!((a - b).abs() < 1e-12, "{name}: {a}, {b}");
+            }
+        }
+    };
+    let values = "time,q,q.velocity,q.acceleration\n0,0,0,1\n0.5,0.125,0.5,1\n1,0.5,1,1\n";
+    let values = file("q.csv", values);
+    let arm = file("arm.toml", ARM);
+    let driven = run(&[&arm, "--drive", "q = t^2/2"]);
+    same(&driven, &run(&[&arm, "--input", &values]));
+    // The point mass of `b` a length and a half from O, and its own inertia.
+    assert!((column(&driven, "q.inertia")[0] - (1.5 * 1.5 + 0.1)).abs() < 1e-12);
+    for name in ["q.bias", "r.bias"] {
+        assert!(column(&driven, name)[0].abs() < 1e-12, "{name}");
+    }
+    // A prescribed motion keeps its acceleration, also where a file gives its values.
+    let prescribed = ARM.replacen("start = 0", "motion = \"t^2/2\"", 1);
+    let prescribed = file("prescribed.toml", &prescribed);
+    let own = run(&[&prescribed]);
+    same(&own, &run(&[&prescribed, "--input", &values]));
+    // The demand of the mass of `b` about P: its inertia there and that of P's acceleration.
+    assert!((column(&own, "r.bias")[0] - 0.85).abs() < 1e-12);
+}

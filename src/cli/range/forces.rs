@@ -2,22 +2,92 @@
 
 use std::fmt::Write as _;
 
-use super::with_unit;
+use super::about;
+use super::follower::{Follower, at_speed, without_value};
+use super::search::{Largest, Measured, largest};
 use crate::kinematics::{
-    Element, ForceParts, ForceQuantity, KnownMotion, Range, Rates, Reported, Solver,
+    Element, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Range, Reported, Sample, Solver,
 };
-use crate::mechanism::{DriverId, Jet, shown};
-
-/// A largest value and the driver's value there.
-type Largest = Option<(f64, f64)>;
+use crate::mechanism::{DriverId, shown};
 
 /// Part of the largest effort that a reaction of rounding alone has at most, such as that of a pin
 /// beside the one that a spring and its driver load.
 const ROUNDING: f64 = 1e-12;
 
+/// Forces at places in the range of a driver.
+struct Loads<'a> {
+    follower: Follower<'a>,
+    driver: DriverId,
+    forces: Forces,
+    /// Inputs of forces, which are zero.
+    inputs: Vec<f64>,
+    /// Joints with determinate forces.
+    joints: Vec<usize>,
+}
+
+impl<'a> Loads<'a> {
+    fn new(solver: &'a mut Solver, driver: DriverId, speed: f64) -> Self {
+        let open = solver.indeterminate();
+        let forces = solver.forces();
+        let follower = Follower::new(solver, driver, speed);
+        let joints = follower.mechanism.joints.iter().enumerate();
+        let joints = joints
+            .filter(|(_, joint)| Reported::of(&joint.kind).has(0))
+            .map(|(index, _)| index)
+            .filter(|joint| !open.contains(&Element::Joint(*joint)));
+        Self {
+            joints: joints.collect(),
+            inputs: vec![0.0; forces.inputs()],
+            forces,
+            follower,
+            driver,
+        }
+    }
+
+    fn visit(&mut self, sample: &Sample) -> Result<(), Error> {
+        self.follower.visit(sample)?;
+        self.solve()
+    }
+
+    fn follow(&mut self, value: f64) -> Option<()> {
+        self.follower.follow(value)?;
+        self.solve().ok()
+    }
+
+    fn solve(&mut self) -> Result<(), Error> {
+        let Follower {
+            solver,
+            rates,
+            driver_rates,
+            ..
+        } = &mut self.follower;
+        let motion = KnownMotion {
+            rates,
+            driver_rates,
+            inputs: &self.inputs,
+        };
+        solver.solve_forces(motion, ForceParts::ALL, &mut self.forces)
+    }
+
+    /// Returns the size of the effort, and the effort.
+    fn effort(&self) -> Measured<f64> {
+        let effort = self.forces.value(ForceQuantity::Effort(self.driver));
+        (effort.abs(), effort)
+    }
+
+    /// Returns the largest force in a joint, and the joint.
+    fn reaction(&self) -> Option<Measured<usize>> {
+        let reactions = self.joints.iter().map(|&joint| {
+            let [x, y] = [0, 1].map(|k| self.forces.value(ForceQuantity::Reaction(joint, k)));
+            (x.hypot(y), joint)
+        });
+        reactions.reduce(|most, next| if next.0 > most.0 { next } else { most })
+    }
+}
+
 /// Adds the largest effort of a driver that moves at a constant speed \[m/s or rad/s\] over its
-/// range, and the largest force in a joint. The pose is restored. Poses without forces, such as
-/// dead points, are left out.
+/// range, the largest force in a joint, and where forces have no value. The pose is restored. Dead
+/// points and change points, which have no forces, are told with the range.
 pub(super) fn describe_largest(
     text: &mut String,
     solver: &mut Solver,
@@ -25,71 +95,66 @@ pub(super) fn describe_largest(
     range: &Range,
     speed: f64,
 ) {
-    let home = solver.pose().clone();
-    let mechanism = std::sync::Arc::clone(solver.mechanism());
-    let open = solver.indeterminate();
-    let is_determinate = |joint: &usize| !open.contains(&Element::Joint(*joint));
-    let pins = (0..mechanism.joints.len())
-        .filter(|&joint| Reported::of(&mechanism.joints[joint].kind).has(0))
-        .filter(is_determinate);
-    let pins: Vec<usize> = pins.collect();
-    let mut forces = solver.forces();
-    let inputs = vec![0.0; forces.inputs()];
-    let mut driver_rates = vec![Jet::constant(0.0); mechanism.drivers.len()];
-    driver_rates[driver.index()].derivatives[0] = speed;
-    let mut rates = Rates::new(home.q.len());
-    let mut effort: Largest = None;
-    let mut reaction: Option<(f64, f64, usize)> = None;
-    let mut pose = home.clone();
+    let mut loads = Loads::new(solver, driver, speed);
+    let (mut efforts, mut reactions) = (Vec::new(), Vec::new());
+    let (mut missing, mut reason) = (Vec::new(), None);
     for sample in &range.samples {
-        pose.q.copy_from_slice(&sample.q);
-        pose.drivers[driver.index()] = sample.driver;
-        solver.restore(&pose);
-        let solved = solver.solve_rates(|driver| driver_rates[driver.index()], &mut rates);
-        let motion = KnownMotion {
-            rates: &rates,
-            driver_rates: &driver_rates,
-            inputs: &inputs,
-        };
-        let solved =
-            solved.and_then(|()| solver.solve_forces(motion, ForceParts::ALL, &mut forces));
-        if solved.is_err() {
-            continue;
-        }
-        let here = forces.value(ForceQuantity::Effort(driver));
-        if effort.is_none_or(|(most, _)| here.abs() > most.abs()) {
-            effort = Some((here, sample.driver));
-        }
-        for &joint in &pins {
-            let [x, y] = [0, 1].map(|k| forces.value(ForceQuantity::Reaction(joint, k)));
-            let here = x.hypot(y);
-            if reaction.is_none_or(|(most, ..)| here > most) {
-                reaction = Some((here, sample.driver, joint));
-            }
+        let solved = loads.visit(sample);
+        let exists = solved.is_ok();
+        efforts.push((sample.driver, exists.then(|| loads.effort())));
+        let reaction = exists.then(|| loads.reaction()).flatten();
+        reactions.push((sample.driver, reaction));
+        if let Err(error) = solved
+            && !matches!(error, Error::Singular { .. })
+        {
+            missing.push(sample.driver);
+            reason.get_or_insert(error);
         }
     }
-    solver.restore(&home);
+    loads.follower.restore();
+    let effort = largest(&efforts, |at| loads.follow(at).map(|()| loads.effort()));
+    loads.follower.restore();
+    let reaction = largest(&reactions, |at| {
+        loads.follow(at).and_then(|()| loads.reaction())
+    });
+    let mechanism = &loads.follower.mechanism;
     let kind = mechanism.drivers[driver.index()].coordinate.kind;
-    let moving = if speed == 0.0 {
-        "at rest".to_owned()
-    } else {
-        let unit = if kind.is_angle() { "rad/s" } else { "m/s" };
-        format!("at {} {unit}", shown(speed))
+    let moving = at_speed(mechanism, driver, speed);
+    let mut tell = |words: &str| {
+        let _ = writeln!(text, "  {moving}, {words}");
     };
-    let most = effort.map_or(0.0, |(effort, _)| effort.abs());
-    if let Some((effort, at)) = effort {
-        let (effort, unit) = (shown(effort), kind.effort_unit().name);
-        let at = with_unit(kind, at);
-        let _ = writeln!(text, "  {moving}, largest effort {effort} {unit}, at {at}");
+    let mut most = 0.0;
+    match effort {
+        Some(Largest::Value((size, effort), at)) => {
+            most = size;
+            let (effort, unit) = (shown(effort), kind.effort_unit().name);
+            let at = about(kind, at);
+            tell(&format!("largest effort {effort} {unit}, at {at}"));
+        }
+        Some(Largest::Unbounded(at)) => {
+            tell(&format!(
+                "effort grows without bound at {}",
+                about(kind, at)
+            ));
+        }
+        None => {}
     }
-    if let Some((force, at, joint)) = reaction
-        && force > ROUNDING * most
-    {
-        let (force, at) = (shown(force), with_unit(kind, at));
-        let joint = &mechanism.joints[joint].name;
-        let _ = writeln!(
-            text,
-            "  {moving}, largest force in joint `{joint}` {force} N, at {at}"
-        );
+    match reaction {
+        Some(Largest::Value((force, joint), at)) if force > ROUNDING * most => {
+            let (force, at) = (shown(force), about(kind, at));
+            let joint = &mechanism.joints[joint].name;
+            tell(&format!(
+                "largest force in joint `{joint}` {force} N, at {at}"
+            ));
+        }
+        Some(Largest::Unbounded(at)) => {
+            let at = about(kind, at);
+            tell(&format!("forces in joints grow without bound at {at}"));
+        }
+        _ => {}
+    }
+    if let Some(reason) = reason {
+        let place = without_value(&missing, range.samples.len(), |at| about(kind, at));
+        tell(&format!("no forces {place}: {reason}"));
     }
 }

@@ -346,7 +346,7 @@ impl Forces {
             let own: Varied = sensitivity.motion.driver_value(driver);
             let mut bias = effort;
             for (input, definition) in mechanism.drivers.iter().enumerate() {
-                if definition.motion().is_none() {
+                if definition.is_input {
                     let acceleration = sensitivity.motion.driver_value(DriverId(input)).second();
                     bias -= inertia(index, input) * acceleration;
                 }

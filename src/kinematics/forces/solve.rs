@@ -128,7 +128,7 @@ impl Forces {
             rows,
             self_stresses: SelfStresses::default(),
             input_drivers: (0..drivers)
-                .filter(|&driver| mechanism.drivers[driver].motion().is_none())
+                .filter(|&driver| mechanism.drivers[driver].is_input)
                 .collect(),
             results: Results {
                 drivers: vec![DriverForces::default(); drivers],
@@ -268,9 +268,9 @@ impl Forces {
         motion: KnownMotion<'_>,
     ) {
         let drivers = self.mechanism.drivers.iter().zip(motion.driver_rates);
-        let mut coasting = drivers.map(|(driver, rates)| match driver.motion() {
-            Some(_) => *rates,
-            None => Jet::new(0.0, [rates.first(), 0.0]),
+        let mut coasting = drivers.map(|(driver, rates)| match driver.is_input {
+            true => Jet::new(0.0, [rates.first(), 0.0]),
+            false => *rates,
         });
         if state.has_single_driver()
             && let Some(coasting) = coasting.next()

@@ -26,7 +26,7 @@ use function::Binary;
 pub(crate) use function::constant;
 pub(super) use function::{CONSTANTS, function_names};
 pub(super) use in_force::ExpressionInForce;
-pub(super) use parse::{Parsed, Scope};
+pub(super) use parse::{Parsed, Scope, SignalNames};
 
 use super::number::{self, Interval, Jet3, Number, Unary};
 use super::{Order, ParameterId, Signal};

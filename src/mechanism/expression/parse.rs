@@ -6,6 +6,7 @@ use super::function::{CONSTANTS, FUNCTIONS, Function, constant};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::{self, NameTable};
+use crate::mechanism::reserved::is_taken;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Dimension, ParameterId, Span};
 
@@ -19,9 +20,22 @@ pub(in crate::mechanism) struct Scope<'a> {
     pub(in crate::mechanism) parameters: &'a NameTable<'a, ParameterId>,
     /// Variables that the expression may use.
     pub(in crate::mechanism) variables: &'a [Variable],
-    /// Signals that it may use, by the names of their FMU variables.
-    pub(in crate::mechanism) signals: Option<&'a NameTable<'a, Variable>>,
+    /// Signals that it may use.
+    pub(in crate::mechanism) signals: Option<&'a SignalNames<'a>>,
 }
+
+/// Names in the formula of a computed measure.
+#[derive(Debug)]
+pub(in crate::mechanism) struct SignalNames<'a> {
+    /// Signals, by the names of their FMU variables.
+    pub(in crate::mechanism) known: NameTable<'a, Variable>,
+    /// Computed measures, which no formula can use.
+    pub(in crate::mechanism) computed: Vec<&'a str>,
+}
+
+/// Says which names a computed measure may use.
+const USABLE: &str = "a measure may use parameters and the variables of bodies, markers, drivers \
+                      and measures with a coordinate";
 
 /// An expression with its dimension.
 pub(in crate::mechanism) struct Parsed {
@@ -231,7 +245,7 @@ impl<'a> Parser<'a> {
     fn variable(&self, name: &str) -> Option<Variable> {
         let mut variables = self.scope.variables.iter().copied();
         let variable = variables.find(|variable| variable.name() == name);
-        variable.or_else(|| self.scope.signals?.get(name))
+        variable.or_else(|| self.scope.signals?.known.get(name))
     }
 
     fn parse_call(&mut self, function: Function, name: Span) -> Result<Span, ExpressionError> {
@@ -397,13 +411,24 @@ impl<'a> Parser<'a> {
                 [] => error,
             };
         }
+        let is_computed = |name| {
+            let signals = self.scope.signals;
+            signals.is_some_and(|signals| signals.computed.contains(&name))
+        };
+        let owner = name.split_once('.').map_or(name, |(owner, _)| owner);
+        if is_computed(owner) {
+            let message = format!("{} is a computed measure", quoted(owner));
+            let help = format!("write its formula here; {USABLE}");
+            return ExpressionError::new(span, message).help(help);
+        }
         if name.contains('.') {
             let error = ExpressionError::new(span, format!("no variable {}", quoted(name)));
-            return match self.scope.signals.map(|signals| signals.help(name, &[])) {
-                Some(None) => error,
-                Some(Some(help)) => error.help(help),
-                None => error.help("only the `value` of a measure may use variables that move"),
+            let Some(signals) = self.scope.signals else {
+                return error.help("only the `value` of a measure may use variables that move");
             };
+            let near = signals.known.near(name, &[]);
+            let help = near.or_else(|| signals.known.of_same_owner(name));
+            return error.help(help.unwrap_or_else(|| USABLE.to_owned()));
         }
         let error = ExpressionError::new(span, format!("no parameter {}", quoted(name)));
         if name == Variable::PolarAngle.name() {
@@ -424,11 +449,13 @@ impl<'a> Parser<'a> {
             let mut full = ["position", "phi"]
                 .map(|part| format!("{name}.{part}"))
                 .into_iter();
-            let full = full.find(|full| signals.get(full).is_some())?;
+            let full = full.find(|full| signals.known.get(full).is_some())?;
             Some(format!("did you mean `{full}`?"))
         };
+        let taken = || self.taken_help(name);
         let near = || self.scope.parameters.near(name, &constants);
-        let help = self.unit_help(name).or_else(moving).or_else(near);
+        let help = self.unit_help(name).or_else(moving).or_else(taken);
+        let help = help.or_else(near);
         error.help(help.unwrap_or_else(|| "give it a value in `[parameters]`".to_owned()))
     }
 
@@ -437,6 +464,21 @@ impl<'a> Parser<'a> {
         let is_unit = ["m", "rad", "s", "kg", "N"].contains(&name);
         (is_unit && self.scope.parameters.get(name).is_none())
             .then(|| format!("numbers are in SI units: leave out `{name}`"))
+    }
+
+    /// Returns help for a name that no parameter can have.
+    fn taken_help(&self, name: &str) -> Option<String> {
+        let has_time = self.scope.variables.contains(&Variable::Time);
+        match name {
+            "time" if has_time => Some("did you mean `t`?".to_owned()),
+            "time" => {
+                Some("only a `motion` or the `value` of a force may use time, `t`".to_owned())
+            }
+            _ if is_taken(name) => Some(format!(
+                "`{name}` is taken by the language; choose another name"
+            )),
+            _ => None,
+        }
     }
 
     fn nested_too_deeply(&self) -> ExpressionError {

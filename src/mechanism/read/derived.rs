@@ -1,6 +1,6 @@
 //! Measures that are computed from others.
 
-use crate::mechanism::names::NameTable;
+use crate::mechanism::expression::SignalNames;
 use crate::mechanism::syntax::Value;
 use crate::mechanism::{DerivedMeasure, Mechanism, Unit, Variable};
 
@@ -77,7 +77,10 @@ impl<'a> Context<'a> {
             let variable = Variable::Signal(*signal, *order);
             (name.as_str(), variable)
         });
-        let signals: NameTable<'_, Variable> = signals.collect();
+        let signals = SignalNames {
+            known: signals.collect(),
+            computed: entries.iter().map(|entry| entry.name()).collect(),
+        };
         let read = |entry: &Entry<'a>| {
             let keys = self.entry::<DerivedKeys<'a>>(*entry, "measure")?;
             let value = keys.value.value.filter(|_| is_complete)?;

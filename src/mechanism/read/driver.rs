@@ -64,6 +64,7 @@ impl<'a> Context<'a> {
             name: entry.name().to_owned(),
             description: keys.description.value.unwrap_or_default(),
             coordinate: coordinate?,
+            is_input: matches!(source, DriverSource::Input { .. }),
             source,
             min,
             max,

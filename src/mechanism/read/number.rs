@@ -3,8 +3,7 @@
 use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::expression::{Parsed, Scope};
-use crate::mechanism::names::NameTable;
+use crate::mechanism::expression::{Parsed, Scope, SignalNames};
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::{quoted, shown};
 use crate::mechanism::{Dimension, Expression, Jet, Span, Unit, Variable};
@@ -178,7 +177,7 @@ impl<'a> Context<'a> {
         &mut self,
         value: &'a Value<'a>,
         variables: &[Variable],
-        signals: Option<&NameTable<'_, Variable>>,
+        signals: Option<&SignalNames<'_>>,
     ) -> Option<Expression> {
         let parsed = self.parsed(value, variables, signals)?;
         Some(parsed.expression)
@@ -189,7 +188,7 @@ impl<'a> Context<'a> {
         &mut self,
         value: &'a Value<'a>,
         variables: &[Variable],
-        signals: Option<&NameTable<'_, Variable>>,
+        signals: Option<&SignalNames<'_>>,
     ) -> Option<Parsed> {
         if let Some(number) = syntax::number(value.get_ref()) {
             if number.is_finite() {

@@ -1,0 +1,108 @@
+//! A mechanism at places in the range of a driver, moving there at a constant speed.
+
+use std::sync::Arc;
+
+use crate::kinematics::{Curve, Error, Path, Pose, Rates, Sample, Solver};
+use crate::mechanism::{DriverId, Jet, Mechanism, shown};
+
+/// A solver that visits places in the range of a driver; the others are at rest.
+pub(super) struct Follower<'a> {
+    pub(super) solver: &'a mut Solver,
+    pub(super) mechanism: Arc<Mechanism>,
+    driver: DriverId,
+    pub(super) rates: Rates,
+    pub(super) driver_rates: Vec<Jet>,
+    home: Pose,
+    path: Path,
+}
+
+impl<'a> Follower<'a> {
+    /// Makes a follower of a driver that moves at a speed \[m/s or rad/s\], from the solver's pose.
+    pub(super) fn new(solver: &'a mut Solver, driver: DriverId, speed: f64) -> Self {
+        let mechanism = Arc::clone(solver.mechanism());
+        let home = solver.pose().clone();
+        let mut driver_rates = vec![Jet::constant(0.0); mechanism.drivers.len()];
+        driver_rates[driver.index()].derivatives[0] = speed;
+        let mut path = Path::new(&mechanism);
+        home.set_path(&mut path);
+        let values = path.curves.iter_mut().zip(&home.drivers);
+        values.for_each(|(curve, value)| *curve = Curve::held(*value, *value));
+        Self {
+            rates: Rates::new(home.q.len()),
+            solver,
+            mechanism,
+            driver,
+            driver_rates,
+            home,
+            path,
+        }
+    }
+
+    /// Moves to a sample of the range.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no velocities there.
+    pub(super) fn visit(&mut self, sample: &Sample) -> Result<(), Error> {
+        let mut pose = self.home.clone();
+        pose.q.copy_from_slice(&sample.q);
+        pose.drivers[self.driver.index()] = sample.driver;
+        self.solver.restore(&pose);
+        self.solve_rates()
+    }
+
+    /// Follows the driver to a value. `None` without velocities there, or where it cannot go; then
+    /// it starts from home again, because two motions may meet where it stopped.
+    pub(super) fn follow(&mut self, value: f64) -> Option<()> {
+        let index = self.driver.index();
+        self.path.curves[index] = Curve::held(value, self.solver.pose().drivers[index]);
+        if self.solver.track(&self.path).is_err() {
+            self.restore();
+            return None;
+        }
+        self.solve_rates().ok()
+    }
+
+    /// Returns to the pose at the start.
+    pub(super) fn restore(&mut self) {
+        self.solver.restore(&self.home);
+    }
+
+    fn solve_rates(&mut self) -> Result<(), Error> {
+        let driver_rates = &self.driver_rates;
+        self.solver
+            .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
+    }
+}
+
+impl Drop for Follower<'_> {
+    fn drop(&mut self) {
+        self.restore();
+    }
+}
+
+/// Says how fast the driver moves.
+pub(super) fn at_speed(mechanism: &Mechanism, driver: DriverId, speed: f64) -> String {
+    if speed == 0.0 {
+        return "at rest".to_owned();
+    }
+    let kind = mechanism.drivers[driver.index()].coordinate.kind;
+    let unit = if kind.is_angle() { "rad/s" } else { "m/s" };
+    format!("at {} {unit}", shown(speed))
+}
+
+/// Says at which samples a quantity has no value: "at 0 deg", "at 3 of 361 poses, first at 0 deg".
+pub(super) fn without_value(
+    missing: &[f64],
+    samples: usize,
+    place: impl Fn(f64) -> String,
+) -> String {
+    match missing {
+        [only] => format!("at {}", place(*only)),
+        [first, ..] => {
+            let count = missing.len();
+            format!("at {count} of {samples} poses, first at {}", place(*first))
+        }
+        [] => String::new(),
+    }
+}
