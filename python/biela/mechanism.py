@@ -452,7 +452,9 @@ class Mechanism:
             given = orders[name]
             full = [np.broadcast_to(order, times.shape) if not order.ndim else order for order in given]
             if name in drivers and drivers[name].wrapped:
-                full[0] = np.unwrap(full[0], period=TURN)
+                # The first value is on the turn nearest the start value, as in the FMU.
+                start = drivers[name].start
+                full[0] = np.unwrap(np.append(start, full[0]), period=TURN)[1:]
             full += self._missing_rates(times, full, constant=not given[0].ndim, timeless=timeless)
             motions.append((name, [np.ascontiguousarray(order) for order in full]))
         return times, motions
