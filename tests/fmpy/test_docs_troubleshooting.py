@@ -48,6 +48,7 @@ PARTS = {
     "crank_angle=60*deg + 10*t": "the example for --drive",
     "crank_length=120*mm": "the example for --set",
     "beyond, …, redundant up to here": "… at t = … s: the mechanism cannot go on, with …",
+    "at … of … poses, first at …": "`range`: … has no value …, no forces …",
     "at t [s]": "a heading of the table of `tolerance`",
     "about the solver": "cannot be set: it is …",
     "the running program": "cannot read `…`",
