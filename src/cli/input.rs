@@ -1,6 +1,5 @@
 //! Reading of a mechanism file, and its diagnostics.
 
-use std::io::IsTerminal;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
@@ -82,7 +81,6 @@ pub(super) fn misfits(solver: &Solver) -> Vec<Message> {
 
 fn show(source: &Source, diagnostics: &[Diagnostic]) {
     if !diagnostics.is_empty() {
-        let styled = std::io::stderr().is_terminal();
-        tell(render(source, diagnostics, styled) + "\n");
+        tell(render(source, diagnostics, true) + "\n");
     }
 }

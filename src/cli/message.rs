@@ -37,7 +37,8 @@ impl Display for Message {
     }
 }
 
-/// Writes a line to stderr, in colours if it is a terminal. A closed stderr is no error.
+/// Writes a line to stderr, in its colours if that is a terminal or the environment asks for them
+/// (`CLICOLOR_FORCE`, `NO_COLOR`). A closed stderr is no error.
 pub(super) fn tell(line: impl Display) {
     let _ = writeln!(anstream::stderr(), "{line}");
 }

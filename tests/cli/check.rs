@@ -3,7 +3,7 @@
 use assert_cmd::Command;
 
 use crate::common;
-use crate::program::{altered, biela, stderr, stdout};
+use crate::program::{altered, biela, program, stderr, stdout};
 
 #[test]
 fn check_describes_a_mechanism() {
@@ -269,4 +269,21 @@ fn check_tells_scripts_what_it_finds() {
     );
     assert!(open["error"]["open"][0]["gap"].as_f64().unwrap() > 0.0);
     assert_eq!(open["error"]["nearest"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
+fn errors_have_colours_where_they_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[("\"crank.A\"", "\"cranck.A\"")],
+    );
+    let errors = |variable: &str| {
+        let mut program = program();
+        program.args(["check", &file]).env(variable, "1");
+        stderr(&program.assert().code(1))
+    };
+    assert!(errors("CLICOLOR_FORCE").contains("\u{1b}["));
+    assert!(!errors("NO_COLOR").contains('\u{1b}'));
 }
