@@ -118,17 +118,17 @@ def main():
         python = ["wine", windows_python()]
         for version in (2, 3):
             record_fmpy("FMPy in Python for Windows (Wine)", fmus[version])
-        program = windows_program()
+        program = windows_program(python[1])
         if program:
-            ours, expected, archive = use_program(program, PROGRAM, python[1])
+            ours, expected, archive = use_program(program, [PROGRAM])
             difference = Difference()
             difference.add(ours, expected)
-            difference.check("biela.exe run")
+            difference.check("the wheel's `run`")
             exported = [Fmu("first", 2, archive)]
-            record("`biela.exe run` (Wine)", exported, f"beside `biela run` on Linux: {difference}")
-            record_fmpy("export of `biela.exe`, in FMPy for Windows (Wine)", exported)
+            record("`python -m biela run` of the wheel for Windows (Wine)", exported, f"beside `biela run` on Linux: {difference}")
+            record_fmpy("its export, in FMPy for Windows (Wine)", exported)
         else:
-            missing.append("`biela.exe`, of which there is no wheel")
+            missing.append("the program for Windows, of which there is no wheel")
     for what in missing:
         print(f"not tried: {what}", flush=True)
     if "--no-docs" not in sys.argv:
