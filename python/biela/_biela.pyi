@@ -129,18 +129,10 @@ class Targets:
     def costs(self, values: Any) -> list[tuple[int, int, float]]: ...
     def attempts(self, values: Any, modes: Sequence[int]) -> list[Attempt]: ...
     def attempt(self, values: Sequence[float]) -> Attempt: ...
-    def improve(
-        self,
-        attempts: Sequence[Attempt],
-        bounds: tuple[Sequence[float], Sequence[float], Sequence[float]],
-        evaluations: int,
-        tolerance: float,
-        stop_at: float,
-    ) -> None: ...
 
 class Attempt:
-    unknowns: list[float]
-    timing: list[_Floats | None]
-    cost: float
-    evaluations: int
-    def evaluate(self, unknowns: Sequence[float]) -> tuple[_Floats, _Floats] | None: ...
+    start: list[float]
+    def go(
+        self, unknowns: Sequence[float], nearest: bool
+    ) -> tuple[_Floats, list[int | None], _Floats] | None: ...
+    def keep(self) -> _Floats | None: ...

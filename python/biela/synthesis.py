@@ -1,8 +1,7 @@
 """Synthesis: parameters with which a mechanism goes through given values.
 
-The method is that of Levenberg and Marquardt, on exact derivatives of all residuals. Free timing
-follows the parameters: each pose is the nearest to its target. The search starts from random
-variants, assembled in all their assembly modes, and from random changes of the best.
+SciPy's least squares improve parameters, on exact derivatives of all residuals. The search starts
+from random variants, assembled in all their assembly modes, and from random changes of the best.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _biela
+from .attempt import Attempt, Limits
 from .errors import AssemblyError, UsageError
 from .mechanism import Drive, Mechanism, _count, _numbers, _orders, _reread
 
@@ -115,6 +115,7 @@ def fit(
     starts: int = 1,
     samples: int = 2000,
     variations: int = 10,
+    restarts: int = 0,
     seed: int = 0,
     tolerance: float = 1e-15,
     stop_at: float = 0.0,
@@ -124,13 +125,13 @@ def fit(
     Minimises the sum of squared residuals. With `starts = 1` it improves the file's own values.
     With more, the best of `samples` random variants within `bounds` are improved too, in any of
     their assembly modes. Starts that fall behind are given up; the others are changed at random and
-    improved again, `variations` times. `seed` chooses variants and changes. It stops early at a cost
-    of `stop_at`.
+    improved again, `variations` times. All of this is repeated from other variants, `restarts` times.
+    `seed` chooses variants and changes. It stops early at a cost of `stop_at`.
 
     `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused. Equal
     bounds keep a parameter at their value.
 
-    Raises `AssemblyError` if no start reaches all targets.
+    Raises `AssemblyError` if no start reaches all targets. Needs the package SciPy.
 
     >>> curve = four_bar.run(drive={"crank_angle": [1.0, 1.4, 2.0]},
     ...     parameters={"crank_length": 0.11, "rocker_length": 0.29})
@@ -141,19 +142,26 @@ def fit(
     (0.11, 0.29)
     """
     starts, samples = _count("starts", starts, 1), _count("samples", samples)
-    variations = _count("variations", variations)
+    variations, restarts = _count("variations", variations), _count("restarts", restarts)
+    if starts == 1 and restarts > 0:
+        raise UsageError("restarts: they need random starts; give a number of `starts` too")
     problem = Problem(mechanism, targets, free, bounds or {}, turns, tolerance, stop_at)
     random = np.random.default_rng(seed)
-    attempts = problem.attempts(starts, samples, random)
-    if starts > 1:
-        search(problem, attempts, variations, random)
+    attempts: list[Attempt] = []
+    for _ in range(1 + restarts):
+        begun = problem.attempts(starts, samples, random)
+        if starts > 1:
+            search(problem, begun, variations, random)
+        attempts = sorted([*attempts, *begun], key=lambda attempt: attempt.cost)
+        if attempts[0].cost <= stop_at:
+            break
     problem.improve(attempts[:1], LAST)
     return problem.fit(attempts)
 
 
 def search(
     problem: Problem,
-    attempts: list[_biela.Attempt],
+    attempts: list[Attempt],
     variations: int,
     random: np.random.Generator,
 ) -> None:
@@ -162,7 +170,7 @@ def search(
     for evaluations, part in ROUNDS:
         problem.improve(going_on, evaluations)
         attempts.sort(key=lambda attempt: attempt.cost)
-        if attempts[0].cost <= problem.stop_at:
+        if attempts[0].cost <= problem.limits.stop_at:
             return
         going_on = attempts[: max(1, min(MOST_VARIED, round(part * len(attempts))))]
     varied = len(going_on)
@@ -176,7 +184,7 @@ def search(
             else:
                 problem.spent += child.evaluations
         attempts.sort(key=lambda attempt: attempt.cost)
-        if attempts[0].cost <= problem.stop_at:
+        if attempts[0].cost <= problem.limits.stop_at:
             return
 
 
@@ -198,7 +206,7 @@ def _limits(name: str, ends: tuple[float | None, float | None]) -> tuple[float, 
 class Problem:
     """Targets of a mechanism as a problem of least squares.
 
-    The unknowns are the free parameters, then the free timing of each target.
+    The unknowns are the free parameters, and the free timing of each target.
     """
 
     def __init__(
@@ -212,7 +220,6 @@ class Problem:
         stop_at: float = 0.0,
     ):
         self.mechanism = mechanism
-        self.tolerance, self.stop_at = tolerance, stop_at
         self.spent = 0  # Evaluations of attempts that were given up.
         self.targets = [targets] if isinstance(targets, Target) else list(targets)
         if not self.targets:
@@ -233,12 +240,11 @@ class Problem:
         limits = [
             _limits(name, bounds.get(name, (known[name].min, known[name].max))) for name in self.free
         ]
-        self.low, self.high = np.array(limits).reshape(-1, 2).T
-        # The sizes of the parameters, by which the optimiser scales them.
-        width = self.high - self.low
+        low, high = np.array(limits).reshape(-1, 2).T
         size = np.maximum(np.abs(self.own), np.abs(self.own).max(initial=0.0) * 1e-3)
-        bounded = np.isfinite(width) & (width > 0)
-        self.size = np.where(bounded, width, np.where(size > 0, size, 1.0))
+        bounded = np.isfinite(high - low)
+        size = np.where(bounded, high - low, np.where(size > 0, size, 1.0))
+        self.limits = Limits(low, high, size, tolerance, stop_at)
         arrays = [target.arrays() for target in self.targets]
         self.poses = [values.shape[1] for _, values in arrays]
         columns = list(mechanism.variables)
@@ -302,22 +308,24 @@ class Problem:
 
     def attempts(
         self, count: int, samples: int, random: np.random.Generator
-    ) -> list[_biela.Attempt]:
+    ) -> list[Attempt]:
         """Returns attempts at the file's own values and at the best of random ones."""
         found = []
         try:
-            found.append(self._inner.attempt(np.clip(self.own, self.low, self.high).tolist()))
+            own = np.clip(self.own, self.limits.low, self.limits.high).tolist()
+            found.append(Attempt(self._inner.attempt(own), len(own)))
         except AssemblyError:
             if count == 1:
                 raise
         if count > 1:
-            infinite = ~np.isfinite(self.high - self.low)
+            low, high = self.limits.low, self.limits.high
+            infinite = ~np.isfinite(high - low)
             if not self.free:
                 raise UsageError("free: random starts need the name of a parameter")
             if infinite.any():
                 unbounded = ", ".join(np.array(self.free)[infinite])
                 raise UsageError(f"bounds: random starts need limits of {unbounded}")
-            values = random.uniform(self.low, self.high, (samples, len(self.free)))
+            values = random.uniform(low, high, (samples, len(self.free)))
             costs = sorted(self._inner.costs(values.ravel()), key=lambda cost: cost[2])
             chosen = costs[: count - 1]
             found += self.begin(values, chosen)
@@ -329,54 +337,53 @@ class Problem:
 
     def begin(
         self, values: NDArray, chosen: Sequence[tuple[int, int, float]]
-    ) -> list[_biela.Attempt]:
+    ) -> list[Attempt]:
         """Returns attempts at variants in assembly modes, by their indices."""
         variants = [variant for variant, _, _ in chosen]
         modes = [mode for _, mode, _ in chosen]
-        return self._inner.attempts(values[variants].ravel(), modes)
+        begun = self._inner.attempts(values[variants].ravel(), modes)
+        return [Attempt(moving, len(self.free)) for moving in begun]
 
     def variants(
-        self, parents: Sequence[_biela.Attempt], random: np.random.Generator
-    ) -> tuple[list[_biela.Attempt], list[int]]:
+        self, parents: Sequence[Attempt], random: np.random.Generator
+    ) -> tuple[list[Attempt], list[int]]:
         """Returns attempts at random changes of the parents, each in the assembly mode in which it
         fits best, and the indices of their parents."""
         indices = np.repeat(np.arange(len(parents)), VARIANTS)
         count = len(indices)
-        values = np.array([parent.unknowns[: len(self.free)] for parent in parents])[indices]
+        values = np.array([parent.parameters for parent in parents])[indices]
         sizes = np.exp(random.uniform(*np.log(CHANGES), (count, 1)))
-        width = self.high - self.low
+        low, width = self.limits.low, self.limits.high - self.limits.low
         values += sizes * width * random.normal(size=(count, len(self.free)))
         # Values beyond a bound are reflected by it; equal bounds fix a parameter.
-        values = (values - self.low) % np.where(width > 0, 2 * width, 1.0)
-        values = self.low + np.minimum(values, 2 * width - values)
+        values = (values - low) % np.where(width > 0, 2 * width, 1.0)
+        values = low + np.minimum(values, 2 * width - values)
         best = {}
         for found in self._inner.costs(values.ravel()):
             if found[0] not in best or found[2] < best[found[0]][2]:
                 best[found[0]] = found
         return self.begin(values, list(best.values())), [int(indices[variant]) for variant in best]
 
-    def improve(self, attempts: Sequence[_biela.Attempt], evaluations: int) -> None:
-        """Improves attempts by least squares."""
-        bounds = self.low.tolist(), self.high.tolist(), self.size.tolist()
-        self._inner.improve(list(attempts), bounds, evaluations, self.tolerance, self.stop_at)
+    def improve(self, attempts: Sequence[Attempt], evaluations: int) -> None:
+        """Improves attempts by this number of evaluations each, at most."""
+        for attempt in attempts:
+            attempt.improve(self.limits, evaluations)
 
-    def fit(self, attempts: Sequence[_biela.Attempt]) -> Fit:
+    def fit(self, attempts: Sequence[Attempt]) -> Fit:
         """Returns the mechanism of the first of these attempts."""
         best = attempts[0]
-        unknowns = best.unknowns
-        # The mechanism goes to the unknowns once more: the last ones tried may be worse.
-        found = best.evaluate(unknowns)
-        if found is None or not np.isfinite(best.cost):
+        if best.residuals is None:
             raise AssemblyError("fit: the mechanism does not reach all targets")
-        residuals, _ = found
         inner = self.mechanism._inner
-        text = inner.fitted(best, self.free)
+        text = inner.fitted(best.moving, self.free)
+        free = [0 if target.free is None else poses for target, poses in zip(self.targets, self.poses)]
+        timing = np.split(best.timing, np.cumsum(free)[:-1])
         return Fit(
             _reread(text, self.mechanism._path, inner.has_tables),
-            dict(zip(self.free, unknowns)),
-            float(residuals @ residuals),
-            residuals,
-            tuple(best.timing),
+            dict(zip(self.free, best.parameters.tolist())),
+            best.cost,
+            best.residuals,
+            tuple(part if count else None for part, count in zip(timing, free)),
             np.array([attempt.cost for attempt in attempts]),
             self.spent + sum(attempt.evaluations for attempt in attempts),
         )

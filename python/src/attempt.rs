@@ -1,4 +1,4 @@
-//! Unknowns that least squares improve.
+//! Unknowns that a fit improves.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -8,89 +8,77 @@ use pyo3::prelude::*;
 
 use crate::error::Failure;
 use crate::follower::{Fit, Follower, Refused};
-use crate::least_squares::{Limits, Outer, Point, Residuals};
 
-/// A mechanism whose unknowns are improved. It keeps its assembly mode: each evaluation moves it
-/// continuously from the best unknowns so far.
+/// A mechanism that tries unknowns: the free parameters, then the free values of drivers. It keeps
+/// its assembly mode: each trial moves it continuously from the unknowns kept last.
 #[pyclass(frozen)]
 pub(crate) struct Attempt {
-    moving: Mutex<Moving>,
+    /// The unknowns at which it begins.
+    #[pyo3(get)]
+    start: Vec<f64>,
+    trial: Mutex<Trial>,
 }
 
-/// The mechanism of an attempt, and the best unknowns so far.
-struct Moving {
-    trial: Trial,
-    point: Point,
-}
-
-/// A mechanism that tries unknowns.
+/// The mechanism of an attempt.
 struct Trial {
     follower: Follower,
-    /// Pose from which an evaluation starts: at the first row, for the unknowns kept last, before
-    /// their timing was improved.
+    /// Pose from which a trial starts: at the first row, for the unknowns kept last, before their
+    /// timing was improved.
     base: Pose,
     /// Pose at the first row for the unknowns tried last, before their timing was improved.
     first: Pose,
     /// Poses at all rows for the unknowns tried last.
     poses: Vec<Pose>,
-    /// Number of evaluations by improvements.
-    evaluations: usize,
+    /// The unknowns tried last.
+    unknowns: Vec<f64>,
+    /// The index of the free value that each free value of a driver follows, its own unless it is at
+    /// the end of its range; `None` at a limit of the driver. For the unknowns tried last.
+    leaders: Vec<Option<usize>>,
+    /// Residuals of the unknowns tried last, by target, then by variable, then by pose.
+    residuals: Vec<f64>,
 }
 
-/// Residuals by target, then by variable, then by pose; and their derivatives, by residual, then by
-/// unknown.
-type Linearised<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+/// The unknowns, the leaders of their timing, and the residuals by target, then by variable, then by
+/// pose.
+type Tried<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Vec<Option<usize>>,
+    Bound<'py, PyArray1<f64>>,
+);
 
 #[pymethods]
 impl Attempt {
-    /// The free parameters, then the free values of drivers.
-    #[getter]
-    fn unknowns(&self) -> Vec<f64> {
-        self.moving().point.unknowns.clone()
+    /// Tries unknowns. With `nearest`, free values of drivers become those of the nearest poses in
+    /// their range. Returns `None` where the mechanism does not reach the unknowns, or the sum of
+    /// squared residuals is not finite.
+    fn go<'py>(&self, py: Python<'py>, unknowns: Vec<f64>, nearest: bool) -> Option<Tried<'py>> {
+        let (unknowns, leaders, residuals) = py.detach(|| {
+            let trial = &mut *self.trial();
+            trial.unknowns = unknowns;
+            trial.go(nearest).ok()?;
+            let Trial {
+                unknowns,
+                leaders,
+                residuals,
+                ..
+            } = trial;
+            let cost: f64 = residuals.iter().map(|residual| residual * residual).sum();
+            cost.is_finite()
+                .then(|| (unknowns.clone(), leaders.clone(), residuals.clone()))
+        })?;
+        Some((
+            unknowns.into_pyarray(py),
+            leaders,
+            residuals.into_pyarray(py),
+        ))
     }
 
-    /// Returns the free values of the driver of each target; `None` for prescribed timing.
-    #[getter]
-    fn timing<'py>(&self, py: Python<'py>) -> Vec<Option<Bound<'py, PyArray1<f64>>>> {
-        let Moving { trial, point } = &*self.moving();
-        let targets = trial.follower.fit.targets.iter();
-        let values = targets.map(|target| {
-            let free = target.free_driver.as_ref();
-            free.map(|_| {
-                point.unknowns[target.unknowns.clone()]
-                    .to_vec()
-                    .into_pyarray(py)
-            })
-        });
-        values.collect()
-    }
-
-    /// Sum of squared residuals; infinite before the first improvement.
-    #[getter]
-    fn cost(&self) -> f64 {
-        self.moving().point.cost
-    }
-
-    /// Number of evaluations of the residuals by improvements; those of `evaluate` do not count.
-    #[getter]
-    fn evaluations(&self) -> usize {
-        self.moving().trial.evaluations
-    }
-
-    /// Returns the residuals and their derivatives at unknowns, and moves there. Returns `None` and
-    /// stays where the mechanism does not reach the unknowns, or has no derivatives there.
-    fn evaluate<'py>(&self, py: Python<'py>, unknowns: Vec<f64>) -> Option<Linearised<'py>> {
-        let found = py.detach(|| {
-            let Moving { trial, point } = &mut *self.moving();
-            let mut residuals = vec![0.0; point.residuals()];
-            let mut derivatives = vec![0.0; residuals.len() * unknowns.len()];
-            let mut at = unknowns;
-            trial.go(&mut at, false, &mut residuals).ok()?;
-            let kept = trial.keep(&at, &mut derivatives);
-            kept.then_some((residuals, derivatives))
-        });
-        let (residuals, derivatives) = found?;
-        Some((residuals.into_pyarray(py), derivatives.into_pyarray(py)))
+    /// Returns the derivatives of the residuals at the unknowns tried last, by residual, then by
+    /// unknown, and keeps these unknowns. Returns `None` and keeps none where there are no
+    /// derivatives.
+    fn keep<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let derivatives = py.detach(|| self.trial().keep().ok())?;
+        Some(derivatives.into_pyarray(py))
     }
 }
 
@@ -124,54 +112,45 @@ impl Attempt {
         let residuals = fit.targets.last().map_or(0, |target| target.residuals.end);
         let rows = fit.scenario.times.len();
         Ok(Self {
-            moving: Mutex::new(Moving {
-                point: Point::new(unknowns, residuals),
-                trial: Trial {
-                    follower,
-                    poses: vec![base.clone(); rows],
-                    first: base.clone(),
-                    base,
-                    evaluations: 0,
-                },
+            start: unknowns.clone(),
+            trial: Mutex::new(Trial {
+                follower,
+                poses: vec![base.clone(); rows],
+                first: base.clone(),
+                base,
+                leaders: Vec::new(),
+                residuals: vec![0.0; residuals],
+                unknowns,
             }),
         })
-    }
-
-    /// Improves the unknowns by least squares.
-    pub(crate) fn improve(&self, outer: &Outer, limits: Limits) {
-        let Moving { trial, point } = &mut *self.moving();
-        trial.evaluations += point.improve(trial, outer, limits);
     }
 
     /// Returns the pose for the unknowns kept last: at the file's start values of the drivers if
     /// the mechanism reaches them, otherwise at the first row.
     pub(crate) fn home(&self) -> Pose {
-        let Trial { follower, base, .. } = &mut self.moving().trial;
+        let Trial { follower, base, .. } = &mut *self.trial();
         follower.at_home(base)
     }
 
-    /// Returns the mechanism once no other thread moves it. Each evaluation begins anew, also after
-    /// one that has panicked.
-    fn moving(&self) -> MutexGuard<'_, Moving> {
-        self.moving.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Returns the mechanism once no other thread moves it. Each trial begins anew, also after one
+    /// that has panicked.
+    fn trial(&self) -> MutexGuard<'_, Trial> {
+        self.trial.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Trial {
-    /// Moves from the base to unknowns and sets the residuals there. With `nearest`, free values of
-    /// drivers become those of the nearest poses in their range.
-    fn go(
-        &mut self,
-        unknowns: &mut [f64],
-        nearest: bool,
-        residuals: &mut [f64],
-    ) -> Result<(), Refused> {
+    /// Moves from the base to the unknowns and sets the residuals there. With `nearest`, free values
+    /// of drivers become those of the nearest poses in their range.
+    fn go(&mut self, nearest: bool) -> Result<(), Refused> {
         let Self {
             follower,
             base,
             first,
             poses,
-            ..
+            unknowns,
+            leaders,
+            residuals,
         } = self;
         let fit = Arc::clone(&follower.fit);
         let count = fit.free.len();
@@ -183,6 +162,7 @@ impl Trial {
         changed.map_err(|_| Refused)?;
         follower.check_turn()?;
         follower.runner.solver.save(first);
+        leaders.clear();
         for target in &fit.targets {
             let residuals = &mut residuals[target.residuals.clone()];
             let free_values = &mut unknowns[target.unknowns.clone()];
@@ -205,19 +185,29 @@ impl Trial {
                 }
                 follower.runner.solver.save(&mut poses[row]);
             }
+            if let Some(free) = &target.free_driver {
+                let start = target.unknowns.start - count;
+                let followed = free.leaders(free_values).into_iter();
+                leaders.extend(followed.map(|leader| Some(start + leader?)));
+            }
         }
         Ok(())
     }
 
-    /// Sets the derivatives of the residuals at the unknowns tried last.
-    fn differentiate(&mut self, unknowns: &[f64], derivatives: &mut [f64]) -> Result<(), Refused> {
+    /// Returns the derivatives of the residuals at the unknowns tried last, by residual, then by
+    /// unknown, and keeps these unknowns.
+    fn keep(&mut self) -> Result<Vec<f64>, Refused> {
         let Self {
-            follower, poses, ..
+            follower,
+            poses,
+            unknowns,
+            residuals,
+            ..
         } = self;
         let fit = Arc::clone(&follower.fit);
         let count = fit.free.len();
         follower.set_timing(unknowns);
-        derivatives.fill(0.0);
+        let mut derivatives = vec![0.0; residuals.len() * unknowns.len()];
         let mut changes = Vec::new();
         for target in &fit.targets {
             let columns = target.columns.len();
@@ -246,20 +236,7 @@ impl Trial {
                 }
             }
         }
-        Ok(())
-    }
-}
-
-impl Residuals for Trial {
-    fn try_at(&mut self, unknowns: &mut [f64], residuals: &mut [f64]) -> bool {
-        self.go(unknowns, true, residuals).is_ok()
-    }
-
-    fn keep(&mut self, unknowns: &[f64], derivatives: &mut [f64]) -> bool {
-        let kept = self.differentiate(unknowns, derivatives).is_ok();
-        if kept {
-            self.base.clone_from(&self.first);
-        }
-        kept
+        self.base.clone_from(&self.first);
+        Ok(derivatives)
     }
 }

@@ -8,7 +8,6 @@ use rayon::prelude::*;
 use crate::attempt::Attempt;
 use crate::error::Failure;
 use crate::follower::{Fit, Follower};
-use crate::least_squares::{Limits, Outer};
 use crate::runner::BATCH;
 
 /// Targets of a fit, for Python.
@@ -72,30 +71,5 @@ impl Targets {
     fn attempt(&self, py: Python<'_>, values: Vec<f64>) -> PyResult<Attempt> {
         py.detach(|| Attempt::begin(&self.fit, values, None))
             .map_err(|failure| failure.raise(py))
-    }
-
-    /// Improves attempts by least squares, on all cores. The free parameters have bounds, and sizes
-    /// by which steps are scaled. An attempt ends after this number of evaluations, where a step
-    /// lowers the cost by a smaller part than `tolerance`, or at a cost of `stop_at`.
-    fn improve(
-        &self,
-        py: Python<'_>,
-        attempts: Vec<Py<Attempt>>,
-        bounds: (Vec<f64>, Vec<f64>, Vec<f64>),
-        evaluations: usize,
-        tolerance: f64,
-        stop_at: f64,
-    ) {
-        let (low, high, size) = bounds;
-        let outer = Outer { low, high, size };
-        let limits = Limits {
-            evaluations,
-            tolerance,
-            cost: stop_at,
-        };
-        py.detach(|| {
-            let attempts = attempts.par_iter();
-            attempts.for_each(|attempt| attempt.get().improve(&outer, limits));
-        });
     }
 }

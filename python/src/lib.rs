@@ -8,8 +8,7 @@
 //! | `run`, `film` | one motion with its gradients; its animation |
 //! | `sweep` | the same motion of many variants, on all cores |
 //! | `timing`, `follower` | drivers whose values are free; a mechanism that follows targets |
-//! | `least_squares`, `attempt` | the method of least squares; unknowns that it improves |
-//! | `fit` | targets: costs of many variants, attempts |
+//! | `fit`, `attempt` | targets: costs of many variants; unknowns that a fit improves |
 //! | `mechanism` | the class `Mechanism` |
 //!
 //! Shapes, units and names of Python are the package's business; here arrays are flat.
@@ -19,7 +18,6 @@ mod error;
 mod film;
 mod fit;
 mod follower;
-mod least_squares;
 mod mechanism;
 mod run;
 mod runner;

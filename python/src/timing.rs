@@ -123,7 +123,7 @@ impl FreeDriver {
         let [low, high] = self.bounds;
         match before {
             [first, .., last] | [first @ last] if self.in_order => {
-                let turn = self.step * STEPS as f64;
+                let turn = self.turn();
                 if ascend {
                     [low.max(*last), high.min(first + turn)]
                 } else {
@@ -132,6 +132,29 @@ impl FreeDriver {
             }
             _ => [low, high],
         }
+    }
+
+    /// Returns the index of the value that each of these follows: its own, or in order that of a value
+    /// which ends its range; `None` at a limit of the driver.
+    pub(crate) fn leaders(&self, values: &[f64]) -> Vec<Option<usize>> {
+        let turn = self.turn();
+        let mut leaders: Vec<Option<usize>> = Vec::with_capacity(values.len());
+        for (pose, value) in values.iter().enumerate() {
+            // The values of which the ends of the range are made.
+            let before = if self.in_order { &values[..pose] } else { &[] };
+            leaders.push(match before {
+                _ if self.bounds.contains(value) => None,
+                [.., last] if [*last].contains(value) => leaders[pose - 1],
+                [first, ..] if [first + turn, first - turn].contains(value) => leaders[0],
+                _ => Some(pose),
+            });
+        }
+        leaders
+    }
+
+    /// Returns a turn of an angle, or the range of a length.
+    fn turn(&self) -> f64 {
+        self.step * STEPS as f64
     }
 
     /// Chooses a point of a curve for each pose, so that the sum of gaps is smallest. The points of

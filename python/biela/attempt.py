@@ -1,0 +1,134 @@
+"""Unknowns of a fit, improved by SciPy's least squares.
+
+Free timing follows the parameters: each pose is the nearest to its target. SciPy's optimiser sees
+the parameters alone, and the derivatives of residuals whose timing follows (variable projection, in
+Kaufman's form).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _biela
+from .errors import UsageError
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Bounds of parameters, and ends of a search."""
+
+    low: NDArray
+    high: NDArray
+    size: NDArray
+    """Sizes of the parameters, by which the optimiser scales them."""
+    tolerance: float
+    """Relative decrease of the cost, and relative step, at which a search ends."""
+    stop_at: float
+    """Cost that suffices."""
+
+
+class _Ended(Exception):
+    """End of a search that SciPy does not see."""
+
+
+class Attempt:
+    """Parameters that are improved, and the free timing that follows them."""
+
+    def __init__(self, moving: _biela.Attempt, parameters: int):
+        self.moving = moving
+        self.parameters, self.timing = np.split(np.array(moving.start), [parameters])
+        self.residuals: NDArray | None = None
+        """Residuals by target, then by variable, then by pose, once the targets were reached."""
+        self.evaluations = 0
+        """Number of times that residuals were asked for."""
+        self._ended = False
+
+    @property
+    def cost(self) -> float:
+        """Sum of squared residuals; infinite if the targets were not reached."""
+        return np.inf if self.residuals is None else float(self.residuals @ self.residuals)
+
+    def improve(self, limits: Limits, evaluations: int) -> None:
+        """Improves the parameters by this number of evaluations at most."""
+        try:
+            from scipy.optimize import least_squares
+        except ImportError:
+            raise UsageError("fit needs the package SciPy: pip install scipy") from None
+        varied = limits.low < limits.high
+
+        def all_of(some: NDArray) -> NDArray:
+            parameters = self.parameters.copy()
+            parameters[varied] = some
+            return parameters
+
+        def derivatives(some: NDArray) -> NDArray:
+            found = self._keep(all_of(some))[:, varied]
+            if self.cost <= limits.stop_at or not (found.T @ self.residuals).any():
+                raise _Ended
+            return found
+
+        if self._ended:
+            return
+        try:
+            if self.residuals is None:
+                self._try(self.parameters)
+                self._keep(self.parameters)
+            if not varied.any() or self.cost <= limits.stop_at:
+                raise _Ended
+            tolerance = max(limits.tolerance, np.finfo(float).eps)
+            found = least_squares(
+                lambda some: self._try(all_of(some)),
+                self.parameters[varied],
+                derivatives,
+                bounds=(limits.low[varied], limits.high[varied]),
+                x_scale=limits.size[varied],
+                ftol=tolerance,
+                xtol=tolerance,
+                gtol=None,
+                max_nfev=evaluations,
+            )
+            self._ended = found.status != 0
+        except _Ended:
+            self._ended = True
+
+    def _try(self, parameters: NDArray) -> NDArray:
+        """Returns the residuals at parameters; infinite ones where the mechanism does not get to."""
+        timing = self.timing
+        if self.residuals is not None:
+            step = parameters - self.parameters
+            if not step.any():
+                return self.residuals
+            timing = timing + self._off + self._rates @ step
+        self.evaluations += 1
+        tried = self.moving.go([*parameters, *timing], True)
+        if tried is not None:
+            self._tried = tried
+            return tried[2]
+        if self.residuals is None:
+            raise _Ended
+        return np.full_like(self.residuals, np.inf)
+
+    def _keep(self, parameters: NDArray) -> NDArray:
+        """Returns the derivatives that the optimiser sees at the parameters tried last, and keeps
+        these parameters."""
+        if self.residuals is None or not np.array_equal(parameters, self.parameters):
+            kept = self.moving.keep()
+            if kept is None:
+                raise _Ended
+            unknowns, leaders, self.residuals = self._tried
+            count = len(self.parameters)
+            self.parameters, self.timing = np.split(unknowns, [count])
+            kept = kept.reshape(len(self.residuals), -1)
+            by_parameters, by_timing = np.split(kept, [count], axis=1)
+            # Each timing goes where the gap at its pose is smallest, or with the timing that ends
+            # its range; it stays at a limit, and where it has no effect.
+            squares = (by_timing**2).sum(axis=0)
+            nearer = -by_timing.T / np.where(squares > 0, squares, np.inf)[:, None]
+            nearer = np.vstack([nearer, np.zeros_like(self.residuals)])
+            nearer = nearer[[-1 if leader is None else leader for leader in leaders]]
+            self._off, self._rates = nearer @ self.residuals, nearer @ by_parameters
+            self._derivatives = by_parameters + by_timing @ self._rates
+        return self._derivatives
