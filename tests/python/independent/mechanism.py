@@ -1,0 +1,113 @@
+"""Mechanism as its file says it: residuals and positions as functions of coordinates and time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+try:
+    import tomllib
+except ModuleNotFoundError:
+    import tomli as tomllib
+
+from . import tables
+from .constraints import JOINTS, Entry, coordinate, held
+from .digits import mp, number
+from .expressions import Names, evaluate
+from .frames import GROUND, Frame, Vector, frame
+
+
+class Mechanism:
+    """Mechanism file with numbers for its parameters; those in `changed` replace the file's."""
+
+    def __init__(self, text: str, folder: Path, changed: dict | None = None):
+        self.file = file = tomllib.loads(text, parse_float=number)
+        self.names = Names(file.get("parameters", {}), changed or {})
+        self.bodies = list(file["bodies"])
+        self.markers = {
+            f"{body}.{name}": (body, self._marker(marker))
+            for body, entry in {"ground": file.get("ground", {}), **file["bodies"]}.items()
+            for name, marker in entry.get("markers", {}).items()
+        }
+        self.joints = list(file.get("joints", {}).values())
+        self.profiles = {
+            place: tables.profile(joint["profile"], self.names, folder)
+            for place, joint in enumerate(self.joints)
+            if joint["type"] == "cam"
+        }
+        self.motions = {
+            name: tables.motion(driver["motion"], self.names, folder)
+            for name, driver in file.get("drivers", {}).items()
+            if "motion" in driver
+        }
+
+    def number(self, value):
+        """Returns the number that a number or an expression stands for."""
+        return evaluate(value, self.names)
+
+    def _marker(self, marker) -> Frame:
+        """Returns a marker in the frame of its body."""
+        if isinstance(marker, dict):
+            at = frame(mp.zero, mp.zero, self.number(marker["angle"]))
+            return Frame(at.axis * self.number(marker["r"]), mp.zero, GROUND.axis)
+        return frame(*map(self.number, [*marker, 0][:3]))
+
+    def place(self, q) -> Placed:
+        """Returns the mechanism with its bodies where the coordinates say."""
+        return Placed(self, q)
+
+
+class Placed:
+    """Mechanism in a pose: x, y, phi of each body in turn, then the polar angles of contacts."""
+
+    def __init__(self, mechanism: Mechanism, q):
+        self.mechanism = mechanism
+        self.bodies = {"ground": GROUND}
+        for place, body in enumerate(mechanism.bodies):
+            self.bodies[body] = frame(*q[3 * place : 3 * place + 3])
+        # A contact's angle that is not known yet is left out.
+        self.contacts = dict(zip(mechanism.profiles, q[3 * len(mechanism.bodies) :]))
+
+    def frame(self, marker: str) -> Frame:
+        """Returns where a marker stands."""
+        body, at = self.mechanism.markers[marker]
+        return self.bodies[body].place(at)
+
+    def entry(self, keys: dict, place: int | None = None) -> Entry:
+        """Returns an entry of the file in this pose; joints have a place among the joints."""
+        i, j = map(self.frame, keys["markers"])
+        return Entry(
+            keys,
+            i,
+            j,
+            self.frame(keys["axes"]) if "axes" in keys else i,
+            self.bodies[keys.get("carrier", "ground")],
+            self.mechanism.number,
+            self.mechanism.profiles.get(place),
+            self.contacts.get(place),
+        )
+
+    def residual(self, driven: dict) -> list:
+        """Returns the residuals of all equations for these values of the drivers."""
+        file, rows = self.mechanism.file, []
+        for place, joint in enumerate(self.mechanism.joints):
+            rows += JOINTS[joint["type"]](self.entry(joint, place))
+        for constraint in file.get("constraints", {}).values():
+            rows.append(held(self.entry(constraint)))
+        for name, driver in file.get("drivers", {}).items():
+            rows.append(coordinate(self.entry(driver)) - driven[name])
+        return rows
+
+    def positions(self) -> dict:
+        """Returns all positions among the variables, by their names."""
+        file, found = self.mechanism.file, {}
+        outputs = file.get("outputs", {})
+        for body in outputs.get("bodies", self.mechanism.bodies):
+            point, angle, _ = self.bodies[body]
+            found |= {f"{body}.x": point.x, f"{body}.y": point.y, f"{body}.phi": angle}
+        for marker in outputs.get("markers", []):
+            point = self.frame(marker).point
+            found |= {f"{marker}.x": point.x, f"{marker}.y": point.y}
+        for name, entry in {**file.get("drivers", {}), **file.get("measures", {})}.items():
+            if "coordinate" in entry:
+                found[f"{name}.position"] = coordinate(self.entry(entry))
+        return found

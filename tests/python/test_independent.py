@@ -1,0 +1,180 @@
+"""Motions of every shipped mechanism and all their gradients, against an independent solution.
+
+The package `independent` solves the equations of docs/constraints.md in sixty digits and
+differentiates the solution numerically, by differences and by complex steps.
+"""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import biela
+import numpy as np
+import pytest
+from independent import Pose, Rounding
+from shipped import MECHANISMS, ROOT
+
+TIMES = np.array([0.353, 0.617, 0.911])
+"""Times away from those at which the pieces of a prescribed motion meet."""
+SHARES = np.array([0.13, 0.45, 0.78])
+"""Poses within the range of a driver."""
+NEAR_END = np.array([1e-2, 1e-3])
+"""Distances from a dead point, as shares of the range."""
+VELOCITIES, ACCELERATIONS = np.array([1.3, -0.8, 2.1]), np.array([-3.0, 2.0, 1.0])
+"""Rates of drivers, in radians or in sixths of the range [1/s and 1/s²]."""
+SAME = 1e-4
+"""Share of the bound of rounding that the error of the reference may take: the difference between
+central differences and complex steps."""
+
+RATES = {
+    "x": ("vx", "ax"),
+    "y": ("vy", "ay"),
+    "phi": ("omega", "alpha"),
+    "position": ("velocity", "acceleration"),
+}
+OF_FORCES = set("effort power inertia bias fx fy torque kinetic potential".split())
+"""Variables of forces, which are no part of the motion."""
+
+COMPUTED = {"toggle_press": {"advantage"}}
+"""Measures that the files compute from other variables, which are compared."""
+
+OTHER_JOINTS = """
+    format = 1
+    name = "other_joints"
+    parameters.base = { value = 0.2, unit = "m" }
+    parameters.first = { value = 0.03, unit = "m" }
+    parameters.second = { value = 0.05, unit = "m" }
+    parameters.tilt = { value = 0.3, unit = "rad" }
+    parameters.offset = { value = 0.01, unit = "m" }
+    parameters.gap = { value = 0.03, unit = "m" }
+    ground.markers = { A = [0, 0], B = ["base", 0], C = [0.1, 0.15] }
+    [bodies]
+    crank = { markers = { O = [0, 0] } }
+    wheel = { markers = { O = [0, 0], R = ["second", 0.01, "tilt"] }, estimate = ["base", 0, 0] }
+    plate = { markers = { R = [0.01, 0.02], Q = [0.05, 0] }, estimate = [0.24, 0, 0.3] }
+    lever = { markers = { C = [0, 0], L = [0, 0, "tilt"] }, estimate = [0.1, 0.15, -1] }
+    rider = { markers = { M = [0.01, 0] }, estimate = [0.14, 0.1, 0] }
+    [joints]
+    A = { type = "revolute", markers = ["ground.A", "crank.O"] }
+    B = { type = "revolute", markers = ["ground.B", "wheel.O"] }
+    C = { type = "revolute", markers = ["ground.C", "lever.C"] }
+    R = { type = "weld", markers = ["wheel.R", "plate.R"] }
+    Q = { type = "revolute_translational", markers = ["lever.L", "plate.Q"], offset = "offset" }
+    [joints.belt]
+    type = "belt"
+    markers = ["crank.O", "wheel.O"]
+    radii = ["first", "second"]
+    crossed = true
+    [constraints]
+    tilted = { coordinate = "angle", markers = ["lever.L", "rider.M"], value = "2*tilt" }
+    ahead = { coordinate = "x", markers = ["plate.Q", "rider.M"], axes = "crank.O", value = "gap" }
+    away = { coordinate = "distance", markers = ["plate.Q", "rider.M"], value = "3*gap" }
+    [drivers]
+    turn = { coordinate = "angle", markers = ["ground.A", "crank.O"], start = 0 }
+"""
+"""Mechanism with the joints and constraints that no shipped mechanism has."""
+
+
+def rate(name: str, order: int) -> str:
+    """Returns the name of the velocity or acceleration of a position."""
+    if order == 0:
+        return name
+    of, _, kind = name.rpartition(".")
+    return f"{of}.{RATES[kind][order - 1]}"
+
+
+def span(mechanism, driver):
+    """Returns the ends of a driver's range, at most half a turn from its start [m or rad]."""
+    found = mechanism.range(driver.name)
+    low, high = -np.pi, np.pi
+    if found.lower.value is not None:
+        low = max(low, found.lower.value - driver.start)
+    if found.upper.value is not None:
+        high = min(high, found.upper.value - driver.start)
+    return driver.start + low, driver.start + high
+
+
+def inputs(mechanism):
+    """Returns the drivers whose motion the file does not prescribe."""
+    return [driver for driver in mechanism.drivers.values() if driver.start is not None]
+
+
+def lively(mechanism):
+    """Returns motions of all inputs through much of their ranges."""
+    drive = {}
+    for place, driver in enumerate(inputs(mechanism)):
+        low, high = span(mechanism, driver)
+        # Several drivers together meet dead points that each one alone does not.
+        way = (low + SHARES * (high - low) - driver.start) / len(inputs(mechanism)) ** 2
+        unit = 1.0 if driver.unit == "rad" else (high - low) / 6
+        rates = [unit * np.roll(rate, place) for rate in (VELOCITIES, ACCELERATIONS)]
+        drive[driver.name] = (driver.start + way, *rates)
+    return drive
+
+
+def assert_within(found, exact, bounds, names):
+    """Checks that the errors of these variables are within their bounds."""
+    errors = np.abs((found - exact).astype(float))
+    wrong = {
+        name: (error, bound)
+        for name, error, bound in zip(np.ravel(names), errors.ravel(), bounds.ravel())
+        if not error <= bound
+    }
+    assert not wrong
+
+
+def check(mechanism, t, drive, folder=Path()):
+    """Compares all positions, velocities, accelerations and gradients at the times `t`."""
+    free = [parameter for parameter in mechanism.parameters.values() if not parameter.derived]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", biela.MechanismWarning)
+        result = mechanism.run(t=t, drive=drive, gradient=[parameter.name for parameter in free])
+    for row, time in enumerate(t):
+        start = {
+            body: [result[f"{body}.{x}"][row] for x in ("x", "y", "phi")]
+            for body in mechanism.bodies
+        }
+        rates = {name: [orders[row] for orders in motion] for name, motion in drive.items()}
+        pose = Pose(mechanism.text, folder, start, time, rates)
+        motion = pose.motion()
+        rounding = Rounding(pose, motion, [mechanism.variables[name] for name in pose.names])
+        names = np.array([[rate(name, order) for name in pose.names] for order in range(3)])
+        found = np.vectorize(lambda name: result[name][row])(names)
+        assert_within(found, motion, rounding.of_motion(), names)
+        for parameter in free:
+            exact = pose.gradient(parameter.name)
+            bounds = rounding.of_gradient(exact, parameter.value, parameter.unit)
+            assert_within(pose.complex_gradient(parameter.name), exact, SAME * bounds, names)
+            found = np.vectorize(lambda name: result.gradient[name, parameter.name][row])(names)
+            assert_within(found, exact, bounds, names)
+    return set(result), set(names.ravel())
+
+
+def test_motions_and_gradients_of_shipped_mechanisms(any_mechanism):
+    variables, compared = check(any_mechanism, TIMES, lively(any_mechanism), ROOT / "mechanisms")
+    left = {name for name in variables - compared if name.rpartition(".")[2] not in OF_FORCES}
+    assert left == COMPUTED.get(any_mechanism.name, set())
+
+
+def test_computed_measures_are_of_shipped_mechanisms():
+    assert set(COMPUTED) <= {path.stem for path in MECHANISMS}
+
+
+def test_motions_and_gradients_of_other_joints():
+    mechanism = biela.loads(OTHER_JOINTS)
+    check(mechanism, TIMES, lively(mechanism))
+
+
+@pytest.mark.parametrize(
+    "name", ["hart_inversor", "pantograph", "peaucellier", "platform_3rpr", "tlv"]
+)
+def test_motions_and_gradients_next_to_dead_points(mechanism, name):
+    """One driver goes to a dead point, the others keep their starts."""
+    moved = mechanism(name)
+    first, *others = inputs(moved)
+    end = moved.range(first.name).upper
+    assert end.kind == "singular"
+    drive = {driver.name: (np.full(2, driver.start), 1.0, 0.3) for driver in others}
+    drive[first.name] = (end.value + NEAR_END * (first.start - end.value), 0.7, -0.4)
+    check(moved, TIMES[:2], {name: np.broadcast_arrays(*drive[name]) for name in moved.drivers})
