@@ -429,7 +429,7 @@ def cases():
         [*LENGTHS, *PLACES, "tilt"],
         {**near(5, 60), **far(PLACES, 60), "tilt": (0, 2 * np.pi)},
         "8.8e-29",
-        {"starts": 300, "samples": 3000, "variations": 6, "restarts": 10},
+        {"starts": 100, "samples": 3000, "variations": 40},
     )
     ellipse = [
         [20, 10], [17.66, 15.142], [11.736, 17.878], [5, 16.928], [0.60307, 12.736],

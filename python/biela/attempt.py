@@ -35,10 +35,10 @@ class _Ended(Exception):
 
 
 class Attempt:
-    """Parameters that are improved, and the free timing that follows them."""
+    """Parameters that are improved by a method of SciPy's, and the free timing that follows them."""
 
-    def __init__(self, moving: _biela.Attempt, parameters: int):
-        self.moving = moving
+    def __init__(self, moving: _biela.Attempt, parameters: int, method: str = "trf"):
+        self.moving, self.method = moving, method
         self.parameters, self.timing = np.split(np.array(moving.start), [parameters])
         self.residuals: NDArray | None = None
         """Residuals by target, then by variable, then by pose, once the targets were reached."""
@@ -64,6 +64,16 @@ class Attempt:
             parameters[varied] = some
             return parameters
 
+        def residuals(some: NDArray) -> NDArray:
+            nonlocal begun
+            found = self._try(all_of(some))
+            if found is None:
+                if not begun:  # SciPy needs residuals to begin with.
+                    raise _Ended
+                return np.full_like(self.residuals, np.inf)
+            begun = True
+            return found
+
         def derivatives(some: NDArray) -> NDArray:
             found = self._keep(all_of(some))[:, varied]
             if self.cost <= limits.stop_at or not (found.T @ self.residuals).any():
@@ -72,15 +82,17 @@ class Attempt:
 
         if self._ended:
             return
+        begun = False
         try:
             if self.residuals is None:
-                self._try(self.parameters)
+                if self._try(self.parameters) is None:
+                    raise _Ended
                 self._keep(self.parameters)
             if not varied.any() or self.cost <= limits.stop_at:
                 raise _Ended
             tolerance = max(limits.tolerance, np.finfo(float).eps)
             found = least_squares(
-                lambda some: self._try(all_of(some)),
+                residuals,
                 self.parameters[varied],
                 derivatives,
                 bounds=(limits.low[varied], limits.high[varied]),
@@ -88,14 +100,15 @@ class Attempt:
                 ftol=tolerance,
                 xtol=tolerance,
                 gtol=None,
+                method=self.method,
                 max_nfev=evaluations,
             )
             self._ended = found.status != 0
         except _Ended:
             self._ended = True
 
-    def _try(self, parameters: NDArray) -> NDArray:
-        """Returns the residuals at parameters; infinite ones where the mechanism does not get to."""
+    def _try(self, parameters: NDArray) -> NDArray | None:
+        """Returns the residuals at parameters; `None` where the mechanism does not get to."""
         timing = self.timing
         if self.residuals is not None:
             step = parameters - self.parameters
@@ -103,13 +116,8 @@ class Attempt:
                 return self.residuals
             timing = timing + self._off + self._rates @ step
         self.evaluations += 1
-        tried = self.moving.go([*parameters, *timing], True)
-        if tried is not None:
-            self._tried = tried
-            return tried[2]
-        if self.residuals is None:
-            raise _Ended
-        return np.full_like(self.residuals, np.inf)
+        self._tried = self.moving.go([*parameters, *timing], True)
+        return None if self._tried is None else self._tried[2]
 
     def _keep(self, parameters: NDArray) -> NDArray:
         """Returns the derivatives that the optimiser sees at the parameters tried last, and keeps

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import cycle
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,9 @@ from .attempt import Attempt, Limits
 from .errors import AssemblyError, UsageError
 from .mechanism import Drive, Mechanism, _count, _numbers, _orders, _reread
 
+METHODS = ("dogbox", "trf")
+"""SciPy's methods for bounds, which random starts and changes use in turn: `dogbox` goes along the
+bounds, `trf` between them, and each often goes on where the other is stuck."""
 ROUNDS = ((12, 0.1), (40, 1.0))
 """Evaluations of each attempt in a round, and the part of the attempts that goes on to the next."""
 MOST_VARIED = 20
@@ -115,7 +119,6 @@ def fit(
     starts: int = 1,
     samples: int = 2000,
     variations: int = 10,
-    restarts: int = 0,
     seed: int = 0,
     tolerance: float = 1e-15,
     stop_at: float = 0.0,
@@ -125,8 +128,8 @@ def fit(
     Minimises the sum of squared residuals. With `starts = 1` it improves the file's own values.
     With more, the best of `samples` random variants within `bounds` are improved too, in any of
     their assembly modes. Starts that fall behind are given up; the others are changed at random and
-    improved again, `variations` times. All of this is repeated from other variants, `restarts` times.
-    `seed` chooses variants and changes. It stops early at a cost of `stop_at`.
+    improved again, `variations` times. `seed` chooses variants and changes. It stops early at a cost
+    of `stop_at`.
 
     `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused. Equal
     bounds keep a parameter at their value.
@@ -142,19 +145,12 @@ def fit(
     (0.11, 0.29)
     """
     starts, samples = _count("starts", starts, 1), _count("samples", samples)
-    variations, restarts = _count("variations", variations), _count("restarts", restarts)
-    if starts == 1 and restarts > 0:
-        raise UsageError("restarts: they need random starts; give a number of `starts` too")
+    variations = _count("variations", variations)
     problem = Problem(mechanism, targets, free, bounds or {}, turns, tolerance, stop_at)
     random = np.random.default_rng(seed)
-    attempts: list[Attempt] = []
-    for _ in range(1 + restarts):
-        begun = problem.attempts(starts, samples, random)
-        if starts > 1:
-            search(problem, begun, variations, random)
-        attempts = sorted([*attempts, *begun], key=lambda attempt: attempt.cost)
-        if attempts[0].cost <= stop_at:
-            break
+    attempts = problem.attempts(starts, samples, random)
+    if starts > 1:
+        search(problem, attempts, variations, random)
     problem.improve(attempts[:1], LAST)
     return problem.fit(attempts)
 
@@ -342,7 +338,9 @@ class Problem:
         variants = [variant for variant, _, _ in chosen]
         modes = [mode for _, mode, _ in chosen]
         begun = self._inner.attempts(values[variants].ravel(), modes)
-        return [Attempt(moving, len(self.free)) for moving in begun]
+        return [
+            Attempt(moving, len(self.free), method) for moving, method in zip(begun, cycle(METHODS))
+        ]
 
     def variants(
         self, parents: Sequence[Attempt], random: np.random.Generator
