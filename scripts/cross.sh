@@ -85,7 +85,7 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
     *-linux-gnu) [ "$builder" != 'cargo zigbuild' ] || named=$target.$GLIBC ;;
     *-apple-darwin)
         # Stripped by the linker: its signature comes after.
-        export CARGO_PROFILE_RELEASE_STRIP=none SDKROOT=$CARGO_TARGET_DIR
+        export CARGO_PROFILE_RELEASE_STRIP=none MATURIN_STRIP=false SDKROOT=$CARGO_TARGET_DIR
         flag "-Clink-arg=-Wl,-s"
         flag "-Clink-arg=-Wl,-install_name,@rpath/biela.dylib"
         ;;
