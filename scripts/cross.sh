@@ -72,7 +72,8 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
             "or install Debian's ${DEBIAN_PACKAGES[*]}"
     fi
     export CARGO_TARGET_DIR=$directory PATH=$PWD/$CROSS_TOOLS/bin:$PATH
-    flag() { flags+="${flags:+,}\"$1\""; }
+    # maturin adds to these; it would put its own in place of those of a configuration.
+    flag() { flags+="${flags:+$'\x1f'}$1"; }
     for folder in "${CARGO_HOME:-$HOME/.cargo}"/registry/src/*; do
         flag "--remap-path-prefix=$folder=crates"
     done
@@ -107,9 +108,9 @@ cross_build() ( # BUILDER TARGET ARGUMENT...
         builder=${builder/ --zig/}
         ;;
     esac
+    export CARGO_ENCODED_RUSTFLAGS=$flags
     # shellcheck disable=SC2086
-    $builder --release --locked --target "$named" "${build_std[@]}" \
-        --config "target.$target.rustflags=[$flags]" "$@"
+    $builder --release --locked --target "$named" "${build_std[@]}" "$@"
 )
 
 # Prints the path of what cross_build has built for a target.
