@@ -128,6 +128,47 @@ fn a_dead_point_is_told_with_driver_value_limit_and_bodies() {
     );
 }
 
+/// Two wheels turn beside the arm, one by an input and one by a prescribed motion.
+#[test]
+fn a_dead_point_is_not_told_with_drivers_of_other_bodies() {
+    let triangle = include_str!("../mechanisms/tlv.toml");
+    let wheels = r#"
+        [bodies.fan]
+        markers.O = [0, 0]
+        [bodies.wheel]
+        markers.O = [0, 0]
+        [joints.fan_pin]
+        type = "revolute"
+        markers = ["ground.O", "fan.O"]
+        [joints.wheel_pin]
+        type = "revolute"
+        markers = ["ground.O", "wheel.O"]
+        [drivers.fan_angle]
+        coordinate = "angle"
+        markers = ["ground.O", "fan.O"]
+        start = 0
+        [drivers.wheel_angle]
+        coordinate = "angle"
+        markers = ["ground.O", "wheel.O"]
+        motion = "3*t"
+    "#;
+    let heard = Heard::default();
+    let mechanism = parse(&format!("{triangle}{wheels}"));
+    let mut instance = started(heard.instance(mechanism, Interface::CoSimulation, true));
+    // The side's length and the fan's angle.
+    instance.set_real(&[0, 3], &[0.7, 2.0]).unwrap();
+    instance.do_step(0.0, 0.1).expect_err("0.7 m is too long");
+    let [message] = &heard.take(Category::Warning)[..] else {
+        panic!("one warning")
+    };
+    assert!(
+        message.ends_with(
+            "driver `side_length` was asked for 0.700000000 m and cannot go beyond 0.650000000 m"
+        ),
+        "{message}"
+    );
+}
+
 #[test]
 fn an_approach_to_a_dead_point_is_warned_of_once() {
     let heard = Heard::default();

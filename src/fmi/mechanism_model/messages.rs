@@ -9,10 +9,11 @@ use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
-use crate::mechanism::{Driver, Order, rounded, shown};
+use crate::mechanism::{Driver, DriverId, Order, rounded, shown};
 
 impl MechanismModel {
-    /// Describes why a step stopped: the drivers that move, their limits and the values asked for.
+    /// Describes why a step stopped: the drivers that may be the cause, their limits and the values
+    /// asked for.
     pub(super) fn describe_dead_point(&mut self, blocked: &Blocked, start: f64, h: f64) -> String {
         let (limit, s) = match &blocked.reason {
             Reason::Singular(point) => (point.drivers.clone(), point.s),
@@ -20,7 +21,8 @@ impl MechanismModel {
         };
         let asked = self.path.drivers_at_end(&self.mechanism);
         let mut parts = Vec::new();
-        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+        let drivers = self.mechanism.drivers.iter().enumerate();
+        for (index, driver) in drivers.filter(|(index, _)| self.may_stop(*index, &blocked.reason)) {
             let show = |value| driver.coordinate.kind.show(value);
             if driver.motion().is_some() {
                 parts.push(format!(
@@ -74,6 +76,22 @@ impl MechanismModel {
             blocked.s,
             parts.join("; ")
         )
+    }
+
+    /// Whether a driver may be the cause of a stop: at a singular position one that moves what lines
+    /// up there.
+    fn may_stop(&self, driver: usize, reason: &Reason) -> bool {
+        match reason {
+            Reason::Singular(point) => {
+                let structure = self.solver.structure();
+                let free = point.free.iter().enumerate();
+                free.filter(|(_, motion)| **motion != 0.0)
+                    .any(|(column, _)| structure.dependencies(column).drivers.contains(&DriverId(driver)))
+            }
+            Reason::Jump(jumping) => jumping.index() == driver,
+            Reason::Value(_) => !self.path.moves_parameters(),
+            _ => true,
+        }
     }
 
     /// Reports redundant constraints and dimensions that do not fit.
