@@ -10,7 +10,7 @@ use biela::mechanism::{DriverId, ParameterId};
 use crate::error::Failure;
 use crate::runner::Runner;
 use crate::scenario::Scenario;
-use crate::timing::{Curve, FreeDriver};
+use crate::timing::{Curve, FreeDriver, MOST_STEPS};
 
 /// Largest number of steps to the nearest pose to a target.
 const NEARER: usize = 2;
@@ -166,8 +166,8 @@ impl Follower {
     }
 
     /// Returns the values of a target's variables along the motion of its free driver, from the
-    /// present pose both ways: between the driver's limits, or over as many turns as the curve needs
-    /// to close.
+    /// present pose both ways: until the curve closes, as far as the driver goes, or by
+    /// [`MOST_STEPS`].
     fn scan(&mut self, target: &Target, free: &FreeDriver) -> Result<Curve, Refused> {
         let row = target.rows.start;
         self.go(row)?;
@@ -177,8 +177,12 @@ impl Follower {
         let mut curve = Curve::new(start, self.values(target));
         for step in [free.step, -free.step] {
             self.runner.return_to(&middle);
-            let mut at = start + step;
-            while curve.is_short() && (low..=high).contains(&at) {
+            let mut at = start;
+            for _ in 0..MOST_STEPS {
+                at += step;
+                if curve.closes || !(low..=high).contains(&at) {
+                    break;
+                }
                 self.set_value(row, free.driver, at);
                 if self.go(row).is_err() {
                     break;
@@ -187,7 +191,6 @@ impl Follower {
                 if free.is_unlimited() && step > 0.0 {
                     curve.close();
                 }
-                at += step;
             }
         }
         curve.points.sort_by(|a, b| a.0.total_cmp(&b.0));

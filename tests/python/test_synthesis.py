@@ -256,6 +256,16 @@ def test_an_angle_that_winds_has_the_value_of_its_turn(generator):
     assert_allclose(residuals @ residuals, cost, atol=1e-14)
 
 
+@pytest.mark.parametrize("x", [1.0, -1.0])
+def test_a_path_that_does_not_close_is_followed_both_ways(mechanism, x):
+    """A wheel on a track, three radians from its start."""
+    wheel = mechanism("rolling_wheel")
+    found = biela.fit(wheel, biela.Target({"wheel.x": [x]}, free="turn"), ["wheel_radius"])
+    (timing,) = found.timing
+    run = found.mechanism.run(drive={"turn": timing})
+    assert found.cost < 1e-24 and abs(run["wheel.x"][0] - x) < 1e-12
+
+
 @pytest.mark.parametrize("in_order", [False, True])
 def test_points_are_passed_in_order_where_asked_for(generator, in_order):
     """Points of a known path in another order: met without an order only."""
