@@ -131,7 +131,7 @@ def fit(
     `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused. Equal
     bounds keep a parameter at their value.
 
-    Raises `AssemblyError` if no start reaches all targets. Needs the package SciPy.
+    Raises `AssemblyError` if no start reaches all targets, with finite derivatives. Needs the package SciPy.
 
     >>> curve = four_bar.run(drive={"crank_angle": [1.0, 1.4, 2.0]},
     ...     parameters={"crank_length": 0.11, "rocker_length": 0.29})
@@ -150,11 +150,13 @@ def fit(
     attempts: list[Attempt] = []
     for _ in range(1 + restarts):
         begun = problem.attempts(starts, samples, random)
-        if starts > 1:
+        if starts > 1 and begun:
             search(problem, begun, variations, random)
         attempts = sorted([*attempts, *begun], key=lambda attempt: attempt.cost)
-        if attempts[0].cost <= stop_at:
+        if attempts and attempts[0].cost <= stop_at:
             break
+    if not attempts:
+        raise AssemblyError("fit: no start reaches all targets; give wider bounds or more starts")
     problem.improve(attempts[:1], LAST)
     return problem.fit(attempts)
 
@@ -309,7 +311,8 @@ class Problem:
     def attempts(
         self, count: int, samples: int, random: np.random.Generator
     ) -> list[Attempt]:
-        """Returns attempts at the file's own values and at the best of random ones."""
+        """Returns attempts at the file's own values and at the best of random ones, as far as the
+        mechanism reaches the targets."""
         found = []
         try:
             own = np.clip(self.own, self.limits.low, self.limits.high).tolist()
@@ -329,10 +332,6 @@ class Problem:
             costs = sorted(self._inner.costs(values.ravel()), key=lambda cost: cost[2])
             chosen = costs[: count - 1]
             found += self.begin(values, chosen)
-        if not found:
-            raise AssemblyError(
-                "fit: no start reaches all targets; give wider bounds or more starts"
-            )
         return found
 
     def begin(
@@ -373,7 +372,9 @@ class Problem:
         """Returns the mechanism of the first of these attempts."""
         best = attempts[0]
         if best.residuals is None:
-            raise AssemblyError("fit: the mechanism does not reach all targets")
+            raise AssemblyError(
+                "fit: the mechanism does not reach all targets with finite derivatives"
+            )
         inner = self.mechanism._inner
         text = inner.fitted(best.moving, self.free)
         free = [0 if target.free is None else poses for target, poses in zip(self.targets, self.poses)]

@@ -75,7 +75,7 @@ impl Attempt {
 
     /// Returns the derivatives of the residuals at the unknowns tried last, by residual, then by
     /// unknown, and keeps these unknowns. Returns `None` and keeps none where there are no
-    /// derivatives.
+    /// finite derivatives.
     fn keep<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let derivatives = py.detach(|| self.trial().keep().ok())?;
         Some(derivatives.into_pyarray(py))
@@ -235,6 +235,9 @@ impl Trial {
                     }
                 }
             }
+        }
+        if derivatives.iter().any(|derivative| !derivative.is_finite()) {
+            return Err(Refused);
         }
         self.base.clone_from(&self.first);
         Ok(derivatives)

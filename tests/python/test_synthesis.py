@@ -169,6 +169,17 @@ def test_a_minimum_with_free_timing_is_found(generator):
     assert_allclose(found.cost, 1.4433485630621e-3, rtol=1e-12)
 
 
+def test_restarts_without_a_start_do_no_harm(generator):
+    """The file's own values do not close within these bounds, and few random ones do."""
+    target = biela.points("coupler.P", TIMED, drive={"theta": np.radians([30, 45, 60, 75, 90])})
+    bounds = {"r1": (7.8, 12.0), "r2": (1.0, 4.0), "r3": (3.0, 6.0), "r4": (3.0, 6.0)}
+    found = [
+        biela.fit(generator, target, list(bounds), bounds, starts=2, samples=1, restarts=restarts, seed=3)
+        for restarts in (0, 3)
+    ]
+    assert found[1].cost <= found[0].cost and len(found[1].costs) < 4
+
+
 def test_restarts_go_on_until_the_cost_suffices(generator):
     target = biela.points("coupler.P", TIMED, drive={"theta": np.radians([30, 45, 60, 75, 90])})
     bounds = {name: (0.5, 10.0) for name in ("r1", "r2", "r3", "r4")}
@@ -184,6 +195,17 @@ def test_a_fit_without_scipy_names_the_package(four_bar, monkeypatch):
     target = biela.Target({"rocker.phi": [2.2]}, drive={"crank_angle": [1.0]})
     with pytest.raises(biela.UsageError, match="fit needs the package SciPy: pip install scipy"):
         biela.fit(four_bar, target, ["base"])
+
+
+def test_a_start_without_derivatives_is_left_out():
+    """The root has an infinite slope at its start."""
+    text = (ROOT / "examples" / "path_generator.toml").read_text()
+    root = biela.loads(f'{text}\n[measures]\nroot = {{ value = "sqrt(abs(x0))", unit = "1" }}\n')
+    target = biela.Target({"root": [0.5]}, {"theta": [0.5]})
+    with pytest.raises(biela.AssemblyError, match="reach all targets with finite derivatives"):
+        biela.fit(root, target, ["x0"], {"x0": (-1.0, 1.0)})
+    found = biela.fit(root, target, ["x0"], {"x0": (-1.0, 1.0)}, starts=3, samples=20)
+    assert_allclose(abs(found.parameters["x0"]), 0.25, rtol=1e-9)
 
 
 def test_equal_bounds_fix_a_parameter(four_bar):
