@@ -15,6 +15,10 @@ from numpy.typing import NDArray
 from . import _biela
 from .errors import UsageError
 
+SETTLED = 1e-9
+"""Change of timing [rad or m] that ends its improvement: the cost, at its least value, has squares of
+this."""
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -76,7 +80,10 @@ class Attempt:
 
         def derivatives(some: NDArray) -> NDArray:
             found = self._keep(all_of(some))[:, varied]
-            if self.cost <= limits.stop_at or not (found.T @ self.residuals).any():
+            if self.cost <= limits.stop_at:
+                raise _Ended
+            if not (found.T @ self.residuals).any():
+                self._settle(evaluations)
                 raise _Ended
             return found
 
@@ -88,7 +95,10 @@ class Attempt:
                 if self._try(self.parameters) is None:
                     raise _Ended
                 self._keep(self.parameters)
-            if not varied.any() or self.cost <= limits.stop_at:
+            if self.cost <= limits.stop_at:
+                raise _Ended
+            if not varied.any():
+                self._settle(evaluations)
                 raise _Ended
             tolerance = max(limits.tolerance, np.finfo(float).eps)
             found = least_squares(
@@ -115,28 +125,54 @@ class Attempt:
             if not step.any():
                 return self.residuals
             timing = timing + self._off + self._rates @ step
+        return self._go(parameters, timing)
+
+    def _settle(self, evaluations: int) -> None:
+        """Improves the timing alone."""
+        part = 1.0
+        for _ in range(evaluations):
+            off = part * self._off
+            if np.abs(off).max(initial=0.0) < SETTLED:
+                return
+            residuals = self._go(self.parameters, self.timing + off)
+            if residuals is None or residuals @ residuals >= self.cost:
+                part /= 2
+            else:
+                self._linearise()
+
+    def _go(self, parameters: NDArray, timing: NDArray) -> NDArray | None:
+        """Returns the residuals at parameters, with the timing nearest to this one; `None` where the
+        mechanism does not get to."""
         self.evaluations += 1
-        self._tried = self.moving.go([*parameters, *timing], True)
-        return None if self._tried is None else self._tried[2]
+        tried = self.moving.go([*parameters, *timing], True)
+        if tried is None:
+            return None
+        self._tried = tried
+        return tried[3]
 
     def _keep(self, parameters: NDArray) -> NDArray:
         """Returns the derivatives that the optimiser sees at the parameters tried last, and keeps
         these parameters."""
         if self.residuals is None or not np.array_equal(parameters, self.parameters):
-            kept = self.moving.keep()
-            if kept is None:
-                raise _Ended
-            unknowns, leaders, self.residuals = self._tried
-            count = len(self.parameters)
-            self.parameters, self.timing = np.split(unknowns, [count])
-            kept = kept.reshape(len(self.residuals), -1)
-            by_parameters, by_timing = np.split(kept, [count], axis=1)
-            # Each timing goes where the gap at its pose is smallest, or with the timing that ends
-            # its range; it stays at a limit, and where it has no effect.
-            squares = (by_timing**2).sum(axis=0)
-            nearer = -by_timing.T / np.where(squares > 0, squares, np.inf)[:, None]
-            nearer = np.vstack([nearer, np.zeros_like(self.residuals)])
-            nearer = nearer[[-1 if leader is None else leader for leader in leaders]]
-            self._off, self._rates = nearer @ self.residuals, nearer @ by_parameters
-            self._derivatives = by_parameters + by_timing @ self._rates
+            self._linearise()
         return self._derivatives
+
+    def _linearise(self) -> None:
+        """Keeps the unknowns tried last, and their derivatives."""
+        kept = self.moving.keep()
+        if kept is None:
+            raise _Ended
+        unknowns, leaders, curvatures, self.residuals = self._tried
+        count = len(self.parameters)
+        self.parameters, self.timing = np.split(unknowns, [count])
+        kept = kept.reshape(len(self.residuals), -1)
+        by_parameters, by_timing = np.split(kept, [count], axis=1)
+        # Each timing goes where the gap at its pose is smallest, or with the timing that ends its
+        # range; it stays at a limit, and where it has no effect.
+        seconds = (by_timing**2).sum(axis=0)
+        seconds = np.where(curvatures > 2 * seconds, curvatures, seconds)
+        nearer = -by_timing.T / np.where(seconds > 0, seconds, np.inf)[:, None]
+        nearer = np.vstack([nearer, np.zeros_like(self.residuals)])
+        nearer = nearer[[-1 if leader is None else leader for leader in leaders]]
+        self._off, self._rates = nearer @ self.residuals, nearer @ by_parameters
+        self._derivatives = by_parameters + by_timing @ self._rates

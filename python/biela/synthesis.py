@@ -134,7 +134,8 @@ def fit(
     `turns` names a driver that shall turn fully: mechanisms in which it cannot are refused. Equal
     bounds keep a parameter at their value.
 
-    Raises `AssemblyError` if no start reaches all targets. Needs the package SciPy.
+    Raises `AssemblyError` if no start reaches all targets, with finite derivatives. Needs the
+    package SciPy.
 
     >>> curve = four_bar.run(drive={"crank_angle": [1.0, 1.4, 2.0]},
     ...     parameters={"crank_length": 0.11, "rocker_length": 0.29})
@@ -371,7 +372,9 @@ class Problem:
         """Returns the mechanism of the first of these attempts."""
         best = attempts[0]
         if best.residuals is None:
-            raise AssemblyError("fit: the mechanism does not reach all targets")
+            raise AssemblyError(
+                "fit: the mechanism does not reach all targets with finite derivatives"
+            )
         inner = self.mechanism._inner
         text = inner.fitted(best.moving, self.free)
         free = [0 if target.free is None else poses for target, poses in zip(self.targets, self.poses)]

@@ -34,15 +34,19 @@ struct Trial {
     /// The index of the free value that each free value of a driver follows, its own unless it is at
     /// the end of its range; `None` at a limit of the driver. For the unknowns tried last.
     leaders: Vec<Option<usize>>,
+    /// Second derivatives of half the gaps by the free values of drivers; zero or less where none is known.
+    /// For the unknowns tried last.
+    curvatures: Vec<f64>,
     /// Residuals of the unknowns tried last, by target, then by variable, then by pose.
     residuals: Vec<f64>,
 }
 
-/// The unknowns, the leaders of their timing, and the residuals by target, then by variable, then by
-/// pose.
+/// The unknowns, the leaders of their timing, its second derivatives, and the residuals by target,
+/// then by variable, then by pose.
 type Tried<'py> = (
     Bound<'py, PyArray1<f64>>,
     Vec<Option<usize>>,
+    Vec<f64>,
     Bound<'py, PyArray1<f64>>,
 );
 
@@ -52,30 +56,36 @@ impl Attempt {
     /// their range. Returns `None` where the mechanism does not reach the unknowns, or the sum of
     /// squared residuals is not finite.
     fn go<'py>(&self, py: Python<'py>, unknowns: Vec<f64>, nearest: bool) -> Option<Tried<'py>> {
-        let (unknowns, leaders, residuals) = py.detach(|| {
+        let (unknowns, leaders, curvatures, residuals) = py.detach(|| {
             let trial = &mut *self.trial();
             trial.unknowns = unknowns;
             trial.go(nearest).ok()?;
-            let Trial {
-                unknowns,
-                leaders,
-                residuals,
-                ..
-            } = trial;
-            let cost: f64 = residuals.iter().map(|residual| residual * residual).sum();
-            cost.is_finite()
-                .then(|| (unknowns.clone(), leaders.clone(), residuals.clone()))
+            let cost: f64 = trial
+                .residuals
+                .iter()
+                .map(|residual| residual * residual)
+                .sum();
+            cost.is_finite().then(|| {
+                let (leaders, curvatures) = (trial.leaders.clone(), trial.curvatures.clone());
+                (
+                    trial.unknowns.clone(),
+                    leaders,
+                    curvatures,
+                    trial.residuals.clone(),
+                )
+            })
         })?;
         Some((
             unknowns.into_pyarray(py),
             leaders,
+            curvatures,
             residuals.into_pyarray(py),
         ))
     }
 
     /// Returns the derivatives of the residuals at the unknowns tried last, by residual, then by
     /// unknown, and keeps these unknowns. Returns `None` and keeps none where there are no
-    /// derivatives.
+    /// finite derivatives.
     fn keep<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let derivatives = py.detach(|| self.trial().keep().ok())?;
         Some(derivatives.into_pyarray(py))
@@ -119,6 +129,7 @@ impl Attempt {
                 first: base.clone(),
                 base,
                 leaders: Vec::new(),
+                curvatures: Vec::new(),
                 residuals: vec![0.0; residuals],
                 unknowns,
             }),
@@ -150,6 +161,7 @@ impl Trial {
             poses,
             unknowns,
             leaders,
+            curvatures,
             residuals,
         } = self;
         let fit = Arc::clone(&follower.fit);
@@ -163,6 +175,7 @@ impl Trial {
         follower.check_turn()?;
         follower.runner.solver.save(first);
         leaders.clear();
+        curvatures.clear();
         for target in &fit.targets {
             let residuals = &mut residuals[target.residuals.clone()];
             let free_values = &mut unknowns[target.unknowns.clone()];
@@ -174,8 +187,10 @@ impl Trial {
                         let value = free_values[pose].clamp(range[0], range[1]);
                         follower.set_value(row, free.driver, value);
                         follower.go(row)?;
-                        free_values[pose] =
+                        let (value, curvature) =
                             follower.go_nearer(target, free, pose, (value, range))?;
+                        free_values[pose] = value;
+                        curvatures.push(curvature);
                     }
                     _ => follower.go(row)?,
                 }
@@ -235,6 +250,9 @@ impl Trial {
                     }
                 }
             }
+        }
+        if derivatives.iter().any(|derivative| !derivative.is_finite()) {
+            return Err(Refused);
         }
         self.base.clone_from(&self.first);
         Ok(derivatives)

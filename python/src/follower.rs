@@ -10,12 +10,14 @@ use biela::mechanism::{DriverId, ParameterId};
 use crate::error::Failure;
 use crate::runner::Runner;
 use crate::scenario::Scenario;
-use crate::timing::{Curve, FreeDriver};
+use crate::timing::{Curve, FreeDriver, MOST_STEPS};
 
 /// Largest number of steps to the nearest pose to a target.
 const NEARER: usize = 2;
 /// Decrease of the gap to a target, as part of it, that is worth a step.
 const WORTH: f64 = 1e-3;
+/// Shortest step, as part of the longest one, whose secant is above rounding.
+const SECANT: f64 = 1e-7;
 
 /// Values that variables shall take at rows of a motion.
 pub(crate) struct Target {
@@ -166,8 +168,8 @@ impl Follower {
     }
 
     /// Returns the values of a target's variables along the motion of its free driver, from the
-    /// present pose both ways: between the driver's limits, or over as many turns as the curve needs
-    /// to close.
+    /// present pose both ways: until the curve closes, as far as the driver goes, or by
+    /// [`MOST_STEPS`].
     fn scan(&mut self, target: &Target, free: &FreeDriver) -> Result<Curve, Refused> {
         let row = target.rows.start;
         self.go(row)?;
@@ -177,8 +179,12 @@ impl Follower {
         let mut curve = Curve::new(start, self.values(target));
         for step in [free.step, -free.step] {
             self.runner.return_to(&middle);
-            let mut at = start + step;
-            while curve.is_short() && (low..=high).contains(&at) {
+            let mut at = start;
+            for _ in 0..MOST_STEPS {
+                at += step;
+                if curve.closes || !(low..=high).contains(&at) {
+                    break;
+                }
                 self.set_value(row, free.driver, at);
                 if self.go(row).is_err() {
                     break;
@@ -187,7 +193,6 @@ impl Follower {
                 if free.is_unlimited() && step > 0.0 {
                     curve.close();
                 }
-                at += step;
             }
         }
         curve.points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -238,53 +243,85 @@ impl Follower {
         }
     }
 
-    /// Goes to the pose that is nearest to a target's pose, by steps of Gauss and Newton from the
-    /// pose at its row, within a range of the free driver. Returns its value there.
+    /// Goes to the pose that is nearest to a target's pose, from the pose at its row, within a range of
+    /// the free driver: by steps of Gauss and Newton, and by secants where the path bends. Returns its
+    /// value there, and the second derivative of half the gap by it from the last secant, zero without
+    /// one.
     pub(crate) fn go_nearer(
         &mut self,
         target: &Target,
         free: &FreeDriver,
         pose: usize,
         (start, [low, high]): (f64, [f64; 2]),
-    ) -> Result<f64, Refused> {
+    ) -> Result<(f64, f64), Refused> {
         let row = target.rows.start + pose;
         let mut value = start;
-        let mut values = self.values(target);
-        let mut gap = target.gap(pose, &values);
-        let mut changes = Vec::with_capacity(values.len());
-        let along = std::slice::from_ref(&free.direction);
+        let mut gap = target.gap(pose, &self.values(target));
+        let (mut slope, mut steepness) = self.slope(target, free, pose)?;
+        let mut curvature = 0.0_f64;
         for _ in 0..NEARER {
-            changes.clear();
-            let differentiated = (self.runner).differentiate(&target.columns, along, &mut changes);
-            differentiated.map_err(|_| Refused)?;
-            let (mut slope, mut steepness) = (0.0, 0.0);
-            for (column, (value, change)) in values.iter().zip(&changes).enumerate() {
-                let change = target.weight * change;
-                slope += change * target.residual(column, pose, *value);
-                steepness += change * change;
-            }
-            // The driver may have no effect.
-            if slope * slope <= WORTH * gap * steepness {
+            // Gauss and Newton's steps converge up to twice their second derivative.
+            let second = if curvature > 2.0 * steepness {
+                curvature
+            } else {
+                steepness
+            };
+            // The driver may have no effect, or be at its limit.
+            let step = (-slope / second).clamp(-free.step, free.step);
+            let next = (value + step).clamp(low, high);
+            if slope * slope <= WORTH * gap * second || [value].contains(&next) {
                 break;
             }
-            let step = (-slope / steepness).clamp(-free.step, free.step);
-            let next = (value + step).clamp(low, high);
+            // A quarter of the step if it leads too far; a short one fails by rounding.
+            let is_long = step.abs() > SECANT * free.step;
+            curvature = if is_long {
+                4.0 * (slope / step).abs()
+            } else {
+                0.0
+            };
             let before = self.runner.solver.pose().clone();
             self.set_value(row, free.driver, next);
-            if self.go(row).is_ok() {
-                let tried = self.values(target);
-                let nearer = target.gap(pose, &tried);
+            if self.go(row).is_ok()
+                && let Ok((slope_there, steepness_there)) = self.slope(target, free, pose)
+            {
+                let secant = (slope_there - slope) / (next - value);
+                let nearer = target.gap(pose, &self.values(target));
+                if is_long && (nearer < gap || slope_there * slope < 0.0) {
+                    curvature = secant;
+                }
                 if nearer < gap {
-                    (value, values, gap) = (next, tried, nearer);
+                    (value, gap) = (next, nearer);
+                    (slope, steepness) = (slope_there, steepness_there);
                     continue;
                 }
             }
             self.runner.return_to(&before);
             self.set_value(row, free.driver, value);
             self.runner.solve(row).map_err(|_| Refused)?;
-            break;
         }
-        Ok(value)
+        Ok((value, curvature))
+    }
+
+    /// Returns the first derivative of half the gap at the present pose by the free driver, and the
+    /// second one without the curvature of the path.
+    fn slope(
+        &mut self,
+        target: &Target,
+        free: &FreeDriver,
+        pose: usize,
+    ) -> Result<(f64, f64), Refused> {
+        let mut changes = Vec::with_capacity(target.columns.len());
+        let along = std::slice::from_ref(&free.direction);
+        let differentiated = (self.runner).differentiate(&target.columns, along, &mut changes);
+        differentiated.map_err(|_| Refused)?;
+        let values = self.values(target);
+        let (mut slope, mut steepness) = (0.0, 0.0);
+        for (column, (value, change)) in values.iter().zip(&changes).enumerate() {
+            let change = target.weight * change;
+            slope += change * target.residual(column, pose, *value);
+            steepness += change * change;
+        }
+        Ok((slope, steepness))
     }
 
     /// Returns the pose at the file's start values of the drivers, or `base` if they cannot be

@@ -10,9 +10,11 @@ use crate::error::Failure;
 /// Number of steps per turn of a driver, or in the range of a length, at whose ends the nearest pose
 /// to each target is looked for.
 const STEPS: usize = 36;
-/// Largest number of turns that are scanned: some paths, such as those of geared cranks, close after
-/// two.
+/// Largest number of turns that are scanned one way: some paths, such as those of geared cranks,
+/// close after two.
 const TURNS: usize = 2;
+/// Largest number of steps one way; the last one tells whether the curve closes.
+pub(crate) const MOST_STEPS: usize = TURNS * STEPS + 1;
 /// Largest distance between the ends of a closed curve, as part of its extent. Next to a singular
 /// position rounding is the root of machine precision, 1.5e-8.
 const CLOSED: f64 = 1e-6;
@@ -35,7 +37,7 @@ pub(crate) struct Curve {
     /// The driver's value and the values of the variables at each point.
     pub(crate) points: Vec<(f64, Vec<f64>)>,
     /// Whether the last point is the first one again, after full turns of the driver.
-    closes: bool,
+    pub(crate) closes: bool,
 }
 
 impl Curve {
@@ -44,11 +46,6 @@ impl Curve {
             points: vec![(driver, values)],
             closes: false,
         }
-    }
-
-    /// Returns whether the curve needs further points: it is open and covers fewer than [`TURNS`].
-    pub(crate) fn is_short(&self) -> bool {
-        !self.closes && self.points.len() <= TURNS * STEPS + 1
     }
 
     /// Closes the curve if its last two points, after full turns, are the first two again. One point

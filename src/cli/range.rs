@@ -91,6 +91,10 @@ impl Range {
         for &driver in &drivers {
             let start = solver.pose().drivers[driver.index()];
             let range = solver.range(driver, &settings);
+            if let Some(why) = out_of_reach(&driven, driver, start, bounds, &range) {
+                let file = input.source.name().to_owned();
+                return Err(Error::DeadPoint { file, why });
+            }
             let derived = DerivedRange::all(&mut solver, driver, &range, self.speed);
             describe(&mut text, &driven, driver, start, &range, &derived);
             if driven.has_dynamics() {
@@ -146,6 +150,11 @@ impl Range {
             return Ok(vec![driver_named(mechanism, name)?]);
         }
         let count = mechanism.drivers.len();
+        if count == 0 {
+            return Err(Error::Usage(
+                "range: the mechanism has no driver".to_owned(),
+            ));
+        }
         if count > 1 && (self.csv.is_some() || self.plot.is_some()) {
             return Err(Error::Usage(
                 "there are several drivers: --csv and --plot need one, named by --driver"
@@ -159,6 +168,29 @@ impl Range {
         }
         Ok((0..count).map(DriverId).collect())
     }
+}
+
+/// Returns the reason why a range has no poses: from its start the driver does not get to the
+/// bounds.
+fn out_of_reach(
+    mechanism: &Mechanism,
+    driver: DriverId,
+    start: f64,
+    bounds: [Option<f64>; 2],
+    range: &Motion,
+) -> Option<String> {
+    let (option, value, end) = match bounds {
+        _ if !range.samples.is_empty() => return None,
+        [Some(from), _] if start < from => ("--from", from, &range.upper),
+        [_, to] => ("--to", to?, &range.lower),
+    };
+    let of_driver = &mechanism.drivers[driver.index()];
+    let value = with_unit(of_driver.coordinate.kind, value);
+    let end = end_text(end, of_driver, driver);
+    let name = &of_driver.name;
+    Some(format!(
+        "{name} does not get to {option}, {value}: it ends at {end}"
+    ))
 }
 
 fn describe(

@@ -167,7 +167,8 @@ fn table(
             [deviation.worst, deviation.statistical].map(|value| scientific(value * factor, 3));
         let largest = deviation.parts.iter().enumerate();
         let largest = largest.max_by(|a, b| a.1.total_cmp(b.1));
-        let largest = largest.filter(|(_, part)| **part > 0.0);
+        // An infinite derivative has no parts.
+        let largest = largest.filter(|(_, part)| **part > 0.0 && part.is_finite());
         let largest = largest.map_or_else(String::new, |(index, part)| {
             let name = &mechanism.parameters[tolerances[index].0.index()].name;
             format!("{name} {:.0} %", 100.0 * part / deviation.worst)

@@ -105,6 +105,41 @@ fn range_tells_the_limits() {
 }
 
 #[test]
+fn a_range_without_poses_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, csv] = ["welded.toml", "range.csv"].map(|name| folder.path().join(name));
+    let welded = r#"
+        format = 1
+        name = "welded"
+        ground.markers.O = [0, 0]
+        bodies.plate.markers.O = [0, 0]
+        joints.O = { type = "weld", markers = ["ground.O", "plate.O"] }
+    "#;
+    std::fs::write(&file, welded).unwrap();
+    let [file, table] = [&file, &csv].map(|path| path.to_str().unwrap());
+    let message = stderr(&biela(&["range", file, "--csv", table]).code(2));
+    assert_eq!(message, "error: range: the mechanism has no driver\n");
+    // The side goes from 0.15 m to 0.65 m.
+    for (option, value, limit) in [("--from", "0.7", "0.65"), ("--to", "0.1", "0.15")] {
+        let arguments = [
+            "range",
+            "mechanisms/tlv.toml",
+            option,
+            value,
+            "--csv",
+            table,
+        ];
+        let message = stderr(&biela(&arguments).code(1));
+        let expected = format!(
+            "error: mechanisms/tlv.toml: side_length does not get to {option}, {value} m: it ends at \
+             {limit} m: dead point, where body `arm` and body `rod` line up\n"
+        );
+        assert_eq!(message, expected);
+    }
+    assert!(!csv.exists());
+}
+
+#[test]
 fn bounds_that_look_like_degrees_are_warned_of() {
     let warning = |option: &str| {
         format!(

@@ -114,6 +114,14 @@ fn times_without_a_value_are_passed_over() {
     );
 }
 
+/// The root has an infinite slope at zero.
+#[test]
+fn an_infinite_deviation_has_no_parts() {
+    let text = format!("{ARM}\n[measures]\nroot = {{ value = 'sqrt(a - 0.3)', unit = 'm' }}\n");
+    let row = row_of(&text, "root", &["--stop", "0"]);
+    assert_eq!(&row[1..], ["inf", "inf", "mm", "0"]);
+}
+
 /// A point mass m at the end of an arm that holds it: the effort is m g a cos u.
 #[test]
 fn forces_have_tolerances() {

@@ -43,6 +43,37 @@ def test_a_function_with_free_timing_is_met(four_bar):
     assert_allclose(run["rocker.phi"], [2.2, 2.4, 2.6], atol=1e-9)
 
 
+def test_a_function_beyond_a_turning_point_is_met(four_bar):
+    """The rocker of the file swings to 2.82 rad: at the turning point the timing has no effect, and
+    the base has to grow."""
+    found = biela.fit(four_bar, biela.Target({"rocker.phi": [3.0]}, free="crank_angle"), ["base"])
+    (timing,) = found.timing
+    run = found.mechanism.run(drive={"crank_angle": timing})
+    assert_allclose(run["rocker.phi"], [3.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("target", [[0.8, 1.9], [-1.0, 2.0], [4.0, 4.0]])
+def test_fixed_parameters_have_the_nearest_timing(generator, target):
+    """Against the least distance from 20,000 poses of the path, and the parabola through the three
+    nearest."""
+    theta = np.linspace(0.5, 0.5 + 2 * np.pi, 20_000, endpoint=False)
+    path = generator.run(drive={"theta": theta}, variables=["coupler.P"])
+    gaps = (path["coupler.P.x"] - target[0]) ** 2 + (path["coupler.P.y"] - target[1]) ** 2
+    least = gaps.argmin()
+    before, at, after = gaps[least - 1 : least + 2]
+    expected = at - (after - before) ** 2 / (8 * (before - 2 * at + after))
+    for free, bounds in ([], {}), (["px"], {"px": (1.0, 1.0)}):
+        found = biela.fit(generator, biela.points("coupler.P", [target], free="theta"), free, bounds)
+        # Third derivatives of some metres squared, steps of 3e-4.
+        assert_allclose(found.cost, expected, rtol=1e-8)
+
+
+def test_timing_goes_on_where_parameters_have_no_effect(mechanism):
+    """A wheel on a track, farther than the search looks first: the angle alone meets it."""
+    target = biela.Target({"wheel.x": [5.0]}, free="turn")
+    assert biela.fit(mechanism("rolling_wheel"), target, ["wheel_radius"]).cost < 1e-24
+
+
 def test_derivatives_are_those_of_the_residuals(four_bar):
     targets = [
         biela.points("coupler.P", [[0.1, 0.2], [0.12, 0.21]], drive={"crank_angle": [1.0, 1.4]}),
@@ -54,7 +85,7 @@ def test_derivatives_are_those_of_the_residuals(four_bar):
     at = np.array(attempt.start)
 
     def evaluate(unknowns):
-        _, _, found = attempt.go(unknowns.tolist(), False)
+        _, _, _, found = attempt.go(unknowns.tolist(), False)
         return found, attempt.keep().reshape(len(found), -1)
 
     assert len(at) == 4
@@ -176,7 +207,7 @@ class Point:
     start = (1.0,)
 
     def go(self, unknowns, _nearest):
-        return (np.array(unknowns), [], np.array([3.0])) if unknowns == [1.0] else None
+        return (np.array(unknowns), [], [], np.array([3.0])) if unknowns == [1.0] else None
 
     def keep(self):
         return np.array([2.0])
@@ -196,6 +227,17 @@ def test_a_fit_without_scipy_names_the_package(four_bar, monkeypatch):
     target = biela.Target({"rocker.phi": [2.2]}, drive={"crank_angle": [1.0]})
     with pytest.raises(biela.UsageError, match="fit needs the package SciPy: pip install scipy"):
         biela.fit(four_bar, target, ["base"])
+
+
+def test_a_start_without_derivatives_is_left_out():
+    """The root has an infinite slope at its start."""
+    text = (ROOT / "examples" / "path_generator.toml").read_text()
+    root = biela.loads(f'{text}\n[measures]\nroot = {{ value = "sqrt(abs(x0))", unit = "1" }}\n')
+    target = biela.Target({"root": [0.5]}, {"theta": [0.5]})
+    with pytest.raises(biela.AssemblyError, match="reach all targets with finite derivatives"):
+        biela.fit(root, target, ["x0"], {"x0": (-1.0, 1.0)})
+    found = biela.fit(root, target, ["x0"], {"x0": (-1.0, 1.0)}, starts=3, samples=20)
+    assert_allclose(abs(found.parameters["x0"]), 0.25, rtol=1e-9)
 
 
 def test_equal_bounds_fix_a_parameter(four_bar):
@@ -250,7 +292,7 @@ def test_a_path_that_closes_after_two_turns_is_followed(mechanism, angles, met):
     problem = Problem(geared, target, ["link"], {}, None)
     costs = [cost for _, _, cost in problem._inner.costs(problem.own)]
     attempt = problem._inner.attempt(problem.own.tolist())
-    _, _, residuals = attempt.go(attempt.start, False)
+    _, _, _, residuals = attempt.go(attempt.start, False)
     # Rounding of a few 1e-16 in squares of some centimetres.
     assert min(abs(cost - residuals @ residuals) for cost in costs) < 1e-15
     assert (residuals @ residuals < 1e-24) == met
@@ -262,10 +304,20 @@ def test_an_angle_that_winds_has_the_value_of_its_turn(generator):
     target = biela.Target({"crank.phi": [6.0, 7.5, 1.0]}, free="theta", in_order=True)
     problem = Problem(generator, target, ["r2"], {}, None)
     attempt = problem._inner.attempt(problem.own.tolist())
-    _, _, residuals = attempt.go(attempt.start, False)
+    _, _, _, residuals = attempt.go(attempt.start, False)
     ((_, _, cost), *_) = problem._inner.costs(problem.own)
     # Rounding of some 1e-16 in squares of radians.
     assert_allclose(residuals @ residuals, cost, atol=1e-14)
+
+
+@pytest.mark.parametrize("x", [1.0, -1.0])
+def test_a_path_that_does_not_close_is_followed_both_ways(mechanism, x):
+    """A wheel on a track, three radians from its start."""
+    wheel = mechanism("rolling_wheel")
+    found = biela.fit(wheel, biela.Target({"wheel.x": [x]}, free="turn"), ["wheel_radius"])
+    (timing,) = found.timing
+    run = found.mechanism.run(drive={"turn": timing})
+    assert found.cost < 1e-24 and abs(run["wheel.x"][0] - x) < 1e-12
 
 
 @pytest.mark.parametrize("in_order", [False, True])

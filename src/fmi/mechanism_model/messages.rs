@@ -86,7 +86,12 @@ impl MechanismModel {
                 let structure = self.solver.structure();
                 let free = point.free.iter().enumerate();
                 free.filter(|(_, motion)| **motion != 0.0)
-                    .any(|(column, _)| structure.dependencies(column).drivers.contains(&DriverId(driver)))
+                    .any(|(column, _)| {
+                        structure
+                            .dependencies(column)
+                            .drivers
+                            .contains(&DriverId(driver))
+                    })
             }
             Reason::Jump(jumping) => jumping.index() == driver,
             Reason::Value(_) => !self.path.moves_parameters(),
