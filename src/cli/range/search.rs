@@ -29,6 +29,10 @@ const NEAR: f64 = 1e-5;
 /// Part of the range below which a place is zero: a flat maximum has half of the digits.
 const ROUNDING: f64 = 1e-7;
 
+/// Least ratio of a pole to a size that nine in ten samples keep below: a pole of a square root is
+/// some ten thousand times as high where the search ends, rounding is as high as other rounding.
+const TALL: f64 = 100.0;
+
 /// Returns the largest size among samples, ascending in the driver's value, and between the
 /// neighbours of their highest peaks, where `at` gives it; `None` without any. Sizes that do not
 /// exist are `None`.
@@ -43,6 +47,7 @@ pub(super) fn largest<T: Copy>(
             && (index == 0 || of(index) > of(index - 1))
             && (index == last || of(index) >= of(index + 1))
     };
+    let usual = usual(samples);
     let rounding = ROUNDING * (samples[last].0 - samples[0].0);
     let rounded = |place: f64| if place.abs() < rounding { 0.0 } else { place };
     let mut peaks: Vec<usize> = (0..=last).filter(is_peak).collect();
@@ -50,7 +55,7 @@ pub(super) fn largest<T: Copy>(
     let mut most = None;
     for &peak in peaks.iter().take(MOST_PEAKS) {
         let beside = [peak.saturating_sub(1), last.min(peak + 1)];
-        match climb(samples, peak, beside, &mut at)? {
+        match climb(samples, peak, beside, usual, &mut at)? {
             Largest::Value(found, there) if size(Some(found)) > size(most.map(|(m, _)| m)) => {
                 most = Some((found, there));
             }
@@ -66,12 +71,23 @@ fn size<T>(of: Option<Measured<T>>) -> f64 {
     of.map_or(f64::NEG_INFINITY, |(size, _)| size)
 }
 
+/// Returns a size that nine in ten samples keep below, without regard to sign; those of zero do not
+/// count.
+fn usual<T: Copy>(samples: &[(f64, Option<Measured<T>>)]) -> f64 {
+    let sizes = samples.iter().filter_map(|(_, sample)| *sample);
+    let sizes = sizes.map(|(size, _)| size.abs());
+    let mut sizes: Vec<f64> = sizes.filter(|size| *size > 0.0).collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.get(9 * sizes.len() / 10).copied().unwrap_or(0.0)
+}
+
 /// Returns the largest size between the samples beside a peak, or at the peak, by golden section:
 /// right where there is one peak. `None` if the peak has no size.
 fn climb<T: Copy>(
     samples: &[(f64, Option<Measured<T>>)],
     peak: usize,
     beside: [usize; 2],
+    usual: f64,
     at: &mut impl FnMut(f64) -> Option<Measured<T>>,
 ) -> Option<Largest<T>> {
     let [low, high] = beside.map(|index| samples[index].0);
@@ -107,11 +123,13 @@ fn climb<T: Copy>(
     let others = others.filter_map(|index| samples[index].1);
     let around = others.map(|(other, _)| other.abs()).reduce(f64::min);
     let around = around.unwrap_or(0.0).max(near.abs());
-    Some(if near.is_finite() && most.0 - near > around {
-        Largest::Unbounded(place)
-    } else {
-        Largest::Value(most, place)
-    })
+    Some(
+        if near.is_finite() && most.0 - near > around && most.0 > TALL * usual {
+            Largest::Unbounded(place)
+        } else {
+            Largest::Value(most, place)
+        },
+    )
 }
 
 #[cfg(test)]
@@ -168,6 +186,22 @@ mod tests {
                     matches!(found, Some(Largest::Unbounded(p)) if (p - at).abs() < 1e-6);
                 assert!(is_there, "{at}, {power}: {found:?}");
             }
+        }
+    }
+
+    #[test]
+    fn rounding_is_no_pole() {
+        // A quantity that is zero but for rounding, everywhere and at some places only.
+        for least in [-1.0, 0.98] {
+            let noise = |x: f64| (1e9 * x).sin();
+            let found = over(|x| {
+                if noise(x) > least {
+                    1e-17 * noise(2.0 * x)
+                } else {
+                    0.0
+                }
+            });
+            assert!(matches!(found, Some(Largest::Value(..))), "{found:?}");
         }
     }
 
