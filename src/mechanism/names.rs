@@ -33,18 +33,78 @@ pub(super) fn is_device(name: &str) -> bool {
     ["con", "prn", "aux", "nul"].iter().any(is) || ["com", "lpt"].iter().any(is_port)
 }
 
-/// Words of C11 that are no identifiers. `_Bool` and its like are not written by accident.
-pub(super) const C_KEYWORDS: [&str; 34] = [
-    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
-    "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
-    "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
-    "union", "unsigned", "void", "volatile", "while",
+/// Words of C, up to C23.
+pub(super) const C_KEYWORDS: [&str; 59] = [
+    "_Alignas",
+    "_Alignof",
+    "_Atomic",
+    "_BitInt",
+    "_Bool",
+    "_Complex",
+    "_Decimal128",
+    "_Decimal32",
+    "_Decimal64",
+    "_Generic",
+    "_Imaginary",
+    "_Noreturn",
+    "_Static_assert",
+    "_Thread_local",
+    "alignas",
+    "alignof",
+    "auto",
+    "bool",
+    "break",
+    "case",
+    "char",
+    "const",
+    "constexpr",
+    "continue",
+    "default",
+    "do",
+    "double",
+    "else",
+    "enum",
+    "extern",
+    "false",
+    "float",
+    "for",
+    "goto",
+    "if",
+    "inline",
+    "int",
+    "long",
+    "nullptr",
+    "register",
+    "restrict",
+    "return",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "static_assert",
+    "struct",
+    "switch",
+    "thread_local",
+    "true",
+    "typedef",
+    "typeof",
+    "typeof_unqual",
+    "union",
+    "unsigned",
+    "void",
+    "volatile",
+    "while",
 ];
 
-/// Whether a mechanism may have this name: a C identifier that is no device of Windows.
+/// Length of the longest name of a mechanism: files in the FMU are called so, whose names have at
+/// most 255 characters with their extension.
+pub(super) const MOST_CHARACTERS: usize = 240;
+
+/// Whether a mechanism may have this name: a C identifier that is no device of Windows, and no
+/// longer than a file's name.
 #[must_use]
 pub fn is_identifier(name: &str) -> bool {
-    is_c_identifier(name) && !is_device(name)
+    is_c_identifier(name) && !is_device(name) && name.len() <= MOST_CHARACTERS
 }
 
 /// Whether `name` is an identifier of the C language and none of its words.

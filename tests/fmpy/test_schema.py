@@ -21,6 +21,7 @@ WRONG = {
     "illegal-name",
     "illegal-name_device",
     "illegal-name_keyword",
+    "illegal-name_long",
     "illegal-value",
     "missing-key",
     "no-bodies",

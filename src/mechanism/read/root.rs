@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use crate::mechanism::diagnostic::code;
 #[cfg(feature = "cli")]
 use crate::mechanism::names::C_KEYWORDS;
-use crate::mechanism::names::{is_c_identifier, is_device};
+use crate::mechanism::names::{MOST_CHARACTERS, is_c_identifier, is_device};
 use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
 
@@ -114,12 +114,23 @@ impl<'a> Kind<'a> for ModelName {
                 .suggest(help);
             return None;
         }
+        if name.len() > MOST_CHARACTERS {
+            let message = format!(
+                "the mechanism's name has {} characters, at most {MOST_CHARACTERS} are possible",
+                name.len()
+            );
+            context
+                .error(code::ILLEGAL_NAME, item.span(), message)
+                .suggest("files in the FMU are called so; choose a shorter one");
+            return None;
+        }
         Some(name.to_owned())
     }
 
     schema! {
         {
             "type": "string",
+            "maxLength": MOST_CHARACTERS,
             "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
             "not": { "anyOf": [{ "enum": C_KEYWORDS.as_slice() }, { "pattern": DEVICE }] },
         }
