@@ -19,12 +19,15 @@ pub(super) struct Motion {
     /// Value, velocity and acceleration of each driver.
     pub(super) driver_rates: Vec<Jet>,
     forces: Option<ActingForces>,
-    /// Singular positions that are near or were passed, not told yet.
+    /// Singular positions that are near or were passed, contacts that pull, drivers beyond their
+    /// limits: not told yet.
     pub(super) notices: Vec<Message>,
     path: Path,
     signals: Signals,
     /// Whether a notice told of the singular position that is near.
     near_singular: bool,
+    /// Whether each driver is beyond its limits.
+    beyond: Vec<bool>,
 }
 
 /// Forces of a run; inputs of forces that no option sets are zero.
@@ -51,6 +54,7 @@ impl Motion {
         let mut motion = Self {
             rates: Rates::new(start.q.len()),
             driver_rates: start.drivers.iter().map(|u| Jet::constant(*u)).collect(),
+            beyond: vec![false; start.drivers.len()],
             solver,
             notices: Vec::new(),
             forces: None,
@@ -58,6 +62,7 @@ impl Motion {
             signals,
             near_singular: false,
         };
+        motion.watch_limits();
         motion.solve_rates()?;
         Ok(motion)
     }
@@ -207,7 +212,18 @@ impl Motion {
             let notice = format!("t = {time} s: {passed}");
             self.notices.push(Message::Note(notice));
         }
+        self.watch_limits();
         Ok(())
+    }
+
+    /// Notes drivers that go beyond their limits.
+    fn watch_limits(&mut self) {
+        let pose = self.solver.pose();
+        let drivers = self.solver.mechanism().drivers.iter();
+        for ((driver, value), beyond) in drivers.zip(&pose.drivers).zip(&mut self.beyond) {
+            let excursion = driver.excursion(*value, pose.time, beyond);
+            self.notices.extend(excursion.map(Message::Warning));
+        }
     }
 
     /// Says what stops the mechanism, when, and at which values of the moving drivers.

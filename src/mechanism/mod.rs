@@ -321,6 +321,22 @@ impl Driver {
             DriverSource::Motion(motion) => Some(motion),
         }
     }
+
+    /// Describes that a value \[m or rad\] at `time` \[s\] has gone beyond a limit. `beyond`, which
+    /// this sets, tells whether the value before was beyond one: an excursion is told once.
+    pub fn excursion(&self, value: f64, time: f64, beyond: &mut bool) -> Option<String> {
+        let above = self.max.filter(|max| value > *max).map(|max| ("max", max));
+        let below = self.min.filter(|min| value < *min).map(|min| ("min", min));
+        let exceeded = above.or(below);
+        let was_beyond = std::mem::replace(beyond, exceeded.is_some());
+        let (key, limit) = exceeded.filter(|_| !was_beyond)?;
+        let [value, limit] = [value, limit].map(|value| self.coordinate.kind.show(value));
+        Some(format!(
+            "t = {time} s: driver `{}` is at {value}, beyond its `{key}` = {limit}; the mechanism \
+             follows it",
+            self.name
+        ))
+    }
 }
 
 /// Source of a driver's value.

@@ -54,6 +54,38 @@ fn a_motion_of_the_file_gives_way_to_one_of_the_command_line() {
     assert_eq!(rows.next(), Some(Some("0.2")));
 }
 
+/// Between samples 0.1 s apart, the crank swings from 60° by up to 30° both ways.
+#[test]
+fn each_excursion_beyond_a_limit_is_warned_of_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let limited = [(
+        "start = \"60*deg\"",
+        "start = \"60*deg\", min = \"45*deg\", max = \"80*deg\"",
+    )];
+    let file = altered(folder.path(), "four_bar", &limited);
+    let drive = "crank_angle = 60*deg + 30*deg*sin(2*pi*t)";
+    let run = biela(&[
+        "run", &file, "--drive", drive, "--stop", "2", "--step", "0.1",
+    ])
+    .code(0);
+    let told = stderr(&run);
+    let told: Vec<&str> = told
+        .lines()
+        .filter(|line| line.contains("beyond its"))
+        .collect();
+    let expected = [
+        ("0.2", "max"),
+        ("0.6", "min"),
+        ("1.2", "max"),
+        ("1.6", "min"),
+    ];
+    assert_eq!(told.len(), expected.len(), "{told:?}");
+    for (line, (time, key)) in told.iter().zip(expected) {
+        assert!(line.starts_with(&format!("warning: t = {time}")), "{line}");
+        assert!(line.contains(&format!("beyond its `{key}` = ")), "{line}");
+    }
+}
+
 #[test]
 fn run_keeps_the_assembly_mode_however_far_the_start_is() {
     let folder = tempfile::tempdir().unwrap();

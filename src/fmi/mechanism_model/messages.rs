@@ -174,8 +174,8 @@ impl MechanismModel {
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             let (input, monitor) = (&self.course.inputs[index], &mut self.course.monitors[index]);
             let value = self.solver.pose().drivers[index];
-            if monitor.goes_beyond(value, [driver.min, driver.max]) {
-                log.advise(|| describe_excursion(driver, value, start + h));
+            if let Some(message) = driver.excursion(value, start + h, &mut monitor.beyond) {
+                log.advise(|| message);
             }
             if driver.motion().is_some() {
                 continue;
@@ -225,18 +225,6 @@ impl MechanismModel {
             log.write(Status::Ok, Category::Solver, &message);
         }
     }
-}
-
-fn describe_excursion(driver: &Driver, value: f64, time: f64) -> String {
-    let above = driver.max.filter(|max| value > *max);
-    let (name, limit) = above.map_or(("min", driver.min), |max| ("max", Some(max)));
-    let show = |value| driver.coordinate.kind.show(value);
-    format!(
-        "t = {time} s: driver `{}` is at {}, beyond its `{name}` = {}; the mechanism follows it",
-        driver.name,
-        show(value),
-        limit.map(show).unwrap_or_default()
-    )
 }
 
 fn describe_source(driver: &Driver, order: Order, source: Source, time: f64) -> String {

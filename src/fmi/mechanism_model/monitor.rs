@@ -18,7 +18,7 @@ pub(super) struct Monitor {
     /// Whether the driver has fallen by more than half a turn within one step.
     fell: bool,
     /// Whether the driver is beyond its limits.
-    beyond: bool,
+    pub(super) beyond: bool,
 }
 
 /// A given rate that contradicts the motion.
@@ -83,13 +83,6 @@ impl Monitor {
     pub(super) fn falls(&mut self, by: f64, last: f64) -> bool {
         let falls = by < -PI || by > PI && last < 0.0;
         falls && !std::mem::replace(&mut self.fell, true)
-    }
-
-    /// Returns whether the driver goes beyond its limits with this value.
-    pub(super) fn goes_beyond(&mut self, value: f64, [min, max]: [Option<f64>; 2]) -> bool {
-        let beyond = min.is_some_and(|min| value < min) || max.is_some_and(|max| value > max);
-        let was_beyond = std::mem::replace(&mut self.beyond, beyond);
-        beyond && !was_beyond
     }
 
     /// Returns the order and the source of each rate that comes from another one than at the last
@@ -167,13 +160,5 @@ mod tests {
         // A jump of the position contradicts in one step only.
         let jump = |t: f64| t + f64::from(u8::from(t > 1.0));
         assert_eq!(contradictions(jump, |_| 1.0, 0.1), []);
-    }
-
-    #[test]
-    fn an_excursion_beyond_a_limit_is_reported_once() {
-        let mut monitor = Monitor::default();
-        let limits = [Some(0.1), Some(0.5)];
-        let beyond = [0.2, 0.6, 0.7, 0.5, 0.51, 0.05].map(|v| monitor.goes_beyond(v, limits));
-        assert_eq!(beyond, [false, true, false, false, true, false]);
     }
 }
