@@ -146,7 +146,11 @@ def fit(
     (0.11, 0.29)
     """
     starts, samples = _count("starts", starts, 1), _count("samples", samples)
-    variations = _count("variations", variations)
+    variations, seed = _count("variations", variations), _count("seed", seed)
+    for name, value in {"tolerance": tolerance, "stop_at": stop_at}.items():
+        number = _numbers("fit", value, name)
+        if number.ndim or not np.isfinite(number):
+            raise UsageError(f"fit: expected a finite number as `{name}`; found {value!r}")
     problem = Problem(mechanism, targets, free, bounds or {}, turns, tolerance, stop_at)
     random = np.random.default_rng(seed)
     attempts = problem.attempts(starts, samples, random)
