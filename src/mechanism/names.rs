@@ -33,68 +33,17 @@ pub(super) fn is_device(name: &str) -> bool {
     ["con", "prn", "aux", "nul"].iter().any(is) || ["com", "lpt"].iter().any(is_port)
 }
 
-/// Words of C, up to C23.
-pub(super) const C_KEYWORDS: [&str; 59] = [
-    "_Alignas",
-    "_Alignof",
-    "_Atomic",
-    "_BitInt",
-    "_Bool",
-    "_Complex",
-    "_Decimal128",
-    "_Decimal32",
-    "_Decimal64",
-    "_Generic",
-    "_Imaginary",
-    "_Noreturn",
-    "_Static_assert",
-    "_Thread_local",
-    "alignas",
-    "alignof",
-    "auto",
-    "bool",
-    "break",
-    "case",
-    "char",
-    "const",
-    "constexpr",
-    "continue",
-    "default",
-    "do",
-    "double",
-    "else",
-    "enum",
-    "extern",
-    "false",
-    "float",
-    "for",
-    "goto",
-    "if",
-    "inline",
-    "int",
-    "long",
-    "nullptr",
-    "register",
-    "restrict",
-    "return",
-    "short",
-    "signed",
-    "sizeof",
-    "static",
-    "static_assert",
-    "struct",
-    "switch",
-    "thread_local",
-    "true",
-    "typedef",
-    "typeof",
-    "typeof_unqual",
-    "union",
-    "unsigned",
-    "void",
-    "volatile",
-    "while",
-];
+/// Returns the words of C, up to C23.
+pub(super) fn c_keywords() -> impl Iterator<Item = &'static str> {
+    "\
+    _Alignas _Alignof _Atomic _BitInt _Bool _Complex _Decimal128 _Decimal32 _Decimal64 \
+    _Generic _Imaginary _Noreturn _Static_assert _Thread_local alignas alignof auto bool break \
+    case char const constexpr continue default do double else enum extern false float for goto \
+    if inline int long nullptr register restrict return short signed sizeof static \
+    static_assert struct switch thread_local true typedef typeof typeof_unqual union unsigned \
+    void volatile while"
+        .split(' ')
+}
 
 /// Length of the longest name of a mechanism: files in the FMU are called so, whose names have at
 /// most 255 characters with their extension.
@@ -111,7 +60,7 @@ pub fn is_identifier(name: &str) -> bool {
 pub(super) fn is_c_identifier(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        && !C_KEYWORDS.contains(&name)
+        && !c_keywords().any(|word| word == name)
 }
 
 /// Names with their meanings, and a bounded number of suggestions for wrong ones.

@@ -46,12 +46,10 @@ const COORDINATE: Word<CoordinateKind> = Word::new("coordinate", code::UNKNOWN_C
         ("distance", CoordinateKind::Distance),
     ]
 })
-.with_synonyms(|| {
-    vec![
-        ("rotation", "angle"),
-        ("phi", "angle"),
-        ("length", "distance"),
-    ]
+.with_synonyms(|text| match text.to_ascii_lowercase().as_str() {
+    "rotation" | "phi" => Some("angle"),
+    "length" => Some("distance"),
+    _ => None,
 });
 
 impl<'a> Context<'a> {

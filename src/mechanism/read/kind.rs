@@ -159,8 +159,8 @@ pub(super) struct Word<T> {
     code: &'static str,
     /// Returns the words with their meanings.
     words: fn() -> Vec<(&'static str, T)>,
-    /// Returns other terms for the words, each with the word.
-    synonyms: fn() -> Vec<(&'static str, &'static str)>,
+    /// Returns the word that another term stands for.
+    synonym: fn(&str) -> Option<&'static str>,
 }
 
 impl<T> Word<T> {
@@ -173,16 +173,13 @@ impl<T> Word<T> {
             noun,
             code,
             words,
-            synonyms: Vec::new,
+            synonym: |_| None,
         }
     }
 
     /// Returns the choice with other terms for its words, which messages explain.
-    pub(super) const fn with_synonyms(
-        self,
-        synonyms: fn() -> Vec<(&'static str, &'static str)>,
-    ) -> Self {
-        Self { synonyms, ..self }
+    pub(super) const fn with_synonyms(self, synonym: fn(&str) -> Option<&'static str>) -> Self {
+        Self { synonym, ..self }
     }
 
     fn names(&self) -> Vec<&'static str> {
@@ -198,10 +195,8 @@ impl<'a, T> Kind<'a> for Word<T> {
         let meaning = (self.words)().into_iter().find(|(word, _)| *word == text);
         if meaning.is_none() {
             let message = format!("no {} {}", self.noun, quoted(text));
-            let synonyms = (self.synonyms)().into_iter();
-            let mut meant = synonyms.filter(|(term, _)| term.eq_ignore_ascii_case(text));
-            let help = match meant.next() {
-                Some((_, word)) => Some(format!("the word for it here is `{word}`")),
+            let help = match (self.synonym)(text) {
+                Some(word) => Some(format!("the word for it here is `{word}`")),
                 None => names::help(text, &self.names(), &[]),
             };
             context.error(self.code, item.span(), message).help = help;

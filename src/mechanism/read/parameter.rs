@@ -54,31 +54,20 @@ impl Described for AnyParameter {
 const UNIT: Word<Unit> = Word::new("unit", code::UNKNOWN_UNIT, || {
     Unit::ALL.map(|unit| (unit.name, unit)).to_vec()
 })
-.with_synonyms(|| {
-    vec![
-        ("Nm", "N.m"),
-        ("N*m", "N.m"),
-        ("N·m", "N.m"),
-        ("m/s²", "m/s2"),
-        ("m/s^2", "m/s2"),
-        ("rad/s²", "rad/s2"),
-        ("rad/s^2", "rad/s2"),
-        ("kg m²", "kg.m2"),
-        ("kg*m^2", "kg.m2"),
-        ("kg·m²", "kg.m2"),
-        ("kgm2", "kg.m2"),
-        ("Nm/rad", "N.m/rad"),
-        ("N*m/rad", "N.m/rad"),
-        ("N·m/rad", "N.m/rad"),
-        ("Ns/m", "N.s/m"),
-        ("N*s/m", "N.s/m"),
-        ("N·s/m", "N.s/m"),
-        ("Nms/rad", "N.m.s/rad"),
-        ("N*m*s/rad", "N.m.s/rad"),
-        ("N·m·s/rad", "N.m.s/rad"),
-        ("J/s", "W"),
-        ("-", "1"),
-    ]
+.with_synonyms(|text| match text {
+    "J/s" => Some("W"),
+    "-" => Some("1"),
+    _ => {
+        // `Nm`, `N*m`, `m/s²`, `kg m^2`: other signs between the same letters.
+        let letters = |unit: &str| {
+            unit.replace(['.', '*', '·', '^', ' '], "")
+                .replace('²', "2")
+        };
+        let is_meant = |name: &&str| {
+            !name.eq_ignore_ascii_case(text) && letters(name).eq_ignore_ascii_case(&letters(text))
+        };
+        Unit::ALL.iter().map(|unit| unit.name).find(is_meant)
+    }
 });
 
 const DISPLAY_UNIT: Word<DisplayUnit> = Word::new("display unit", code::UNKNOWN_UNIT, || {

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use crate::mechanism::diagnostic::code;
 #[cfg(feature = "cli")]
-use crate::mechanism::names::C_KEYWORDS;
+use crate::mechanism::names::c_keywords;
 use crate::mechanism::names::{MOST_CHARACTERS, is_c_identifier, is_device};
 use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
@@ -132,7 +132,7 @@ impl<'a> Kind<'a> for ModelName {
             "type": "string",
             "maxLength": MOST_CHARACTERS,
             "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
-            "not": { "anyOf": [{ "enum": C_KEYWORDS.as_slice() }, { "pattern": DEVICE }] },
+            "not": { "anyOf": [{ "enum": c_keywords().collect::<Vec<_>>() }, { "pattern": DEVICE }] },
         }
     }
 }

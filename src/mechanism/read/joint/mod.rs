@@ -95,12 +95,11 @@ const JOINT_TYPE: Word<&JointType> = Word::new("joint type", code::UNKNOWN_JOINT
         .map(|joint_type| (joint_type.name, joint_type))
         .to_vec()
 })
-.with_synonyms(|| {
-    let synonyms = |joint_type: &&'static JointType| {
-        let name = joint_type.name;
-        joint_type.synonyms.iter().map(move |term| (*term, name))
-    };
-    JOINT_TYPES.iter().flat_map(synonyms).collect()
+.with_synonyms(|text| {
+    let is_meant = |term: &&str| term.eq_ignore_ascii_case(text);
+    let mut joint_types = JOINT_TYPES.iter();
+    let meant = joint_types.find(|joint_type| joint_type.synonyms.iter().any(is_meant));
+    meant.map(|joint_type| joint_type.name)
 });
 
 impl<'a> Context<'a> {
