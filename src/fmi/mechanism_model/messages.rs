@@ -78,20 +78,15 @@ impl MechanismModel {
         )
     }
 
-    /// Whether a driver may be the cause of a stop: at a singular position one that moves what lines
-    /// up there.
+    /// Returns whether a driver may be the cause of a stop: at a singular position one that moves
+    /// what lines up there.
     fn may_stop(&self, driver: usize, reason: &Reason) -> bool {
         match reason {
             Reason::Singular(point) => {
                 let structure = self.solver.structure();
-                let free = point.free.iter().enumerate();
-                free.filter(|(_, motion)| **motion != 0.0)
-                    .any(|(column, _)| {
-                        structure
-                            .dependencies(column)
-                            .drivers
-                            .contains(&DriverId(driver))
-                    })
+                let moved_by = |column| &structure.dependencies(column).drivers;
+                let mut free = point.free.iter().enumerate();
+                free.any(|(q, motion)| *motion != 0.0 && moved_by(q).contains(&DriverId(driver)))
             }
             Reason::Jump(jumping) => jumping.index() == driver,
             Reason::Value(_) => !self.path.moves_parameters(),
