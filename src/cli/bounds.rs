@@ -49,6 +49,11 @@ impl Bounds {
     }
 }
 
+/// Returns the error of what needs a driver, in a mechanism without any.
+pub(super) fn no_driver(what: &str) -> Error {
+    Error::Usage(format!("{what}: the mechanism has no driver"))
+}
+
 /// Returns the driver of this name.
 pub(super) fn driver_named(mechanism: &Mechanism, name: &str) -> Result<DriverId, Error> {
     mechanism.driver_id(name).ok_or_else(|| {

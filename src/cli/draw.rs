@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
 
-use super::bounds::{Bounds, driver_named};
+use super::bounds::{Bounds, driver_named, no_driver};
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
@@ -127,7 +127,6 @@ impl Draw {
 
     /// Returns the driver that options name or bound.
     fn followed(&self, mechanism: &Mechanism) -> Result<Option<Followed>, Error> {
-        let no_driver = |option| Error::Usage(format!("{option}: the mechanism has no driver"));
         let driver = match &self.driver {
             Some(name) => driver_named(mechanism, name)?,
             None if self.bounds.is_empty() && self.poses > 0 && mechanism.drivers.is_empty() => {

@@ -16,7 +16,7 @@ use forces::describe_largest;
 
 use super::check::scientific;
 
-use super::bounds::{Bounds, driver_named};
+use super::bounds::{Bounds, driver_named, no_driver};
 use super::conditions::Conditions;
 use super::error::Error;
 use super::input::Input;
@@ -151,9 +151,7 @@ impl Range {
         }
         let count = mechanism.drivers.len();
         if count == 0 {
-            return Err(Error::Usage(
-                "range: the mechanism has no driver".to_owned(),
-            ));
+            return Err(no_driver("range"));
         }
         if count > 1 && (self.csv.is_some() || self.plot.is_some()) {
             return Err(Error::Usage(
@@ -179,8 +177,10 @@ fn out_of_reach(
     bounds: [Option<f64>; 2],
     range: &Motion,
 ) -> Option<String> {
+    if !range.samples.is_empty() {
+        return None;
+    }
     let (option, value, end) = match bounds {
-        _ if !range.samples.is_empty() => return None,
         [Some(from), _] if start < from => ("--from", from, &range.upper),
         [_, to] => ("--to", to?, &range.lower),
     };

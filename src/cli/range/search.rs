@@ -54,8 +54,7 @@ pub(super) fn largest<T: Copy>(
     peaks.sort_by(|a, b| of(*b).total_cmp(&of(*a)));
     let mut most = None;
     for &peak in peaks.iter().take(MOST_PEAKS) {
-        let beside = [peak.saturating_sub(1), last.min(peak + 1)];
-        match climb(samples, peak, beside, usual, &mut at)? {
+        match climb(samples, peak, usual, &mut at)? {
             Largest::Value(found, there) if size(Some(found)) > size(most.map(|(m, _)| m)) => {
                 most = Some((found, there));
             }
@@ -86,10 +85,10 @@ fn usual<T: Copy>(samples: &[(f64, Option<Measured<T>>)]) -> f64 {
 fn climb<T: Copy>(
     samples: &[(f64, Option<Measured<T>>)],
     peak: usize,
-    beside: [usize; 2],
     usual: f64,
     at: &mut impl FnMut(f64) -> Option<Measured<T>>,
 ) -> Option<Largest<T>> {
+    let beside = [peak.saturating_sub(1), (samples.len() - 1).min(peak + 1)];
     let [low, high] = beside.map(|index| samples[index].0);
     let width = high - low;
     let [mut a, mut b] = [low, high];
@@ -123,13 +122,12 @@ fn climb<T: Copy>(
     let others = others.filter_map(|index| samples[index].1);
     let around = others.map(|(other, _)| other.abs()).reduce(f64::min);
     let around = around.unwrap_or(0.0).max(near.abs());
-    Some(
-        if near.is_finite() && most.0 - near > around && most.0 > TALL * usual {
-            Largest::Unbounded(place)
-        } else {
-            Largest::Value(most, place)
-        },
-    )
+    let is_pole = near.is_finite() && most.0 - near > around && most.0 > TALL * usual;
+    Some(if is_pole {
+        Largest::Unbounded(place)
+    } else {
+        Largest::Value(most, place)
+    })
 }
 
 #[cfg(test)]
