@@ -61,7 +61,10 @@ class Attempt:
             from scipy.optimize import least_squares
         except ImportError:
             raise UsageError("fit needs the package SciPy: pip install scipy") from None
+        if self._ended:
+            return
         varied = limits.low < limits.high
+        begun = False
 
         def all_of(some: NDArray) -> NDArray:
             parameters = self.parameters.copy()
@@ -87,19 +90,10 @@ class Attempt:
                 raise _Ended
             return found
 
-        if self._ended:
-            return
-        begun = False
         try:
-            if self.residuals is None:
-                if self._try(self.parameters) is None:
-                    raise _Ended
-                self._keep(self.parameters)
-            if self.cost <= limits.stop_at:
+            if self._try(self.parameters) is None:
                 raise _Ended
-            if not varied.any():
-                self._settle(evaluations)
-                raise _Ended
+            derivatives(self.parameters[varied])  # Ends where there is nothing to improve.
             tolerance = max(limits.tolerance, np.finfo(float).eps)
             found = least_squares(
                 residuals,

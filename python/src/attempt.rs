@@ -34,8 +34,8 @@ struct Trial {
     /// The index of the free value that each free value of a driver follows, its own unless it is at
     /// the end of its range; `None` at a limit of the driver. For the unknowns tried last.
     leaders: Vec<Option<usize>>,
-    /// Second derivatives of half the gaps by the free values of drivers; zero or less where none is known.
-    /// For the unknowns tried last.
+    /// Second derivatives of half the gaps by the free values of drivers; zero or less where none
+    /// is known. For the unknowns tried last.
     curvatures: Vec<f64>,
     /// Residuals of the unknowns tried last, by target, then by variable, then by pose.
     residuals: Vec<f64>,
@@ -60,20 +60,9 @@ impl Attempt {
             let trial = &mut *self.trial();
             trial.unknowns = unknowns;
             trial.go(nearest).ok()?;
-            let cost: f64 = trial
-                .residuals
-                .iter()
-                .map(|residual| residual * residual)
-                .sum();
-            cost.is_finite().then(|| {
-                let (leaders, curvatures) = (trial.leaders.clone(), trial.curvatures.clone());
-                (
-                    trial.unknowns.clone(),
-                    leaders,
-                    curvatures,
-                    trial.residuals.clone(),
-                )
-            })
+            let (leaders, curvatures) = (trial.leaders.clone(), trial.curvatures.clone());
+            let (unknowns, residuals) = (trial.unknowns.clone(), trial.residuals.clone());
+            Some((unknowns, leaders, curvatures, residuals))
         })?;
         Some((
             unknowns.into_pyarray(py),
@@ -152,7 +141,8 @@ impl Attempt {
 
 impl Trial {
     /// Moves from the base to the unknowns and sets the residuals there. With `nearest`, free values
-    /// of drivers become those of the nearest poses in their range.
+    /// of drivers become those of the nearest poses in their range. Refuses residuals whose squares
+    /// are beyond all numbers.
     fn go(&mut self, nearest: bool) -> Result<(), Refused> {
         let Self {
             follower,
@@ -206,7 +196,12 @@ impl Trial {
                 leaders.extend(followed.map(|leader| Some(start + leader?)));
             }
         }
-        Ok(())
+        let cost: f64 = residuals.iter().map(|residual| residual * residual).sum();
+        if cost.is_finite() {
+            Ok(())
+        } else {
+            Err(Refused)
+        }
     }
 
     /// Returns the derivatives of the residuals at the unknowns tried last, by residual, then by
