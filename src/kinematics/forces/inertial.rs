@@ -74,6 +74,22 @@ impl<N: Number> Masses<N> {
 }
 
 impl Masses<f64> {
+    /// Adds to what bodies demand that for an acceleration of a driver, along which they move by
+    /// `unit`. Returns the inertia that the driver feels.
+    #[inline]
+    pub(super) fn load(&self, unit: &[f64], acceleration: f64, demand: &mut [f64]) -> f64 {
+        let (units, (demand, _)) = (by_body(unit), demand.as_chunks_mut());
+        let mut inertia = [0.0; 3];
+        for of_body in &self.bodies {
+            let unit = units[of_body.body];
+            let momentum = of_body.momentum(unit);
+            add(&mut inertia, [0, 1, 2].map(|k| unit[k] * momentum[k]));
+            let force = momentum.map(|momentum| momentum * acceleration);
+            add(&mut demand[of_body.body], force);
+        }
+        inertia[0] + inertia[1] + inertia[2]
+    }
+
     /// Checks that gravity and masses have values that they can have.
     ///
     /// # Errors
@@ -158,8 +174,27 @@ impl<N: Number> MassProperties<N> {
     }
 }
 
-/// Returns the entries of one body in a list with an entry per unknown.
+/// Returns a list with an entry per unknown by body, without the unknowns that are no body's.
 #[inline]
-pub(super) fn of(list: &[f64], body: usize) -> [f64; 3] {
-    list.as_chunks().0[body]
+pub(super) fn by_body(list: &[f64]) -> &[[f64; 3]] {
+    list.as_chunks().0
+}
+
+/// Adds a force and a torque.
+#[inline]
+pub(super) fn add(to: &mut [f64; 3], force: [f64; 3]) {
+    for (to, force) in to.iter_mut().zip(force) {
+        *to += force;
+    }
+}
+
+/// Returns the power of forces on bodies in a motion, with an entry per unknown each.
+#[inline]
+pub(super) fn virtual_power(motion: &[f64], forces: &[f64]) -> f64 {
+    // A sum for each coordinate: none waits for another.
+    let mut sums = [0.0; 3];
+    for (motion, force) in by_body(motion).iter().zip(by_body(forces)) {
+        add(&mut sums, [0, 1, 2].map(|k| motion[k] * force[k]));
+    }
+    sums[0] + sums[1] + sums[2]
 }

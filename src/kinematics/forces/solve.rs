@@ -4,7 +4,7 @@ use std::mem;
 use std::sync::Arc;
 
 use super::applied::{AppliedForces, Circumstances};
-use super::inertial::{Masses, of};
+use super::inertial::{Masses, add, by_body, virtual_power};
 use super::quantity::{ForceQuantity, input_places};
 use super::self_stress::SelfStresses;
 use super::wrench::{Contact, ReactionRows};
@@ -194,13 +194,10 @@ impl Forces {
         self.apply_forces(state, motion)?;
         if parts.efforts {
             state.refresh(model)?;
-            self.work.solve_units(model, state);
-            self.begin_efforts();
-            self.load_coasting_bodies(model, state, motion);
-            self.end_efforts(motion.driver_rates)?;
+            self.solve_efforts(model, state, motion)?;
         } else {
-            let q_ddot = motion.rates.acceleration();
-            self.load_bodies(&state.at, motion, |body| of(q_ddot, body), false);
+            let q_ddot = by_body(motion.rates.acceleration());
+            self.load_bodies(&state.at, motion, |body| q_ddot[body]);
         }
         if parts.reactions {
             self.solve_reactions(model, state)?;
@@ -248,19 +245,43 @@ impl Forces {
         Ok(())
     }
 
-    /// Begins the biases, by virtual power, with the share of forces.
-    fn begin_efforts(&mut self) {
-        let Work { demand, units, .. } = &self.work;
-        self.results.drivers.fill(DriverForces::default());
-        if !self.applied.list.is_empty() {
-            for (forces, unit) in self.results.drivers.iter_mut().zip(units) {
-                forces.bias = dot(unit, demand);
-            }
+    /// Completes w for the accelerations that only prescribed motions and velocities cause, then for
+    /// those of inputs, and with both the efforts.
+    ///
+    /// # Errors
+    ///
+    /// [`SINGULAR_HERE`] for values that are not finite.
+    fn solve_efforts(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        motion: KnownMotion<'_>,
+    ) -> Result<(), Error> {
+        self.work.solve_units(model, state);
+        self.load_coasting_bodies(model, state, motion);
+        let Work { demand, units, .. } = &mut self.work;
+        let drivers = &mut self.results.drivers;
+        for (forces, unit) in drivers.iter_mut().zip(&*units) {
+            forces.bias = virtual_power(unit, demand);
+        }
+        for &input in &self.input_drivers {
+            let acceleration = motion.driver_rates[input].second();
+            drivers[input].inertia = self.masses.load(&units[input], acceleration, demand);
+        }
+        let mut sum = 0.0;
+        for ((forces, unit), rates) in drivers.iter_mut().zip(units).zip(motion.driver_rates) {
+            forces.effort = virtual_power(unit, demand);
+            forces.power = forces.effort * rates.first();
+            sum += forces.power + forces.inertia + forces.bias;
+        }
+        if sum.is_finite() {
+            Ok(())
+        } else {
+            Err(SINGULAR_HERE)
         }
     }
 
-    /// Loads the bodies by the accelerations that only prescribed motions and velocities cause, and
-    /// by those of inputs.
+    /// Loads the bodies by the accelerations that only prescribed motions and velocities cause.
     fn load_coasting_bodies(
         &mut self,
         model: &mut Model,
@@ -276,86 +297,45 @@ impl Forces {
             && let Some(coasting) = coasting.next()
         {
             let [first, second] = coasting.derivatives;
-            let (unit, curvature) = (state.tangent.velocity(), state.tangent.acceleration());
+            let [units, curvatures] =
+                [state.tangent.velocity(), state.tangent.acceleration()].map(by_body);
             let square = first * first;
-            let q_ddot = |body| {
-                let (unit, curvature) = (of(unit, body), of(curvature, body));
+            let q_ddot = |body: usize| {
+                let (unit, curvature) = (units[body], curvatures[body]);
                 [0, 1, 2].map(|k| curvature[k] * square + unit[k] * second)
             };
-            self.load_bodies(&state.at, motion, q_ddot, true);
+            self.load_bodies(&state.at, motion, q_ddot);
         } else {
             self.work.driver_rates.clear();
             self.work.driver_rates.extend(coasting);
             let mut rates = mem::take(&mut self.work.rates);
             solve_rates(model, state, &self.work.driver_rates, &mut rates);
-            let q_ddot = rates.acceleration();
-            let q_ddot = |body| of(q_ddot, body);
-            self.load_bodies(&state.at, motion, q_ddot, true);
+            let q_ddot = by_body(rates.acceleration());
+            self.load_bodies(&state.at, motion, |body| q_ddot[body]);
             self.work.rates = rates;
         }
     }
 
-    /// Adds the demand of masses to w and the energies, for these accelerations of each body. With
-    /// `efforts`, adds it to the drivers' forces, and to w that for the accelerations of inputs.
+    /// Adds the demand of masses to w and the energies, for these accelerations of each body.
     fn load_bodies(
         &mut self,
         at: &Configuration,
         motion: KnownMotion<'_>,
         q_ddot: impl Fn(usize) -> [f64; 3],
-        efforts: bool,
     ) {
-        let Work { demand, units, .. } = &mut self.work;
-        let (demand, _) = demand.as_chunks_mut();
-        let Results {
-            drivers, energies, ..
-        } = &mut self.results;
+        let (demand, _) = self.work.demand.as_chunks_mut();
+        let velocities = by_body(motion.rates.velocity());
+        let energies = &mut self.results.energies;
         let gravity = self.masses.gravity;
         for of_body in &mut self.masses.bodies {
             let body = of_body.body;
             let frame = &at.frames()[body];
             of_body.turn([frame.cos, frame.sin]);
-            let velocity = of(motion.rates.velocity(), body);
+            let velocity = velocities[body];
             let own = of_body.energies(frame.origin.into(), velocity, gravity);
             *energies = [energies[0] + own[0], energies[1] + own[1]];
-            let mut force = of_body.demand(velocity[2], q_ddot(body), gravity);
-            if efforts {
-                for (forces, unit) in drivers.iter_mut().zip(&*units) {
-                    forces.bias += dot(&of(unit, body), &force);
-                }
-                for &input in &self.input_drivers {
-                    let unit = of(&units[input], body);
-                    let momentum = of_body.momentum(unit);
-                    drivers[input].inertia += dot(&unit, &momentum);
-                    let acceleration = motion.driver_rates[input].second();
-                    if acceleration != 0.0 {
-                        let share = momentum.map(|momentum| momentum * acceleration);
-                        force = add(force, share);
-                        for (forces, unit) in drivers.iter_mut().zip(&*units) {
-                            forces.effort += dot(&of(unit, body), &share);
-                        }
-                    }
-                }
-            }
-            demand[body] = add(demand[body], force);
-        }
-    }
-
-    /// Ends the efforts, which so far are those that accelerations of inputs demand.
-    ///
-    /// # Errors
-    ///
-    /// [`SINGULAR_HERE`] for values that are not finite.
-    fn end_efforts(&mut self, driver_rates: &[Jet]) -> Result<(), Error> {
-        let mut sum = 0.0;
-        for (forces, rates) in self.results.drivers.iter_mut().zip(driver_rates) {
-            forces.effort += forces.bias;
-            forces.power = forces.effort * rates.first();
-            sum += forces.power + forces.inertia + forces.bias;
-        }
-        if sum.is_finite() {
-            Ok(())
-        } else {
-            Err(SINGULAR_HERE)
+            let force = of_body.demand(velocity[2], q_ddot(body), gravity);
+            add(&mut demand[body], force);
         }
     }
 
@@ -398,9 +378,10 @@ impl Forces {
                 .write_reaction(system, &state.at, joint, multipliers, reaction);
             sum += reaction[0] + reaction[1] + reaction[2];
         }
-        // Zero unless a multiplier is not finite.
-        let excess: f64 = multipliers.iter().map(|multiplier| 0.0 * multiplier).sum();
-        if (sum + excess).is_finite() {
+        for &row in &self.rows.constraints {
+            sum += multipliers[row];
+        }
+        if sum.is_finite() {
             Ok(())
         } else {
             Err(SINGULAR_HERE)
@@ -446,12 +427,4 @@ fn solve_rates(model: &mut Model, state: &mut State, driver_rates: &[Jet], rates
         tangent: rates,
     };
     model.plan.solve_rates(&mut block_state, driver_rates);
-}
-
-fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
