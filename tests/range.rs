@@ -16,7 +16,7 @@ fn range(name: &str) -> (Solver, biela::kinematics::Range) {
     let range = solver.range(DriverId(0), &RangeSettings::default());
     assert_eq!(*solver.pose(), start);
     assert!(range.samples.is_sorted_by(|a, b| a.driver < b.driver));
-    assert!(range.samples.iter().any(|sample| sample.q == start.q));
+    assert!(range.samples.iter().any(|sample| sample.pose == start));
     // Rounding of angles of up to some turns.
     assert!(range.samples.iter().all(|sample| sample.residual < 1e-13));
     (solver, range)

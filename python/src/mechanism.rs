@@ -372,7 +372,7 @@ impl Mechanism {
             column(samples().map(|s| s.rcond).collect()),
             column(
                 samples()
-                    .flat_map(|s| s.q[..poses].iter().copied())
+                    .flat_map(|s| s.pose.q[..poses].iter().copied())
                     .collect(),
             ),
         ))

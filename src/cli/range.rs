@@ -378,7 +378,7 @@ fn table(
         for value in sample.measures.iter().chain(derived) {
             let _ = write!(text, ",{value:?}");
         }
-        for value in &sample.q[..3 * mechanism.bodies.len()] {
+        for value in &sample.pose.q[..3 * mechanism.bodies.len()] {
             let _ = write!(text, ",{value:?}");
         }
     }
@@ -395,7 +395,7 @@ fn has_measures(mechanism: &Mechanism) -> bool {
 fn turning(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> impl Iterator<Item = usize> {
     let is_angle = mechanism.drivers[driver.index()].coordinate.kind.is_angle();
     (0..mechanism.bodies.len()).filter(move |body| {
-        let angle = |s: &Sample| s.q[3 * body + 2];
+        let angle = |s: &Sample| s.pose.q[3 * body + 2];
         let changes = |of: &dyn Fn(&Sample) -> f64| {
             let values: Vec<f64> = range.samples.iter().map(of).collect();
             varies(&values)
@@ -460,7 +460,7 @@ fn chart(
     if !has_measures(mechanism) {
         for body in turning(mechanism, driver, range).take(MOST_BODIES) {
             let name = format!("{}.phi", mechanism.bodies[body].name);
-            add(angle, line(&name, body, angle, &|s| s.q[3 * body + 2]));
+            add(angle, line(&name, body, angle, &|s| s.pose.q[3 * body + 2]));
         }
     }
     let mut panels: Vec<Panel> = panels.into_iter().map(|(_, panel)| panel).collect();

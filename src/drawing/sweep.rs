@@ -104,7 +104,7 @@ pub(super) fn follow(
     let within = |value: f64| (low..=high).contains(&value);
     let samples = range.samples.into_iter();
     let mut poses: Vec<Vec<f64>> = (samples.filter(|sample| within(sample.driver)))
-        .map(|sample| sample.q)
+        .map(|sample| sample.pose.q)
         .collect();
     if poses.is_empty() {
         poses.push(solver.pose().q.clone());

@@ -47,7 +47,7 @@ pub(super) fn driver_ranges(solver: &mut Solver) -> (Vec<Option<DriverRange>>, V
             }
         };
         let ends = [end(&range.lower), end(&range.upper)];
-        poses.extend(range.samples.into_iter().map(|sample| sample.q));
+        poses.extend(range.samples.into_iter().map(|sample| sample.pose.q));
         let turns = ends == [None, None];
         let ends = match ends {
             [Some(low), Some(high)] => [low, high],

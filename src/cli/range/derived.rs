@@ -32,7 +32,7 @@ impl DerivedRange {
         speed: Option<f64>,
     ) -> Vec<Self> {
         let speed = speed.unwrap_or(UNIT_SPEED);
-        let mut follower = Follower::new(solver, driver, speed);
+        let mut follower = Follower::new(solver, driver, range, speed);
         let derived = 0..follower.mechanism.derived.len();
         derived
             .map(|index| Self::new(&mut follower, index, range, speed))

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::kinematics::{Curve, Error, Path, Pose, Rates, Sample, Solver};
+use crate::kinematics::{Curve, Error, Path, Pose, Range, Rates, Sample, Solver};
 use crate::mechanism::{DriverId, Jet, Mechanism, shown};
 
 /// A solver that visits places in the range of a driver; the others are at rest.
@@ -12,13 +12,21 @@ pub(super) struct Follower<'a> {
     driver: DriverId,
     pub(super) rates: Rates,
     pub(super) driver_rates: Vec<Jet>,
+    /// The samples of the range without its ends, where two motions may meet.
+    samples: &'a [Sample],
     home: Pose,
     path: Path,
 }
 
 impl<'a> Follower<'a> {
-    /// Makes a follower of a driver that moves at a speed \[m/s or rad/s\], from the solver's pose.
-    pub(super) fn new(solver: &'a mut Solver, driver: DriverId, speed: f64) -> Self {
+    /// Makes a follower of a driver that moves at a speed \[m/s or rad/s\] in its range from the
+    /// solver's pose.
+    pub(super) fn new(
+        solver: &'a mut Solver,
+        driver: DriverId,
+        range: &'a Range,
+        speed: f64,
+    ) -> Self {
         let mechanism = Arc::clone(solver.mechanism());
         let home = solver.pose().clone();
         let mut driver_rates = vec![Jet::constant(0.0); mechanism.drivers.len()];
@@ -33,6 +41,7 @@ impl<'a> Follower<'a> {
             mechanism,
             driver,
             driver_rates,
+            samples: inner(&range.samples),
             home,
             path,
         }
@@ -44,20 +53,30 @@ impl<'a> Follower<'a> {
     ///
     /// The mechanism has no velocities there.
     pub(super) fn visit(&mut self, sample: &Sample) -> Result<(), Error> {
-        let mut pose = self.home.clone();
-        pose.q.copy_from_slice(&sample.q);
-        pose.drivers[self.driver.index()] = sample.driver;
-        self.solver.restore(&pose);
+        self.solver.restore(&sample.pose);
         self.solve_rates()
     }
 
-    /// Follows the driver to a value. `None` without velocities there, or where it cannot go; then
-    /// it starts from home again, because two motions may meet where it stopped.
+    /// Follows the driver to a value in its range, from where it is or a pose known nearer by. `None`
+    /// without velocities there, or where it cannot go; then it returns to the known pose, because
+    /// two motions may meet where it stopped.
     pub(super) fn follow(&mut self, value: f64) -> Option<()> {
         let index = self.driver.index();
+        let distance = |pose: &Pose| (pose.drivers[index] - value).abs();
+        let poses = self.samples.iter().map(|sample| &sample.pose);
+        let nearest = poses.fold(&self.home, |nearest, pose| {
+            if distance(pose) < distance(nearest) {
+                pose
+            } else {
+                nearest
+            }
+        });
+        if distance(nearest) < distance(self.solver.pose()) {
+            self.solver.restore(nearest);
+        }
         self.path.curves[index] = Curve::held(value, self.solver.pose().drivers[index]);
         if self.solver.track(&self.path).is_err() {
-            self.restore();
+            self.solver.restore(nearest);
             return None;
         }
         self.solve_rates().ok()
@@ -78,6 +97,14 @@ impl<'a> Follower<'a> {
 impl Drop for Follower<'_> {
     fn drop(&mut self) {
         self.restore();
+    }
+}
+
+/// Returns the samples between the first and the last one.
+fn inner(samples: &[Sample]) -> &[Sample] {
+    match samples {
+        [_, inner @ .., _] => inner,
+        _ => &[],
     }
 }
 

@@ -26,10 +26,10 @@ struct Loads<'a> {
 }
 
 impl<'a> Loads<'a> {
-    fn new(solver: &'a mut Solver, driver: DriverId, speed: f64) -> Self {
+    fn new(solver: &'a mut Solver, driver: DriverId, range: &'a Range, speed: f64) -> Self {
         let open = solver.indeterminate();
         let forces = solver.forces();
-        let follower = Follower::new(solver, driver, speed);
+        let follower = Follower::new(solver, driver, range, speed);
         let joints = follower.mechanism.joints.iter().enumerate();
         let joints = joints
             .filter(|(_, joint)| Reported::of(&joint.kind).has(0))
@@ -95,7 +95,7 @@ pub(super) fn describe_largest(
     range: &Range,
     speed: f64,
 ) {
-    let mut loads = Loads::new(solver, driver, speed);
+    let mut loads = Loads::new(solver, driver, range, speed);
     let (mut efforts, mut reactions) = (Vec::new(), Vec::new());
     let (mut missing, mut reason) = (Vec::new(), None);
     for sample in &range.samples {

@@ -77,8 +77,8 @@ pub struct ChangePoint {
 pub struct Sample {
     /// The driver's value \[m or rad\].
     pub driver: f64,
-    /// Generalized coordinates.
-    pub q: Vec<f64>,
+    /// The pose.
+    pub pose: Pose,
     /// Scaled reciprocal condition; see [`Solver::rcond`](crate::kinematics::Solver::rcond).
     pub rcond: f64,
     /// Scaled residual; see [`Solver::residual`](crate::kinematics::Solver::residual).
@@ -303,30 +303,30 @@ impl Explorer<'_> {
                 let interior = best > 0 && best + 1 < samples.len();
                 let refined = interior.then(|| {
                     let around = [best - 1, best + 1].map(|k| samples[k].driver);
-                    self.refine(measure, sign, found.driver, around)
+                    self.refine(measure, sign, &samples[best], around)
                 });
                 let refined = refined.flatten();
                 refined
                     .filter(|refined| sign * refined.value <= sign * found.value)
                     .unwrap_or(found)
             }));
-            self.restore();
         }
+        self.restore();
         extremes
     }
 
     /// Finds the minimum (`sign` 1) or maximum (−1) of a measure between two values of the driver
-    /// by Newton–Raphson on its derivative. `None` where it is not smooth.
+    /// by Newton–Raphson on its derivative, from a sample. `None` where it is not smooth.
     fn refine(
         &mut self,
         measure: usize,
         sign: f64,
-        from: f64,
+        from: &Sample,
         [low, high]: [f64; 2],
     ) -> Option<Extreme> {
-        self.restore();
+        self.state.restore(self.model, &from.pose);
         let mut rates = Rates::new(self.state.pose.q.len());
-        let mut at = from;
+        let mut at = from.driver;
         for _ in 0..NEWTON_STEPS {
             self.track(at).ok()?;
             let unit = |driver| {
@@ -365,7 +365,7 @@ impl Explorer<'_> {
             measures: (self.model.measures.iter())
                 .map(|measure| measure.value(&self.state.at))
                 .collect(),
-            q: self.state.pose.q.clone(),
+            pose: self.state.pose.clone(),
         }
     }
 }
