@@ -33,6 +33,7 @@ WRONG = {
     "unknown-key",
     "unknown-marker",
     "unknown-unit",
+    "unknown-unit_multiple",
     "wheel-sizes",
     "wrong-type",
     "wrong-type_markers",

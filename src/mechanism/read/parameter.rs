@@ -54,21 +54,54 @@ impl Described for AnyParameter {
 const UNIT: Word<Unit> = Word::new("unit", code::UNKNOWN_UNIT, || {
     Unit::ALL.map(|unit| (unit.name, unit)).to_vec()
 })
-.with_synonyms(|text| match text {
-    "J/s" => Some("W"),
-    "-" => Some("1"),
-    _ => {
-        // `Nm`, `N*m`, `m/s²`, `kg m^2`: other signs between the same letters.
-        let letters = |unit: &str| {
-            unit.replace(['.', '*', '·', '^', ' '], "")
-                .replace('²', "2")
-        };
-        let is_meant = |name: &&str| {
-            !name.eq_ignore_ascii_case(text) && letters(name).eq_ignore_ascii_case(&letters(text))
-        };
-        Unit::ALL.iter().map(|unit| unit.name).find(is_meant)
+.with_synonyms(synonym);
+
+/// Signs that stand for a product or a power, or for nothing.
+const SIGNS: [char; 5] = ['.', '*', '·', '^', ' '];
+
+/// Returns the unit that is written in another way: `N.m` of `Nm`.
+fn synonym(text: &str) -> Option<&'static str> {
+    match text {
+        "J/s" => Some("W"),
+        "-" => Some("1"),
+        _ => {
+            // `Nm`, `N*m`, `m/s²`, `kg m^2`: other signs between the same letters.
+            let letters = |unit: &str| unit.replace(SIGNS, "").replace('²', "2");
+            let is_meant = |name: &&str| {
+                !name.eq_ignore_ascii_case(text)
+                    && letters(name).eq_ignore_ascii_case(&letters(text))
+            };
+            Unit::ALL.iter().map(|unit| unit.name).find(is_meant)
+        }
     }
-});
+}
+
+/// Returns the unit of which another one is a decimal multiple: `N` of `kN`, `N/m` of `kN/mm`.
+fn unit_of_multiple(text: &str) -> Option<&'static str> {
+    if Unit::by_name(text).is_some() || synonym(text).is_some() {
+        return None;
+    }
+    let letters = text.replace(SIGNS, "").replace('²', "2");
+    let mut names = Unit::ALL.iter().map(|unit| unit.name);
+    names.find(|name| is_multiple(&letters, name))
+}
+
+/// Whether `letters` are those of the unit `name`, each of its symbols with or without a prefix.
+fn is_multiple(letters: &str, name: &str) -> bool {
+    const PREFIXES: [&str; 15] = [
+        "da", "p", "n", "µ", "μ", "u", "m", "c", "d", "h", "k", "K", "M", "G", "T",
+    ];
+    let rest = name
+        .split_inclusive(['.', '/'])
+        .try_fold(letters, |rest, symbol| {
+            // The kilogram has a prefix already.
+            let symbol = symbol.trim_end_matches('.').trim_start_matches('k');
+            let with = |prefix: &&str| rest.strip_prefix(*prefix)?.strip_prefix(symbol);
+            let with_prefix = PREFIXES.iter().find_map(with);
+            with_prefix.or_else(|| rest.strip_prefix(symbol))
+        });
+    rest == Some("")
+}
 
 const DISPLAY_UNIT: Word<DisplayUnit> = Word::new("display unit", code::UNKNOWN_UNIT, || {
     DisplayUnit::ALL.map(|unit| (unit.name, unit)).to_vec()
@@ -81,8 +114,17 @@ impl<'a> Kind<'a> for SiUnit {
     type Value = Unit;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Unit> {
-        let Some(display) = item.value.get_ref().as_str().and_then(DisplayUnit::by_name) else {
-            return UNIT.read(context, item);
+        let text = item.value.get_ref().as_str();
+        let Some(display) = text.and_then(DisplayUnit::by_name) else {
+            let Some((text, si)) = text.and_then(|text| Some((text, unit_of_multiple(text)?)))
+            else {
+                return UNIT.read(context, item);
+            };
+            let message = format!("no unit {}", quoted(text));
+            context
+                .error(code::UNKNOWN_UNIT, item.span(), message)
+                .suggest(format!("values are SI: give it in `{si}`"));
+            return None;
         };
         let name = display.name;
         let mut units = Unit::ALL.iter();
