@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 
 use super::error::Error;
 use super::message::tell;
-use crate::mechanism::is_identifier;
+use crate::mechanism::{is_identifier, similar_identifier};
 
 /// Write a commented mechanism to start from.
 ///
@@ -97,10 +97,13 @@ static TEMPLATES: [Template; 45] = [
 impl New {
     pub(super) fn run(self) -> Result<(), Error> {
         if !is_identifier(&self.name) {
+            let similar = similar_identifier(&self.name);
+            let example = similar.map(|name| format!("; expected for example `{name}`"));
             return Err(Error::Usage(format!(
                 "`{}` is no name of a mechanism: letters, digits and `_`, not starting with a \
-                 digit, no word of the C language, and no device of Windows such as `con`",
-                self.name
+                 digit, no word of the C language, and no device of Windows such as `con`{}",
+                self.name,
+                example.unwrap_or_default()
             )));
         }
         let template = TEMPLATES.iter().find(|template| template.name == self.from);

@@ -56,6 +56,17 @@ pub fn is_identifier(name: &str) -> bool {
     is_c_identifier(name) && !is_device(name) && name.len() <= MOST_CHARACTERS
 }
 
+/// Returns an identifier like a name that is none, because it is a word of C, a device of Windows or
+/// too long.
+#[must_use]
+pub fn similar_identifier(name: &str) -> Option<String> {
+    /// Length of a name that stays legible.
+    const LEGIBLE: usize = 40;
+    let start = name.get(..LEGIBLE).unwrap_or(name);
+    let similar = [start.to_owned(), format!("{start}_1")];
+    similar.into_iter().find(|similar| is_identifier(similar))
+}
+
 /// Whether `name` is an identifier of the C language and none of its words.
 pub(super) fn is_c_identifier(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')

@@ -62,6 +62,11 @@ fn new_writes_a_mechanism_once() {
             "{message}"
         );
     }
+    let message = stderr(&new(&["int"]).code(2));
+    assert!(
+        message.ends_with("; expected for example `int_1`\n"),
+        "{message}"
+    );
     let message = stderr(&new(&["x", "--from", "five_bar"]).code(2));
     assert!(message.contains("five_bar_robot"), "{message}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);

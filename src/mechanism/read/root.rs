@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use crate::mechanism::diagnostic::code;
 #[cfg(feature = "cli")]
 use crate::mechanism::names::c_keywords;
-use crate::mechanism::names::{MOST_CHARACTERS, is_c_identifier, is_device};
+use crate::mechanism::names::{MOST_CHARACTERS, is_c_identifier, is_device, similar_identifier};
 use crate::mechanism::syntax;
 use crate::mechanism::wording::quoted;
 
@@ -99,32 +99,29 @@ impl<'a> Kind<'a> for ModelName {
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<String> {
         let name = context.text(item.value)?;
         let name_of = |what| format!("the mechanism's name {} is {what}", quoted(name));
-        if !is_c_identifier(name) {
+        let (message, rule) = if !is_c_identifier(name) {
             let message = name_of("not a C identifier");
-            context.error(code::ILLEGAL_NAME, item.span(), message).suggest(
-                "letters, digits and `_`, not starting with a digit, and no word of the C language",
-            );
-            return None;
-        }
-        if is_device(name) {
+            let rule = "letters, digits and `_`, not starting with a digit, and no word of the C \
+                        language";
+            (message, rule)
+        } else if is_device(name) {
             let message = name_of("the name of a device on Windows");
-            let help = format!("no file there can have it; expected for example `{name}_1`");
-            context
-                .error(code::ILLEGAL_NAME, item.span(), message)
-                .suggest(help);
-            return None;
-        }
-        if name.len() > MOST_CHARACTERS {
+            (message, "no file there can have it")
+        } else if name.len() > MOST_CHARACTERS {
             let message = format!(
                 "the mechanism's name has {} characters, at most {MOST_CHARACTERS} are possible",
                 name.len()
             );
-            context
-                .error(code::ILLEGAL_NAME, item.span(), message)
-                .suggest("files in the FMU are called so; choose a shorter one");
-            return None;
-        }
-        Some(name.to_owned())
+            (message, "files in the FMU are called so")
+        } else {
+            return Some(name.to_owned());
+        };
+        let similar = similar_identifier(name);
+        let example = similar.map(|name| format!("; expected for example {}", quoted(&name)));
+        context
+            .error(code::ILLEGAL_NAME, item.span(), message)
+            .suggest(format!("{rule}{}", example.unwrap_or_default()));
+        None
     }
 
     schema! {
