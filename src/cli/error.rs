@@ -20,7 +20,7 @@ pub(super) enum Error {
         file: String,
         error: kinematics::Error,
     },
-    /// A motion met a dead point.
+    /// A motion cannot go on, or cannot start.
     #[error("{file}: {why}")]
     DeadPoint { file: String, why: String },
     /// An argument of the command is wrong.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::error::Error;
 use super::message::{Message, tell};
 use super::render::render;
-use crate::kinematics::{Path, Solver};
+use crate::kinematics::{self, Path, Solver};
 use crate::mechanism::{Diagnostic, Mechanism, Source};
 
 /// A mechanism file that was read without errors.
@@ -47,10 +47,23 @@ impl Input {
     }
 
     /// Returns an error of the kinematics with the name of the file.
-    pub(super) fn error(&self, error: crate::kinematics::Error) -> Error {
+    pub(super) fn error(&self, error: kinematics::Error) -> Error {
         Error::Mechanism {
             file: self.source.name().to_owned(),
             error,
+        }
+    }
+
+    /// Returns an error of a motion that starts at `time` \[s\], with the name of the file, and with
+    /// the time if a motion or a force has no value then.
+    pub(super) fn error_at(&self, time: f64, error: kinematics::Error) -> Error {
+        use kinematics::Error::{NoForce, NoMotion, TooFast};
+        match error {
+            NoMotion { .. } | TooFast { .. } | NoForce { .. } => Error::DeadPoint {
+                file: self.source.name().to_owned(),
+                why: format!("at t = {time} s: {error}"),
+            },
+            _ => self.error(error),
         }
     }
 

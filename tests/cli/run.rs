@@ -86,6 +86,42 @@ fn each_excursion_beyond_a_limit_is_warned_of_once() {
     }
 }
 
+/// A force 1/(t − 3) N has no value at 3 s, and a motion sqrt(2 − t) none after 2 s.
+#[test]
+fn what_has_no_value_at_the_start_is_told_with_the_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pusher.toml");
+    let slide = "[joints]\nway = { type = 'translational', markers = ['ground.O', 'slide.O'] }\n";
+    let along = "coordinate = 'x', markers = ['ground.O', 'slide.O']";
+    let pusher = |motion: &str, force: &str| {
+        let text = format!(
+            "format = 1\nname = 'pusher'\n[ground.markers]\nO = [0, 0]\n[bodies.slide]\n\
+             markers = {{ O = [0, 0] }}\n{slide}[drivers]\nx = {{ {along}, motion = '{motion}' }}\n\
+             [forces]\npush = {{ {along}, value = '{force}' }}\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap()
+    };
+    let refusal = |motion: &str, force: &str, start: &str| {
+        let file = pusher(motion, force);
+        let message = stderr(&biela(&["run", file, "--start", start, "--stop", "5"]).code(1));
+        let message = message.strip_prefix(&format!("error: {file}: "));
+        message.expect("nothing else is told").to_owned()
+    };
+    assert_eq!(
+        refusal("t", "1/(t - 3)", "3"),
+        "at t = 3 s: force `push` has no finite value here\n"
+    );
+    assert_eq!(
+        refusal("sqrt(2 - t)", "1", "3"),
+        "at t = 3 s: driver `x` has no finite value\n"
+    );
+    assert_eq!(
+        refusal("sqrt(2 - t)", "1", "2"),
+        "at t = 2 s: driver `x` has no finite velocity or acceleration\n"
+    );
+}
+
 #[test]
 fn run_keeps_the_assembly_mode_however_far_the_start_is() {
     let folder = tempfile::tempdir().unwrap();
