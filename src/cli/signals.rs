@@ -36,6 +36,7 @@ struct ForceSignal {
 }
 
 /// Place of a column, by the indices of its signal and its order.
+#[derive(PartialEq)]
 enum Place {
     Driver(usize, usize),
     Force(usize),
@@ -66,10 +67,17 @@ impl Signals {
             return Err(format!("the first column is `{found}`; expected `time`"));
         }
         let mut signals = Self::default();
-        let names = header[1..].iter();
-        let places: Vec<Place> = names
-            .map(|name| signals.add_column(name, mechanism))
-            .collect::<Result<_, _>>()?;
+        let mut places: Vec<Place> = Vec::new();
+        for name in &header[1..] {
+            let place = signals.add_column(name, mechanism)?;
+            if let Some(first) = places.iter().position(|known| *known == place) {
+                let [first, second] = [first, places.len()].map(|after_time| after_time + 2);
+                return Err(format!(
+                    "two columns for `{name}`: column {first} and column {second}"
+                ));
+            }
+            places.push(place);
+        }
         if places.is_empty() {
             return Err("it has no column besides `time`".to_owned());
         }
@@ -136,16 +144,17 @@ impl Signals {
         }
     }
 
-    /// Adds an empty column; returns its place.
+    /// Adds an empty column, unless it is there; returns its place.
     fn add_column(&mut self, name: &str, mechanism: &Mechanism) -> Result<Place, String> {
         let inputs = mechanism.force_inputs();
         if let Some(input) = inputs.iter().position(|input| input.name == name) {
-            if self.forces.iter().any(|signal| signal.input == input) {
-                return Err(format!("two columns for `{name}`"));
-            }
-            let values = Vec::new();
-            self.forces.push(ForceSignal { input, values });
-            return Ok(Place::Force(self.forces.len() - 1));
+            let known = self.forces.iter().position(|signal| signal.input == input);
+            let signal = known.unwrap_or_else(|| {
+                let values = Vec::new();
+                self.forces.push(ForceSignal { input, values });
+                self.forces.len() - 1
+            });
+            return Ok(Place::Force(signal));
         }
         let split = Order::ALL.into_iter().find_map(|order| {
             let driver = name.strip_suffix(order.suffix())?.strip_suffix('.')?;
@@ -159,10 +168,8 @@ impl Signals {
             self.signals.push(Signal { driver, columns });
             self.signals.len() - 1
         });
-        match self.signals[signal].columns[order].replace(Vec::new()) {
-            None => Ok(Place::Driver(signal, order)),
-            Some(_) => Err(format!("two columns for `{name}`")),
-        }
+        self.signals[signal].columns[order] = Some(Vec::new());
+        Ok(Place::Driver(signal, order))
     }
 
     /// Turns the drivers that follow signals into inputs.

@@ -120,7 +120,7 @@ fn run_follows_the_values_of_a_file() {
         (
             "time,side_length,side_length.position\n0,1,1\n",
             &[],
-            "two columns",
+            "two columns for `side_length.position`: column 2 and column 3",
         ),
         (
             "time,side_length\n0,0.3,1\n",
@@ -207,9 +207,9 @@ fn run_sets_inputs_of_forces_by_a_file() {
         ),
         (
             loader,
-            "time,load.fx,load.fx\n0,1,1\n",
+            "time,load.fx,load.fy,load.fx\n0,1,1,1\n",
             &[],
-            "two columns for `load.fx`",
+            "two columns for `load.fx`: column 2 and column 4",
         ),
         (
             loader,

@@ -46,6 +46,14 @@ pub(in crate::mechanism) enum TableFileError {
         /// Largest number of points.
         most: usize,
     },
+    /// Two columns of one name that is asked for.
+    #[error("it has two columns `{name}`: column {} and column {}", .places[0], .places[1])]
+    Twice {
+        /// Name asked for.
+        name: String,
+        /// Places of the first two, from 1.
+        places: [usize; 2],
+    },
     /// No column of that name.
     #[error("{}", no_column(.name, .header))]
     Column {
@@ -131,13 +139,18 @@ impl TableFile {
 fn find_columns(names: [&str; 2], header: &[String]) -> Result<[usize; 2], TableFileError> {
     let mut places = [0; 2];
     for (place, name) in places.iter_mut().zip(names) {
-        *place = header
-            .iter()
-            .position(|known| known == name)
-            .ok_or_else(|| TableFileError::Column {
+        let all = header.iter().enumerate();
+        let mut found = all.filter(|(_, known)| *known == name).map(|(at, _)| at);
+        *place = found.next().ok_or_else(|| TableFileError::Column {
+            name: name.to_owned(),
+            header: header.to_vec(),
+        })?;
+        if let Some(second) = found.next() {
+            return Err(TableFileError::Twice {
                 name: name.to_owned(),
-                header: header.to_vec(),
-            })?;
+                places: [*place + 1, second + 1],
+            });
+        }
     }
     Ok(places)
 }
@@ -194,6 +207,21 @@ mod tests {
             error.to_string(),
             "it has no column `anlge`; its columns are `angle`, `time`, `force`"
         );
+        let error = rows("u,t,u\n0,1,2\n", Some(["t", "u"])).expect_err("which one?");
+        assert_eq!(
+            error.to_string(),
+            "it has two columns `u`: column 1 and column 3"
+        );
+        // A name that nobody asks for may be there twice.
+        let numbers: Vec<_> = read.into_iter().map(|(_, row)| row).collect();
+        for (text, columns) in [
+            ("t,u,x,x\n0,1,7,7\n1,2,8,8\n", Some(["t", "u"])),
+            ("t,t\n0,1\n1,2\n", None),
+        ] {
+            let read = rows(text, columns).expect(text);
+            let found: Vec<_> = read.into_iter().map(|(_, row)| row).collect();
+            assert_eq!(found, numbers, "{text}");
+        }
         let error = rows("0,1\n", Some(["t", "u"])).expect_err("no names");
         assert_eq!(
             error.to_string(),
