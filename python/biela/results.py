@@ -311,8 +311,9 @@ class Report:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Redundant joints, and joints that do not fit their own numbers."""
-        return (*self._assembled.get("redundancies", ()), *self._assembled.get("misfits", ()))
+        """Redundant joints, joints that do not fit their own numbers, motions beyond limits."""
+        kinds = ("redundancies", "misfits", "excursions")
+        return tuple(text for kind in kinds for text in self._assembled.get(kind, ()))
 
     @property
     def _assembled(self) -> dict[str, Any]:

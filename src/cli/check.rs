@@ -13,11 +13,14 @@ use forces::Forces;
 
 use super::error::Error;
 use super::input::{Input, warn_of_misfits};
+use super::message::Message;
 use super::output::print;
 use super::suggested_estimates::as_estimates;
+use super::times::Times;
 use crate::kinematics::{self, Element, Mode, Modes, Path, Play, Rates, Solver, System};
 use crate::mechanism::{
-    CoordinateKind, DerivedMeasure, DriverSource, Jet, Mechanism, Order, ParameterId, Unit, shown,
+    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, ParameterId,
+    Unit, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
@@ -26,7 +29,8 @@ use crate::mechanism::{
 /// assembled pose at the drivers' start values, how far each body is from its estimate, and the
 /// reciprocal condition of the pose (1 is best, 0 a singular position). If it can close in other
 /// ways too, and has at most 40 bodies, a line says so. With masses or forces it
-/// prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. If the mechanism does not
+/// prints masses, efforts and reactions of the mechanism at rest there, all inputs of forces zero. It
+/// warns of prescribed motions that leave the limits of their drivers. If the mechanism does not
 /// close, it says whether that is proved, which joints stay open and by how much, and prints the
 /// nearest pose; if joints contradict each other, it prints the play that the last of them needs
 /// over the motion of the first driver.
@@ -58,6 +62,8 @@ const NEARLY_SINGULAR: f64 = 1e-6;
 /// Most bodies of a mechanism whose other ways to close are looked for unasked: that takes a tenth
 /// of a second.
 const MOST_BODIES_SEARCHED: usize = 40;
+/// Most steps of a run whose rows are compared with limits: more would take longer than assembly.
+const MOST_STEPS_WATCHED: u64 = 100_000;
 /// Angle by which a body is nearer its estimate in another way to close, from which that one may
 /// be meant \[rad\].
 const FAR: f64 = FRAC_PI_2;
@@ -105,6 +111,9 @@ impl Check {
             return refuse(error);
         }
         warn_of_misfits(&solver);
+        for excursion in excursions(&solver) {
+            Message::Warning(excursion).show();
+        }
         print(&describe_pose(&mut solver))?;
         if mechanism.has_dynamics() {
             let forces = Forces::at_rest(&mut solver).map_err(|error| input.error(error))?;
@@ -246,6 +255,28 @@ fn derived_at_rest(solver: &Solver) -> Vec<(&DerivedMeasure, f64)> {
     positions
         .map(|(index, measure)| (measure, solver.derived(index, &still, &drivers)))
         .collect()
+}
+
+/// Tells where prescribed motions leave the limits of their drivers in a run of the file.
+fn excursions(solver: &Solver) -> Vec<String> {
+    let mechanism = solver.mechanism();
+    let drivers = mechanism.drivers.iter().enumerate();
+    let mut limited: Vec<_> = drivers
+        .filter(|(_, driver)| driver.motion().is_some() && driver.min.or(driver.max).is_some())
+        .map(|(index, driver)| (DriverId(index), driver, false))
+        .collect();
+    let mut told = Vec::new();
+    if limited.is_empty() {
+        return told;
+    }
+    let times = Times::of_file(mechanism, MOST_STEPS_WATCHED);
+    for time in (0..=times.steps).map(|row| times.at(row)) {
+        for (id, driver, beyond) in &mut limited {
+            let value = solver.motion(*id, time).value;
+            told.extend(driver.excursion(value, time, beyond));
+        }
+    }
+    told
 }
 
 /// Returns a table of the bodies in the solver's pose, with their distance from the estimates.

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::error::Error;
-use crate::mechanism::{Mechanism, shown};
+use crate::mechanism::{Mechanism, Simulation, shown};
 
 /// Largest number of rows; more are a slip in --step.
 const MOST_ROWS: f64 = 1e9;
@@ -52,8 +52,7 @@ impl Span {
         if step <= 0.0 {
             return refuse(format!("--step is {apart}; expected a positive time"));
         }
-        // A last step shorter than this part of the others is rounding.
-        let steps = ((stop - start) / step - 1e-9).ceil().max(0.0);
+        let steps = steps(start, stop, step);
         if steps >= MOST_ROWS {
             return refuse(format!(
                 "a step of {apart} s from {from} s to {to} s makes more than {MOST_ROWS:e} rows"
@@ -68,7 +67,32 @@ impl Span {
     }
 }
 
+/// Returns the number of steps, of which the last may be shorter.
+fn steps(start: f64, stop: f64, step: f64) -> f64 {
+    // A last step shorter than this part of the others is rounding.
+    ((stop - start) / step - 1e-9).ceil().max(0.0)
+}
+
 impl Times {
+    /// Returns the times of a file; longer steps, if those of the file are more than `most`.
+    pub(super) fn of_file(mechanism: &Mechanism, most: u64) -> Self {
+        let &Simulation {
+            start, stop, step, ..
+        } = &mechanism.simulation;
+        let all = steps(start, stop, step);
+        let (steps, step) = if all <= most as f64 {
+            (all as u64, step)
+        } else {
+            (most, (stop - start) / most as f64)
+        };
+        Self {
+            start,
+            stop,
+            step,
+            steps,
+        }
+    }
+
     /// Returns the time of a row \[s\].
     pub(super) fn at(&self, row: u64) -> f64 {
         match row {

@@ -68,6 +68,54 @@ fn efforts_have_six_digits() {
     assert!(text.contains("  lift.effort = 49026.7 N\n"), "{text}");
 }
 
+/// sin(2 pi t) exceeds 1/2 from 1/12 s on and −1/2 from 7/12 s on: in the next row, 0.1 s and 0.6 s.
+#[test]
+fn motions_beyond_limits_are_told_as_in_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("swing.toml");
+    let swing = |driver: &str, simulation: &str| {
+        let text = format!(
+            "format = 1\nname = 'swing'\n[ground.markers]\nO = [0, 0]\n[bodies.a]\n\
+             markers = {{ O = [0, 0] }}\n[joints]\n\
+             O = {{ type = 'revolute', markers = ['ground.O', 'a.O'] }}\n[drivers]\n\
+             q = {{ coordinate = 'angle', markers = ['ground.O', 'a.O'], {driver} }}\n\
+             [simulation]\n{simulation}\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap()
+    };
+    let limits = "min = -0.5, max = 0.5";
+    let moving = format!("motion = 'sin(2*pi*t)', {limits}");
+    let file = swing(&moving, "stop = 1\nstep = 0.1");
+    let told = stderr(&biela(&["check", file]).success());
+    let expected = [("0.1", "max"), ("0.6", "min")];
+    assert_eq!(told.lines().count(), expected.len(), "{told}");
+    for (line, (time, key)) in told.lines().zip(expected) {
+        assert!(
+            line.starts_with(&format!("warning: t = {time}")) && line.contains(" s: driver `q` is"),
+            "{line}"
+        );
+        assert!(line.contains(&format!("beyond its `{key}` = ")), "{line}");
+    }
+    assert_eq!(told, stderr(&biela(&["run", file, "-o", "-"]).success()));
+    let report = stdout(&biela(&["check", "--format", "json", file]).success());
+    let report: serde_json::Value = serde_json::from_str(&report).expect("it is JSON");
+    let excursions = report["assembled"]["excursions"].as_array();
+    let excursions = excursions.expect("a list").iter();
+    let excursions = excursions.map(|text| format!("warning: {}\n", text.as_str().expect("text")));
+    assert_eq!(told, excursions.collect::<String>());
+    // Far more rows than are looked at, a span before, and a driver that does not move by itself.
+    for (driver, simulation, count) in [
+        (&*moving, "stop = 1\nstep = 1e-8", 2),
+        (&moving, "stop = 0.08\nstep = 0.01", 0),
+        (&moving, "start = 0.5\nstop = 1\nstep = 0.1", 1),
+        (&format!("start = 0, {limits}"), "stop = 1", 0),
+    ] {
+        let told = stderr(&biela(&["check", swing(driver, simulation)]).success());
+        assert_eq!(told.lines().count(), count, "{simulation}: {told}");
+    }
+}
+
 /// Returns the text behind the line that starts with `heading`.
 fn behind<'a>(text: &'a str, heading: &str) -> &'a str {
     let (_, behind) = text.split_once(heading).expect("it is there");

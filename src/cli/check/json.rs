@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::forces::Forces;
-use super::{NEARLY_SINGULAR, equations_of_joints};
+use super::{NEARLY_SINGULAR, equations_of_joints, excursions};
 use crate::cli::error::Error;
 use crate::kinematics::{self, OpenJoint, Path, Play, Rates, Solver, System};
 use crate::mechanism::{Diagnostic, DriverSource, Mechanism, Source};
@@ -155,6 +155,7 @@ fn assembled(mechanism: &Arc<Mechanism>, modes: bool) -> Result<Value, kinematic
         "nearly_singular": rcond < NEARLY_SINGULAR,
         "redundancies": texts(&mut solver.redundancies().iter().map(ToString::to_string)),
         "misfits": texts(&mut solver.geometry_warnings().iter().map(ToString::to_string)),
+        "excursions": excursions(&solver),
     });
     if mechanism.has_dynamics() {
         let forces = Forces::at_rest(&mut solver)?;
