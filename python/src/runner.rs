@@ -85,6 +85,12 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
     ///
     /// The mechanism does not assemble there.
     pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<Beginning, Failure> {
+        let time = self.scenario.times[0];
+        self.begin(parameters)
+            .map_err(|error| Failure::Assembly(error.at_start(time)))
+    }
+
+    fn begin(&mut self, parameters: &[f64]) -> Result<Beginning, Error> {
         let Scenario {
             own, driven, home, ..
         } = &*self.scenario;

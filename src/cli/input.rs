@@ -54,16 +54,11 @@ impl Input {
         }
     }
 
-    /// Returns an error of a motion that starts at `time` \[s\], with the name of the file, and with
-    /// the time if a motion or a force has no value then.
-    pub(super) fn error_at(&self, time: f64, error: kinematics::Error) -> Error {
-        use kinematics::Error::{NoForce, NoMotion, TooFast};
-        match error {
-            NoMotion { .. } | TooFast { .. } | NoForce { .. } => Error::DeadPoint {
-                file: self.source.name().to_owned(),
-                why: format!("at t = {time} s: {error}"),
-            },
-            _ => self.error(error),
+    /// Returns an error of a run that starts at `time` \[s\], with the name of the file.
+    pub(super) fn error_at(&self, time: f64, error: &kinematics::Error) -> Error {
+        Error::DeadPoint {
+            file: self.source.name().to_owned(),
+            why: error.at_start(time),
         }
     }
 

@@ -145,7 +145,7 @@ impl Run {
         if asks_forces {
             motion = motion.and_then(Motion::with_forces);
         }
-        let mut motion = motion.map_err(|error| input.error_at(times.start, error))?;
+        let mut motion = motion.map_err(|error| input.error_at(times.start, &error))?;
         if let Some(path) = self.animate.clone() {
             let mut film = Film::new(told, times.steps, [times.start, times.step]);
             if self.forces {

@@ -66,7 +66,7 @@ impl Tolerance {
         if columns.iter().any(Output::is_force) {
             motion = motion.and_then(Motion::with_forces);
         }
-        let mut motion = motion.map_err(|error| input.error_at(times.start, error))?;
+        let mut motion = motion.map_err(|error| input.error_at(times.start, &error))?;
         let mut deviations = vec![Deviation::default(); columns.len()];
         for row in 0..=times.steps {
             let advanced = motion.advance(times.at(row));

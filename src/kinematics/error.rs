@@ -128,6 +128,20 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// Describes the error of a motion that starts at `time` \[s\]: with the time, if a driver or a
+    /// force has no value then.
+    #[must_use]
+    pub fn at_start(&self, time: f64) -> String {
+        match self {
+            Self::NoMotion { .. } | Self::TooFast { .. } | Self::NoForce { .. } => {
+                format!("at t = {time} s: {self}")
+            }
+            _ => self.to_string(),
+        }
+    }
+}
+
 /// The verdict on a mechanism that was not assembled.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {

@@ -55,6 +55,14 @@ def test_a_report_has_the_pose(four_bar):
     assert report.data["assembled"]["modes"]["complete"]
 
 
+def test_motions_beyond_limits_are_warnings_of_a_report():
+    text = (ROOT / "mechanisms/four_bar.toml").read_text(encoding="utf-8")
+    assert 'start = "60*deg"' in text
+    mechanism = biela.loads(text.replace('start = "60*deg"', 'motion = "1 + t", max = 1.5'))
+    (warning,) = mechanism.check().warnings
+    assert "beyond its `max` = 1.5" in warning
+
+
 def test_attributes_tell_the_file(four_bar):
     assert four_bar.name == "four_bar" and four_bar.bodies == ["crank", "coupler", "rocker"]
     base = four_bar.parameters["base"]

@@ -154,6 +154,29 @@ def test_a_mechanism_that_does_not_close_raises(four_bar):
         four_bar.run(t=[0.0], parameters={"base": 5.0})
 
 
+def test_what_has_no_value_at_the_start_is_told_with_the_time():
+    """A force 1/(t − 3) has no value at 3 s, and a motion sqrt(2 − t) none after 2 s."""
+    along = "coordinate = 'x', markers = ['ground.O', 'slide.O']"
+    mechanism = biela.loads(f"""
+        format = 1
+        name = "pusher"
+        [ground.markers]
+        O = [0, 0]
+        [bodies.slide]
+        markers = {{ O = [0, 0] }}
+        [joints]
+        way = {{ type = "translational", markers = ["ground.O", "slide.O"] }}
+        [drivers]
+        x = {{ {along}, motion = "sqrt(2 - t)" }}
+        [forces]
+        push = {{ {along}, value = "1/(t - 3)" }}
+        """)
+    with pytest.raises(biela.AssemblyError, match="^at t = 3 s: driver `x` has no finite value$"):
+        mechanism.run(t=[3.0, 4.0])
+    with pytest.raises(biela.AssemblyError, match="^at t = 3 s: force `push` has no finite value"):
+        mechanism.run(t=[3.0, 4.0], drive={"x": "t"})
+
+
 def test_threads_run_at_the_same_time(four_bar):
     """While a thread computes in Rust, others go on: the lock is released."""
     ticks = 0
