@@ -359,6 +359,18 @@ impl Solver {
         forces.solve(&mut self.model, &mut self.state, motion, parts)
     }
 
+    /// Returns the rounding error of a driver's effort \[N or N m\]: a smaller effort cannot be told
+    /// from zero. The efforts in `forces` must be up to date for this motion.
+    #[must_use]
+    pub fn effort_rounding(
+        &self,
+        motion: KnownMotion<'_>,
+        driver: DriverId,
+        forces: &Forces,
+    ) -> f64 {
+        forces.effort_rounding(&self.state, motion, driver)
+    }
+
     /// Returns the joints that can only push and begin to pull at the present pose, and sets in
     /// `lifted`, one entry per [contact](Forces::contacts), which of them pull. The reactions in
     /// `forces` must be up to date.

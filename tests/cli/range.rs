@@ -246,6 +246,48 @@ q = { coordinate = "angle", markers = ["ground.O", "a.O"], start = 1, min = "-90
 f = { coordinate = "angle", markers = ["ground.O", "a.O"], value = "LOAD" }
 "#;
 
+/// A spring of no free length from a point above the pivot of an arm balances its weight everywhere
+/// if its stiffness times the two distances is m g l. With 1e-12 more of mass the effort is that
+/// part of m g l, which `check` tells for a heavy arm; the rounding of the terms is 1e-15 of them.
+#[test]
+fn an_effort_of_rounding_is_told_as_zero() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("balance.toml");
+    let balance = |mass: &str, weight: &str| {
+        let text = format!(
+            "format = 1\nname = 'balance'\n[parameters]\nweight = {weight}\n[ground.markers]\n\
+             O = [0, 0]\nS = [0, 0.3]\n[bodies.arm]\nmarkers = {{ O = [0, 0], A = [0.2, 0] }}\n\
+             center = [0.5, 0]\nmass = '{mass}'\n[joints]\n\
+             O = {{ type = 'revolute', markers = ['ground.O', 'arm.O'] }}\n[forces]\n\
+             spring = {{ coordinate = 'distance', markers = ['ground.S', 'arm.A'], \
+             value = '-position*weight*0.5/0.2/0.3' }}\n[drivers]\n\
+             q = {{ coordinate = 'angle', markers = ['ground.O', 'arm.O'], start = 0.3 }}\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap()
+    };
+    let effort = |command: &str, file: &str, before: &str| {
+        let text = stdout(&biela(&[command, file]).success());
+        let (_, behind) = text.split_once(before).expect("it is there");
+        let (number, _) = behind.split_once(" N.m").expect("it has a unit");
+        number.to_owned()
+    };
+    let range = |mass, weight| effort("range", balance(mass, weight), "largest effort ");
+    let check = |mass, weight| effort("check", balance(mass, weight), "q.effort = ");
+    assert_eq!(range("2", "19.62"), "0");
+    assert_eq!(range("2e5", "19.62e5"), "0");
+    assert_eq!(range("2e-12", "19.62e-12"), "0");
+    assert_eq!(check("2e5", "19.62e5"), "0");
+    let part = |found: String, size: f64| {
+        let found: f64 = found.parse().expect("it is a number");
+        (found.abs() / size * 1e12 - 1.0).abs() < 0.02
+    };
+    assert!(part(range("2*(1 + 1e-12)", "19.62"), 9.81));
+    assert!(part(range("2e-12*(1 + 1e-12)", "19.62e-12"), 9.81e-12));
+    let expected = 9.81e5 * 0.3_f64.cos();
+    assert!(part(check("2e5*(1 + 1e-12)", "19.62e5"), expected));
+}
+
 #[test]
 fn the_largest_effort_is_found_between_samples() {
     let folder = tempfile::tempdir().unwrap();

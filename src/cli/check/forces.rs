@@ -56,7 +56,12 @@ impl Forces {
                 ForceQuantity::Power(_) | ForceQuantity::Bias(_) | ForceQuantity::KineticEnergy
             );
             let value = forces.value(force);
-            let value = if value.abs() < ROUNDING { 0.0 } else { value };
+            let rounding = match force {
+                ForceQuantity::Effort(driver) => solver.effort_rounding(motion, driver, &forces),
+                _ => 0.0,
+            };
+            let is_rounding = value.abs() < ROUNDING || value.abs() <= rounding;
+            let value = if is_rounding { 0.0 } else { value };
             (!trivial).then_some((variable.name, value, unit?.name))
         });
         let values = values.collect();

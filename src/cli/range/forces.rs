@@ -69,9 +69,23 @@ impl<'a> Loads<'a> {
         solver.solve_forces(motion, ForceParts::ALL, &mut self.forces)
     }
 
-    /// Returns the size of the effort, and the effort.
+    /// Returns the size of the effort, and the effort; zero for what is rounding.
     fn effort(&self) -> Measured<f64> {
+        let Follower {
+            solver,
+            rates,
+            driver_rates,
+            ..
+        } = &self.follower;
+        let motion = KnownMotion {
+            rates,
+            driver_rates,
+            inputs: &self.inputs,
+        };
         let effort = self.forces.value(ForceQuantity::Effort(self.driver));
+        if effort.abs() <= solver.effort_rounding(motion, self.driver, &self.forces) {
+            return (0.0, 0.0);
+        }
         (effort.abs(), effort)
     }
 

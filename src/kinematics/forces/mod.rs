@@ -23,6 +23,7 @@
 //! | `self_stress` | reactions of least norm |
 //! | `indeterminate` | reactions that redundant constraints leave open |
 //! | `solve` | [`Forces`]: all results at a pose |
+//! | `rounding` | the rounding error of efforts |
 //! | `lift_off` | [`LiftOff`]: contacts that begin to pull |
 //! | `sensitivity` | [`ForceSensitivity`]: their derivatives along a direction |
 
@@ -31,6 +32,7 @@ mod indeterminate;
 mod inertial;
 mod lift_off;
 mod quantity;
+mod rounding;
 mod self_stress;
 mod sensitivity;
 mod solve;

@@ -28,7 +28,7 @@ pub struct Forces {
     parameters: Vec<f64>,
     /// Whether the masses are valid for them.
     has_parameters: bool,
-    masses: Masses<f64>,
+    pub(super) masses: Masses<f64>,
     pub(super) applied: AppliedForces,
     inputs: usize,
     pub(super) factors: JacobianFactors,

@@ -1,0 +1,57 @@
+//! The rounding error of efforts.
+
+use super::applied::{Place, about_origin};
+use super::inertial::by_body;
+use super::solve::{Forces, KnownMotion};
+use crate::kinematics::constraint::Gradient;
+use crate::kinematics::state::State;
+use crate::mechanism::DriverId;
+
+impl Forces {
+    /// Returns the rounding error of a driver's effort, n ε Σ |f ∂q/∂u| over the n products of the
+    /// forces f of each mass, spring, damper and load with the rates ∂q/∂u. Half of it is the bound
+    /// for the sum of exact products (Higham, Accuracy and Stability of Numerical Algorithms,
+    /// Eq. 3.5), the other half one rounding of each factor. The efforts must be up to date.
+    pub(in crate::kinematics) fn effort_rounding(
+        &self,
+        state: &State,
+        motion: KnownMotion<'_>,
+        driver: DriverId,
+    ) -> f64 {
+        let unit = self.unit(driver);
+        let (mut sum, mut products) = (0.0, 0_u32);
+        let mut add = |column: usize, force: f64| {
+            sum += (force * unit[column]).abs();
+            products += 1;
+        };
+        let mut gradient = Gradient::new();
+        for (applied, size) in self.applied.list.iter().zip(&self.results.sizes) {
+            match &applied.place {
+                Place::Coordinate(relation) => {
+                    gradient.clear();
+                    relation.gradient(&state.at, &mut gradient);
+                    for (column, partial) in gradient.entries() {
+                        add(column, size[0] * partial);
+                    }
+                }
+                Place::Marker(marker, axes) => {
+                    let marker = state.at.marker(*marker);
+                    let axis = axes.map_or([1.0, 0.0], |axes| state.at.marker(axes).axis.into());
+                    if let Some(body) = marker.body {
+                        let force = about_origin(*size, axis, marker.arm.into());
+                        (0..3).for_each(|k| add(3 * body.index() + k, force[k]));
+                    }
+                }
+            }
+        }
+        let rates = [motion.rates.velocity(), motion.rates.acceleration()];
+        let [velocities, accelerations] = rates.map(by_body);
+        for of_body in &self.masses.bodies {
+            let body = of_body.body;
+            let [_, _, omega] = velocities[body];
+            let force = of_body.demand(omega, accelerations[body], self.masses.gravity);
+            (0..3).for_each(|k| add(3 * body + k, force[k]));
+        }
+        f64::from(products) * f64::EPSILON * sum
+    }
+}
