@@ -60,6 +60,44 @@ fn ordinary_steps_are_one_substep() {
     }
 }
 
+/// A carriage moves straight along its rail with all that it carries, and the driver is its
+/// distance along an axis that it carries: nothing turns, at any distance from the start.
+#[test]
+fn straight_motions_are_one_substep_at_any_distance() {
+    let (mut solver, mut path) = assembled(&parse(
+        "format = 1\nname = \"carriage\"\n\
+         [ground.markers]\nO = [0, 0]\n\
+         [bodies.carriage]\nmarkers = { A = [0, 0], P = [0, 0.3], B = [0.4, 0.1] }\n\
+         estimate = [1, 0, 0]\n\
+         [bodies.arm]\nmarkers = { P = [0, 0], C = [0.3, 0.2] }\nestimate = [1, 0.3, 0]\n\
+         [joints]\n\
+         rail = { type = \"translational\", markers = [\"ground.O\", \"carriage.A\"] }\n\
+         pin = { type = \"revolute\", markers = [\"carriage.P\", \"arm.P\"] }\n\
+         [constraints]\n\
+         rod = { coordinate = \"distance\", markers = [\"carriage.B\", \"arm.C\"], value = 0.4 }\n\
+         [drivers]\n\
+         u = { coordinate = \"x\", markers = [\"ground.O\", \"carriage.A\"], axes = \"arm.P\", \
+         start = 1 }\n",
+    ));
+    let start = solver.pose().q.clone();
+    for distance in [3.0, 10.0, 30.0, 100.0] {
+        let mut go = |target: f64| {
+            straight_to(&solver, &mut path, target);
+            let progress = solver.track(&path).expect("the rail is endless");
+            (progress.substeps, progress.checked)
+        };
+        go(distance);
+        assert_eq!(go(distance + 0.1), (1, 0), "at {distance} m");
+        // Rounding of lengths at that distance, over the length of the arm.
+        let turned = [2, 5].map(|angle| solver.pose().q[angle] - start[angle]);
+        let rounding = 8.0 * f64::EPSILON * distance / 0.3;
+        assert!(
+            turned.iter().all(|angle| angle.abs() < rounding),
+            "{turned:?}"
+        );
+    }
+}
+
 /// The uncertainty of one cell passes on to the next with its sign: in straight lifts unchanged, in
 /// lifts whose bars do not cross in their middles by the cells' own leverage.
 #[test]

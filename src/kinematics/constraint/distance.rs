@@ -86,7 +86,7 @@ impl Constraint for Distance {
     ) -> Option<f64> {
         let (i, j) = (at.marker(self.from), at.marker(self.to));
         let (length, _) = self.span(at);
-        let reach = region.reach(i) + region.reach(j);
+        let reach = region.reach(i, j);
         if reach >= length {
             return None;
         }

@@ -108,7 +108,7 @@ impl Constraint for Projection {
             row.add_point_bound(marker, axis, swing);
         }
         let d = (j.point - i.point).norm();
-        let reach = region.reach(i) + region.reach(j);
+        let reach = region.reach(i, j);
         row.add_direction(k, d * axis + reach);
         let omega = angular_velocity(k, v).abs();
         Some(

@@ -44,12 +44,14 @@ impl<'a> Region<'a> {
         chord(self.turn(marker))
     }
 
-    /// Returns a bound of the move of a marker's point \[m\].
-    pub(super) fn reach(&self, marker: MarkerPose) -> f64 {
-        marker.body.map_or(0.0, |body| {
-            let k = 3 * body.index();
-            self.radius(k).hypot(self.radius(k + 1)) + marker.arm.norm() * self.sway(marker)
-        })
+    /// Returns a bound of the move of one marker's point relative to the point of another \[m\].
+    pub(super) fn reach(&self, from: MarkerPose, to: MarkerPose) -> f64 {
+        let mut origins = of_origin(self.radii, from) + of_origin(self.radii, to);
+        if let Some(line) = self.line {
+            origins += 0.5 * (of_origin(line, to) - of_origin(line, from)).abs();
+        }
+        let swing = |marker: MarkerPose| marker.arm.norm() * self.sway(marker);
+        origins.norm() + swing(from) + swing(to)
     }
 }
 
@@ -62,17 +64,19 @@ pub(super) fn chord(angle: f64) -> f64 {
     }
 }
 
+/// Returns the x and y of a marker's body in a list with an entry per unknown, zero for ground.
+fn of_origin(list: &[f64], marker: MarkerPose) -> Vector2<f64> {
+    marker.body.map_or_else(Vector2::zeros, |body| {
+        let k = 3 * body.index();
+        Vector2::new(list[k], list[k + 1])
+    })
+}
+
 /// Returns an upper bound of the speed of one marker's point relative to the point of another for
 /// the rates `v`, at any angles of their bodies.
 pub(super) fn speed_bound(from: MarkerPose, to: MarkerPose, v: &[f64]) -> f64 {
-    let origin = |marker: MarkerPose| {
-        marker.body.map_or_else(Vector2::zeros, |body| {
-            let k = 3 * body.index();
-            Vector2::new(v[k], v[k + 1])
-        })
-    };
     let swing = |marker: MarkerPose| angular_velocity(marker, v).abs() * marker.arm.norm();
-    (origin(to) - origin(from)).norm() + swing(to) + swing(from)
+    (of_origin(v, to) - of_origin(v, from)).norm() + swing(to) + swing(from)
 }
 
 /// Returns an upper bound of the centripetal acceleration of P_j − P_i for the rates `v`.

@@ -24,6 +24,8 @@ use crate::kinematics::system::Target;
 /// First trial radii, as a part of the largest move of an unknown: a motion that turns by φ
 /// deviates from its chord by φ²/8 in radians, and rarely by several times that.
 const FIRST_RADIUS: f64 = 0.1;
+/// Ratio of smaller trial radii to η.
+const TWICE: f64 = 2.0;
 /// The norm of K that the next sub-step aims at.
 const GOOD_CONTRACTION: f64 = 0.6;
 
@@ -163,7 +165,7 @@ impl CoupledBlock {
             *radius = if is_angle { first } else { first * self.length };
         }
         self.factorise_middle(state).map_err(|Rejected| None)?;
-        let mut last = None;
+        let (mut last, mut shrunk) = (None, false);
         for _ in 0..MOST_TRIES {
             self.bend_rows(state, step).ok_or(last)?;
             self.open_rows();
@@ -179,7 +181,15 @@ impl CoupledBlock {
                 return Ok(contraction);
             }
             if contraction >= LARGEST_CONTRACTION {
-                return Err(Some(contraction));
+                if shrunk {
+                    return Err(Some(contraction));
+                }
+                // Far smaller ones do where the motion is nearly straight.
+                shrunk = true;
+                for (radius, eta) in test.radii.iter_mut().zip(&test.eta) {
+                    *radius = radius.min((TWICE * eta).max(f64::EPSILON * *radius));
+                }
+                continue;
             }
             last = Some(contraction);
             for (radius, next) in test.radii.iter_mut().zip(&test.next) {

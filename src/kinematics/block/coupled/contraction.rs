@@ -12,8 +12,9 @@ pub(super) const MOST_TORN: usize = 32;
 /// Safety factor on the next trial radii, where those tried were too small.
 pub(super) const ROOM: f64 = 1.25;
 /// Most radii that are tried.
-pub(super) const MOST_TRIES: u32 = 3;
-/// The norm of K above which no larger radii are tried. K grows with the sub-step.
+pub(super) const MOST_TRIES: u32 = 4;
+/// The norm of K above which no larger radii are tried, but smaller ones once. K grows with the
+/// sub-step.
 pub(super) const LARGEST_CONTRACTION: f64 = 0.9;
 /// η + K r stays below this part of r: the rounding of A changes it by less than the rest.
 pub(super) const STRICTLY: f64 = 0.999;

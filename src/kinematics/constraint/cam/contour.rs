@@ -182,10 +182,7 @@ impl Contour {
     ) -> [f64; 2] {
         let anywhere = |region: &Region<'_>, [arm, tangent]: [f64; 2]| {
             let turn = if with { region.turn(follower) } else { 0.0 };
-            [
-                tangent + turn,
-                region.reach(follower) + region.reach(cam) + arm,
-            ]
+            [tangent + turn, region.reach(cam, follower) + arm]
         };
         let [turn, gap] = anywhere(region, [bounds.arm, bounds.tangent]);
         let Some(line) = region.line else {

@@ -128,7 +128,7 @@ impl Constraint for KnifeEdge {
     ) -> Option<f64> {
         let polar = self.polar(at);
         let (cam, follower) = (at.marker(self.cam), at.marker(self.follower));
-        let reach = region.reach(cam) + region.reach(follower);
+        let reach = region.reach(cam, follower);
         if reach >= polar.distance {
             return None;
         }
