@@ -43,10 +43,6 @@ impl Constraint for Coincidence {
         self.direction().dot(&d)
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        self.value_and_gradient(at, row);
-    }
-
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let (i, j) = (at.marker(self.from), at.marker(self.to));
         let e = self.direction();

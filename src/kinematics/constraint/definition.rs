@@ -65,8 +65,11 @@ pub trait Constraint: Any + std::fmt::Debug + Send + Sync {
     /// Returns c(q) \[m or rad\].
     fn value(&self, at: &Configuration) -> f64;
 
-    /// Adds ∂c/∂q, a row of the Jacobian (Eq. 3.6.4), to `row`.
-    fn gradient(&self, at: &Configuration, row: &mut Gradient);
+    /// Adds ∂c/∂q, a row of the Jacobian (Eq. 3.6.4), to `row`. A relation has this method or the
+    /// next one.
+    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
+        self.value_and_gradient(at, row);
+    }
 
     /// Adds ∂c/∂q to `row` and returns c(q).
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {

@@ -44,10 +44,6 @@ impl Constraint for Distance {
         self.span(at).0
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        self.value_and_gradient(at, row);
-    }
-
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let (length, e) = self.span(at);
         row.add_point(at.marker(self.to), e);

@@ -41,10 +41,6 @@ impl Constraint for Projection {
         self.direction(at).dot(&d)
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        self.value_and_gradient(at, row);
-    }
-
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let (i, j, k) = (
             at.marker(self.from),

@@ -52,10 +52,6 @@ impl Constraint for FlatContact {
         lean(at.marker(self.follower), &self.contour.at(at).1).0
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        self.value_and_gradient(at, row);
-    }
-
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let follower = at.marker(self.follower);
         let (cam, contact) = self.contour.at(at);
@@ -154,10 +150,6 @@ impl Constraint for FlatFace {
     fn value(&self, at: &Configuration) -> f64 {
         let face = self.face(at);
         face.g.dot(&face.normal)
-    }
-
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        self.value_and_gradient(at, row);
     }
 
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {

@@ -80,10 +80,6 @@ impl Constraint for KnifeEdge {
         polar.distance - polar.contour.value
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        self.value_and_gradient(at, row);
-    }
-
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let polar = self.polar(at);
         let direction = polar.direction();

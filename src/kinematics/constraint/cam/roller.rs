@@ -74,10 +74,6 @@ impl Constraint for Roller {
         touch.e.dot(&touch.w)
     }
 
-    fn gradient(&self, at: &Configuration, row: &mut Gradient) {
-        self.value_and_gradient(at, row);
-    }
-
     fn value_and_gradient(&self, at: &Configuration, row: &mut Gradient) -> f64 {
         let Touch {
             cam,
