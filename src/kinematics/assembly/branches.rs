@@ -1,7 +1,8 @@
 //! The branches of one block: the ways in which it closes behind the blocks before it.
 
+use super::least_squares::LeastSquares;
 use super::loops::{AllBranches, all_branches};
-use super::part::{ATTEMPTS, Part};
+use super::part::ATTEMPTS;
 use crate::kinematics::block::{BlockBranches, BlockState, ClosureGap, SolveBlock};
 use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS, Rejected};
@@ -45,7 +46,7 @@ enum Source {
 /// The search for branches from several starts.
 #[derive(Debug)]
 struct Starts {
-    part: Part,
+    part: LeastSquares,
     most: usize,
     /// Whether bounds are asked for branches that no start has found.
     bounded: bool,
@@ -69,7 +70,7 @@ impl Branches {
             BlockBranches::Two(angles) => Source::ClosedForm(angles),
             BlockBranches::None(gap) => Source::Gap(gap),
             BlockBranches::Unlisted => Source::Starts(Box::new(Starts {
-                part: Part::new(state.system, block.rows(), block.columns()),
+                part: LeastSquares::new(state.system, block.rows(), block.columns()),
                 bounded: !matches!(effort, SearchEffort::Quick),
                 most: match effort {
                     SearchEffort::Quick | SearchEffort::Near => ATTEMPTS,
@@ -168,7 +169,7 @@ impl Branches {
 impl Starts {
     /// Lists all branches by bounds over intervals, if the block has few enough angles.
     fn list_all(&mut self, state: &BlockState<'_>, estimate: &[f64]) {
-        let problem = &self.part.problem;
+        let problem = &self.part;
         self.all = Some(all_branches(
             &problem.rows,
             &problem.columns,
@@ -190,7 +191,7 @@ impl Starts {
         };
         let listed = self.all.as_ref().and_then(|all| all.branches.as_ref());
         if let Some(listed) = listed {
-            self.part.problem.write(state, listed.get(far)?);
+            self.part.write(state, listed.get(far)?);
             return Some(block.close(state, MAX_ASSEMBLY_ITERATIONS));
         }
         (attempt < self.most).then(|| self.part.attempt_anywhere(block, state, estimate, far))
@@ -198,7 +199,7 @@ impl Starts {
 
     /// Returns whether the present branch was found before, and notes it otherwise.
     fn is_known(&mut self, state: &BlockState<'_>) -> bool {
-        let unknowns = self.part.problem.read(state);
+        let unknowns = self.part.read(state);
         let mut found = self.found.iter();
         let is_known = found.any(|known| self.part.is_same(state, known, &unknowns));
         if !is_known {
@@ -209,7 +210,7 @@ impl Starts {
 
     /// Returns whether the rows are linear in the unknowns, so that there is one branch at most.
     fn is_linear(&mut self, state: &BlockState<'_>) -> bool {
-        let problem = &self.part.problem;
+        let problem = &self.part;
         *self.is_linear.get_or_insert_with(|| {
             let size = state.at.size();
             let unknowns = state.system.unknowns();

@@ -1,6 +1,7 @@
 //! Closing a mechanism as a whole on some rows, which may be more than enough, or too few.
 
-use super::part::{Part, SMALL_PART, STARTS};
+use super::least_squares::LeastSquares;
+use super::part::{SMALL_PART, STARTS};
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
 
@@ -39,7 +40,7 @@ fn close_from(
     estimate: &[f64],
     starts: usize,
 ) -> Option<f64> {
-    let mut part = Part::of_all(system, rows);
+    let mut part = LeastSquares::of_all(system, rows);
     let small = is_small(system);
     let mut nearest: Option<(f64, Vec<f64>)> = None;
     for attempt in 0..starts {
@@ -48,9 +49,9 @@ fn close_from(
         if small {
             part.minimise_growing(&mut block_state);
         }
-        let gap = part.problem.close(&mut block_state)?;
+        let gap = part.close(&mut block_state)?;
         if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
-            nearest = Some((gap, part.problem.read(&block_state)));
+            nearest = Some((gap, part.read(&block_state)));
         }
     }
     let (gap, q) = nearest?;

@@ -7,7 +7,7 @@ use super::branches::{Branches, SearchEffort};
 use super::closure::{close_on, is_small};
 use super::gaps::{STEPS_TO_NEAREST, gather, open_joints};
 use super::least_squares::LeastSquares;
-use super::part::{LARGEST_PART, Part, STARTS};
+use super::part::{LARGEST_PART, STARTS};
 use super::search::{Nearest, NoBranch};
 use crate::kinematics::element::Element;
 use crate::kinematics::error::{Error, OpenJoint, Proof, Verdict};
@@ -41,7 +41,7 @@ pub(in crate::kinematics) fn search_at_once(
             None => search_sparsely(model, state, failure, &rows, estimate),
         };
     }
-    let mut whole = Part::of_all(&model.system, &rows);
+    let mut whole = LeastSquares::of_all(&model.system, &rows);
     if !failure.proved || nearest.is_none() {
         let closed = minimise_from_all(model, state, &mut whole, failure.proved, estimate);
         if let Some(iterations) = closed {
@@ -51,7 +51,7 @@ pub(in crate::kinematics) fn search_at_once(
     }
     Err(match nearest {
         Some(nearest) => explain_gap(model, state, &failure, &nearest, estimate),
-        None => explain_failure(model, state, &failure, &mut whole.problem),
+        None => explain_failure(model, state, &failure, &mut whole),
     })
 }
 
@@ -85,7 +85,7 @@ fn search_sparsely(
 fn minimise_from_all(
     model: &mut Model,
     state: &mut State,
-    whole: &mut Part,
+    whole: &mut LeastSquares,
     proved: bool,
     estimate: &[f64],
 ) -> Option<u32> {
@@ -102,9 +102,7 @@ fn minimise_from_all(
             state.move_to_pose(&model.system);
         }
         let mut block_state = state.block_state(&model.system);
-        let found = whole
-            .problem
-            .minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
+        let found = whole.minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
         let gap = found.cost;
         if nearest.as_ref().is_none_or(|(least, _)| gap < *least) {
             state.accept_bodies();
@@ -153,11 +151,10 @@ fn explain_gap(
         }
         block.stretch(&mut block_state, estimate);
         if !block.is_closed_form() {
-            let mut part = Part::new(system, block.rows(), block.columns());
+            let mut part = LeastSquares::new(system, block.rows(), block.columns());
             part.start(&mut block_state, estimate, 0);
-            if part.unknowns() <= LARGEST_PART {
-                part.problem
-                    .minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
+            if part.columns.len() <= LARGEST_PART {
+                part.minimise(&mut block_state, None, |_| 1.0, STEPS_TO_NEAREST);
             }
         }
     }

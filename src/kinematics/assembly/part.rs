@@ -30,32 +30,7 @@ pub(in crate::kinematics) const SMALL_PART: usize = 120;
 /// Most unknowns of a part that is minimised at all.
 pub(in crate::kinematics) const LARGEST_PART: usize = 300;
 
-/// Rows of Phi and unknowns that are assembled while all other unknowns are held.
-#[derive(Debug)]
-pub(in crate::kinematics) struct Part {
-    pub(in crate::kinematics) problem: LeastSquares,
-}
-
-impl Part {
-    /// Makes the part of these rows and unknowns.
-    pub(in crate::kinematics) fn new(system: &System, rows: &[usize], columns: &[usize]) -> Self {
-        Self {
-            problem: LeastSquares::new(system, rows, columns),
-        }
-    }
-
-    /// Makes the part of these rows and all unknowns.
-    pub(in crate::kinematics) fn of_all(system: &System, rows: &[usize]) -> Self {
-        Self {
-            problem: LeastSquares::of_all(system, rows),
-        }
-    }
-
-    /// Returns the number of unknowns.
-    pub(in crate::kinematics) fn unknowns(&self) -> usize {
-        self.problem.columns.len()
-    }
-
+impl LeastSquares {
     /// Returns whether these unknowns put the bodies in the same places, whole turns apart.
     pub(in crate::kinematics) fn is_same(
         &self,
@@ -64,7 +39,7 @@ impl Part {
         b: &[f64],
     ) -> bool {
         let size = state.at.size();
-        let mut columns = self.problem.columns.iter().zip(a).zip(b);
+        let mut columns = self.columns.iter().zip(a).zip(b);
         columns.all(|((&column, &a), &b)| is_same(state.system, size, column, a, b))
     }
 
@@ -83,7 +58,7 @@ impl Part {
     /// where it suits the bodies.
     fn start_off(&self, state: &mut BlockState<'_>, estimate: &[f64], off: impl Fn(usize) -> f64) {
         let size = state.at.size();
-        for &column in &self.problem.columns {
+        for &column in &self.columns {
             let start = match state.system.estimate_joint_unknown(column, state.at) {
                 Some(start) => start,
                 None => estimate[column] + off(column) * state.system.column_scale(column, size),
@@ -96,7 +71,7 @@ impl Part {
     /// row has no slope.
     fn leave_zero_distances(&self, state: &mut BlockState<'_>) {
         let size = state.at.size();
-        for &row in &self.problem.rows {
+        for &row in &self.rows {
             let constraint = &state.system.equations()[row].constraint;
             if !matches!(Relation::of(&**constraint), Relation::Distance(_))
                 || constraint.value(state.at) > TOUCHING * size
@@ -106,7 +81,7 @@ impl Part {
             let mut gradient = Gradient::new();
             constraint.gradient(state.at, &mut gradient);
             for (column, _) in gradient.entries() {
-                if self.problem.columns.binary_search(&column).is_ok() {
+                if self.columns.binary_search(&column).is_ok() {
                     let off = shift(1, column) * state.system.column_scale(column, size);
                     let value = state.at.coordinate(column) + off;
                     state.at.set_coordinate(column, value);
@@ -132,7 +107,7 @@ impl Part {
             // One correction solves linear rows from any start, and estimates as good as that need
             // no more. A large part is worth more corrections before a minimisation.
             self.start(state, estimate, 0);
-            let large = self.unknowns() > SMALL_PART;
+            let large = self.columns.len() > SMALL_PART;
             return block.close(state, if large { MAX_ASSEMBLY_ITERATIONS } else { 1 });
         };
         self.start(state, estimate, attempt);
@@ -141,7 +116,7 @@ impl Part {
         } else {
             SMALL_PART
         };
-        if self.unknowns() <= most {
+        if self.columns.len() <= most {
             self.minimise_growing(state);
         }
         block.close(state, MAX_ASSEMBLY_ITERATIONS)
@@ -162,21 +137,19 @@ impl Part {
     ) -> Result<Correction, Rejected> {
         let anywhere = |column| TAU * (scattered(attempt, column) - 0.5);
         self.start_off(state, estimate, anywhere);
-        self.problem
-            .minimise(state, None, |_| 1.0, STEPS_FROM_ANYWHERE);
+        self.minimise(state, None, |_| 1.0, STEPS_FROM_ANYWHERE);
         block.close(state, MAX_ASSEMBLY_ITERATIONS)
     }
 
     /// Minimises Eq. 3.6.9 for growing r from the present values, which count as the estimates.
     pub(in crate::kinematics) fn minimise_growing(&mut self, state: &mut BlockState<'_>) {
-        let start = self.problem.read(state);
+        let start = self.read(state);
         for weight in WEIGHTS {
             let pull = Pull {
                 to: &start,
                 strength: weight.recip(),
             };
-            self.problem
-                .minimise(state, Some(pull), |_| 1.0, STEPS_PER_WEIGHT);
+            self.minimise(state, Some(pull), |_| 1.0, STEPS_PER_WEIGHT);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::rank::{drivers_first, jacobian_rows};
 use crate::kinematics::assembly::closure::{close_on, is_small};
 use crate::kinematics::assembly::least_squares::LeastSquares;
-use crate::kinematics::assembly::part::{Part, SMALL_PART};
+use crate::kinematics::assembly::part::SMALL_PART;
 use crate::kinematics::assembly::search::{NoBranch, search};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::model::Model;
@@ -73,25 +73,24 @@ fn superfluous_in(
     if columns.len() > SMALL_PART {
         return None;
     }
-    let mut part = Part::new(&model.system, block.rows(), columns);
+    let mut part = LeastSquares::new(&model.system, block.rows(), columns);
     let mut block_state = state.block_state(&model.system);
     part.start(&mut block_state, estimate, 0);
     part.minimise_growing(&mut block_state);
-    if part.problem.close(&mut block_state).is_some() {
+    if part.close(&mut block_state).is_some() {
         return None;
     }
     let mut rows = jacobian_rows(model, state);
     for row in &mut rows {
         row.retain(|(column, _)| columns.contains(column));
     }
-    let own = part.problem.rows.iter().map(|&row| &rows[row]);
+    let own = part.rows.iter().map(|&row| &rows[row]);
     let mut echelon = Echelon::new(model.system.unknowns(), own);
     let is_driver = |row: &usize| {
         let target = &model.system.equations()[*row].target;
         matches!(target, Target::Driver(_))
     };
-    let (drivers, others): (Vec<_>, Vec<_>) =
-        part.problem.rows.iter().partition(|row| is_driver(row));
+    let (drivers, others): (Vec<_>, Vec<_>) = part.rows.iter().partition(|row| is_driver(row));
     let order = drivers.into_iter().chain(others);
     order.fold(None, |last, row| {
         let left_out = echelon.offer(row, &rows[row], SUPERFLUOUS);

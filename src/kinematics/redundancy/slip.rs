@@ -15,8 +15,8 @@ use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Target};
 use crate::mechanism::{BodyId, Joint, JointKind, MarkerId};
 
-/// A scaled residual beyond its rounding up to this one counts as none: it grows less than a
-/// thousandfold, to what is watched during a motion, before other rows are chosen.
+/// Largest scaled residual, beyond its rounding, of rows that agree. Until other rows are chosen it
+/// grows by less than a thousand, to the limit that is watched during a motion.
 pub(super) const AGREES: f64 = 1e-12;
 /// Multiple of the rounding of a redundant row that rounding in the rows that are solved may make.
 const ROUNDINGS: f64 = 1e3;

@@ -317,21 +317,34 @@ impl<'a> Builder<'a> {
         true
     }
 
+    /// Returns the one of two ends whose point is not found, and where x or y of that is, `off`
+    /// beyond the first end's.
+    fn unplaced(
+        &self,
+        ends: [MarkerId; 2],
+        component: usize,
+        off: &Form,
+    ) -> Option<(MarkerId, Form)> {
+        match ends.map(|marker| self.point(marker, component)) {
+            [Some(from), None] => Some((ends[1], from.plus(off, Interval::point(1.0)))),
+            [None, Some(to)] => Some((ends[0], to.minus(off))),
+            _ => None,
+        }
+    }
+
+    /// Places the body of the end whose point is not found.
+    fn place_end(&mut self, ends: [MarkerId; 2], component: usize, off: &Form) -> bool {
+        let unplaced = self.unplaced(ends, component, off);
+        unplaced.is_some_and(|(marker, point)| self.place(marker, component, point))
+    }
+
     fn join_points(&mut self, row: usize) -> bool {
         let Relation::Coincidence(joined) = self.relation(row) else {
             return false;
         };
         let component = usize::from(joined.axis == Axis::Y);
         let off = Form::constant(self.target(row), self.torn);
-        let ends = [joined.from, joined.to].map(|marker| self.point(marker, component));
-        match ends {
-            [Some(from), None] => {
-                let point = from.plus(&off, Interval::point(1.0));
-                self.place(joined.to, component, point)
-            }
-            [None, Some(to)] => self.place(joined.from, component, to.minus(&off)),
-            _ => false,
-        }
+        self.place_end([joined.from, joined.to], component, &off)
     }
 
     /// Places a body by a pair of rows on the same axes.
@@ -352,12 +365,10 @@ impl<'a> Builder<'a> {
             let Some(off) = self.turned(off, axes, component) else {
                 return false;
             };
-            let ends = [along.from, along.to].map(|marker| self.point(marker, component));
-            placed.push(match ends {
-                [Some(from), None] => (along.to, from.plus(&off, Interval::point(1.0))),
-                [None, Some(to)] => (along.from, to.minus(&off)),
-                _ => return false,
-            });
+            let Some(end) = self.unplaced([along.from, along.to], component, &off) else {
+                return false;
+            };
+            placed.push(end);
         }
         let mut done = true;
         for (component, (marker, point)) in placed.into_iter().enumerate() {
@@ -386,15 +397,7 @@ impl<'a> Builder<'a> {
             _ => return false,
         };
         let off = Form::constant(self.target(row) * Interval::point(e[component]), self.torn);
-        let ends = [on.from, on.to].map(|marker| self.point(marker, component));
-        match ends {
-            [Some(from), None] => {
-                let point = from.plus(&off, Interval::point(1.0));
-                self.place(on.to, component, point)
-            }
-            [None, Some(to)] => self.place(on.from, component, to.minus(&off)),
-            _ => false,
-        }
+        self.place_end([on.from, on.to], component, &off)
     }
 
     /// Returns the equations of the rows that are left.
