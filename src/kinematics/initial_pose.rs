@@ -102,7 +102,7 @@ pub(super) fn start(
     path: &Path,
 ) -> Result<Start, Error> {
     state.restore(model, home);
-    match tracker.track(model, state, path) {
+    match tracker.track(model, state, path, false) {
         Ok(progress) => Ok(Start::Continuous(progress)),
         Err(_) => assemble(model, state, path).map(Start::Reassembled),
     }

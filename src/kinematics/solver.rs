@@ -147,7 +147,8 @@ impl Solver {
     /// [`Blocked`] if the end cannot be reached on the continuous motion. The pose is then the last
     /// one reached, which is a valid one.
     pub fn track(&mut self, path: &Path) -> Result<Progress, Blocked> {
-        self.tracker.track(&mut self.model, &mut self.state, path)
+        self.tracker
+            .track(&mut self.model, &mut self.state, path, false)
     }
 
     /// Moves the mechanism along `path` as [`track`](Self::track) does, and gives up early where it
@@ -159,7 +160,7 @@ impl Solver {
     /// [`Blocked`] as for [`track`](Self::track); the reason is not looked for.
     pub fn track_or_give_up(&mut self, path: &Path) -> Result<Progress, Blocked> {
         self.tracker
-            .track_or_give_up(&mut self.model, &mut self.state, path)
+            .track(&mut self.model, &mut self.state, path, true)
     }
 
     /// Returns the change points that the last call of [`track`](Self::track) passed, in order.

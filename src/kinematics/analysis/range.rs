@@ -277,7 +277,7 @@ impl Explorer<'_> {
         let index = self.driver.index();
         let mut path = held_path(self.start);
         path.curves[index] = Curve::held(value, self.state.pose.drivers[index]);
-        let tracked = self.tracker.track(self.model, self.state, &path);
+        let tracked = self.tracker.track(self.model, self.state, &path, false);
         tracked.map(drop).map_err(|blocked| blocked.reason)
     }
 

@@ -80,37 +80,14 @@ impl PathTracker {
     }
 
     /// Moves the mechanism along `path`, at whose start its pose is. Allocates nothing, unless a
-    /// block comes near a singular position.
+    /// block comes near a singular position. With `gives_up` it stops in front of one without
+    /// looking for it.
     ///
     /// # Errors
     ///
     /// [`Blocked`] if the end cannot be reached on the continuous motion; the pose is then the
-    /// last one reached.
+    /// last one reached. With `gives_up` the reason is [`Reason::Lost`] or one that needs no search.
     pub(in crate::kinematics) fn track(
-        &mut self,
-        model: &mut Model,
-        state: &mut State,
-        path: &Path,
-    ) -> Result<Progress, Blocked> {
-        self.run(model, state, path, false)
-    }
-
-    /// Moves the mechanism along `path`. See
-    /// [`Solver::track_or_give_up`](crate::kinematics::Solver::track_or_give_up).
-    ///
-    /// # Errors
-    ///
-    /// [`Blocked`] for the reason [`Reason::Lost`] or one that needs no search.
-    pub(in crate::kinematics) fn track_or_give_up(
-        &mut self,
-        model: &mut Model,
-        state: &mut State,
-        path: &Path,
-    ) -> Result<Progress, Blocked> {
-        self.run(model, state, path, true)
-    }
-
-    fn run(
         &mut self,
         model: &mut Model,
         state: &mut State,

@@ -42,7 +42,7 @@ pub(in crate::kinematics) fn indeterminate(
             let row = model.system.driver_row(DriverId(index));
             *curve = Curve::held(now + away / row.row_scale(&state.at), now);
         }
-        if tracker.track(model, state, &path).is_ok() {
+        if tracker.track(model, state, &path, false).is_ok() {
             stressed.push(self_stressed(model, state));
         }
         state.restore(model, &home);
