@@ -156,6 +156,17 @@ impl Unit {
         Self::NEWTON_METRE_SECOND_PER_RADIAN,
     ];
 
+    /// Returns the unit as it stands behind a number: a blank and its symbol, nothing for a plain
+    /// number.
+    #[must_use]
+    pub fn suffix(self) -> String {
+        if self == Self::ONE {
+            String::new()
+        } else {
+            format!(" {}", self.name)
+        }
+    }
+
     const fn new(name: &'static str, dimension: Dimension) -> Self {
         Self {
             name,

@@ -64,8 +64,8 @@ const NEARLY_SINGULAR: f64 = 1e-6;
 const MOST_BODIES_SEARCHED: usize = 40;
 /// Most steps of a run whose rows are compared with limits: more would take longer than assembly.
 const MOST_STEPS_WATCHED: u64 = 100_000;
-/// Angle by which a body is nearer its estimate in another way to close, from which that one may
-/// be meant \[rad\].
+/// Least angle by which another way to close brings a body nearer to its estimate, for a note that
+/// this one may be meant \[rad\].
 const FAR: f64 = FRAC_PI_2;
 
 impl Check {
@@ -227,8 +227,7 @@ fn describe_pose(solver: &mut Solver) -> String {
         let _ = writeln!(out, "  {} = {value}", measure.name);
     }
     for (measure, value) in at_rest {
-        let unit = measure.unit.filter(|unit| *unit != Unit::ONE);
-        let unit = unit.map_or_else(String::new, |unit| format!(" {}", unit.name));
+        let unit = measure.unit.map_or_else(String::new, Unit::suffix);
         let _ = writeln!(out, "  {} = {}{unit}", measure.name, shown(value));
     }
     let _ = writeln!(

@@ -309,12 +309,11 @@ fn refuse(option: &str, text: &str, error: &ExpressionError) -> Error {
 pub(super) fn check_limits(parameter: &Parameter, value: f64) -> Result<(), String> {
     let limits = [parameter.min, parameter.max];
     fmi::error::check_limits(&parameter.name, value, limits).map_err(|error| {
-        let unit = parameter.unit.filter(|unit| *unit != Unit::ONE);
-        let unit = match (&error, unit) {
-            (fmi::Error::Range { .. }, Some(unit)) => format!(" {}", unit.name),
-            _ => String::new(),
+        let unit = match error {
+            fmi::Error::Range { .. } => parameter.unit,
+            _ => None,
         };
-        format!("{error}{unit}")
+        format!("{error}{}", unit.map_or_else(String::new, Unit::suffix))
     })
 }
 

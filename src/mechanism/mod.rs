@@ -302,10 +302,10 @@ pub struct Driver {
     /// Whether the file makes it an FMI input, whose acceleration is free, also where a run gives
     /// it another source.
     pub is_input: bool,
-    /// Smallest value that is meant \[m or rad\], evaluated with the file's parameter values. No
-    /// wall: a value beyond it is followed.
+    /// Lower limit \[m or rad\], evaluated with the file's parameter values. A value beyond it is
+    /// followed, and told.
     pub min: Option<f64>,
-    /// Largest value that is meant \[m or rad\], likewise.
+    /// Upper limit \[m or rad\], likewise.
     pub max: Option<f64>,
     /// Whether an input gives an angle modulo one turn: each value means the turn nearest the last
     /// value. Only for the coordinate `angle` and for inputs.

@@ -91,8 +91,7 @@ impl DerivedRange {
         let values = self.extremes?.map(|extreme| extreme.value);
         let size = values.map(f64::abs).into_iter().filter(|s| s.is_finite());
         let rounding = ROUNDING * size.fold(0.0, f64::max);
-        let unit = measure.unit.filter(|unit| *unit != Unit::ONE);
-        let unit = unit.map_or_else(String::new, |unit| format!(" {}", unit.name));
+        let unit = measure.unit.map_or_else(String::new, Unit::suffix);
         Some(values.map(|value| match value {
             f64::INFINITY => "infinity".to_owned(),
             f64::NEG_INFINITY => "-infinity".to_owned(),

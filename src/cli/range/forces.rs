@@ -10,8 +10,8 @@ use crate::kinematics::{
 };
 use crate::mechanism::{DriverId, shown};
 
-/// Part of the largest effort that a reaction of rounding alone has at most, such as that of a pin
-/// beside the one that a spring and its driver load.
+/// Largest reaction that is rounding, as a part of the largest effort: that of a pin beside the one
+/// that a spring and its driver load.
 const ROUNDING: f64 = 1e-12;
 
 /// Forces at places in the range of a driver.

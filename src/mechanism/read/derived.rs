@@ -19,7 +19,7 @@ table! {
         /// Expression over the parameters and the variables of bodies, markers, drivers and
         /// measures, such as "-travel.velocity/shock.velocity".
         #[required("\"-travel.velocity/shock.velocity\"")]
-        value: &'a Value<'a> = Formula,
+        value: &'a Value<'a> = Unread,
         /// SI unit of the value.
         unit: Unit = SiUnit,
         /// Description in one line.
@@ -28,9 +28,9 @@ table! {
 }
 
 /// Number or expression over the parameters and signals, not read yet.
-struct Formula;
+struct Unread;
 
-impl<'a> Kind<'a> for Formula {
+impl<'a> Kind<'a> for Unread {
     type Value = &'a Value<'a>;
 
     fn read(&self, _: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<&'a Value<'a>> {

@@ -23,9 +23,9 @@ table! {
         start: Quantity = NUMBER,
         /// Prescribed motion: an expression in t, or a table.
         motion: ReadMotion = PrescribedMotion,
-        /// Smallest value that is meant [m or rad], such as the shortest length of a cylinder.
+        /// Lower limit [m or rad], such as the shortest length of a cylinder.
         min: Quantity = NUMBER,
-        /// Largest value that is meant [m or rad].
+        /// Upper limit [m or rad].
         max: Quantity = NUMBER,
         /// Whether the input gives an angle modulo one turn: each value means the nearest turn.
         wrapped: bool = Flag,

@@ -5,8 +5,8 @@ use crate::mechanism::{Expression, Force, ForceLaw, Load, MarkerId, Spring, Vari
 
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
-use super::kind::{Array, Described, Entry, Item, Kind, Text, schema};
-use super::number::{NUMBER, Quantity};
+use super::kind::{Array, Described, Entry, Text};
+use super::number::{Formula, NUMBER, Quantity};
 use super::reference::MarkerName;
 use super::table::table;
 
@@ -15,7 +15,7 @@ table! {
     struct CoordinateForceKeys<'a> {
         /// Force or torque along the coordinate [N or N.m]: an expression in t, position and
         /// velocity. Without value, stiffness and damping the force is an FMI input.
-        value: Quantity = Formula::of(&[Variable::Time, Variable::Position, Variable::Velocity]),
+        value: Quantity = Formula(&[Variable::Time, Variable::Position, Variable::Velocity]),
         /// Stiffness of a spring [N/m or N.m/rad].
         stiffness: Quantity = NUMBER,
         /// Value of the coordinate at which the spring is free of force [m or rad].
@@ -34,34 +34,12 @@ table! {
         /// Marker along whose axes the components are; ground's frame if left out.
         axes: MarkerId = MarkerName,
         /// Components of the force [N]: expressions in t.
-        value: [Quantity; 2] = Array::new("[fx, fy]", [Formula::of(&[Variable::Time]); 2]),
+        value: [Quantity; 2] = Array::new("[fx, fy]", [Formula(&[Variable::Time]); 2]),
         /// Torque on the body [N.m]: an expression in t.
-        torque: Quantity = Formula::of(&[Variable::Time]),
+        torque: Quantity = Formula(&[Variable::Time]),
         /// Description in one line.
         description: String = Text,
     }
-}
-
-/// Number or expression over the parameters and variables.
-#[derive(Clone, Copy)]
-struct Formula {
-    variables: &'static [Variable],
-}
-
-impl Formula {
-    const fn of(variables: &'static [Variable]) -> Self {
-        Self { variables }
-    }
-}
-
-impl<'a> Kind<'a> for Formula {
-    type Value = Quantity;
-
-    fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Quantity> {
-        context.formula_over(item.value, self.variables)
-    }
-
-    schema! { NUMBER.schema() }
 }
 
 /// A force of either shape.

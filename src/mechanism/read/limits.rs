@@ -28,8 +28,7 @@ impl Context<'_> {
                 display: Some(display),
                 ..
             }) => (display.factor, format!(" {}", display.name)),
-            Some(unit) if unit != Unit::ONE => (1.0, format!(" {}", unit.name)),
-            _ => (1.0, String::new()),
+            _ => (1.0, unit.map_or_else(String::new, Unit::suffix)),
         };
         let show = |a: f64, b: f64| {
             shown_apart(a * factor, b * factor).map(|number| format!("{number}{suffix}"))

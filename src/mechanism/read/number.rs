@@ -99,14 +99,15 @@ impl<'a> Kind<'a> for Number {
     }
 }
 
-/// Number or expression over the parameters, not computed yet.
-pub(super) struct Formula;
+/// Number or expression over the parameters and variables, not computed yet.
+#[derive(Clone, Copy)]
+pub(super) struct Formula(pub(super) &'static [Variable]);
 
 impl<'a> Kind<'a> for Formula {
     type Value = Quantity;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Quantity> {
-        context.formula(item.value)
+        context.formula_over(item.value, self.0)
     }
 
     schema! { NUMBER.schema() }

@@ -23,17 +23,17 @@ table! {
     struct ParameterKeys<'a> {
         /// Value in the SI unit; an expression over other parameters makes it a derived parameter.
         #[required("0.1")]
-        value: Quantity = Formula,
+        value: Quantity = Formula(&[]),
         /// SI unit of the value.
         unit: Unit = SiUnit,
         /// Unit in which hosts show the value.
         display: DisplayUnit = DISPLAY_UNIT,
         /// Smallest permitted value.
-        min: Quantity = Formula,
+        min: Quantity = Formula(&[]),
         /// Largest permitted value.
-        max: Quantity = Formula,
+        max: Quantity = Formula(&[]),
         /// Largest deviation of the real value from the value, up or down.
-        tolerance: Quantity = Formula,
+        tolerance: Quantity = Formula(&[]),
         /// Whether the value may change between steps.
         tunable: bool = Flag,
         /// Description in one line.
