@@ -49,7 +49,7 @@ impl Bounds {
     }
 }
 
-/// Returns the error of what needs a driver, in a mechanism without any.
+/// Returns the error for an option or a command that needs a driver, in a mechanism without any.
 pub(super) fn no_driver(what: &str) -> Error {
     Error::Usage(format!("{what}: the mechanism has no driver"))
 }

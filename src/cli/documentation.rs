@@ -32,8 +32,8 @@ const ICON_WIDTH: u32 = 512;
 /// Number of moments of the motion, and the largest number of bodies in all of them.
 const MOMENTS: usize = 240;
 const MOST_PLACED: usize = 24_000;
-/// Most bodies of a mechanism that is moved once more for its picture; that of a larger one shows the
-/// way of the film.
+/// Most bodies of a mechanism whose picture has a motion of its own; the picture of a larger one
+/// uses the poses of the film.
 const MOST_SWEPT: usize = 1_000;
 /// Time that the film takes for a turn of the driver, or for its range there and back \[s\].
 const PERIOD: f64 = 4.0;
@@ -320,7 +320,7 @@ fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
     table(&["Driver", "Start", "Range, other drivers held"], rows)
 }
 
-/// Returns the table of parameters with their values, in SI units, and folded that of the settings.
+/// Returns the table of parameters in SI units, then the folded table of settings.
 fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
     let header = ["Parameter", "Value", "Unit", "Limits", "Meaning"];
     let rows = variables

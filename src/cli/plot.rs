@@ -78,10 +78,7 @@ impl Plot {
             }
             _ => true,
         };
-        let columns = std::mem::take(&mut self.columns).into_iter();
-        let all = columns.zip(std::mem::take(&mut self.values));
-        let kept = all.filter(|(column, _)| is_kept(column.source));
-        (self.columns, self.values) = kept.unzip();
+        self.retain(|column, _| is_kept(column.source));
         (shown.len() < bodies.len()).then_some([shown.len(), bodies.len()])
     }
 
@@ -94,6 +91,11 @@ impl Plot {
         if !all.any(|(column, values)| is_kept(column, values)) {
             return;
         }
+        self.retain(is_kept);
+    }
+
+    /// Removes the other columns with their values.
+    fn retain(&mut self, is_kept: impl Fn(&Output, &[f64]) -> bool) {
         let columns = std::mem::take(&mut self.columns).into_iter();
         let all = columns.zip(std::mem::take(&mut self.values));
         let kept = all.filter(|(column, values)| is_kept(column, values));

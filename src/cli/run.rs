@@ -44,10 +44,10 @@ pub(super) struct Run {
     /// are variables of drivers such as crank_angle.position, and inputs such as cylinder.effort.
     ///
     /// Values are linear between two rows, constant before the first and after the last, and jump
-    /// at a time that occurs twice, as in FMPy. Velocities of drivers are those of the columns .velocity, or
-    /// else the slopes; accelerations those of .acceleration, or else zero. A position of a wrapped
-    /// angle means the turn nearest the last one. Columns are separated by commas, semicolons, tabs
-    /// or blanks.
+    /// at a time that occurs twice, as in FMPy. A column .velocity gives the velocity of a driver,
+    /// otherwise the slope does; a column .acceleration gives its acceleration, otherwise it is
+    /// zero. A position of a wrapped angle means the turn nearest the last one. Columns are
+    /// separated by commas, semicolons, tabs or blanks.
     #[arg(short, long, value_name = "CSV")]
     input: Option<PathBuf>,
     #[command(flatten)]

@@ -24,7 +24,7 @@ use super::render::render;
 use crate::drawing::animation::{fill, page_with, player};
 use crate::drawing::svg::escape;
 use crate::mechanism::{Mechanism, Source};
-use server::{Answer, Request, Server};
+use server::{Answer, PAGE, Request, Server, TEXT};
 
 const MAIN: &str = include_str!("watch/main.html");
 const STYLE: &str = include_str!("watch/watch.css");
@@ -73,14 +73,14 @@ impl Watch {
         server.serve(|request| match (&*request.method, &*request.path) {
             ("GET", "/") => {
                 view.refresh();
-                Answer::page(view.page())
+                Answer::new(PAGE, view.page())
             }
             ("GET", "/version") => {
                 view.refresh();
-                Answer::text(view.version.to_string())
+                Answer::new(TEXT, view.version.to_string())
             }
             ("PUT", "/file") => view.write(request),
-            _ => Answer::missing(),
+            _ => Answer::refusal("404 Not Found"),
         })
     }
 }
@@ -158,34 +158,25 @@ impl View {
         let read = read(&self.watch.file).map_err(told)?;
         let (input, mut warnings) = read?;
         self.tables = tables(&self.watch.file, &input.mechanism).collect();
-        if self.solver.is_some() {
-            let solver = input.assemble().map_err(told)?;
-            warnings.extend(misfits(&solver).iter().map(ToString::to_string));
-            self.warnings = warnings;
-            self.name.clone_from(&input.mechanism.name);
-            self.description.clone_from(&input.mechanism.description);
-            self.player = live::main(&input.source, &input.mechanism, Some(&self.token));
-            return Ok(());
+        let mut solver = input.assemble().map_err(told)?;
+        if self.solver.is_none() {
+            let (conditions, start) = (&self.watch.conditions, input.mechanism.simulation.start);
+            let scenario = conditions.scenario(&input.mechanism, start, None);
+            // The page names the file already.
+            solver = scenario.map_err(told)?.solver(solver).map_err(told)?;
         }
-        let start = input.mechanism.simulation.start;
-        let scenario = self
-            .watch
-            .conditions
-            .scenario(&input.mechanism, start, None);
-        let home_solver = input.assemble().map_err(told)?;
-        let solver = scenario.map_err(told)?.solver(home_solver);
-        // The page names the file already.
-        let mut solver = solver.map_err(told)?;
         warnings.extend(misfits(&solver).iter().map(ToString::to_string));
-        let shown = show(&mut solver).map_err(told)?;
+        let player = if self.solver.is_some() {
+            live::main(&input.source, &input.mechanism, Some(&self.token))
+        } else {
+            let shown = show(&mut solver).map_err(told)?;
+            let moving = escape(&shown.moving);
+            format!("<p>{moving}</p>\n{}", player(&shown.animation))
+        };
         self.warnings = warnings;
         self.name.clone_from(&input.mechanism.name);
         self.description.clone_from(&input.mechanism.description);
-        self.player = format!(
-            "<p>{}</p>\n{}",
-            escape(&shown.moving),
-            player(&shown.animation)
-        );
+        self.player = player;
         Ok(())
     }
 
@@ -232,10 +223,10 @@ impl View {
     /// Writes the text that the page sends into the file.
     fn write(&self, request: &Request) -> Answer {
         if request.token.as_deref() != Some(&*self.token) {
-            return Answer::forbidden();
+            return Answer::refusal("403 Forbidden");
         }
         match std::fs::write(&self.watch.file, &request.body) {
-            Ok(()) => Answer::text(String::new()),
+            Ok(()) => Answer::new(TEXT, ""),
             Err(error) => Answer::failure(error.to_string()),
         }
     }

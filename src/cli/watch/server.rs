@@ -11,6 +11,10 @@ const MOST_BYTES: [u64; 2] = [16 * 1024, 16 << 20];
 /// Time after which a silent connection is closed.
 const PATIENCE: Duration = Duration::from_secs(2);
 
+/// Types of answers.
+pub(super) const PAGE: &str = "text/html";
+pub(super) const TEXT: &str = "text/plain";
+
 /// A server that listens on the loopback address only.
 pub(super) struct Server {
     listener: TcpListener,
@@ -34,43 +38,28 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    pub(super) fn page(body: String) -> Self {
+    /// Makes an answer of the type `kind`.
+    pub(super) fn new(kind: &'static str, body: impl Into<String>) -> Self {
         Self {
             status: "200 OK",
-            kind: "text/html",
-            body,
+            kind,
+            body: body.into(),
         }
     }
 
-    pub(super) fn text(body: String) -> Self {
+    /// Makes the answer to a request that is refused.
+    pub(super) fn refusal(status: &'static str) -> Self {
         Self {
-            status: "200 OK",
-            kind: "text/plain",
-            body,
+            status,
+            ..Self::new(TEXT, status)
         }
     }
 
-    pub(super) fn missing() -> Self {
-        Self::refusal("404 Not Found")
-    }
-
-    /// Answers that a file was not written, and why.
+    /// Makes the answer that a file was not written, and why.
     pub(super) fn failure(why: String) -> Self {
         Self {
             body: why,
             ..Self::refusal("500 Internal Server Error")
-        }
-    }
-
-    pub(super) fn forbidden() -> Self {
-        Self::refusal("403 Forbidden")
-    }
-
-    fn refusal(status: &'static str) -> Self {
-        Self {
-            status,
-            kind: "text/plain",
-            body: status.to_owned(),
         }
     }
 }
