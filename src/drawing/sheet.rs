@@ -136,9 +136,7 @@ impl Mark {
             elastic: None,
         }
     }
-}
 
-impl Mark {
     /// Returns a mark that is drawn at the pose `home`, at another pose.
     pub(super) fn moved(&self, home: &[f64], q: &[f64], scale: f64) -> Self {
         let [from, to] = [home, q].map(|q| self.attachment.placement(q, scale));

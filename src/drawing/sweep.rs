@@ -170,7 +170,7 @@ fn is_back(poses: &[Vec<f64>], bodies: usize) -> bool {
     })
 }
 
-/// Turns a driver by an angle, in so many steps; false if the motion is blocked before.
+/// Turns a driver by an angle in equal steps. Returns false if the motion is blocked before.
 fn turn(
     solver: &mut Solver,
     path: &mut Path,

@@ -19,9 +19,9 @@ pub(super) struct Kept {
 /// The states before the present one, and those that were undone.
 #[derive(Default)]
 pub(super) struct UndoHistory {
-    /// The last one was kept last.
+    /// The states before, the oldest first.
     kept: Vec<Kept>,
-    /// The last one was undone last.
+    /// The states in the order in which they were undone.
     undone: Vec<Kept>,
 }
 
