@@ -77,41 +77,17 @@ __all__ = [
     "tolerance",
 ]
 
-_HOMES = {
-    "errors": [
-        "AssemblyError",
-        "Diagnostic",
-        "Error",
-        "FileError",
-        "MechanismError",
-        "MechanismWarning",
-        "StoppedError",
-        "UsageError",
-    ],
-    "synthesis": ["Fit", "Target", "fit", "points"],
-    "mechanism": ["Driver", "Mechanism", "Parameter", "check", "load", "loads"],
-    "results": [
-        "ChangePoint",
-        "Drawing",
-        "End",
-        "Gradient",
-        "Mode",
-        "Modes",
-        "Range",
-        "Report",
-        "Result",
-        "Sweep",
-    ],
-    "tolerances": ["Tolerances", "tolerance"],
-}
-"""Modules by what they define. They are imported when they are needed: the program needs none of
-them, and no NumPy."""
+_MODULES = "errors", "results", "mechanism", "synthesis", "tolerances"
+"""Modules that define these names. They are imported when a name is needed: the program needs none,
+and no NumPy, which all but the first import."""
 
 
 def __getattr__(name: str) -> Any:
-    for home, names in _HOMES.items():
-        if name in names:
-            return getattr(importlib.import_module(f".{home}", __name__), name)
+    if name in __all__:
+        for module in _MODULES:
+            found = importlib.import_module(f".{module}", __name__)
+            if hasattr(found, name):
+                return getattr(found, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

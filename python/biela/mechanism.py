@@ -464,10 +464,8 @@ class Mechanism:
     ) -> list[NDArray]:
         """Returns the rates that are not given."""
         missing = 3 - len(given)
-        if missing == 0 or len(given[-1]) != len(times):
-            return [np.zeros(len(times))] * missing
-        if constant or timeless:
-            # Without time nothing moves: velocities are zero unless given.
+        # Without time nothing moves: velocities are zero unless given.
+        if not missing or constant or timeless or len(given[-1]) != len(times):
             return [np.zeros(len(times))] * missing
         if np.any(np.diff(times) <= 0):
             raise UsageError("drive: samples at equal times cannot be differentiated; give the rates")

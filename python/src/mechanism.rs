@@ -8,7 +8,7 @@ use biela::drawing::{Diagram, Followed, svg};
 use biela::kinematics::Output;
 use biela::kinematics::{Carryover, End, Mode, Path, Pose, RangeSettings, Solver};
 use biela::mechanism::{
-    Diagnostic, DriverId, DriverSource, Mechanism as Model, ParameterId, Source, Unit,
+    Diagnostic, DriverId, DriverSource, Mechanism as Model, Parameter, ParameterId, Source, Unit,
 };
 use biela::page::{Place, edit};
 use numpy::{IntoPyArray, PyArray1};
@@ -183,25 +183,19 @@ impl Mechanism {
 
     #[getter]
     fn parameters(&self) -> Vec<ParameterRow> {
-        let parameters = self.model.parameters.iter();
-        let unit = |unit: Option<Unit>| unit.unwrap_or(Unit::ONE).name;
-        parameters
-            .map(|p| {
-                let (name, description) = (p.name.clone(), p.description.clone());
-                let unit = unit(p.unit);
-                let (limits, tolerance) = ((p.min, p.max), p.tolerance);
-                (
-                    name,
-                    description,
-                    p.default,
-                    unit,
-                    limits.0,
-                    limits.1,
-                    tolerance,
-                    p.derived,
-                )
-            })
-            .collect()
+        let row = |p: &Parameter| {
+            (
+                p.name.clone(),
+                p.description.clone(),
+                p.default,
+                p.unit.unwrap_or(Unit::ONE).name,
+                p.min,
+                p.max,
+                p.tolerance,
+                p.derived,
+            )
+        };
+        self.model.parameters.iter().map(row).collect()
     }
 
     #[getter]
@@ -586,21 +580,12 @@ fn source(name: &str, text: Option<String>, path: Option<PathBuf>) -> Result<Sou
 }
 
 fn problems(source: &Source, diagnostics: &[Diagnostic]) -> Vec<Problem> {
-    let place = |diagnostic: &Diagnostic| {
-        let position = source.position(diagnostic.labels.first()?.span.start);
-        Some((position.line, position.column))
+    let problem = |d: &Diagnostic| {
+        let label = d.labels.first();
+        let position = label.map(|label| source.position(label.span.start));
+        let place = position.map(|position| (position.line, position.column));
+        let (message, help) = (d.message.clone(), d.help.clone());
+        (d.severity.as_str(), d.code, message, help, place)
     };
-    diagnostics
-        .iter()
-        .map(|d| {
-            let severity = d.severity.as_str();
-            (
-                severity,
-                d.code,
-                d.message.clone(),
-                d.help.clone(),
-                place(d),
-            )
-        })
-        .collect()
+    diagnostics.iter().map(problem).collect()
 }

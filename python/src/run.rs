@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
-use biela::kinematics::Direction;
-use biela::kinematics::Output;
+use biela::kinematics::{Direction, Output, Start};
 use biela::mechanism::{Mechanism, ParameterId};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
 use crate::error::Failure;
 use crate::film::Film;
-use crate::runner::{Beginning, Runner};
+use crate::runner::Runner;
 use crate::scenario::Scenario;
 
 /// The rows of a run.
@@ -87,7 +86,7 @@ pub(crate) fn run(
         stop: None,
         notices: Vec::new(),
     };
-    if began == Beginning::Reassembled {
+    if let Start::Reassembled(_) = began {
         result.notices.push(REASSEMBLED.to_owned());
     }
     let directions: Vec<_> = by

@@ -42,15 +42,6 @@ struct ActingForces {
     lifted: Vec<bool>,
 }
 
-/// The method that found the first pose of a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Beginning {
-    /// Continuous motion from the file's own pose.
-    Continuous,
-    /// Assembly from the estimates, possibly in another assembly mode.
-    Reassembled,
-}
-
 impl<S: Deref<Target = Scenario>> Runner<S> {
     /// Makes a runner; with a column of forces it solves them too.
     pub(crate) fn new(scenario: S, columns: &[Output]) -> Result<Self, Failure> {
@@ -84,13 +75,13 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
     /// # Errors
     ///
     /// The mechanism does not assemble there.
-    pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<Beginning, Failure> {
+    pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<Start, Failure> {
         let time = self.scenario.times[0];
         self.begin(parameters)
             .map_err(|error| Failure::Assembly(error.at_start(time)))
     }
 
-    fn begin(&mut self, parameters: &[f64]) -> Result<Beginning, Error> {
+    fn begin(&mut self, parameters: &[f64]) -> Result<Start, Error> {
         let Scenario {
             own, driven, home, ..
         } = &*self.scenario;
@@ -122,10 +113,7 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
         self.path.to.copy_from_slice(parameters);
         self.near_singular = false;
         self.solve(0)?;
-        Ok(match began {
-            Start::Continuous(_) => Beginning::Continuous,
-            Start::Reassembled(_) => Beginning::Reassembled,
-        })
+        Ok(began)
     }
 
     /// Moves on to a row's time.

@@ -1,14 +1,14 @@
 //! The same motion of many variants, on all cores.
 
 use biela::cli::check_parameter;
-use biela::kinematics::Output;
+use biela::kinematics::{Output, Start};
 use biela::mechanism::ParameterId;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::error::Failure;
-use crate::runner::{BATCH, Beginning, Runner};
+use crate::runner::{BATCH, Runner};
 use crate::scenario::Scenario;
 
 /// The rows of many variants.
@@ -77,7 +77,7 @@ pub(crate) fn sweep(
         }
         scenario.own.derive_parameters(&mut own);
         match runner.start(&own) {
-            Ok(began) => outcome.reassembled = began == Beginning::Reassembled,
+            Ok(began) => outcome.reassembled = matches!(began, Start::Reassembled(_)),
             Err(Failure::Assembly(reason) | Failure::Usage(reason) | Failure::File(reason)) => {
                 outcome.reason = Some(reason);
                 return outcome;
