@@ -594,3 +594,55 @@ proptest! {
         }
     }
 }
+
+/// An arm of 0.48 m whose pin is pulled towards a point 0.25 m from its axle: at 0.23 m it is at a
+/// dead point, which a step meets.
+#[test]
+fn a_refused_step_leaves_no_trace_in_a_state_set_after_it() {
+    let arm = common::parse(
+        "format = 1\nname = 'arm'\n[ground.markers]\nO = [0, 0]\nC = [0.25, 0]\n\
+         [bodies.arm]\nmarkers = { a = [0, 0], b = [0.48, 0] }\nestimate = [0, 0, 1.4]\n\
+         [joints]\nO = { type = 'revolute', markers = ['ground.O', 'arm.a'] }\n[drivers]\n\
+         u = { coordinate = 'distance', markers = ['ground.C', 'arm.b'], start = 0.5 }\n",
+    );
+    let new = || {
+        let mut instance = instance_of(arm.clone(), Interface::CoSimulation);
+        instance.setup_experiment(0.0, Some(10.0)).expect("legal");
+        let choices = references(&instance, |quantity| {
+            matches!(quantity, Quantity::RateSource | Quantity::Extrapolation)
+        });
+        instance.set_integer(&choices, &[3, 2]).expect("there are");
+        instance.enter_initialization_mode().expect("legal");
+        instance.exit_initialization_mode().expect("it starts");
+        instance
+    };
+    let position = references(&new(), |quantity| {
+        matches!(quantity, Quantity::Input(_, Order::Position))
+    });
+    let mut first = new();
+    for step in 0..2 {
+        first.set_real(&position, &[0.516]).expect("an input");
+        first
+            .do_step(0.01 * f64::from(step), 0.01)
+            .expect("it reaches");
+    }
+    let state = first.fmu_state().expect("legal");
+    let meet = |instance: &mut Instance, looks_first: bool| {
+        instance.set_real(&position, &[0.0165]).expect("an input");
+        if looks_first {
+            let _ = look(instance);
+        }
+        let outcome = instance.do_step(0.02, 3.0);
+        assert!(outcome.is_err());
+        look(instance)
+    };
+    let truth = meet(&mut first, false);
+    for looks_first in [false, true, false] {
+        first.set_fmu_state(&state).expect("its own");
+        assert_eq!(
+            meet(&mut first, looks_first),
+            truth,
+            "looks first: {looks_first}"
+        );
+    }
+}

@@ -550,9 +550,10 @@ impl Run<'_> {
             return Ok(());
         }
         let ratio = match failure {
-            // The certificate concerns the rows that are solved.
-            Failure::Contradiction(_) | Failure::Jump(_) => None,
-            Failure::NotCertified | Failure::Value(_) => self.ratio_to_rejected(),
+            // The certificate concerns the rows that are solved, and was not asked about values
+            // without a mechanism.
+            Failure::Contradiction(_) | Failure::Jump(_) | Failure::Value(_) => None,
+            Failure::NotCertified => self.ratio_to_rejected(),
         };
         self.is_halved |= ratio.is_none();
         self.length = (end - self.s) * ratio.unwrap_or(HALF);
