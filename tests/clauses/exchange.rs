@@ -142,3 +142,38 @@ fn a_getter_of_co_simulation_does_not_discard() {
     assert_eq!(get(&mut instance, ["arm.phi"]), before);
     instance.do_step(0.0, 0.1).expect("it is within reach");
 }
+
+/// "The solution at the final time … can be retrieved" (2.0.5, 3.2.3): that of the inputs set last.
+#[test]
+fn values_after_the_end_are_those_of_the_inputs_set_last() {
+    let crank = "crank_angle.position";
+    for in_event_mode in [true, false] {
+        let mut instance = started(instance_of(shipped("four_bar"), Interface::ModelExchange));
+        instance.set_time(0.1).expect("legal");
+        set(&mut instance, [(crank, 1.1)]);
+        assert_eq!(instance.completed_integrator_step(), Ok(false));
+        if in_event_mode {
+            instance.enter_event_mode().expect("legal");
+        }
+        set(&mut instance, [(crank, 1.3)]);
+        if in_event_mode {
+            assert_eq!(instance.new_discrete_states(), Ok(false));
+        }
+        instance.terminate().expect("legal");
+        assert_eq!(get(&mut instance, [crank, "crank.phi"]), [1.3, 1.3]);
+    }
+    // Without such a pose the values stay those of the last one.
+    let heard = Heard::default();
+    let mut instance = started(heard.instance(shipped("tlv"), Interface::ModelExchange, false));
+    let before = get(&mut instance, ["arm.phi"]);
+    set(&mut instance, [(LENGTH, TOO_LONG)]);
+    heard.take_all();
+    instance.terminate().expect("legal");
+    assert_eq!(get(&mut instance, ["arm.phi"]), before);
+    let log = heard.take_all();
+    assert!(
+        log.iter()
+            .any(|message| message.text.contains("dead point")),
+        "{log:?}"
+    );
+}

@@ -615,3 +615,54 @@ fn fmu_states_keep_the_mode() {
     assert!(old.deserialize_fmu_state(&bytes).is_err());
     assert!(old.set_fmu_state(&state).is_err());
 }
+
+/// In event mode a host changes values without a step: derivatives are those of values that it sets
+/// and gets there (3.0.2, 2.2.11).
+#[test]
+fn derivatives_in_event_mode_are_those_of_set_and_get() {
+    let mut instance = running("four_bar", agreed(true, false));
+    for n in 0..3 {
+        let t = 0.01 * f64::from(n);
+        set(&mut instance, [("crank_angle.position", 1.05 + t)]);
+        step(&mut instance, t, 0.01);
+    }
+    instance.enter_event_mode().unwrap();
+    let outputs = ["crank.phi", "crank.omega", "crank.alpha"];
+    let references = outputs.map(|name| vr(&instance, name));
+    let position = vr(&instance, "crank_angle.position");
+    let exact = instance.directional_derivative(&references, &[position], &[1.0]);
+    assert_eq!(exact.unwrap(), [1.0, 0.0, 0.0]);
+    let before = get(&mut instance, outputs);
+    set(&mut instance, [("crank_angle.position", 1.09)]);
+    let [phi, rates @ ..] = get(&mut instance, outputs);
+    assert_eq!(phi, 1.09);
+    assert_eq!(rates, before[1..]);
+}
+
+/// A cord along a distance that is zero at one communication point has no force there; one step on
+/// it has again (3.0.2, 2.2.4: after a discard an instance is as before the call).
+#[test]
+fn a_value_that_does_not_exist_ends_nothing() {
+    let cord = parse(
+        "format = 1\nname = 'cord'\n[ground.markers]\nO = [0, 0]\n[bodies.slider]\n\
+         markers = { S = [0, 0] }\nmass = 1\nestimate = [-0.02, 0, 0]\n[joints]\n\
+         rail = { type = 'translational', markers = ['ground.O', 'slider.S'] }\n[drivers]\n\
+         u = { coordinate = 'x', markers = ['ground.O', 'slider.S'], start = -0.02 }\n[forces]\n\
+         cord = { coordinate = 'distance', markers = ['ground.O', 'slider.S'], stiffness = 3, free = 0 }\n",
+    );
+    let mut instance = start(new_instance(cord, &Heard::default()), agreed(false, false));
+    for (n, position) in [-0.01, 0.0, 0.01].into_iter().enumerate() {
+        set(&mut instance, [("u.position", position)]);
+        step(&mut instance, 0.1 * n as f64, 0.1);
+        let effort = vr(&instance, "u.effort");
+        let found = instance.reals(&[effort]).map(|mut values| values.next());
+        match found {
+            Ok(_) => assert!(position != 0.0),
+            Err(error) => {
+                assert_eq!(position, 0.0);
+                assert_eq!(instance.report("fmi3GetFloat64", &error), Status::Discard);
+            }
+        }
+        assert_eq!(instance.state(), State::StepMode);
+    }
+}

@@ -255,3 +255,17 @@ fn masses_that_parameters_make_negative_are_refused() {
     let message = refused.expect_err("a mass is negative").to_string();
     assert_eq!(message, "the mass of body `rod` is -2; it must be positive");
 }
+
+/// Points that a joint holds together are apart by rounding, which has any direction.
+#[test]
+fn a_distance_of_rounding_has_no_direction() {
+    let text = std::fs::read_to_string("mechanisms/four_bar.toml").expect("it is shipped")
+        + "\n[forces]\npull = { coordinate = \"distance\", markers = [\"coupler.B\", \"rocker.B\"] }\n";
+    for degrees in 0..36 {
+        let text = text.replace("\"60*deg\" }", &format!("\"{}*deg\" }}", 10 * degrees));
+        let error = at_start(&text, &[[1.0, 0.0]], &[100.0]).err();
+        let error = error.map(|error| error.to_string());
+        let expected = "force `pull` has no direction: the distance of its markers is zero";
+        assert_eq!(error.as_deref(), Some(expected), "at {degrees}0 deg");
+    }
+}

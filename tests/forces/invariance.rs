@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use biela::kinematics::{Curve, Element, ForceQuantity, Path, Solver};
+use biela::kinematics::{Curve, Element, ForceParts, ForceQuantity, KnownMotion, Path, Solver};
 use biela::mechanism::{
     CoordinateKind, DriverId, DriverSource, Expression, ForceLaw, Jet, JointKind, Load, Marker,
     MarkerId, Mechanism,
@@ -514,4 +514,40 @@ fn enlarge(mechanism: &mut Mechanism, scale: Scale) -> Option<()> {
         times(g, acceleration);
     }
     Some(())
+}
+
+/// Which results are sought together is no matter of the host's: the bits are the same.
+#[test]
+fn reactions_alone_have_the_bits_of_all_forces_together() {
+    for name in stems("mechanisms", "toml") {
+        let mut all = Loaded::new(loaded(&name));
+        let quantities = (0..all.solver.mechanism().joints.len())
+            .flat_map(|joint| [0, 1, 2].map(|k| ForceQuantity::Reaction(joint, k)));
+        let read = |all: &Loaded| {
+            let values = quantities
+                .clone()
+                .map(|quantity| all.forces.value(quantity));
+            values.map(f64::to_bits).collect::<Vec<u64>>()
+        };
+        let together = read(&all);
+        let Loaded {
+            solver,
+            rates,
+            driver_rates,
+            inputs,
+            forces,
+        } = &mut all;
+        let motion = KnownMotion {
+            rates,
+            driver_rates,
+            inputs,
+        };
+        let reactions = ForceParts {
+            efforts: false,
+            reactions: true,
+        };
+        let solved = solver.solve_forces(motion, reactions, forces);
+        solved.expect("forces have values");
+        assert_eq!(read(&all), together, "{name}");
+    }
 }

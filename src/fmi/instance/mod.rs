@@ -375,6 +375,14 @@ impl<M: Model> Instance<M> {
     /// The state forbids the call.
     pub fn terminate(&mut self) -> Result<(), Error> {
         self.allow(Call::Terminate)?;
+        let phase = self.course.state.phase(self.interface);
+        let is_exchange = self.interface == Interface::ModelExchange && phase == Phase::Running;
+        // The values of the final time are those of the inputs set last.
+        if (is_exchange || phase == Phase::Event)
+            && let Err(failure) = self.model.commit(phase, &self.logger)
+        {
+            self.logger.warn(&failure.to_string());
+        }
         self.course.state = State::Terminated;
         self.log_event(|_| "terminated".to_owned());
         Ok(())

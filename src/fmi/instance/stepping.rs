@@ -56,7 +56,8 @@ impl<M: Model> Instance<M> {
         }
         let time = self.model.time();
         let rounding = TIME_ROUNDING * time.abs().max(h);
-        if (communication_point - time).abs() > rounding {
+        let is_behind = communication_point + h < time;
+        if (communication_point - time).abs() > rounding || is_behind {
             return refuse(format!(
                 "the communication point {communication_point} s is not where the last step \
                  ended, {time} s"

@@ -1,6 +1,6 @@
 //! Directional derivatives of outputs and calculated parameters.
 
-use super::{MechanismModel, Quantity, failed};
+use super::{MechanismModel, Quantity, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
@@ -54,14 +54,14 @@ impl MechanismModel {
         let asks_forces = unknowns.iter().any(|u| matches!(u, Quantity::Force(_)));
         let of_forces = if asks_forces {
             let along = self.force_derivatives(&direction, &forces);
-            along.map_err(failed)?
+            along.map_err(without_value)?
         } else {
             None
         };
         let sensitivity = self
             .solver
             .sensitivity(&self.rates, &self.driver_rates, &direction)
-            .map_err(failed)?;
+            .map_err(without_value)?;
         let change = |&unknown: &Quantity| match unknown {
             Quantity::Output(signal, order) => order.of(sensitivity.signal(signal)),
             Quantity::Parameter(parameter) => sensitivity.parameter(parameter),
@@ -77,7 +77,7 @@ impl MechanismModel {
     fn derivatives_by(&self, driver: DriverId, order: Order, phase: Phase) -> [f64; 3] {
         let input = &self.course.inputs[driver.index()];
         let rates = self.rule().rates;
-        if phase == Phase::Event && !self.at_committed {
+        if phase == Phase::Event {
             input.change_at_event(rates, self.course.time, order)
         } else if self.at_committed && input.has_stepped() {
             input.change_by_step(rates, self.course.monitors[driver.index()].sources, order)

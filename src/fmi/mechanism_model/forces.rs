@@ -1,6 +1,6 @@
 //! Forces at the pose, and contacts that lift off.
 
-use super::{MechanismModel, failed};
+use super::{MechanismModel, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Phase;
@@ -55,7 +55,8 @@ impl MechanismModel {
         let Some((solver, forces, motion)) = self.forces_to_solve() else {
             return Ok(());
         };
-        solver.solve_forces(motion, parts, forces).map_err(failed)
+        let solved = solver.solve_forces(motion, parts, forces);
+        solved.map_err(without_value)
     }
 
     /// Returns the solver, the forces, and the motion for which they are sought; `None` without

@@ -70,8 +70,12 @@ impl DriverInput {
         }
     }
 
-    /// Sets a position modulo one turn: the turn nearest `last`.
-    pub(super) fn set_wrapped(&mut self, value: f64, last: f64) {
+    /// Sets a position modulo one turn: the turn nearest the driver's value `end` after the last
+    /// step, whose rates came from `sources`, or nearest the last position if estimates of rates led
+    /// there. An estimate must not decide about the turn that it is estimated from.
+    pub(super) fn set_wrapped(&mut self, value: f64, end: f64, sources: [Source; 2]) {
+        let is_estimate = self.extrapolated_over > 0.0 && sources.contains(&Source::Estimate);
+        let last = if is_estimate { self.position } else { end };
         self.set(Order::Position, value);
         self.position += TAU * ((last - value) / TAU).round();
     }
@@ -263,7 +267,7 @@ impl DriverInput {
     /// Ends a step of size `h` from `start`: records the inputs there, and clears the derivatives.
     pub(super) fn record(&mut self, rule: Rule, start: f64, h: f64) {
         self.extrapolated_over = if self.is_extrapolated(rule) { h } else { 0.0 };
-        self.history.push(self.sample(rule.rates, start), 0.0);
+        self.history.push(self.sample(rule.rates, start), h);
         self.derivatives = [[None; 2]; 3];
     }
 
@@ -547,7 +551,7 @@ mod tests {
             (0.5, 100.0, 16.0),
             (0.5, 0.4, 0.0),
         ] {
-            input.set_wrapped(value, last);
+            input.set_wrapped(value, last, [Source::Input; 2]);
             assert_eq!(input.get(Order::Position).to_bits(), value.to_bits());
             assert!(
                 (input.position() - value - turns * TAU).abs() < 1e-13,

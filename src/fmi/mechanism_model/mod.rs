@@ -229,7 +229,8 @@ impl MechanismModel {
         let index = driver.index();
         let input = &mut self.course.inputs[index];
         if order == Order::Position && self.mechanism.drivers[index].wrapped {
-            input.set_wrapped(value, self.course.committed.drivers[index]);
+            let sources = self.course.monitors[index].sources;
+            input.set_wrapped(value, self.course.committed.drivers[index], sources);
         } else {
             input.set(order, value);
         }
@@ -482,4 +483,9 @@ fn start_inputs(mechanism: &Mechanism) -> Vec<DriverInput> {
 /// Converts an error of the kinematics.
 fn failed(error: kinematics::Error) -> Failure {
     Failure::Failed(error.to_string())
+}
+
+/// Converts an error of the kinematics about values that do not exist at the present pose.
+fn without_value(error: kinematics::Error) -> Failure {
+    Failure::Discarded(error.to_string())
 }

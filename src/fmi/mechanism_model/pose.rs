@@ -1,7 +1,7 @@
 //! Initialization, steps, and the pose and rates of the values set.
 
 use super::rule::Source;
-use super::{Freshness, MechanismModel, RateSource, failed};
+use super::{Freshness, MechanismModel, RateSource, failed, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
@@ -357,7 +357,7 @@ impl MechanismModel {
             let driver_rates = &self.driver_rates;
             self.solver
                 .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
-                .map_err(failed)?;
+                .map_err(without_value)?;
             self.freshness = Freshness::Rates;
         }
         Ok(())

@@ -3,7 +3,9 @@
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate};
 use crate::kinematics::error::Error;
-use crate::mechanism::{CoordinateKind, ForceLaw, Load, MarkerId, Mechanism, Number, ParameterId};
+use crate::mechanism::{
+    Coordinate, CoordinateKind, ForceLaw, Load, MarkerId, Mechanism, Number, ParameterId,
+};
 
 /// The forces of a mechanism, ready to be evaluated.
 #[derive(Debug)]
@@ -86,6 +88,16 @@ pub(super) fn about_origin<N: Number>(
     [x, y, torque + arm[0] * y - arm[1] * x]
 }
 
+/// Returns the rounding error of the distance of two markers: a smaller one has any direction.
+fn distance_rounding(coordinate: &Coordinate, at: &Configuration) -> f64 {
+    /// Roundings of a point: its body's origin and angle, which Newton–Raphson leaves with two or
+    /// three, the sine and cosine, and the sum.
+    const ROUNDINGS: f64 = 8.0;
+    let markers = [coordinate.from, coordinate.to].map(|marker| at.marker(marker));
+    let sizes = markers.map(|marker| marker.point.norm() + marker.arm.norm());
+    ROUNDINGS * f64::EPSILON * (sizes[0] + sizes[1])
+}
+
 impl AppliedForces {
     pub(super) fn new(mechanism: &Mechanism, inputs: &[Option<usize>]) -> Self {
         let forces = mechanism.forces.iter().zip(inputs);
@@ -128,7 +140,9 @@ impl AppliedForces {
             match (&applied.place, &definition.load) {
                 (Place::Coordinate(relation), Load::Coordinate { coordinate, law }) => {
                     let value = relation.value(at);
-                    if coordinate.kind == CoordinateKind::Distance && value <= 0.0 {
+                    if coordinate.kind == CoordinateKind::Distance
+                        && value <= distance_rounding(coordinate, at)
+                    {
                         return fault("has no direction: the distance of its markers is zero");
                     }
                     self.gradient.clear();

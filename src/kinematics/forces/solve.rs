@@ -192,7 +192,8 @@ impl Forces {
     ) -> Result<(), Error> {
         self.set_parameters(state)?;
         self.apply_forces(state, motion)?;
-        if parts.efforts {
+        // Reactions have the same bits with efforts and without.
+        if parts.efforts || parts.reactions {
             state.refresh(model)?;
             self.solve_efforts(model, state, motion)?;
         } else {
