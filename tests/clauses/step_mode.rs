@@ -666,3 +666,26 @@ fn a_value_that_does_not_exist_ends_nothing() {
         assert_eq!(instance.state(), State::StepMode);
     }
 }
+
+/// "The FMU is in the same state as before the call" (3.0.2, 2.2.4), the sources of rates included.
+#[test]
+fn a_discarded_step_with_intermediate_update_leaves_the_state_as_it_was() {
+    let variables = ["side_length.acceleration"];
+    let mut instance = start(
+        new_instance(shipped(CYLINDER), &Heard::default()),
+        intermediate(CYLINDER, &variables, false),
+    );
+    let values = [
+        ("side_length.position", 0.9),
+        ("side_length.acceleration", 1.0),
+    ];
+    set(&mut instance, values);
+    let before = instance.fmu_state().expect("legal");
+    let mut progress = instance.begin_step(0.0, 1.0);
+    while let Ok(StepProgress::Intermediate { .. }) = progress {
+        progress = instance.resume_step(None);
+    }
+    let error = progress.expect_err("the cylinder is too short");
+    assert!(matches!(error, Error::Model(Failure::Discarded(_))));
+    assert_eq!(instance.fmu_state().as_ref(), Ok(&before));
+}

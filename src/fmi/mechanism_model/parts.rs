@@ -5,6 +5,7 @@
 //! of a whole step does. Values that the host sets on the way hold from there on: the mechanism
 //! goes to them at that time, and the path starts anew.
 
+use super::rule::Source;
 use super::{Course, MechanismModel};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
@@ -19,8 +20,10 @@ pub(super) struct Parts {
     path: Path,
     /// Whether values were set at the present time, which the mechanism has not reached yet.
     split: bool,
-    /// The model's course before the step, and whether the pose belonged to the values set.
+    /// The model's course before the step, the sources of its rates, and whether the pose belonged
+    /// to the values set.
     before: Course,
+    sources: Vec<[Source; 2]>,
     was_current: bool,
 }
 
@@ -40,6 +43,7 @@ impl MechanismModel {
             path: self.path.clone(),
             split: false,
             before,
+            sources: self.sources.clone(),
             was_current,
         }));
     }
@@ -102,6 +106,7 @@ impl MechanismModel {
             return;
         };
         self.course = parts.before;
+        self.sources = parts.sources;
         self.stay_at_committed(parts.was_current);
     }
 
