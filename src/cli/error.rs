@@ -22,7 +22,7 @@ pub(super) enum Error {
     },
     /// A motion cannot go on, or cannot start.
     #[error("{file}: {why}")]
-    DeadPoint { file: String, why: String },
+    Stopped { file: String, why: String },
     /// An argument of the command is wrong.
     #[error("{0}")]
     Usage(String),
@@ -69,7 +69,7 @@ impl Error {
     /// Returns 1 for an error in the mechanism, 2 for one in the command.
     pub(super) fn exit_status(&self) -> u8 {
         match self {
-            Self::Diagnosed | Self::Mechanism { .. } | Self::DeadPoint { .. } => 1,
+            Self::Diagnosed | Self::Mechanism { .. } | Self::Stopped { .. } => 1,
             // A reader that has read enough closes the pipe.
             Self::Write { source, .. } if source.kind() == io::ErrorKind::BrokenPipe => 0,
             Self::Usage(_)

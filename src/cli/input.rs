@@ -56,7 +56,7 @@ impl Input {
 
     /// Returns an error of a run that starts at `time` \[s\], with the name of the file.
     pub(super) fn error_at(&self, time: f64, error: &kinematics::Error) -> Error {
-        Error::DeadPoint {
+        Error::Stopped {
             file: self.source.name().to_owned(),
             why: error.at_start(time),
         }

@@ -93,7 +93,7 @@ impl Range {
             let range = solver.range(driver, &settings);
             if let Some(why) = out_of_reach(&driven, driver, start, bounds, &range) {
                 let file = input.source.name().to_owned();
-                return Err(Error::DeadPoint { file, why });
+                return Err(Error::Stopped { file, why });
             }
             let derived = DerivedRange::all(&mut solver, driver, &range, self.speed);
             describe(&mut text, &driven, driver, start, &range, &derived);

@@ -184,7 +184,7 @@ impl Run {
                 progress.clear();
                 notice.show();
             }
-            advanced.map_err(|why| Error::DeadPoint {
+            advanced.map_err(|why| Error::Stopped {
                 file: file.to_owned(),
                 why,
             })?;

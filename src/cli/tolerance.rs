@@ -71,7 +71,7 @@ impl Tolerance {
         for row in 0..=times.steps {
             let advanced = motion.advance(times.at(row));
             motion.notices.drain(..).for_each(|notice| notice.show());
-            advanced.map_err(|why| Error::DeadPoint {
+            advanced.map_err(|why| Error::Stopped {
                 file: input.source.name().to_owned(),
                 why,
             })?;
