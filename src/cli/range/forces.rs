@@ -23,6 +23,8 @@ struct Loads<'a> {
     inputs: Vec<f64>,
     /// Joints with determinate forces.
     joints: Vec<usize>,
+    /// Rounding error of the effort.
+    rounding: f64,
 }
 
 impl<'a> Loads<'a> {
@@ -37,6 +39,7 @@ impl<'a> Loads<'a> {
             .filter(|joint| !open.contains(&Element::Joint(*joint)));
         Self {
             joints: joints.collect(),
+            rounding: 0.0,
             inputs: vec![0.0; forces.inputs()],
             forces,
             follower,
@@ -66,24 +69,15 @@ impl<'a> Loads<'a> {
             driver_rates,
             inputs: &self.inputs,
         };
-        solver.solve_forces(motion, ForceParts::ALL, &mut self.forces)
+        solver.solve_forces(motion, ForceParts::ALL, &mut self.forces)?;
+        self.rounding = solver.effort_rounding(motion, self.driver, &self.forces);
+        Ok(())
     }
 
     /// Returns the size of the effort, and the effort; zero for what is rounding.
     fn effort(&self) -> Measured<f64> {
-        let Follower {
-            solver,
-            rates,
-            driver_rates,
-            ..
-        } = &self.follower;
-        let motion = KnownMotion {
-            rates,
-            driver_rates,
-            inputs: &self.inputs,
-        };
         let effort = self.forces.value(ForceQuantity::Effort(self.driver));
-        if effort.abs() <= solver.effort_rounding(motion, self.driver, &self.forces) {
+        if effort.abs() <= self.rounding {
             return (0.0, 0.0);
         }
         (effort.abs(), effort)
