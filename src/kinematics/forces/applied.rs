@@ -4,7 +4,7 @@ use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::{Constraint, Gradient, of_coordinate};
 use crate::kinematics::error::Error;
 use crate::mechanism::{
-    Coordinate, CoordinateKind, ForceLaw, Load, MarkerId, Mechanism, Number, ParameterId,
+    BodyId, Coordinate, CoordinateKind, ForceLaw, Load, MarkerId, Mechanism, Number, ParameterId,
 };
 
 /// The forces of a mechanism, ready to be evaluated.
@@ -88,6 +88,19 @@ pub(super) fn about_origin<N: Number>(
     [x, y, torque + arm[0] * y - arm[1] * x]
 }
 
+/// Returns the body on which a force at a marker acts, with the force and the torque about its
+/// origin; `None` on ground.
+pub(super) fn on_body(
+    size: [f64; 3],
+    at: &Configuration,
+    marker: MarkerId,
+    axes: Option<MarkerId>,
+) -> Option<(BodyId, [f64; 3])> {
+    let marker = at.marker(marker);
+    let axis = axes.map_or([1.0, 0.0], |axes| at.marker(axes).axis.into());
+    Some((marker.body?, about_origin(size, axis, marker.arm.into())))
+}
+
 /// Returns the rounding error of the distance of two markers: a smaller one has any direction.
 fn distance_rounding(coordinate: &Coordinate, at: &Configuration) -> f64 {
     /// Roundings of a point: its body's origin and angle, which Newton–Raphson leaves with two or
@@ -163,10 +176,7 @@ impl AppliedForces {
                     if !size.iter().sum::<f64>().is_finite() {
                         return fault("has no finite value here");
                     }
-                    let marker = at.marker(*marker);
-                    let axis = axes.map_or([1.0, 0.0], |axes| at.marker(axes).axis.into());
-                    if let Some(body) = marker.body {
-                        let force = about_origin(*size, axis, marker.arm.into());
+                    if let Some((body, force)) = on_body(*size, at, *marker, *axes) {
                         let k = 3 * body.index();
                         for (demand, force) in demand[k..k + 3].iter_mut().zip(force) {
                             *demand -= force;

@@ -1,6 +1,6 @@
 //! The rounding error of efforts.
 
-use super::applied::{Place, about_origin};
+use super::applied::{Place, on_body};
 use super::inertial::by_body;
 use super::solve::{Forces, KnownMotion};
 use crate::kinematics::constraint::Gradient;
@@ -35,10 +35,7 @@ impl Forces {
                     }
                 }
                 Place::Marker(marker, axes) => {
-                    let marker = state.at.marker(*marker);
-                    let axis = axes.map_or([1.0, 0.0], |axes| state.at.marker(axes).axis.into());
-                    if let Some(body) = marker.body {
-                        let force = about_origin(*size, axis, marker.arm.into());
+                    if let Some((body, force)) = on_body(*size, &state.at, *marker, *axes) {
                         (0..3).for_each(|k| add(3 * body.index() + k, force[k]));
                     }
                 }
