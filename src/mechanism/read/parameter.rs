@@ -59,6 +59,11 @@ const UNIT: Word<Unit> = Word::new("unit", code::UNKNOWN_UNIT, || {
 /// Signs that stand for a product or a power, or for nothing.
 const SIGNS: [char; 5] = ['.', '*', '·', '^', ' '];
 
+/// Returns a unit without signs: `Nm` of `N.m`, `N*m` and `N m`.
+fn letters(unit: &str) -> String {
+    unit.replace(SIGNS, "").replace('²', "2")
+}
+
 /// Returns the unit that is written in another way: `N.m` of `Nm`.
 fn synonym(text: &str) -> Option<&'static str> {
     match text {
@@ -66,7 +71,6 @@ fn synonym(text: &str) -> Option<&'static str> {
         "-" => Some("1"),
         _ => {
             // `Nm`, `N*m`, `m/s²`, `kg m^2`: other signs between the same letters.
-            let letters = |unit: &str| unit.replace(SIGNS, "").replace('²', "2");
             let is_meant = |name: &&str| {
                 !name.eq_ignore_ascii_case(text)
                     && letters(name).eq_ignore_ascii_case(&letters(text))
@@ -81,7 +85,7 @@ fn unit_of_multiple(text: &str) -> Option<&'static str> {
     if Unit::by_name(text).is_some() || synonym(text).is_some() {
         return None;
     }
-    let letters = text.replace(SIGNS, "").replace('²', "2");
+    let letters = letters(text);
     let mut names = Unit::ALL.iter().map(|unit| unit.name);
     names.find(|name| is_multiple(&letters, name))
 }
