@@ -24,8 +24,8 @@ use crate::kinematics::system::Target;
 /// First trial radii, as a part of the largest move of an unknown: a motion that turns by φ
 /// deviates from its chord by φ²/8 in radians, and rarely by several times that.
 const FIRST_RADIUS: f64 = 0.1;
-/// Ratio of smaller trial radii to η.
-const TWICE: f64 = 2.0;
+/// Second trial radii where the first are too large, as a multiple of η.
+const SMALLER_RADIUS: f64 = 2.0;
 /// The norm of K that the next sub-step aims at.
 const GOOD_CONTRACTION: f64 = 0.6;
 
@@ -187,7 +187,7 @@ impl CoupledBlock {
                 // Far smaller ones do where the motion is nearly straight.
                 shrunk = true;
                 for (radius, eta) in test.radii.iter_mut().zip(&test.eta) {
-                    *radius = radius.min((TWICE * eta).max(f64::EPSILON * *radius));
+                    *radius = radius.min((SMALLER_RADIUS * eta).max(f64::EPSILON * *radius));
                 }
                 continue;
             }
