@@ -73,6 +73,8 @@ impl DriverInput {
     /// Sets a position modulo one turn: the turn nearest the driver's value `end` after the last
     /// step, whose rates came from `sources`, or nearest the last position if estimates of rates led
     /// there. An estimate must not decide about the turn that it is estimated from.
+    // Inlined, it would keep the setters of all other inputs from being inlined.
+    #[inline(never)]
     pub(super) fn set_wrapped(&mut self, value: f64, end: f64, sources: [Source; 2]) {
         let is_estimate = self.extrapolated_over > 0.0 && sources.contains(&Source::Estimate);
         let last = if is_estimate { self.position } else { end };
