@@ -187,7 +187,7 @@ impl JacobianFactors {
 
     /// Solves Phi_qᵀ λ = `side` as [`solve_transposed`](Self::solve_transposed) does, by the closed
     /// forms of the plan where there are some; factorises the other blocks. The factors are then
-    /// those of several configurations.
+    /// those of several configurations. Leaves the entries of rows set aside as they are.
     ///
     /// # Errors
     ///
@@ -200,7 +200,6 @@ impl JacobianFactors {
         side: &mut [f64],
         multipliers: &mut [f64],
     ) -> Result<(), Rejected> {
-        multipliers.fill(0.0);
         for (place, solver) in plan.blocks.iter().enumerate().rev() {
             if solver.solve_transposed(system, at, side, multipliers) {
                 continue;

@@ -517,14 +517,13 @@ impl SolveBlock for RrrDyad {
     ) -> bool {
         let frames = at.frames();
         let [a, b] = &self.sides;
-        let links = [a, b].map(|side| frames[side.body as usize].rotate(side.l));
         let loads = [a, b].map(|own| {
             let body = own.body as usize;
             load_about(side, body, frames[body].rotate(own.s))
         });
         let [(force_a, moment_a), (force_b, moment_b)] = loads;
         // F on the first side: d_a × F is the one moment, d_b × F the negative of the other.
-        let inner = (links[1] * moment_a + links[0] * moment_b) / links[0].perp(&links[1]);
+        let inner = (b.link * moment_a + a.link * moment_b) / self.determinant;
         let outer = [force_a - inner, force_b + inner];
         let Parts { rows, senses, .. } = &*self.parts;
         let forces = [outer[0], outer[1], inner];

@@ -130,8 +130,9 @@ pub(in crate::kinematics) trait SolveBlock:
     fn solve_rates(&mut self, state: &mut BlockState<'_>, drivers: &[Jet]);
 
     /// Solves its columns of Phi_qᵀ λ = `side` for λ of its rows, the blocks after it being solved,
-    /// and moves what the bodies before it bear to the other side. Returns false, with nothing done,
-    /// if it has no closed form for that. Allocates nothing.
+    /// and moves what the bodies before it bear to the other side, at the pose at which it is
+    /// factorised. Returns false, with nothing done, if it has no closed form for that. Allocates
+    /// nothing.
     fn solve_transposed(
         &self,
         system: &System,

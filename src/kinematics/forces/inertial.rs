@@ -1,12 +1,14 @@
 //! Masses, and the forces that they demand for a motion.
 
+use super::results::DriverForces;
+use crate::kinematics::configuration::Configuration;
 use crate::kinematics::error::Error;
 use crate::mechanism::{Expression, Mechanism, Number, ParameterId};
 
 /// The masses of a mechanism with the parameters in force.
 #[derive(Clone, Debug)]
 pub(super) struct Masses<N> {
-    /// Bodies with a mass, ascending.
+    /// Per body; zero for a body without mass.
     pub(super) bodies: Vec<MassProperties<N>>,
     /// Acceleration of gravity \[m/s²\].
     pub(super) gravity: [N; 2],
@@ -16,8 +18,6 @@ pub(super) struct Masses<N> {
 /// axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MassProperties<N> {
-    /// Index of the body.
-    pub(super) body: usize,
     mass: N,
     /// About the centre of mass.
     inertia: N,
@@ -27,25 +27,30 @@ pub(super) struct MassProperties<N> {
     arm: [N; 2],
 }
 
+/// The drivers that move the bodies.
+pub(super) struct DrivenBodies<'a> {
+    /// ∂q/∂u: of the first body for each driver, of the next, …
+    pub(super) units: &'a [[f64; 3]],
+    /// Per driver: the acceleration of an input, zero for a prescribed motion.
+    pub(super) free: &'a [f64],
+    /// Per driver.
+    pub(super) forces: &'a mut [DriverForces],
+}
+
 impl<N: Number> Masses<N> {
     /// Evaluates the masses of a mechanism, of bodies that have not been [turned](MassProperties::turn).
     pub(super) fn new(mechanism: &Mechanism, parameter: &impl Fn(ParameterId) -> N) -> Self {
         let zero = N::constant(0.0);
+        let massless = MassProperties {
+            mass: zero,
+            inertia: zero,
+            center: [zero; 2],
+            arm: [zero; 2],
+        };
         let mut masses = Self {
-            bodies: Vec::new(),
+            bodies: vec![massless; mechanism.bodies.len()],
             gravity: [zero; 2],
         };
-        for (body, definition) in mechanism.bodies.iter().enumerate() {
-            if definition.mass.is_some() {
-                masses.bodies.push(MassProperties {
-                    body,
-                    mass: zero,
-                    inertia: zero,
-                    center: [zero; 2],
-                    arm: [zero; 2],
-                });
-            }
-        }
         masses.set_parameters(mechanism, parameter);
         masses
     }
@@ -60,8 +65,7 @@ impl<N: Number> Masses<N> {
         let optional =
             |expression: &Option<Expression>| expression.as_ref().map_or(N::constant(0.0), value);
         self.gravity = mechanism.simulation.gravity.each_ref().map(value);
-        for of_body in &mut self.bodies {
-            let body = &mechanism.bodies[of_body.body];
+        for (of_body, body) in self.bodies.iter_mut().zip(&mechanism.bodies) {
             of_body.mass = optional(&body.mass);
             of_body.inertia = optional(&body.inertia);
             let center = body
@@ -74,20 +78,49 @@ impl<N: Number> Masses<N> {
 }
 
 impl Masses<f64> {
-    /// Adds to what bodies demand that for an acceleration of a driver, along which they move by
-    /// `unit`. Returns the inertia that the driver feels.
-    #[inline]
-    pub(super) fn load(&self, unit: &[f64], acceleration: f64, demand: &mut [f64]) -> f64 {
-        let (units, (demand, _)) = (by_body(unit), demand.as_chunks_mut());
-        let mut inertia = [0.0; 3];
-        for of_body in &self.bodies {
-            let unit = units[of_body.body];
-            let momentum = of_body.momentum(unit);
-            add(&mut inertia, [0, 1, 2].map(|k| unit[k] * momentum[k]));
-            let force = momentum.map(|momentum| momentum * acceleration);
-            add(&mut demand[of_body.body], force);
+    /// Adds to w what masses demand for the accelerations of each body that only prescribed motions
+    /// and velocities cause, and with it the bias of each driver; then for the accelerations of
+    /// inputs, and with both the efforts. Adds the energies too.
+    // Inlined for one driver, all its sums stay in registers.
+    #[inline(always)]
+    pub(super) fn load(
+        &mut self,
+        at: &Configuration,
+        velocities: &[f64],
+        accelerations: impl Iterator<Item = [f64; 3]>,
+        drivers: DrivenBodies<'_>,
+        demand: &mut [f64],
+        energies: &mut [f64; 2],
+    ) {
+        let DrivenBodies {
+            mut units,
+            free,
+            forces,
+        } = drivers;
+        let gravity = self.gravity;
+        let motions = by_body(velocities).iter().zip(accelerations);
+        let places = at.frames().iter().zip(demand.as_chunks_mut().0);
+        let bodies = self.bodies.iter_mut().zip(places).zip(motions);
+        for ((of_body, (frame, demand)), (velocity, acceleration)) in bodies {
+            of_body.turn([frame.cos, frame.sin]);
+            let own = of_body.energies(frame.origin.into(), *velocity, gravity);
+            *energies = [energies[0] + own[0], energies[1] + own[1]];
+            let mut sum = of_body.demand(velocity[2], acceleration, gravity);
+            add(&mut sum, *demand);
+            let coasting = sum;
+            let (own_units, others) = units.split_at(free.len());
+            units = others;
+            for ((forces, unit), free) in forces.iter_mut().zip(own_units).zip(free) {
+                let momentum = of_body.momentum(*unit);
+                forces.bias += power(*unit, coasting);
+                forces.inertia += power(*unit, momentum);
+                add(&mut sum, momentum.map(|momentum| momentum * free));
+            }
+            for (forces, unit) in forces.iter_mut().zip(own_units) {
+                forces.effort += power(*unit, sum);
+            }
+            *demand = sum;
         }
-        inertia[0] + inertia[1] + inertia[2]
     }
 
     /// Checks that gravity and masses have values that they can have.
@@ -101,8 +134,9 @@ impl Masses<f64> {
                 what: "`gravity`".to_owned(),
             });
         }
-        for of_body in &self.bodies {
-            let name = &mechanism.bodies[of_body.body].name;
+        let bodies = self.bodies.iter().zip(&mechanism.bodies);
+        for (of_body, body) in bodies.filter(|(_, body)| body.mass.is_some()) {
+            let name = &body.name;
             let values = [of_body.mass, of_body.inertia]
                 .into_iter()
                 .chain(of_body.center);
@@ -188,13 +222,8 @@ pub(super) fn add(to: &mut [f64; 3], force: [f64; 3]) {
     }
 }
 
-/// Returns the power of forces on bodies in a motion, with an entry per unknown each.
+/// Returns the power of a force and a torque in a motion.
 #[inline]
-pub(super) fn virtual_power(motion: &[f64], forces: &[f64]) -> f64 {
-    // A sum for each coordinate: none waits for another.
-    let mut sums = [0.0; 3];
-    for (motion, force) in by_body(motion).iter().zip(by_body(forces)) {
-        add(&mut sums, [0, 1, 2].map(|k| motion[k] * force[k]));
-    }
-    sums[0] + sums[1] + sums[2]
+fn power(motion: [f64; 3], force: [f64; 3]) -> f64 {
+    motion[0] * force[0] + motion[1] * force[1] + motion[2] * force[2]
 }

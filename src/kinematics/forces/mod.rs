@@ -19,6 +19,7 @@
 //! | `inertial` | masses, and what they demand |
 //! | `applied` | springs, dampers, actuators and loads |
 //! | `quantity` | [`ForceQuantity`]: the results by name |
+//! | `results` | the results of a solution |
 //! | `wrench` | force and torque that a joint exerts |
 //! | `self_stress` | reactions of least norm |
 //! | `indeterminate` | reactions that redundant constraints leave open |
@@ -32,6 +33,7 @@ mod indeterminate;
 mod inertial;
 mod lift_off;
 mod quantity;
+mod results;
 mod rounding;
 mod self_stress;
 mod sensitivity;

@@ -18,7 +18,7 @@ impl Forces {
         motion: KnownMotion<'_>,
         driver: DriverId,
     ) -> f64 {
-        let unit = self.unit(driver);
+        let unit = self.unit(state, driver);
         let (mut sum, mut products) = (0.0, 0_u32);
         let mut add = |column: usize, force: f64| {
             sum += (force * unit[column]).abs();
@@ -43,8 +43,7 @@ impl Forces {
         }
         let rates = [motion.rates.velocity(), motion.rates.acceleration()];
         let [velocities, accelerations] = rates.map(by_body);
-        for of_body in &self.masses.bodies {
-            let body = of_body.body;
+        for (body, of_body) in self.masses.bodies.iter().enumerate() {
             let [_, _, omega] = velocities[body];
             let force = of_body.demand(omega, accelerations[body], self.masses.gravity);
             (0..3).for_each(|k| add(3 * body + k, force[k]));

@@ -93,8 +93,8 @@ impl Forces {
         let at = sensitivity.motion.configuration();
         let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
         let mut masses = Masses::<Dual>::new(&mechanism, &parameter);
-        for of_body in &mut masses.bodies {
-            let phi = at.coordinate(3 * of_body.body + 2).value;
+        for (body, of_body) in masses.bodies.iter_mut().enumerate() {
+            let phi = at.coordinate(3 * body + 2).value;
             of_body.turn([phi.cos(), phi.sin()]);
         }
         let mut probe = Probe {
@@ -104,12 +104,12 @@ impl Forces {
         let (mut demand, sizes, mut potential) =
             self.varied_loads(state, motion, sensitivity, &mut probe);
         let mut kinetic = Dual::constant(0.0);
-        for of_body in &masses.bodies {
-            let q = [0, 1, 2].map(|component| at.coordinate(3 * of_body.body + component));
+        for (body, of_body) in masses.bodies.iter().enumerate() {
+            let q = [0, 1, 2].map(|component| at.coordinate(3 * body + component));
             let velocity = q.map(|q| q.first());
             let own = of_body.demand(velocity[2], q.map(|q| q.second()), masses.gravity);
             for (k, own) in own.into_iter().enumerate() {
-                demand[3 * of_body.body + k] += own;
+                demand[3 * body + k] += own;
             }
             let position = [q[0].value, q[1].value];
             let [own_kinetic, own_potential] = of_body.energies(position, velocity, masses.gravity);
@@ -328,8 +328,8 @@ impl Forces {
             .collect();
         let momenta = units.iter().map(|unit| {
             let mut momentum = vec![Dual::constant(0.0); unit.len()];
-            for of_body in &masses.bodies {
-                let k = 3 * of_body.body;
+            for (body, of_body) in masses.bodies.iter().enumerate() {
+                let k = 3 * body;
                 let own = of_body.momentum([unit[k], unit[k + 1], unit[k + 2]]);
                 momentum[k..k + 3].copy_from_slice(&own);
             }
@@ -365,7 +365,7 @@ impl Forces {
         driver: DriverId,
         rows: &[Entries],
     ) -> Vec<Dual> {
-        let unit = self.unit(driver).to_vec();
+        let unit = self.unit(state, driver);
         let side = rows.iter().map(|entries| {
             let changes = entries.iter();
             -changes.fold(0.0, |sum, (column, partial)| {

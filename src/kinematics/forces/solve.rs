@@ -1,21 +1,21 @@
 //! All forces at a pose.
 
-use std::mem;
+use std::iter;
 use std::sync::Arc;
 
 use super::applied::{AppliedForces, Circumstances};
-use super::inertial::{Masses, add, by_body, virtual_power};
+use super::inertial::{DrivenBodies, Masses, by_body};
 use super::quantity::{ForceQuantity, input_places};
+use super::results::{DriverForces, Results};
 use super::self_stress::SelfStresses;
 use super::wrench::{Contact, ReactionRows};
 use crate::kinematics::block::{BlockState, JacobianFactors};
-use crate::kinematics::configuration::Configuration;
 use crate::kinematics::error::Error;
 use crate::kinematics::model::Model;
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::path::Rates;
 use crate::kinematics::state::{SINGULAR_HERE, State};
-use crate::mechanism::{DriverId, Indeterminate, Jet, Mechanism, ParameterId};
+use crate::mechanism::{Driver, DriverId, Indeterminate, Jet, Mechanism, ParameterId};
 
 /// The forces of a mechanism with dynamics at one pose.
 ///
@@ -37,44 +37,21 @@ pub struct Forces {
     pub(super) rows: ReactionRows,
     pub(super) contacts: Vec<Contact>,
     self_stresses: SelfStresses,
-    /// Drivers that are inputs.
-    input_drivers: Vec<usize>,
     pub(super) results: Results,
     work: Work,
 }
 
-/// The results.
-#[derive(Debug)]
-pub(super) struct Results {
-    /// Per driver.
-    pub(super) drivers: Vec<DriverForces>,
-    /// λ, one per row.
-    pub(super) multipliers: Vec<f64>,
-    /// Per joint.
-    pub(super) reactions: Vec<[f64; 3]>,
-    /// Size of each force.
-    pub(super) sizes: Vec<[f64; 3]>,
-    /// Kinetic and potential energy \[J\].
-    pub(super) energies: [f64; 2],
-}
-
-/// The forces of one driver.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct DriverForces {
-    pub(super) effort: f64,
-    pub(super) power: f64,
-    pub(super) inertia: f64,
-    pub(super) bias: f64,
-}
-
 #[derive(Debug)]
 struct Work {
-    /// w, one entry per unknown.
-    demand: Vec<f64>,
-    /// ∂q/∂u of each driver.
-    units: Vec<Vec<f64>>,
+    /// Per driver: its rates, without the acceleration of an input.
+    coasting: Vec<Jet>,
+    /// Per driver: the acceleration of an input, zero for a prescribed motion.
+    free: Vec<f64>,
+    /// ∂q/∂u, if there are several drivers: the first three unknowns for each driver, the next
+    /// three, …
+    units: Vec<[f64; 3]>,
+    unit_rates: Vec<Jet>,
     rates: Rates,
-    driver_rates: Vec<Jet>,
 }
 
 /// The motion for which forces are sought, at the pose of the solver.
@@ -127,21 +104,13 @@ impl Forces {
             contacts: Contact::all(&mechanism, &rows),
             rows,
             self_stresses: SelfStresses::default(),
-            input_drivers: (0..drivers)
-                .filter(|&driver| mechanism.drivers[driver].is_input)
-                .collect(),
-            results: Results {
-                drivers: vec![DriverForces::default(); drivers],
-                multipliers: vec![0.0; system.equations().len()],
-                reactions: vec![[0.0; 3]; mechanism.joints.len()],
-                sizes: vec![[0.0; 3]; mechanism.forces.len()],
-                energies: [0.0; 2],
-            },
+            results: Results::new(&mechanism, unknowns, system.equations().len()),
             work: Work {
-                demand: vec![0.0; unknowns],
-                units: vec![vec![0.0; unknowns]; drivers],
+                coasting: vec![Jet::constant(0.0); drivers],
+                free: vec![0.0; drivers],
+                units: vec![[0.0; 3]; unknowns.div_ceil(3) * drivers],
+                unit_rates: vec![Jet::constant(0.0); drivers],
                 rates: Rates::new(unknowns),
-                driver_rates: vec![Jet::constant(0.0); drivers],
             },
             mechanism,
         }
@@ -197,8 +166,7 @@ impl Forces {
             state.refresh(model)?;
             self.solve_efforts(model, state, motion)?;
         } else {
-            let q_ddot = by_body(motion.rates.acceleration());
-            self.load_bodies(&state.at, motion, |body| q_ddot[body]);
+            self.add_energies(state, motion);
         }
         if parts.reactions {
             self.solve_reactions(model, state)?;
@@ -224,7 +192,7 @@ impl Forces {
 
     /// Evaluates the sizes of forces, and with them begins w and the energies.
     fn apply_forces(&mut self, state: &State, motion: KnownMotion<'_>) -> Result<(), Error> {
-        self.work.demand.fill(0.0);
+        self.results.demand.fill(0.0);
         self.results.energies = [0.0; 2];
         if self.applied.list.is_empty() {
             return Ok(());
@@ -241,13 +209,28 @@ impl Forces {
             motion.rates.velocity(),
             &around,
             &mut self.results.sizes,
-            &mut self.work.demand,
+            &mut self.results.demand,
         )?;
         Ok(())
     }
 
-    /// Completes w for the accelerations that only prescribed motions and velocities cause, then for
-    /// those of inputs, and with both the efforts.
+    /// Adds the energies of bodies, without forces of drivers: w is not completed.
+    fn add_energies(&mut self, state: &State, motion: KnownMotion<'_>) {
+        let Results {
+            demand, energies, ..
+        } = &mut self.results;
+        let drivers = DrivenBodies {
+            units: &[],
+            free: &[],
+            forces: &mut [],
+        };
+        let any = iter::repeat([0.0; 3]);
+        let velocity = motion.rates.velocity();
+        self.masses
+            .load(&state.at, velocity, any, drivers, demand, energies);
+    }
+
+    /// Completes w, and finds the forces of drivers.
     ///
     /// # Errors
     ///
@@ -258,20 +241,55 @@ impl Forces {
         state: &mut State,
         motion: KnownMotion<'_>,
     ) -> Result<(), Error> {
-        self.work.solve_units(model, state);
-        self.load_coasting_bodies(model, state, motion);
-        let Work { demand, units, .. } = &mut self.work;
-        let drivers = &mut self.results.drivers;
-        for (forces, unit) in drivers.iter_mut().zip(&*units) {
-            forces.bias = virtual_power(unit, demand);
-        }
-        for &input in &self.input_drivers {
-            let acceleration = motion.driver_rates[input].second();
-            drivers[input].inertia = self.masses.load(&units[input], acceleration, demand);
+        let Self {
+            work,
+            masses,
+            results,
+            ..
+        } = self;
+        let Results {
+            demand,
+            drivers,
+            energies,
+            ..
+        } = results;
+        let velocity = motion.rates.velocity();
+        if let [driver] = &mut drivers[..] {
+            let (coasting, free) =
+                coasting_and_free(&self.mechanism.drivers[0], &motion.driver_rates[0]);
+            let [first, second] = coasting.derivatives;
+            let tangent = [state.tangent.velocity(), state.tangent.acceleration()];
+            let [units, curvatures] = tangent.map(by_body);
+            let square = first * first;
+            let accelerations = units.iter().zip(curvatures).map(|(unit, curvature)| {
+                [0, 1, 2].map(|k| curvature[k] * square + unit[k] * second)
+            });
+            let mut forces = [DriverForces::default()];
+            let driven = DrivenBodies {
+                units,
+                free: &[free],
+                forces: &mut forces,
+            };
+            masses.load(&state.at, velocity, accelerations, driven, demand, energies);
+            [*driver] = forces;
+        } else {
+            work.solve_units(model, state);
+            for (driver, definition) in self.mechanism.drivers.iter().enumerate() {
+                (work.coasting[driver], work.free[driver]) =
+                    coasting_and_free(definition, &motion.driver_rates[driver]);
+            }
+            solve_rates(model, state, &work.coasting, &mut work.rates);
+            let accelerations = by_body(work.rates.acceleration()).iter().copied();
+            drivers.fill(DriverForces::default());
+            let driven = DrivenBodies {
+                units: &work.units,
+                free: &work.free,
+                forces: drivers,
+            };
+            masses.load(&state.at, velocity, accelerations, driven, demand, energies);
         }
         let mut sum = 0.0;
-        for ((forces, unit), rates) in drivers.iter_mut().zip(units).zip(motion.driver_rates) {
-            forces.effort = virtual_power(unit, demand);
+        for (forces, rates) in drivers.iter_mut().zip(motion.driver_rates) {
             forces.power = forces.effort * rates.first();
             sum += forces.power + forces.inertia + forces.bias;
         }
@@ -282,64 +300,6 @@ impl Forces {
         }
     }
 
-    /// Loads the bodies by the accelerations that only prescribed motions and velocities cause.
-    fn load_coasting_bodies(
-        &mut self,
-        model: &mut Model,
-        state: &mut State,
-        motion: KnownMotion<'_>,
-    ) {
-        let drivers = self.mechanism.drivers.iter().zip(motion.driver_rates);
-        let mut coasting = drivers.map(|(driver, rates)| match driver.is_input {
-            true => Jet::new(0.0, [rates.first(), 0.0]),
-            false => *rates,
-        });
-        if state.has_single_driver()
-            && let Some(coasting) = coasting.next()
-        {
-            let [first, second] = coasting.derivatives;
-            let [units, curvatures] =
-                [state.tangent.velocity(), state.tangent.acceleration()].map(by_body);
-            let square = first * first;
-            let q_ddot = |body: usize| {
-                let (unit, curvature) = (units[body], curvatures[body]);
-                [0, 1, 2].map(|k| curvature[k] * square + unit[k] * second)
-            };
-            self.load_bodies(&state.at, motion, q_ddot);
-        } else {
-            self.work.driver_rates.clear();
-            self.work.driver_rates.extend(coasting);
-            let mut rates = mem::take(&mut self.work.rates);
-            solve_rates(model, state, &self.work.driver_rates, &mut rates);
-            let q_ddot = by_body(rates.acceleration());
-            self.load_bodies(&state.at, motion, |body| q_ddot[body]);
-            self.work.rates = rates;
-        }
-    }
-
-    /// Adds the demand of masses to w and the energies, for these accelerations of each body.
-    fn load_bodies(
-        &mut self,
-        at: &Configuration,
-        motion: KnownMotion<'_>,
-        q_ddot: impl Fn(usize) -> [f64; 3],
-    ) {
-        let (demand, _) = self.work.demand.as_chunks_mut();
-        let velocities = by_body(motion.rates.velocity());
-        let energies = &mut self.results.energies;
-        let gravity = self.masses.gravity;
-        for of_body in &mut self.masses.bodies {
-            let body = of_body.body;
-            let frame = &at.frames()[body];
-            of_body.turn([frame.cos, frame.sin]);
-            let velocity = velocities[body];
-            let own = of_body.energies(frame.origin.into(), velocity, gravity);
-            *energies = [energies[0] + own[0], energies[1] + own[1]];
-            let force = of_body.demand(velocity[2], q_ddot(body), gravity);
-            add(&mut demand[body], force);
-        }
-    }
-
     /// Solves Phi_qᵀ λ = w. Uses up w.
     fn solve_reactions(&mut self, model: &Model, state: &State) -> Result<(), Error> {
         let system = &model.system;
@@ -347,9 +307,15 @@ impl Forces {
         if !self.set_aside.iter().eq(&model.redundant.now) {
             self.factors = JacobianFactors::new(system, &model.structure, &model.plan);
             self.set_aside.clone_from(&model.redundant.now);
+            self.results.multipliers.fill(0.0);
         }
         let is_of_least_norm = self.is_of_least_norm();
-        let (demand, multipliers) = (&mut self.work.demand, &mut self.results.multipliers);
+        let Results {
+            demand,
+            multipliers,
+            reactions,
+            ..
+        } = &mut self.results;
         if is_of_least_norm {
             self.factors
                 .factorise(system, &state.at)
@@ -368,25 +334,12 @@ impl Forces {
                 .solve_transposed_at(&model.plan, system, &state.at, demand, multipliers)
                 .map_err(|Rejected| SINGULAR_HERE)?;
         }
-        let mut sum = 0.0;
-        let Results {
-            multipliers,
-            reactions,
-            ..
-        } = &mut self.results;
-        for (joint, reaction) in reactions.iter_mut().enumerate() {
-            self.rows
-                .write_reaction(system, &state.at, joint, multipliers, reaction);
-            sum += reaction[0] + reaction[1] + reaction[2];
-        }
-        for &row in &self.rows.constraints {
-            sum += multipliers[row];
-        }
-        if sum.is_finite() {
-            Ok(())
-        } else {
-            Err(SINGULAR_HERE)
-        }
+        let mut held = self.rows.constraints.iter();
+        let finite = self
+            .rows
+            .write_reactions(system, &state.at, multipliers, reactions)
+            && held.all(|&row| multipliers[row].is_finite());
+        if finite { Ok(()) } else { Err(SINGULAR_HERE) }
     }
 
     /// Returns whether reactions that are indeterminate are those of least norm.
@@ -396,25 +349,43 @@ impl Forces {
     }
 
     /// Returns ∂q/∂u of a driver.
-    pub(super) fn unit(&self, driver: DriverId) -> &[f64] {
-        &self.work.units[driver.index()]
+    pub(super) fn unit(&self, state: &State, driver: DriverId) -> Vec<f64> {
+        if state.has_single_driver() {
+            return state.tangent.velocity().to_vec();
+        }
+        let of_driver = self.work.units.iter().skip(driver.index());
+        let of_driver = of_driver.step_by(self.mechanism.drivers.len());
+        let mut unit: Vec<f64> = of_driver.flatten().copied().collect();
+        unit.truncate(self.results.demand.len());
+        unit
     }
 }
 
 impl Work {
-    /// Writes ∂q/∂u of each driver.
+    /// Writes ∂q/∂u of each of several drivers.
     fn solve_units(&mut self, model: &mut Model, state: &mut State) {
-        if state.has_single_driver() {
-            self.units[0].copy_from_slice(state.tangent.velocity());
-            return;
-        }
-        for (driver, unit) in self.units.iter_mut().enumerate() {
-            self.driver_rates.fill(Jet::constant(0.0));
-            self.driver_rates[driver].derivatives[0] = 1.0;
-            solve_rates(model, state, &self.driver_rates, &mut self.rates);
-            unit.copy_from_slice(self.rates.velocity());
+        let count = self.unit_rates.len();
+        for driver in 0..count {
+            self.unit_rates.fill(Jet::constant(0.0));
+            self.unit_rates[driver].derivatives[0] = 1.0;
+            solve_rates(model, state, &self.unit_rates, &mut self.rates);
+            let own = self.units.iter_mut().skip(driver).step_by(count);
+            for (own, solved) in own.zip(self.rates.velocity().chunks(3)) {
+                own[..solved.len()].copy_from_slice(solved);
+            }
         }
     }
+}
+
+/// Returns the rates of a driver without the acceleration of an input, and this acceleration; zero
+/// for a prescribed motion.
+fn coasting_and_free(driver: &Driver, rates: &Jet) -> (Jet, f64) {
+    let [first, second] = rates.derivatives;
+    let [coasting, free] = match driver.is_input {
+        true => [0.0, second],
+        false => [second, 0.0],
+    };
+    (Jet::new(0.0, [first, coasting]), free)
 }
 
 /// Solves the rates of q for these rates of the drivers, at the pose at which the plan is

@@ -113,9 +113,11 @@ impl<N: Number> Wrench<N> {
 pub(super) struct ReactionRows {
     /// Rows of each joint.
     pub(super) joints: Vec<Vec<usize>>,
-    /// The two rows of each revolute joint, whose λ are its force: their entries at the point of the
+    /// Revolute joints with their two rows, whose λ are the force: their entries at the point of the
     /// second marker are one.
-    pins: Vec<Option<[usize; 2]>>,
+    pins: Vec<(usize, [usize; 2])>,
+    /// The other joints.
+    others: Vec<usize>,
     /// Row of each constraint.
     pub(super) constraints: Vec<usize>,
     /// Row of each driver.
@@ -128,6 +130,7 @@ impl ReactionRows {
         let mut rows = Self {
             joints: vec![Vec::new(); mechanism.joints.len()],
             pins: Vec::new(),
+            others: Vec::new(),
             constraints: vec![0; mechanism.constraints.len()],
             drivers: vec![0; mechanism.drivers.len()],
         };
@@ -138,12 +141,12 @@ impl ReactionRows {
                 Element::Driver(driver) => rows.drivers[driver.index()] = row,
             }
         }
-        let joints = mechanism.joints.iter().zip(&rows.joints);
-        let pins = joints.map(|(joint, rows)| match (&joint.kind, &rows[..]) {
-            (JointKind::Revolute, &[x, y]) => Some([x, y]),
-            _ => None,
-        });
-        rows.pins = pins.collect();
+        for (joint, definition) in mechanism.joints.iter().enumerate() {
+            match (&definition.kind, &rows.joints[joint][..]) {
+                (JointKind::Revolute, &[x, y]) => rows.pins.push((joint, [x, y])),
+                _ => rows.others.push(joint),
+            }
+        }
         rows
     }
 
@@ -152,24 +155,28 @@ impl ReactionRows {
         3 * self.joints.len() + self.constraints.len()
     }
 
-    /// Writes the force and the torque that a joint exerts on its second body for these λ.
+    /// Writes the force and the torque that each joint exerts on its second body for these λ.
+    /// Returns whether all are finite.
     #[inline]
-    pub(super) fn write_reaction(
+    pub(super) fn write_reactions(
         &self,
         system: &System,
         at: &Configuration,
-        joint: usize,
         multipliers: &[f64],
-        to: &mut [f64; 3],
-    ) {
-        match self.pins[joint] {
-            Some([x, y]) => {
-                to[0] = multipliers[x];
-                to[1] = multipliers[y];
-                to[2] = 0.0;
-            }
-            None => *to = self.gather_reaction(system, at, joint, multipliers),
+        reactions: &mut [[f64; 3]],
+    ) -> bool {
+        let mut sum = 0.0;
+        for &(joint, [x, y]) in &self.pins {
+            let force = [multipliers[x], multipliers[y]];
+            reactions[joint] = [force[0], force[1], 0.0];
+            sum += force[0] + force[1];
         }
+        for &joint in &self.others {
+            let reaction = self.gather_reaction(system, at, joint, multipliers);
+            reactions[joint] = reaction;
+            sum += reaction[0] + reaction[1] + reaction[2];
+        }
+        sum.is_finite()
     }
 
     /// Returns the reaction of a joint that is no pin.
@@ -214,9 +221,10 @@ impl ReactionRows {
         to: &mut [f64],
     ) {
         let (of_joints, of_constraints) = to.split_at_mut(3 * self.joints.len());
-        for (joint, to) in of_joints.as_chunks_mut().0.iter_mut().enumerate() {
-            let reported = Reported::of(&system.mechanism().joints[joint].kind);
-            self.write_reaction(system, at, joint, multipliers, to);
+        let (of_joints, _) = of_joints.as_chunks_mut();
+        self.write_reactions(system, at, multipliers, of_joints);
+        for (joint, to) in system.mechanism().joints.iter().zip(of_joints) {
+            let reported = Reported::of(&joint.kind);
             for (component, value) in to.iter_mut().enumerate() {
                 if !reported.has(component) {
                     *value = 0.0;

@@ -1,0 +1,43 @@
+//! The results of a solution of the forces.
+
+use crate::mechanism::Mechanism;
+
+/// The forces of a mechanism at one pose.
+#[derive(Debug)]
+pub(super) struct Results {
+    /// w, one entry per unknown. Reactions use it up.
+    pub(super) demand: Vec<f64>,
+    /// Per driver.
+    pub(super) drivers: Vec<DriverForces>,
+    /// λ, one per row.
+    pub(super) multipliers: Vec<f64>,
+    /// Per joint.
+    pub(super) reactions: Vec<[f64; 3]>,
+    /// Size of each force.
+    pub(super) sizes: Vec<[f64; 3]>,
+    /// Kinetic and potential energy \[J\].
+    pub(super) energies: [f64; 2],
+}
+
+/// The forces of one driver.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DriverForces {
+    pub(super) effort: f64,
+    pub(super) power: f64,
+    pub(super) inertia: f64,
+    pub(super) bias: f64,
+}
+
+impl Results {
+    /// Makes the storage.
+    pub(super) fn new(mechanism: &Mechanism, unknowns: usize, rows: usize) -> Self {
+        Self {
+            demand: vec![0.0; unknowns],
+            drivers: vec![DriverForces::default(); mechanism.drivers.len()],
+            multipliers: vec![0.0; rows],
+            reactions: vec![[0.0; 3]; mechanism.joints.len()],
+            sizes: vec![[0.0; 3]; mechanism.forces.len()],
+            energies: [0.0; 2],
+        }
+    }
+}
