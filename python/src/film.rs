@@ -1,17 +1,13 @@
 //! The animation of a run.
 
-use biela::drawing::animation::{Animation, Clock, Moment, Reading, page};
-use biela::drawing::{ForcePlace, Scene};
+use biela::drawing::ForcePlace;
+use biela::drawing::animation::{Animation, Clock, Moment, page};
 use biela::kinematics::Output;
 use biela::mechanism::Mechanism;
 
 use crate::runner::Runner;
 use crate::scenario::Scenario;
 
-/// Largest number of moments of a film; of more rows it has every second, third and so on.
-const MOST_MOMENTS: usize = 10_000;
-/// Largest number of poses that the paths of the points of interest are made from.
-const MOST_POSES: usize = 2000;
 /// Time between two poses of a motion without times \[s\].
 const FRAME: f64 = 0.02;
 /// Largest difference of two intervals that count as equal, relative.
@@ -41,7 +37,7 @@ impl Film {
             columns,
             forces,
             parameters: parameters.to_vec(),
-            stride: rows.div_ceil(MOST_MOMENTS).max(1),
+            stride: Animation::stride(rows),
             times: Vec::new(),
             moments: Vec::new(),
         }
@@ -52,18 +48,12 @@ impl Film {
         if !row.is_multiple_of(self.stride) {
             return;
         }
-        let readings = self.columns.iter().map(|column| {
-            let factor = column.unit.display.map_or(1.0, |display| display.factor);
-            factor * column.value(&runner.solver, &runner.rates, &runner.driver_rates)
-        });
-        let rates = [runner.rates.velocity(), runner.rates.acceleration()];
-        self.moments.push(Moment {
-            q: runner.solver.pose().q.clone(),
-            rates: rates.map(<[f64]>::to_vec),
-            readings: readings.collect(),
-            forces: runner.force_values(&self.forces),
-        });
-        self.times.push(runner.solver.pose().time);
+        let Runner {
+            solver, solution, ..
+        } = runner;
+        let moment = Moment::record(solver, solution, &self.columns, &self.forces);
+        self.moments.push(moment);
+        self.times.push(solver.pose().time);
     }
 
     /// Returns whether there are forces that arrows can show.
@@ -74,32 +64,21 @@ impl Film {
     /// Returns the page on which the mechanism moves, with arrows for forces if wanted; `None`
     /// without a pose.
     pub(crate) fn page(&self, mechanism: &Mechanism, with_forces: bool) -> Option<String> {
-        let home = &self.moments.first()?.q;
-        let stride = self.moments.len().div_ceil(MOST_POSES);
-        let poses: Vec<Vec<f64>> = (self.moments.iter().step_by(stride))
-            .chain(self.moments.last())
-            .map(|moment| moment.q.clone())
-            .collect();
+        self.moments.first()?;
         let (clock, mut moments) = self.paced();
         let mut forces = self.forces.clone();
         if !with_forces {
             forces.clear();
             moments.iter_mut().for_each(|moment| moment.forces.clear());
         }
-        Some(page(&Animation {
-            scene: Scene::along(mechanism, &self.parameters, home, &poses, true),
-            clock,
-            readings: (self.columns.iter())
-                .map(|column| Reading {
-                    name: column.name.trim_end_matches(".position").to_owned(),
-                    unit: (column.unit.display)
-                        .map_or(column.unit.name, |display| display.name)
-                        .replace('2', "²"),
-                })
-                .collect(),
+        Some(page(&Animation::of_moments(
+            mechanism,
+            &self.parameters,
+            &self.columns,
             forces,
+            clock,
             moments,
-        }))
+        )))
     }
 
     /// Returns the moments with equal times between them, each the last one not after its time.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use biela::cli;
-use biela::drawing::{Diagram, Followed, svg};
+use biela::drawing::{Diagram, Followed, ForcePlace, svg};
 use biela::kinematics::Output;
 use biela::kinematics::{Carryover, End, Mode, Path, Pose, RangeSettings, Solver};
 use biela::mechanism::{
@@ -422,8 +422,11 @@ impl Mechanism {
                 driver,
                 bounds: [None; 2],
             });
-            let places = runner.force_places();
-            let values = runner.force_values(&places);
+            let Runner {
+                solver, solution, ..
+            } = &mut runner;
+            let places = ForcePlace::sought(solver, solution);
+            let values = ForcePlace::values(&places, solver, solution);
             let diagram = Diagram {
                 traces,
                 followed,

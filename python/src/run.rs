@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use biela::drawing::ForcePlace;
 use biela::kinematics::{Direction, Output, Start};
 use biela::mechanism::{Mechanism, ParameterId};
 use numpy::{IntoPyArray, PyArray1};
@@ -76,7 +77,7 @@ pub(crate) fn run(
     let mut runner = Runner::new(scenario, columns)?;
     let rows = scenario.times.len();
     let began = runner.start(parameters)?;
-    let arrows = runner.force_places();
+    let arrows = ForcePlace::sought(&mut runner.solver, &runner.solution);
     let mut result = Run {
         mechanism: scenario.driven.clone(),
         values: Vec::with_capacity(rows * columns.len()),

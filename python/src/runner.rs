@@ -3,12 +3,10 @@
 use std::f64::consts::TAU;
 use std::ops::Deref;
 
-use biela::drawing::ForcePlace;
 use biela::kinematics::{
-    Blocked, Carryover, Curve, Direction, Error, ForceParts, ForceSensitivity, Forces, KnownMotion,
-    Path, Pose, Rates, Solver, Start,
+    Blocked, Carryover, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution,
+    Solver, Start,
 };
-use biela::kinematics::{Output, OutputSource};
 use biela::mechanism::{DriverId, Jet, Motion, Order, ParameterId};
 
 use crate::error::Failure;
@@ -23,10 +21,7 @@ pub(crate) struct Runner<S> {
     /// At the file's own values, from which each motion starts.
     home: Solver,
     pub(crate) solver: Solver,
-    pub(crate) rates: Rates,
-    /// Value, velocity and acceleration of each driver.
-    pub(crate) driver_rates: Vec<Jet>,
-    forces: Option<ActingForces>,
+    pub(crate) solution: Solution,
     path: Path,
     carryover: Carryover,
     near_singular: bool,
@@ -34,32 +29,18 @@ pub(crate) struct Runner<S> {
     pub(crate) gives_up: bool,
 }
 
-/// Forces of a motion. Those that are inputs of the FMU are zero.
-struct ActingForces {
-    forces: Forces,
-    inputs: Vec<f64>,
-    /// Whether each contact pulls.
-    lifted: Vec<bool>,
-}
-
 impl<S: Deref<Target = Scenario>> Runner<S> {
     /// Makes a runner; with a column of forces it solves them too.
     pub(crate) fn new(scenario: S, columns: &[Output]) -> Result<Self, Failure> {
         let home = Solver::new(scenario.own.clone())?;
         let solver = Solver::new(scenario.driven.clone())?;
-        let forces = columns.iter().any(Output::is_force).then(|| {
-            let forces = solver.forces();
-            ActingForces {
-                inputs: vec![0.0; forces.inputs()],
-                lifted: vec![false; forces.contacts()],
-                forces,
-            }
-        });
+        let mut solution = Solution::new(&solver);
+        if columns.iter().any(Output::is_force) {
+            solution.seek_forces(&solver);
+        }
         Ok(Self {
-            forces,
             home,
-            rates: Rates::new(scenario.home.0.q.len()),
-            driver_rates: vec![Jet::constant(0.0); scenario.own.drivers.len()],
+            solution,
             scenario,
             path: Path::new(solver.mechanism()),
             carryover: Carryover::default(),
@@ -227,33 +208,9 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
             .collect()
     }
 
-    /// Returns the forces that a picture shows; none unless the runner solves forces. The mechanism
-    /// is at its start.
-    pub(crate) fn force_places(&mut self) -> Vec<ForcePlace> {
-        if self.forces.is_none() {
-            return Vec::new();
-        }
-        let indeterminate = self.solver.indeterminate();
-        let parameters = &self.solver.pose().parameters;
-        ForcePlace::all(self.solver.mechanism(), parameters, &indeterminate)
-    }
-
-    /// Returns components in ground axes \[N\] and torque \[N m\] of forces at the pose.
-    pub(crate) fn force_values(&self, places: &[ForcePlace]) -> Vec<[f64; 3]> {
-        let Some(acting) = &self.forces else {
-            return Vec::new();
-        };
-        let q = &self.solver.pose().q;
-        let values = places.iter().map(|place| place.value(&acting.forces, q));
-        values.collect()
-    }
-
     /// Returns what is worth knowing of the forces at the pose: contacts that begin to pull.
     pub(crate) fn lift_offs(&mut self) -> Vec<String> {
-        let Some(ActingForces { forces, lifted, .. }) = &mut self.forces else {
-            return Vec::new();
-        };
-        let lift_offs = self.solver.lift_offs(forces, lifted);
+        let lift_offs = self.solution.lift_offs(&self.solver);
         lift_offs.map(|lift_off| lift_off.to_string()).collect()
     }
 
@@ -264,10 +221,7 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
 
     /// Returns the value of a column \[SI\].
     pub(crate) fn value(&self, column: &Output) -> f64 {
-        match (column.source, &self.forces) {
-            (OutputSource::Force(quantity), Some(acting)) => acting.forces.value(quantity),
-            _ => column.value(&self.solver, &self.rates, &self.driver_rates),
-        }
+        self.solution.value(&self.solver, column)
     }
 
     /// Adds the derivatives of columns along directions, by direction, then by column.
@@ -281,10 +235,14 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
         directions: &[Direction],
         derivatives: &mut Vec<f64>,
     ) -> Result<(), Error> {
+        let Self {
+            solver, solution, ..
+        } = self;
         if columns.iter().any(Output::is_force) {
-            let mut all = directions.iter();
-            return all
-                .try_for_each(|along| self.differentiate_forces(columns, along, derivatives));
+            for direction in directions {
+                derivatives.extend(solution.changes(solver, columns, direction)?);
+            }
+            return Ok(());
         }
         let orders = columns.iter().map(|column| match column.source {
             OutputSource::Signal(_, order) => order,
@@ -292,49 +250,13 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
         });
         let highest = orders.max();
         let own = &self.scenario.own;
-        self.solver.sensitivities(
-            &self.rates,
-            &self.driver_rates,
+        solver.sensitivities(
+            &solution.rates,
+            &solution.driver_rates,
             directions,
             highest.unwrap_or(Order::Position),
             |change| derivatives.extend(columns.iter().map(|column| column.change(own, change))),
         )
-    }
-
-    /// Adds the derivatives of columns, forces among them, along a direction.
-    fn differentiate_forces(
-        &mut self,
-        columns: &[Output],
-        direction: &Direction,
-        derivatives: &mut Vec<f64>,
-    ) -> Result<(), Error> {
-        let Self {
-            scenario,
-            solver,
-            rates,
-            driver_rates,
-            forces,
-            ..
-        } = self;
-        let along: Option<ForceSensitivity> = match forces {
-            Some(ActingForces { forces, inputs, .. }) => {
-                let motion = KnownMotion {
-                    rates,
-                    driver_rates,
-                    inputs,
-                };
-                // The inputs stay.
-                Some(solver.force_sensitivity(motion, direction, inputs, forces)?)
-            }
-            None => None,
-        };
-        let change = solver.sensitivity(rates, driver_rates, direction)?;
-        let changes = columns.iter().map(|column| match (column.source, &along) {
-            (OutputSource::Force(quantity), Some(along)) => along.change(quantity),
-            _ => column.change(&scenario.own, &change),
-        });
-        derivatives.extend(changes);
-        Ok(())
     }
 
     /// Solves rates and forces at the pose of a row.
@@ -343,31 +265,10 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
     ///
     /// They do not exist at a singular position.
     pub(crate) fn solve(&mut self, row: usize) -> Result<(), Error> {
-        let time = self.solver.pose().time;
-        for index in 0..self.driver_rates.len() {
-            let driver = DriverId(index);
-            if self.solver.mechanism().drivers[index].motion().is_some() {
-                self.driver_rates[index] = self.solver.motion(driver, time);
-            } else if let Some(sample) = self.sample(driver, row) {
-                self.driver_rates[index] = sample;
-            }
+        self.solution.follow_motions(&self.solver);
+        for samples in &self.scenario.samples {
+            self.solution.driver_rates[samples.driver.index()] = samples.at(row);
         }
-        let Self {
-            solver,
-            rates,
-            driver_rates,
-            forces,
-            ..
-        } = self;
-        solver.solve_rates(|driver| driver_rates[driver.index()], rates)?;
-        if let Some(ActingForces { forces, inputs, .. }) = forces {
-            let motion = KnownMotion {
-                rates,
-                driver_rates,
-                inputs,
-            };
-            solver.solve_forces(motion, ForceParts::ALL, forces)?;
-        }
-        Ok(())
+        self.solution.solve(&mut self.solver)
     }
 }

@@ -2,7 +2,6 @@
 
 use super::conditions::unknown;
 use super::error::Error;
-use super::motion::Motion;
 use crate::kinematics::ForceQuantity;
 pub(super) use crate::kinematics::{Output, OutputSource as Source};
 use crate::mechanism::Signal;
@@ -75,16 +74,6 @@ impl Output {
     pub(super) fn told(columns: &[Self]) -> Vec<Self> {
         let told = columns.iter().filter(|column| column.is_told());
         told.cloned().collect()
-    }
-
-    /// Returns the current value \[SI\].
-    pub(super) fn read(&self, motion: &Motion) -> f64 {
-        match self.source {
-            Source::Force(force) => motion.force(force),
-            Source::Signal(..) | Source::Derived(_) => {
-                self.value(&motion.solver, &motion.rates, &motion.driver_rates)
-            }
-        }
     }
 }
 

@@ -54,7 +54,7 @@ impl Recorder for Csv {
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
         self.write(|out, columns| {
             write!(out, "{:?}", motion.solver.pose().time)?;
-            let mut values = columns.iter().map(|column| column.read(motion));
+            let mut values = columns.iter().map(|column| motion.value(column));
             values.try_for_each(|value| write!(out, ",{:?}", value + 0.0))
         })
     }

@@ -13,7 +13,7 @@ use super::input_files::InputFiles;
 use super::motion::Motion;
 use super::picture::Format;
 use super::signals::Signals;
-use crate::drawing::{Diagram, Followed, usual_driver};
+use crate::drawing::{Diagram, Followed, ForcePlace, usual_driver};
 use crate::mechanism::Mechanism;
 
 /// Draw a mechanism as a kinematic diagram, in SVG or PNG.
@@ -104,11 +104,11 @@ impl Draw {
             let start = solver.pose().time;
             let motion = Motion::from(solver, Signals::default(), start);
             let motion = motion.and_then(Motion::with_forces);
-            let mut motion = motion.map_err(|error| input.error(error))?;
-            let places = motion.force_places();
-            let values = motion.values(&places);
-            forces = places.into_iter().zip(values).collect();
+            let motion = motion.map_err(|error| input.error(error))?;
             solver = motion.solver;
+            let places = ForcePlace::sought(&mut solver, &motion.solution);
+            let values = ForcePlace::values(&places, &solver, &motion.solution);
+            forces = places.into_iter().zip(values).collect();
         }
         let diagram = Diagram {
             traces: !self.no_traces,

@@ -1,24 +1,15 @@
 //! A mechanism that moves along the motions of its drivers.
 
-use std::sync::Arc;
-
 use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
-use crate::drawing::ForcePlace;
-use crate::kinematics::{
-    Blocked, Curve, Direction, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Output,
-    OutputSource, Path, Rates, Solver,
-};
-use crate::mechanism::{DriverId, Jet};
+use crate::kinematics::{Blocked, Curve, Error, Output, Path, Solution, Solver};
+use crate::mechanism::DriverId;
 
 /// A mechanism that moves from one time to the next.
 pub(super) struct Motion {
     pub(super) solver: Solver,
-    pub(super) rates: Rates,
-    /// Value, velocity and acceleration of each driver.
-    pub(super) driver_rates: Vec<Jet>,
-    forces: Option<ActingForces>,
+    pub(super) solution: Solution,
     /// Singular positions that are near or were passed, contacts that pull, drivers beyond their
     /// limits: not told yet.
     pub(super) notices: Vec<Message>,
@@ -28,14 +19,6 @@ pub(super) struct Motion {
     near_singular: bool,
     /// Whether each driver is beyond its limits.
     beyond: Vec<bool>,
-}
-
-/// Forces of a run; inputs of forces that no option sets are zero.
-struct ActingForces {
-    forces: Forces,
-    inputs: Vec<f64>,
-    /// Whether each contact pulls.
-    lifted: Vec<bool>,
 }
 
 impl Motion {
@@ -52,88 +35,30 @@ impl Motion {
         start.set_path(&mut path);
         path.start = time;
         let mut motion = Self {
-            rates: Rates::new(start.q.len()),
-            driver_rates: start.drivers.iter().map(|u| Jet::constant(*u)).collect(),
+            solution: Solution::new(&solver),
             beyond: vec![false; start.drivers.len()],
             solver,
             notices: Vec::new(),
-            forces: None,
             path,
             signals,
             near_singular: false,
         };
         motion.watch_limits();
-        motion.solve_rates()?;
+        motion.solve()?;
         Ok(motion)
     }
 
     /// Solves forces too, from now on.
     pub(super) fn with_forces(mut self) -> Result<Self, Error> {
-        let forces = self.solver.forces();
-        self.forces = Some(ActingForces {
-            inputs: vec![0.0; forces.inputs()],
-            lifted: vec![false; forces.contacts()],
-            forces,
-        });
-        self.solve_forces()?;
+        self.solution.seek_forces(&self.solver);
+        self.solve()?;
         Ok(self)
     }
 
-    /// Returns a force at the present time, not a number without [forces](Self::with_forces).
-    pub(super) fn force(&self, quantity: ForceQuantity) -> f64 {
-        let acting = self.forces.as_ref();
-        acting.map_or(f64::NAN, |acting| acting.forces.value(quantity))
-    }
-
-    /// Returns the changes of outputs along a direction, those of forces only
-    /// [with forces](Self::with_forces); inputs of forces stay.
-    pub(super) fn changes(
-        &mut self,
-        outputs: &[Output],
-        direction: &Direction,
-    ) -> Result<Vec<f64>, Error> {
-        let (solver, rates, driver_rates) = (&mut self.solver, &self.rates, &self.driver_rates);
-        let of_forces = match &mut self.forces {
-            None => None,
-            Some(ActingForces { forces, inputs, .. }) => {
-                let motion = KnownMotion {
-                    rates,
-                    driver_rates,
-                    inputs,
-                };
-                let still = vec![0.0; inputs.len()];
-                Some(solver.force_sensitivity(motion, direction, &still, forces)?)
-            }
-        };
-        let mechanism = Arc::clone(solver.mechanism());
-        let change = solver.sensitivity(rates, driver_rates, direction)?;
-        let changes = outputs
-            .iter()
-            .map(|output| match (output.source, &of_forces) {
-                (OutputSource::Force(quantity), Some(forces)) => forces.change(quantity),
-                _ => output.change(&mechanism, &change),
-            });
-        Ok(changes.collect())
-    }
-
-    /// Returns the forces that a picture shows; none without [forces](Self::with_forces).
-    pub(super) fn force_places(&mut self) -> Vec<ForcePlace> {
-        if self.forces.is_none() {
-            return Vec::new();
-        }
-        let indeterminate = self.solver.indeterminate();
-        let parameters = &self.solver.pose().parameters;
-        ForcePlace::all(self.solver.mechanism(), parameters, &indeterminate)
-    }
-
-    /// Returns components in ground axes \[N\] and torque \[N m\] of forces at the present time.
-    pub(super) fn values(&self, places: &[ForcePlace]) -> Vec<[f64; 3]> {
-        let Some(acting) = &self.forces else {
-            return Vec::new();
-        };
-        let q = &self.solver.pose().q;
-        let values = places.iter().map(|place| place.value(&acting.forces, q));
-        values.collect()
+    /// Returns the current value of an output \[SI\], not a number for forces unless the motion is
+    /// [with them](Self::with_forces).
+    pub(super) fn value(&self, output: &Output) -> f64 {
+        self.solution.value(&self.solver, output)
     }
 
     /// Moves on to `time`, from one point of the signals to the next.
@@ -150,24 +75,24 @@ impl Motion {
                 self.follow(self.solver.pose().time)?;
             }
         }
-        let solved = self.solve_rates().and_then(|()| self.solve_forces());
-        solved.map_err(|error| format!("at t = {time} s: {error}"))
+        self.solve()
+            .map_err(|error| format!("at t = {time} s: {error}"))
     }
 
-    fn solve_forces(&mut self) -> Result<(), Error> {
-        let Some(acting) = &mut self.forces else {
-            return Ok(());
-        };
+    /// Solves rates and forces at the present time.
+    fn solve(&mut self) -> Result<(), Error> {
         let time = self.solver.pose().time;
-        self.signals.write_forces(time, &mut acting.inputs);
-        let motion = KnownMotion {
-            rates: &self.rates,
-            driver_rates: &self.driver_rates,
-            inputs: &acting.inputs,
-        };
-        let forces = &mut acting.forces;
-        self.solver.solve_forces(motion, ForceParts::ALL, forces)?;
-        let lift_offs = self.solver.lift_offs(forces, &mut acting.lifted);
+        self.solution.follow_motions(&self.solver);
+        for (driver, rates) in self.solution.driver_rates.iter_mut().enumerate() {
+            if let Some(signal) = self.signals.at(DriverId(driver), time) {
+                *rates = signal;
+            }
+        }
+        if self.solution.forces().is_some() {
+            self.signals.write_forces(time, &mut self.solution.loads);
+        }
+        self.solution.solve(&mut self.solver)?;
+        let lift_offs = self.solution.lift_offs(&self.solver);
         let notices = lift_offs.map(|lift_off| Message::Warning(lift_off.to_string()));
         self.notices.extend(notices);
         Ok(())
@@ -233,20 +158,5 @@ impl Motion {
         blocked.describe(mechanism, pose, Some(pose.time), |driver| {
             mechanism.drivers[driver.index()].motion().is_some() || self.signals.has(driver)
         })
-    }
-
-    fn solve_rates(&mut self) -> Result<(), Error> {
-        let time = self.solver.pose().time;
-        let drivers = self.solver.mechanism().drivers.iter().enumerate();
-        for (rates, (index, driver)) in self.driver_rates.iter_mut().zip(drivers) {
-            if driver.motion().is_some() {
-                *rates = self.solver.motion(DriverId(index), time);
-            } else if let Some(signal) = self.signals.at(DriverId(index), time) {
-                *rates = signal;
-            }
-        }
-        let driver_rates = &self.driver_rates;
-        self.solver
-            .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
     }
 }

@@ -210,10 +210,10 @@ impl Recorder for Plot {
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
         self.times.push(motion.solver.pose().time);
         if let Some(Over { column, values }) = &mut self.over {
-            values.push(column.read(motion));
+            values.push(motion.value(column));
         }
         for (values, column) in self.values.iter_mut().zip(&self.columns) {
-            values.push(column.read(motion));
+            values.push(motion.value(column));
         }
         Ok(())
     }

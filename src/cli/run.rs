@@ -20,6 +20,7 @@ use super::progress::Progress;
 use super::recorder::Recorder;
 use super::stdout::{STDOUT, is_stdout};
 use super::times::{Span, Times};
+use crate::drawing::ForcePlace;
 use crate::mechanism::{Driver, DriverSource, Mechanism, rounded};
 
 /// Run a mechanism: write its motion as CSV, plot it, animate it.
@@ -149,7 +150,7 @@ impl Run {
         if let Some(path) = self.animate.clone() {
             let mut film = Film::new(told, times.steps, [times.start, times.step]);
             if self.forces {
-                film.show_forces(motion.force_places());
+                film.show_forces(ForcePlace::sought(&mut motion.solver, &motion.solution));
             }
             recorders.push(Box::new(Page { film, path }));
         }

@@ -121,14 +121,17 @@ fn add(
 ) -> Result<(), crate::kinematics::Error> {
     let time = motion.solver.pose().time;
     let mut direction = Direction {
-        drivers: vec![Jet::constant(0.0); motion.driver_rates.len()],
+        drivers: vec![Jet::constant(0.0); motion.solver.pose().drivers.len()],
         parameters: vec![0.0; motion.solver.pose().parameters.len()],
         time: 0.0,
     };
     let mut parts = vec![Vec::with_capacity(tolerances.len()); columns.len()];
     for (parameter, tolerance) in tolerances {
         direction.parameters[parameter.index()] = *tolerance;
-        let changes = motion.changes(columns, &direction)?;
+        let Motion {
+            solver, solution, ..
+        } = &mut *motion;
+        let changes = solution.changes(solver, columns, &direction)?;
         for (parts, change) in parts.iter_mut().zip(changes) {
             parts.push(change.abs());
         }

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::anchor::Anchor;
 use super::outline::{across, direction};
 use super::symbol::{ForceArrow, ForceKind, Symbol, TorqueArrow};
-use crate::kinematics::{Element, ForceQuantity, Forces};
+use crate::kinematics::{Element, ForceQuantity, Forces, Solution, Solver};
 use crate::mechanism::{
     Coordinate, CoordinateKind, DriverId, Indeterminate, Load, Mechanism, rounded,
 };
@@ -86,6 +86,26 @@ impl ForcePlace {
         let all = reactions.chain(efforts).chain(loads);
         let place = |(kind, (at, size))| Self { kind, at, size };
         all.map(place).collect()
+    }
+
+    /// Returns [all](Self::all) forces of a solver's mechanism; none unless they are sought.
+    pub fn sought(solver: &mut Solver, solution: &Solution) -> Vec<Self> {
+        if solution.forces().is_none() {
+            return Vec::new();
+        }
+        let indeterminate = solver.indeterminate();
+        let parameters = &solver.pose().parameters;
+        Self::all(solver.mechanism(), parameters, &indeterminate)
+    }
+
+    /// Returns the [values](Self::value) of forces at a solver's pose; none unless they are sought.
+    #[must_use]
+    pub fn values(places: &[Self], solver: &Solver, solution: &Solution) -> Vec<[f64; 3]> {
+        let forces = solution.forces().into_iter();
+        let q = &solver.pose().q;
+        forces
+            .flat_map(|forces| places.iter().map(|place| place.value(forces, q)))
+            .collect()
     }
 
     /// Returns the force in ground axes \[N\] and the torque \[N m\] at the pose q.

@@ -46,6 +46,8 @@
 //! | `forces` | efforts of drivers, reactions of joints, energies |
 //! | `solver` | the facade |
 //! | `signals` | its values of signals and of measures computed from them |
+//! | `output` | the outputs by name |
+//! | `solution` | rates and forces at a pose |
 
 mod analysis;
 mod assembly;
@@ -68,6 +70,7 @@ mod redundancy;
 mod reference;
 mod signals;
 mod singular;
+mod solution;
 mod solver;
 mod state;
 mod structure;
@@ -97,6 +100,7 @@ pub use output::{Output, OutputSource};
 pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};
+pub use solution::Solution;
 pub use solver::Solver;
 pub use state::{Carryover, Pose};
 pub use structure::{Dependencies, Structure};

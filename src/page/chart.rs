@@ -106,11 +106,10 @@ impl Session {
             Over::Time => self.pose().time,
             Over::Driver(driver) => self.pose().drivers[driver.index()],
         };
-        let moment = self.moment();
         let known = |&index: &usize| self.outputs.get(index);
         let values = variables
             .iter()
-            .map(|index| known(index).map_or(f64::NAN, |output| moment.value(output)));
+            .map(|index| known(index).map_or(f64::NAN, |output| self.value(output)));
         rows.push((x, values.collect()));
         reached
     }

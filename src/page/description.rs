@@ -20,7 +20,7 @@ impl Session {
             .drivers
             .iter()
             .zip(&pose.drivers)
-            .zip(&self.driver_rates)
+            .zip(&self.solution.driver_rates)
             .zip(driver_speeds(mechanism, &self.ranges));
         let drivers: Vec<Value> = drivers
             .map(|(((driver, value), rates), usual)| {
@@ -74,7 +74,7 @@ impl Session {
             })
             .collect();
         let largest = largest_load(mechanism, &pose.parameters);
-        let loads: Vec<Value> = (mechanism.force_inputs().iter().zip(&self.loads))
+        let loads: Vec<Value> = (mechanism.force_inputs().iter().zip(&self.solution.loads))
             .map(|(input, load)| {
                 json!({
                     "name": input.name,
@@ -97,7 +97,7 @@ impl Session {
             "uses_time": mechanism.uses_time(),
             "start": mechanism.simulation.start,
             "stop": mechanism.simulation.stop,
-            "has_forces": self.forces.is_some(),
+            "has_forces": self.solution.forces().is_some(),
             "places": self.layout(),
             "ranges": self.ranges(),
         })

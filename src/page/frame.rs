@@ -40,7 +40,7 @@ impl Session {
 
     /// Returns the number of joints whose reactions are known.
     fn reactions(&self) -> usize {
-        match self.forces {
+        match self.solution.forces() {
             Some(_) => self.mechanism().outputs.joints.len(),
             None => 0,
         }
@@ -53,13 +53,12 @@ impl Session {
         let pose = self.solver.pose();
         out.extend([pose.time, self.solver.residual(), rcond]);
         out.push(f64::from(u8::from(self.has_rates)));
-        for (value, rates) in pose.drivers.iter().zip(&self.driver_rates) {
+        for (value, rates) in pose.drivers.iter().zip(&self.solution.driver_rates) {
             out.extend([*value, rates.first(), rates.second()]);
         }
         out.extend_from_slice(&pose.parameters);
-        let moment = self.moment();
-        out.extend(self.outputs.iter().map(|output| moment.value(output)));
-        if let Some(forces) = self.forces.as_deref() {
+        out.extend(self.outputs.iter().map(|output| self.value(output)));
+        if let Some(forces) = self.solution.forces() {
             use crate::kinematics::ForceQuantity::Reaction;
             let none = Rates::new(pose.q.len());
             for &joint in &self.mechanism().outputs.joints {
@@ -71,7 +70,8 @@ impl Session {
             }
         }
         self.picture.add_places(&pose.q, out);
-        let rates = [self.rates.velocity(), self.rates.acceleration()];
+        let rates = &self.solution.rates;
+        let rates = [rates.velocity(), rates.acceleration()];
         let first = out.len();
         self.picture.add_rates(&pose.q, rates, out);
         if !self.has_rates {

@@ -8,7 +8,7 @@
 //! | file | subject |
 //! |---|---|
 //! | `outcome` | [`Outcome`]: the end of a move, and what stopped it |
-//! | `values` | values of outputs, and their units |
+//! | `values` | outputs that are shown, and the units of their values |
 //! | `ranges` | ranges and speeds of the drivers |
 //! | `undo` | states that can be undone |
 //! | `session` | [`Session`]: the mechanism and its moves |

@@ -8,14 +8,12 @@ use super::edit::{EditError, Place, edit};
 use super::outcome::{Obstacle, Outcome};
 use super::ranges::{DriverRange, driver_ranges, driver_speeds};
 use super::undo::{Kept, UndoHistory};
-use super::values::{Moment, shown_in};
+use super::values::shown_in;
 use crate::drawing::animation::MovingPicture;
 use crate::drawing::{Scene, Sheet, svg};
-use crate::kinematics::{
-    Curve, ForceParts, Forces, KnownMotion, Output, Path, Pose, Rates, Solver,
-};
+use crate::kinematics::{Curve, Output, OutputSource, Path, Pose, Solution, Solver};
 use crate::mechanism::{
-    DisplayUnit, DriverId, Jet, Mechanism, Parameter, ParameterId, Severity, Source, Unit,
+    DisplayUnit, DriverId, Jet, Mechanism, Order, Parameter, ParameterId, Severity, Source, Unit,
 };
 
 /// A mechanism that its reader moves by hand.
@@ -26,14 +24,10 @@ pub struct Session {
     pub(super) solver: Solver,
     /// The pose at the start of the simulation, from which times are reached.
     start: Pose,
-    pub(super) rates: Rates,
-    /// Rates of the drivers; those of inputs are the reader's.
-    pub(super) driver_rates: Vec<Jet>,
-    /// Whether the rates belong to the pose, where they exist.
+    /// Rates and forces; the rates of drivers that are inputs and the loads are the reader's.
+    pub(super) solution: Solution,
+    /// Whether rates and forces belong to the pose, where they exist.
     pub(super) has_rates: bool,
-    pub(super) forces: Option<Box<Forces>>,
-    /// Sizes of the forces that are inputs \[SI\].
-    pub(super) loads: Vec<f64>,
     pub(super) picture: MovingPicture,
     pub(super) outputs: Vec<Output>,
     pub(super) length: Option<DisplayUnit>,
@@ -62,9 +56,12 @@ impl Session {
         let path = Path::new(&mechanism);
         let mut solver = Solver::assembled(Arc::clone(&mechanism), &path).map_err(refuse)?;
         let pose = solver.pose().clone();
-        let forces = mechanism.has_dynamics().then(|| Box::new(solver.forces()));
         let (ranges, reached) = driver_ranges(&mut solver);
-        let driver_rates = driver_speeds(&mechanism, &ranges);
+        let mut solution = Solution::new(&solver);
+        solution.driver_rates = driver_speeds(&mechanism, &ranges);
+        if mechanism.has_dynamics() {
+            solution.seek_forces(&solver);
+        }
         let home = Kept {
             mechanism: Arc::clone(&mechanism),
             start: pose.clone(),
@@ -73,11 +70,8 @@ impl Session {
         let mut session = Self {
             warnings,
             start: home.start.clone(),
-            rates: Rates::new(home.pose.q.len()),
-            driver_rates,
+            solution,
             has_rates: false,
-            loads: vec![0.0; mechanism.force_inputs().len()],
-            forces,
             picture: MovingPicture::new(&mut solver, &reached, None),
             outputs: Output::all(&mechanism),
             length: mechanism.length_display(),
@@ -194,7 +188,7 @@ impl Session {
     /// Sets the rates of a driver that is an input \[m/s or rad/s, m/s² or rad/s²\].
     pub fn set_speed(&mut self, driver: DriverId, velocity: f64, acceleration: f64) {
         let rates = [velocity, acceleration];
-        if let Some(jet) = self.driver_rates.get_mut(driver.index())
+        if let Some(jet) = self.solution.driver_rates.get_mut(driver.index())
             && rates.iter().all(|rate| rate.is_finite())
         {
             *jet = Jet::new(0.0, rates);
@@ -204,7 +198,7 @@ impl Session {
 
     /// Sets the size of a force that is an input \[SI\].
     pub fn set_load(&mut self, input: usize, size: f64) {
-        if let Some(load) = self.loads.get_mut(input)
+        if let Some(load) = self.solution.loads.get_mut(input)
             && size.is_finite()
         {
             *load = size;
@@ -250,37 +244,23 @@ impl Session {
 
     /// Solves rates and forces at the pose.
     pub(super) fn refresh(&mut self) {
-        let time = self.pose().time;
-        for index in 0..self.driver_rates.len() {
-            let driver = DriverId(index);
-            if self.mechanism().drivers[index].motion().is_some() {
-                self.driver_rates[index] = self.solver.motion(driver, time);
-            }
-        }
-        let driver_rates = &self.driver_rates;
-        let solved =
-            (self.solver).solve_rates(|driver| driver_rates[driver.index()], &mut self.rates);
-        self.has_rates = solved.is_ok()
-            && self.forces.as_deref_mut().is_none_or(|forces| {
-                let motion = KnownMotion {
-                    rates: &self.rates,
-                    driver_rates,
-                    inputs: &self.loads,
-                };
-                let solved = self.solver.solve_forces(motion, ForceParts::ALL, forces);
-                solved.is_ok()
-            });
+        self.solution.follow_motions(&self.solver);
+        self.has_rates = self.solution.solve(&mut self.solver).is_ok();
     }
 
-    /// Returns what values of variables are read from.
-    pub(super) fn moment(&self) -> Moment<'_> {
-        Moment {
-            solver: &self.solver,
-            rates: &self.rates,
-            driver_rates: &self.driver_rates,
-            forces: self.forces.as_deref().filter(|_| self.has_rates),
-            has_rates: self.has_rates,
+    /// Returns the value of an output \[SI\], not a number where there is none.
+    pub(super) fn value(&self, output: &Output) -> f64 {
+        let needs_rates = match output.source {
+            OutputSource::Signal(_, order) => order != Order::Position,
+            OutputSource::Derived(index) => {
+                self.mechanism().derived[index].order() != Order::Position
+            }
+            OutputSource::Force(_) => true,
+        };
+        if needs_rates && !self.has_rates {
+            return f64::NAN;
         }
+        self.solution.value(&self.solver, output)
     }
 
     // -- pictures and files ------------------------------------------------------------------
@@ -367,8 +347,8 @@ impl Session {
         self.keep();
         self.go_to_state(Some(self.home.clone()));
         let mechanism = Arc::clone(self.mechanism());
-        self.driver_rates = driver_speeds(&mechanism, &self.ranges);
-        self.loads.fill(0.0);
+        self.solution.driver_rates = driver_speeds(&mechanism, &self.ranges);
+        self.solution.loads.fill(0.0);
         self.refresh();
     }
 

@@ -333,7 +333,7 @@ fn a_load_is_felt_by_the_driver() {
     let effort = |session: &Session| {
         let is_effort = |output: &&crate::kinematics::Output| output.name == "angle.effort";
         let output = session.outputs.iter().find(is_effort);
-        session.moment().value(output.expect("it has dynamics"))
+        session.value(output.expect("it has dynamics"))
     };
     let (sin, cos) = 0.3_f64.sin_cos();
     let expected = 0.5 * (loads[0] * sin - loads[1] * cos) - loads[2];

@@ -43,12 +43,9 @@ impl DerivedRange {
         let uses_rates = uses_rates(&follower.mechanism.derived[index]);
         let of = |follower: &Follower<'_>| {
             let Follower {
-                solver,
-                rates,
-                driver_rates,
-                ..
+                solver, solution, ..
             } = follower;
-            let value = solver.derived(index, rates, driver_rates);
+            let value = solver.derived(index, &solution.rates, &solution.driver_rates);
             value.is_finite().then_some(value)
         };
         let samples = range.samples.iter().map(|sample| {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::kinematics::{Curve, Error, Path, Pose, Range, Rates, Sample, Solver};
+use crate::kinematics::{Curve, Error, Path, Pose, Range, Sample, Solution, Solver};
 use crate::mechanism::{DriverId, Jet, Mechanism, shown};
 
 /// A solver that visits places in the range of a driver; the others are at rest.
@@ -10,8 +10,7 @@ pub(super) struct Follower<'a> {
     pub(super) solver: &'a mut Solver,
     pub(super) mechanism: Arc<Mechanism>,
     driver: DriverId,
-    pub(super) rates: Rates,
-    pub(super) driver_rates: Vec<Jet>,
+    pub(super) solution: Solution,
     /// The samples of the range without its ends, where two motions may meet.
     samples: &'a [Sample],
     home: Pose,
@@ -29,18 +28,17 @@ impl<'a> Follower<'a> {
     ) -> Self {
         let mechanism = Arc::clone(solver.mechanism());
         let home = solver.pose().clone();
-        let mut driver_rates = vec![Jet::constant(0.0); mechanism.drivers.len()];
-        driver_rates[driver.index()].derivatives[0] = speed;
+        let mut solution = Solution::new(solver);
+        solution.driver_rates[driver.index()] = Jet::linear(0.0, speed);
         let mut path = Path::new(&mechanism);
         home.set_path(&mut path);
         let values = path.curves.iter_mut().zip(&home.drivers);
         values.for_each(|(curve, value)| *curve = Curve::held(*value, *value));
         Self {
-            rates: Rates::new(home.q.len()),
             solver,
             mechanism,
             driver,
-            driver_rates,
+            solution,
             samples: inner(&range.samples),
             home,
             path,
@@ -51,14 +49,14 @@ impl<'a> Follower<'a> {
     ///
     /// # Errors
     ///
-    /// The mechanism has no velocities there.
+    /// The mechanism has no velocities there, or no forces where they are sought.
     pub(super) fn visit(&mut self, sample: &Sample) -> Result<(), Error> {
         self.solver.restore(&sample.pose);
-        self.solve_rates()
+        self.solution.solve(self.solver)
     }
 
     /// Follows the driver to a value in its range, from where it is or a pose known nearer by. `None`
-    /// without velocities there, or where it cannot go; then it returns to the known pose, because
+    /// without velocities or forces there, or where it cannot go; then it returns to the known pose, because
     /// two motions may meet where it stopped.
     pub(super) fn follow(&mut self, value: f64) -> Option<()> {
         let index = self.driver.index();
@@ -79,18 +77,12 @@ impl<'a> Follower<'a> {
             self.solver.restore(nearest);
             return None;
         }
-        self.solve_rates().ok()
+        self.solution.solve(self.solver).ok()
     }
 
     /// Returns to the pose at the start.
     pub(super) fn restore(&mut self) {
         self.solver.restore(&self.home);
-    }
-
-    fn solve_rates(&mut self) -> Result<(), Error> {
-        let driver_rates = &self.driver_rates;
-        self.solver
-            .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
     }
 }
 

@@ -5,9 +5,7 @@ use std::fmt::Write as _;
 use super::about;
 use super::follower::{Follower, at_speed, without_value};
 use super::search::{Largest, Measured, largest};
-use crate::kinematics::{
-    Element, Error, ForceParts, ForceQuantity, Forces, KnownMotion, Range, Reported, Sample, Solver,
-};
+use crate::kinematics::{Element, Error, ForceQuantity, Range, Reported, Solver};
 use crate::mechanism::{DriverId, shown};
 
 /// Largest reaction that is rounding, as a part of the largest effort: that of a pin beside the one
@@ -18,20 +16,15 @@ const ROUNDING: f64 = 1e-12;
 struct Loads<'a> {
     follower: Follower<'a>,
     driver: DriverId,
-    forces: Forces,
-    /// Inputs of forces, which are zero.
-    inputs: Vec<f64>,
     /// Joints with determinate forces.
     joints: Vec<usize>,
-    /// Rounding error of the effort.
-    rounding: f64,
 }
 
 impl<'a> Loads<'a> {
     fn new(solver: &'a mut Solver, driver: DriverId, range: &'a Range, speed: f64) -> Self {
         let open = solver.indeterminate();
-        let forces = solver.forces();
-        let follower = Follower::new(solver, driver, range, speed);
+        let mut follower = Follower::new(solver, driver, range, speed);
+        follower.solution.seek_forces(follower.solver);
         let joints = follower.mechanism.joints.iter().enumerate();
         let joints = joints
             .filter(|(_, joint)| Reported::of(&joint.kind).has(0))
@@ -39,45 +32,18 @@ impl<'a> Loads<'a> {
             .filter(|joint| !open.contains(&Element::Joint(*joint)));
         Self {
             joints: joints.collect(),
-            rounding: 0.0,
-            inputs: vec![0.0; forces.inputs()],
-            forces,
             follower,
             driver,
         }
     }
 
-    fn visit(&mut self, sample: &Sample) -> Result<(), Error> {
-        self.follower.visit(sample)?;
-        self.solve()
-    }
-
-    fn follow(&mut self, value: f64) -> Option<()> {
-        self.follower.follow(value)?;
-        self.solve().ok()
-    }
-
-    fn solve(&mut self) -> Result<(), Error> {
-        let Follower {
-            solver,
-            rates,
-            driver_rates,
-            ..
-        } = &mut self.follower;
-        let motion = KnownMotion {
-            rates,
-            driver_rates,
-            inputs: &self.inputs,
-        };
-        solver.solve_forces(motion, ForceParts::ALL, &mut self.forces)?;
-        self.rounding = solver.effort_rounding(motion, self.driver, &self.forces);
-        Ok(())
-    }
-
     /// Returns the size of the effort, and the effort; zero for what is rounding.
     fn effort(&self) -> Measured<f64> {
-        let effort = self.forces.value(ForceQuantity::Effort(self.driver));
-        if effort.abs() <= self.rounding {
+        let Follower {
+            solver, solution, ..
+        } = &self.follower;
+        let effort = solution.force(ForceQuantity::Effort(self.driver));
+        if effort.abs() <= solution.effort_rounding(solver, self.driver) {
             return (0.0, 0.0);
         }
         (effort.abs(), effort)
@@ -85,8 +51,9 @@ impl<'a> Loads<'a> {
 
     /// Returns the largest force in a joint, and the joint.
     fn reaction(&self) -> Option<Measured<usize>> {
+        let force = |quantity| self.follower.solution.force(quantity);
         let reactions = self.joints.iter().map(|&joint| {
-            let [x, y] = [0, 1].map(|k| self.forces.value(ForceQuantity::Reaction(joint, k)));
+            let [x, y] = [0, 1].map(|k| force(ForceQuantity::Reaction(joint, k)));
             (x.hypot(y), joint)
         });
         reactions.reduce(|most, next| if next.0 > most.0 { next } else { most })
@@ -107,7 +74,7 @@ pub(super) fn describe_largest(
     let (mut efforts, mut reactions) = (Vec::new(), Vec::new());
     let (mut missing, mut reason) = (Vec::new(), None);
     for sample in &range.samples {
-        let solved = loads.visit(sample);
+        let solved = loads.follower.visit(sample);
         let exists = solved.is_ok();
         efforts.push((sample.driver, exists.then(|| loads.effort())));
         let reaction = exists.then(|| loads.reaction()).flatten();
@@ -120,10 +87,12 @@ pub(super) fn describe_largest(
         }
     }
     loads.follower.restore();
-    let effort = largest(&efforts, |at| loads.follow(at).map(|()| loads.effort()));
+    let effort = largest(&efforts, |at| {
+        loads.follower.follow(at).map(|()| loads.effort())
+    });
     loads.follower.restore();
     let reaction = largest(&reactions, |at| {
-        loads.follow(at).and_then(|()| loads.reaction())
+        loads.follower.follow(at).and_then(|()| loads.reaction())
     });
     let mechanism = &loads.follower.mechanism;
     let kind = mechanism.drivers[driver.index()].coordinate.kind;

@@ -8,6 +8,7 @@ mod moving;
 mod moving_svg;
 mod page;
 mod picture;
+mod recorded;
 mod stage;
 
 pub use moving::MovingPicture;
