@@ -19,8 +19,7 @@ use super::suggested_estimates::as_estimates;
 use super::times::Times;
 use crate::kinematics::{self, Element, Mode, Modes, Path, Play, Rates, Solver, System};
 use crate::mechanism::{
-    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, ParameterId,
-    Unit, shown,
+    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
@@ -340,8 +339,7 @@ fn mention_modes(solver: &Solver, modes: &Modes) -> String {
     let bodies = solver.mechanism().bodies.iter();
     // An estimate without a value was refused before.
     for (index, (body, moved)) in bodies.zip(solver.moves().unwrap_or_default()).enumerate() {
-        let part =
-            |k: usize| body.estimate[k].evaluate(&|p: ParameterId| parameters[p.index()], 0.0);
+        let part = |k: usize| body.estimate[k].value(parameters);
         let phi = part(2);
         // Zeros are what a body without an estimate has.
         let is_estimated = (0..3).any(|k| part(k) != 0.0);

@@ -117,7 +117,7 @@ impl Conditions {
         let parameters = self.parameters(mechanism)?;
         let expression = mechanism.parse_expression(text, None);
         let expression = expression.map_err(|error| refuse(option, text, &error))?;
-        let value = expression.evaluate(&|p: ParameterId| parameters[p.index()], 0.0);
+        let value = expression.value(&parameters);
         if !value.is_finite() {
             let text = quoted(text);
             return Err(Error::Usage(format!("{option}: {text} is not finite")));
@@ -130,7 +130,8 @@ impl Conditions {
 
     /// Returns the parameters in force \[SI\].
     fn parameters(&self, mechanism: &Mechanism) -> Result<Vec<f64>, Error> {
-        let mut values = mechanism.default_parameters();
+        let defaults = mechanism.default_parameters();
+        let mut values = defaults.clone();
         let names = mechanism.parameters.iter().map(|p| p.name.as_str());
         for (index, text) in SET.assignments(&self.set, &names.collect::<Vec<_>>())? {
             let parameter = &mechanism.parameters[index];
@@ -140,7 +141,7 @@ impl Conditions {
             values[index] = mechanism
                 .parse_expression(text, None)
                 .map_err(|error| SET.refuse(text, &error))?
-                .evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
+                .value(&defaults);
             if parameter.unit.map(|unit| unit.dimension) == Some(Unit::RADIAN.dimension) {
                 warn_of_degrees(SET.option, text, values[index]);
             }

@@ -72,7 +72,7 @@ pub fn parameter_value(
 ) -> Result<f64, String> {
     let expression = mechanism.parse_expression(text, None);
     let expression = expression.map_err(|error| error.message)?;
-    let value = expression.evaluate(&|p| mechanism.parameters[p.index()].default, 0.0);
+    let value = expression.value(&mechanism.default_parameters());
     check_parameter(mechanism, parameter, value)?;
     Ok(value)
 }

@@ -64,7 +64,7 @@ impl Anchor {
 
     /// Returns the frame of a marker.
     pub(super) fn of_marker(mechanism: &Mechanism, parameters: &[f64], marker: MarkerId) -> Self {
-        let value = |expression: &Expression| expression.evaluate(&|p| parameters[p.index()], 0.0);
+        let value = |expression: &Expression| expression.value(parameters);
         let marker = &mechanism.markers[marker.index()];
         Self {
             body: marker.body,

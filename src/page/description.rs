@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::ranges::driver_speeds;
 use super::session::Session;
 use super::values::{is_told, shown_in};
-use crate::mechanism::{Driver, Mechanism, Parameter, ParameterId, Unit};
+use crate::mechanism::{Driver, Mechanism, Parameter, Unit};
 
 impl Session {
     /// Returns what a page shows once: names, units, limits.
@@ -119,9 +119,7 @@ impl Session {
 /// Returns the end of a load's slider \[N or N m\]: ten times the weight of all bodies.
 fn largest_load(mechanism: &Mechanism, parameters: &[f64]) -> f64 {
     let masses = mechanism.bodies.iter().filter_map(|b| b.mass.as_ref());
-    let mass: f64 = masses
-        .map(|mass| mass.evaluate(&|p: ParameterId| parameters[p.index()], 0.0))
-        .sum();
+    let mass: f64 = masses.map(|mass| mass.value(parameters)).sum();
     if mass > 0.0 {
         10.0 * 9.81 * mass
     } else {

@@ -39,7 +39,7 @@ impl Forces {
         };
         solver.solve_forces(motion, ForceParts::ALL, &mut forces)?;
         let parameters = &solver.pose().parameters;
-        let value = |expression: &Expression| expression.evaluate(&|p| parameters[p.index()], 0.0);
+        let value = |expression: &Expression| expression.value(parameters);
         let masses = mechanism.bodies.iter().filter_map(|body| {
             let inertia = body.inertia.as_ref().map_or(0.0, value);
             Some((body.name.clone(), value(body.mass.as_ref()?), inertia))

@@ -118,7 +118,7 @@ impl<'a> Composer<'a> {
     }
 
     pub(super) fn value(&self, expression: &Expression) -> f64 {
-        expression.evaluate(&|p| self.parameters[p.index()], 0.0)
+        expression.value(self.parameters)
     }
 
     pub(super) fn parameters(&self) -> &[f64] {

@@ -151,7 +151,7 @@ pub(in crate::kinematics) fn geometry_warnings(
                 ..
             } => check.belt(centres, check.numbers(radii), *crossed),
             JointKind::RackAndPinion { radius, side } => {
-                check.rack(centres, check.number(radius), *side)
+                check.rack(centres, radius.value(check.parameters), *side)
             }
             JointKind::Cam { follower, .. } => {
                 let profile = profiles.next().map(|id| state.at.profile(id));
@@ -172,12 +172,8 @@ struct Check<'a> {
 }
 
 impl Check<'_> {
-    fn number(&self, expression: &Expression) -> f64 {
-        expression.evaluate(&|p| self.parameters[p.index()], 0.0)
-    }
-
     fn numbers(&self, expressions: &[Expression; 2]) -> [f64; 2] {
-        expressions.each_ref().map(|e| self.number(e))
+        expressions.each_ref().map(|e| e.value(self.parameters))
     }
 
     fn distance(&self, [from, to]: [MarkerId; 2]) -> f64 {
@@ -238,7 +234,7 @@ impl Check<'_> {
             // A roller that touches the contour in two places leaves a pocket between them, and
             // every pocket has a hollow narrower than the roller: looking for those is enough.
             CamFollower::Roller { radius } => {
-                let roller = self.number(radius);
+                let roller = radius.value(self.parameters);
                 // 1 + κ r, times the cube of the speed √(R² + R′²).
                 let room = |radius: Jet3<Interval>| {
                     let (square, bend) = bending(radius);

@@ -55,7 +55,7 @@ pub(in crate::kinematics) fn estimate(
     let mut estimate = vec![0.0; system.unknowns()];
     for (body, q) in bodies.iter().zip(estimate.chunks_exact_mut(3)) {
         for (q, expression) in q.iter_mut().zip(&body.estimate) {
-            *q = expression.evaluate(&|p| parameters[p.index()], 0.0);
+            *q = expression.value(parameters);
             if !q.is_finite() {
                 return Err(Error::NotFinite {
                     what: format!("the estimate of body `{}`", body.name),

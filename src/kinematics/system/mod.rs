@@ -258,7 +258,7 @@ impl System {
             let Target::Constant(expression) = &equation.target else {
                 continue;
             };
-            *constant = expression.evaluate(&|p| parameters[p.index()], 0.0);
+            *constant = expression.value(parameters);
             if !constant.is_finite() {
                 return Err(Error::NotFinite {
                     what: equation.element.describe(&self.mechanism),

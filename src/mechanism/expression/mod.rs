@@ -167,6 +167,14 @@ impl Expression {
         }
     }
 
+    /// Evaluates the expression, which has no variables, for values of all parameters.
+    ///
+    /// Outside the domain of a function the result is not finite. Allocates nothing.
+    #[must_use]
+    pub fn value(&self, parameters: &[f64]) -> f64 {
+        self.evaluate(&|p: ParameterId| parameters[p.index()], 0.0)
+    }
+
     /// Evaluates the expression for the given parameters and the value of its only variable.
     ///
     /// Outside the domain of a function the result is not finite. Allocates nothing.
