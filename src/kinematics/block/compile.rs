@@ -536,7 +536,7 @@ impl Search<'_> {
         }
         let mut paths = paths.into_iter();
         let owners = column_owners(
-            self.system.unknowns(),
+            self.system,
             orders.iter().map(|(index, order)| (*index, order)),
         );
         let mut coupled = orders.into_iter().map(|(index, order)| {

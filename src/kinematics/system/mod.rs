@@ -411,11 +411,12 @@ impl System {
     /// place the size of the body's part.
     #[must_use]
     pub fn column_scale(&self, column: usize, size: f64) -> f64 {
-        if self.is_angle(column) {
-            1.0
-        } else {
-            size * self.part_sizes[column / 3]
-        }
+        self.column_part(column).map_or(1.0, |part| size * part)
+    }
+
+    /// Returns the part of the mechanism's size that scales an unknown, `None` for an angle.
+    pub(in crate::kinematics) fn column_part(&self, column: usize) -> Option<f64> {
+        (!self.is_angle(column)).then(|| self.part_sizes[column / 3])
     }
 }
 

@@ -41,6 +41,8 @@ enum Step {
     From(f64, u8),
     /// c x.
     Scale(u8, f64),
+    /// x + y.
+    Sum(u8, u8),
     Square(u8),
     Sqrt(u8),
     /// The sine, and the cosine as the next number.
@@ -98,6 +100,7 @@ impl ExpressionInForce {
             (Operation::Add, [Place(x), Constant(c)] | [Constant(c), Place(x)]) => {
                 Step::Shift(x, c)
             }
+            (Operation::Add, [Place(x), Place(y)]) => Step::Sum(x, y),
             (Operation::Subtract, [Place(x), Constant(c)]) => Step::Shift(x, -c),
             (Operation::Subtract, [Constant(c), Place(x)]) => Step::From(c, x),
             (Operation::Multiply, [Place(x), Constant(c)] | [Constant(c), Place(x)]) => {
@@ -156,6 +159,7 @@ impl ExpressionInForce {
                     difference
                 }
                 Step::Scale(place, c) => x(place) * c,
+                Step::Sum(place, other) => x(place) + x(other),
                 Step::Square(place) => square(x(place)),
                 Step::Sqrt(place) => sqrt(x(place)),
                 Step::SineAndCosine(place) => {

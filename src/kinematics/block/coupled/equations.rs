@@ -14,25 +14,29 @@ use crate::kinematics::system::{RowValue, System};
 pub(super) const ENTRIES: usize = 10;
 
 /// The block that finds an unknown, and the index of the unknown in that block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::kinematics::block) struct ColumnOwner {
     pub(super) block: usize,
     local: usize,
+    /// [Part](System::column_part) of the mechanism's size that scales the unknown.
+    part: Option<f64>,
 }
 
-/// Returns the owner of each of `unknowns`; `orders` has the index and the order of each block.
+/// Returns the owner of each unknown; `orders` has the index and the order of each block.
 pub(in crate::kinematics::block) fn column_owners<'a>(
-    unknowns: usize,
+    system: &System,
     orders: impl Iterator<Item = (usize, &'a EliminationOrder)>,
 ) -> Arc<[ColumnOwner]> {
-    let none = ColumnOwner {
+    let unowned = |column| ColumnOwner {
         block: usize::MAX,
         local: 0,
+        part: system.column_part(column),
     };
-    let mut owners = vec![none; unknowns];
+    let mut owners: Vec<_> = (0..system.unknowns()).map(unowned).collect();
     for (block, order) in orders {
         for (local, &column) in order.columns.iter().enumerate() {
-            owners[column] = ColumnOwner { block, local };
+            let owner = &mut owners[column];
+            (owner.block, owner.local) = (block, local);
         }
     }
     owners.into()
@@ -128,16 +132,20 @@ impl BlockEquations {
         lu.clear();
         upstream.clear();
         let (system, values) = (state.system, state.values());
+        let size = values.at.size();
         for (local, (&row, &row_scale)) in self.rows.iter().zip(&self.row_scales).enumerate() {
             let value = system.evaluate_scaled_row(row, row_scale, values, |column, by_row| {
-                match self.own(column) {
-                    Some(own) => lu.add(local, own, by_row * self.column_scales[own]),
-                    None => upstream.push(UpstreamEntry {
+                let owner = &self.owners[column];
+                if owner.block == self.index {
+                    lu.add(local, owner.local, by_row * self.column_scales[owner.local]);
+                } else {
+                    let scale = owner.part.map_or(1.0, |part| size * part);
+                    upstream.push(UpstreamEntry {
                         row: local,
                         column,
-                        value: by_row * system.column_scale(column, values.at.size()),
+                        value: by_row * scale,
                         by_row,
-                    }),
+                    });
                 }
             });
             found(local, value);
