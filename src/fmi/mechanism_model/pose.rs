@@ -6,7 +6,7 @@ use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve, Progress, Start};
-use crate::mechanism::{DriverId, DriverSource, Jet};
+use crate::mechanism::{DriverId, DriverSource};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
 /// input counts as continuous: a host's polynomials do not meet exactly.
@@ -155,18 +155,18 @@ impl MechanismModel {
     pub(super) fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
         let rule = self.rule();
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            self.driver_rates[index] = match driver.source {
+            // Written in place: a value that is copied on waits for its parts.
+            match driver.source {
                 DriverSource::Input { .. } => {
                     let (rates, sources) =
                         self.course.inputs[index].rates_after(rule, start, s * h);
                     self.sources[index] = sources;
-                    Jet {
-                        value: 0.0,
-                        derivatives: [rates.velocity, rates.acceleration],
-                    }
+                    self.driver_rates[index].derivatives = [rates.velocity, rates.acceleration];
                 }
-                DriverSource::Motion(_) => self.solver.motion(DriverId(index), start + s * h),
-            };
+                DriverSource::Motion(_) => {
+                    self.driver_rates[index] = self.solver.motion(DriverId(index), start + s * h);
+                }
+            }
         }
     }
 
