@@ -51,7 +51,7 @@ pub struct Solution {
     /// Sizes of the forces that are inputs \[SI\], in the order of their variables; empty unless
     /// forces are sought.
     pub loads: Vec<f64>,
-    forces: Option<Box<Forces>>,
+    forces: Option<Forces>,
     /// Whether each contact pulls.
     lifted: Vec<bool>,
 }
@@ -75,13 +75,13 @@ impl Solution {
         let forces = solver.forces();
         self.loads = vec![0.0; forces.inputs()];
         self.lifted = vec![false; forces.contacts()];
-        self.forces = Some(Box::new(forces));
+        self.forces = Some(forces);
     }
 
     /// Returns the forces, if they are sought.
     #[must_use]
     pub fn forces(&self) -> Option<&Forces> {
-        self.forces.as_deref()
+        self.forces.as_ref()
     }
 
     /// Takes over the rates of the drivers with prescribed motions at the time of the pose.
@@ -159,12 +159,7 @@ impl Solution {
     pub fn effort_rounding(&self, solver: &Solver, driver: DriverId) -> f64 {
         let forces = self.forces();
         forces.map_or(0.0, |forces| {
-            let motion = KnownMotion {
-                rates: &self.rates,
-                driver_rates: &self.driver_rates,
-                inputs: &self.loads,
-            };
-            solver.effort_rounding(motion, driver, forces)
+            solver.effort_rounding(&self.rates, driver, forces)
         })
     }
 
@@ -172,7 +167,7 @@ impl Solution {
     pub fn lift_offs<'a>(&'a mut self, solver: &'a Solver) -> impl Iterator<Item = LiftOff<'a>> {
         let Self { forces, lifted, .. } = self;
         let begun = forces
-            .as_deref()
+            .as_ref()
             .map(|forces| solver.lift_offs(forces, lifted));
         begun.into_iter().flatten()
     }
@@ -184,6 +179,6 @@ impl Solution {
             driver_rates: &self.driver_rates,
             inputs: &self.loads,
         };
-        (motion, self.forces.as_deref_mut())
+        (motion, self.forces.as_mut())
     }
 }

@@ -361,15 +361,10 @@ impl Solver {
     }
 
     /// Returns the rounding error of a driver's effort \[N or N m\]: a smaller effort cannot be told
-    /// from zero. The efforts in `forces` must be up to date for this motion.
+    /// from zero. The efforts in `forces` must be up to date for these rates.
     #[must_use]
-    pub fn effort_rounding(
-        &self,
-        motion: KnownMotion<'_>,
-        driver: DriverId,
-        forces: &Forces,
-    ) -> f64 {
-        forces.effort_rounding(&self.state, motion, driver)
+    pub fn effort_rounding(&self, rates: &Rates, driver: DriverId, forces: &Forces) -> f64 {
+        forces.effort_rounding(&self.state, rates, driver)
     }
 
     /// Returns the joints that can only push and begin to pull at the present pose, and sets in

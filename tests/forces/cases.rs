@@ -236,6 +236,26 @@ fn a_beam_at_rest_is_in_static_balance() {
     );
 }
 
+/// The reader warns of them. The spring alone gives the effort 3 φ, with any inertia and centre.
+#[test]
+fn inertia_and_centre_have_no_effect_without_mass() {
+    let spring = "[forces]\n\
+                  s = { coordinate = \"angle\", markers = [\"ground.O\", \"rod.O\"], stiffness = 3, free = 0 }\n";
+    let text = PENDULUM.replace("mass = 2", "") + spring;
+    let (_, forces) = at_start(&text, &[[1.7, -0.6]], &[]).expect("it has forces");
+    assert_forces(
+        &forces,
+        &[
+            (ForceQuantity::Effort(SWING), 3.0 * 0.3),
+            (ForceQuantity::Inertia(SWING), 0.0),
+            (ForceQuantity::Bias(SWING), 3.0 * 0.3),
+            (ForceQuantity::Reaction(0, 0), 0.0),
+            (ForceQuantity::Reaction(0, 1), 0.0),
+            (ForceQuantity::KineticEnergy, 0.0),
+        ],
+    );
+}
+
 #[test]
 fn masses_that_parameters_make_negative_are_refused() {
     let text = PENDULUM.replace("mass = 2", "mass = \"1 + m\"") + "\n[parameters]\nm = 1\n";

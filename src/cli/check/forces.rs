@@ -57,7 +57,7 @@ impl Forces {
             );
             let value = forces.value(force);
             let rounding = match force {
-                ForceQuantity::Effort(driver) => solver.effort_rounding(motion, driver, &forces),
+                ForceQuantity::Effort(driver) => solver.effort_rounding(&still, driver, &forces),
                 _ => 0.0,
             };
             let is_rounding = value.abs() < ROUNDING || value.abs() <= rounding;

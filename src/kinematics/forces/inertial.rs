@@ -27,13 +27,13 @@ pub(super) struct MassProperties<N> {
     arm: [N; 2],
 }
 
-/// The drivers that move the bodies.
-pub(super) struct DrivenBodies<'a> {
-    /// ∂q/∂u: of the first body for each driver, of the next, …
+/// The drivers, and the forces on them that are sought.
+pub(super) struct DriverLoads<'a> {
+    /// ∂q/∂u by body: that of the first body for each driver, that of the second, …
     pub(super) units: &'a [[f64; 3]],
     /// Per driver: the acceleration of an input, zero for a prescribed motion.
     pub(super) free: &'a [f64],
-    /// Per driver.
+    /// Forces of each driver, to which is added.
     pub(super) forces: &'a mut [DriverForces],
 }
 
@@ -66,7 +66,9 @@ impl<N: Number> Masses<N> {
             |expression: &Option<Expression>| expression.as_ref().map_or(N::constant(0.0), value);
         self.gravity = mechanism.simulation.gravity.each_ref().map(value);
         for (of_body, body) in self.bodies.iter_mut().zip(&mechanism.bodies) {
-            of_body.mass = optional(&body.mass);
+            // Without a mass, inertia and centre have no effect.
+            let Some(mass) = &body.mass else { continue };
+            of_body.mass = value(mass);
             of_body.inertia = optional(&body.inertia);
             let center = body
                 .center
@@ -78,27 +80,27 @@ impl<N: Number> Masses<N> {
 }
 
 impl Masses<f64> {
-    /// Adds to w what masses demand for the accelerations of each body that only prescribed motions
-    /// and velocities cause, and with it the bias of each driver; then for the accelerations of
-    /// inputs, and with both the efforts. Adds the energies too.
-    // Inlined for one driver, all its sums stay in registers.
+    /// Turns the bodies and adds what they demand to w, and their energies. `coasting` are the
+    /// accelerations without those of inputs: with them w gives the bias of each driver. Then come
+    /// the accelerations of inputs: with them w gives the efforts.
+    // Inlined, the sums of a single driver stay in registers.
     #[inline(always)]
     pub(super) fn load(
         &mut self,
         at: &Configuration,
         velocities: &[f64],
-        accelerations: impl Iterator<Item = [f64; 3]>,
-        drivers: DrivenBodies<'_>,
+        coasting: impl Iterator<Item = [f64; 3]>,
+        drivers: DriverLoads<'_>,
         demand: &mut [f64],
         energies: &mut [f64; 2],
     ) {
-        let DrivenBodies {
+        let DriverLoads {
             mut units,
             free,
             forces,
         } = drivers;
         let gravity = self.gravity;
-        let motions = by_body(velocities).iter().zip(accelerations);
+        let motions = by_body(velocities).iter().zip(coasting);
         let places = at.frames().iter().zip(demand.as_chunks_mut().0);
         let bodies = self.bodies.iter_mut().zip(places).zip(motions);
         for ((of_body, (frame, demand)), (velocity, acceleration)) in bodies {

@@ -19,7 +19,7 @@
 //! | `inertial` | masses, and what they demand |
 //! | `applied` | springs, dampers, actuators and loads |
 //! | `quantity` | [`ForceQuantity`]: the results by name |
-//! | `results` | the results of a solution |
+//! | `results` | their numbers |
 //! | `wrench` | force and torque that a joint exerts |
 //! | `self_stress` | reactions of least norm |
 //! | `indeterminate` | reactions that redundant constraints leave open |

@@ -1,8 +1,8 @@
-//! The results of a solution of the forces.
+//! The numbers that [`Forces`](super::Forces) solves.
 
 use crate::mechanism::Mechanism;
 
-/// The forces of a mechanism at one pose.
+/// The numbers of one pose: w, and what follows from it.
 #[derive(Debug)]
 pub(super) struct Results {
     /// w, one entry per unknown. Reactions use it up.

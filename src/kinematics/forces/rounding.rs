@@ -2,27 +2,31 @@
 
 use super::applied::{Place, on_body};
 use super::inertial::by_body;
-use super::solve::{Forces, KnownMotion};
+use super::solve::Forces;
 use crate::kinematics::constraint::Gradient;
+use crate::kinematics::path::Rates;
 use crate::kinematics::state::State;
 use crate::mechanism::DriverId;
 
 impl Forces {
-    /// Returns the rounding error of a driver's effort, n ε Σ |f ∂q/∂u| over the n products of the
-    /// forces f of each mass, spring, damper and load with the rates ∂q/∂u. Half of it is the bound
+    /// Returns the rounding error of a driver's effort, n ε Σ |f ∂q/∂u| over the n products, other
+    /// than zero, of the forces f of each mass, spring, damper and load with the rates ∂q/∂u. Half of it is the bound
     /// for the sum of exact products (Higham, Accuracy and Stability of Numerical Algorithms,
     /// Eq. 3.5), the other half one rounding of each factor. The efforts must be up to date.
     pub(in crate::kinematics) fn effort_rounding(
         &self,
         state: &State,
-        motion: KnownMotion<'_>,
+        rates: &Rates,
         driver: DriverId,
     ) -> f64 {
         let unit = self.unit(state, driver);
         let (mut sum, mut products) = (0.0, 0_u32);
         let mut add = |column: usize, force: f64| {
-            sum += (force * unit[column]).abs();
-            products += 1;
+            let product = force * unit[column];
+            if product != 0.0 {
+                sum += product.abs();
+                products += 1;
+            }
         };
         let mut gradient = Gradient::new();
         for (applied, size) in self.applied.list.iter().zip(&self.results.sizes) {
@@ -41,8 +45,7 @@ impl Forces {
                 }
             }
         }
-        let rates = [motion.rates.velocity(), motion.rates.acceleration()];
-        let [velocities, accelerations] = rates.map(by_body);
+        let [velocities, accelerations] = [rates.velocity(), rates.acceleration()].map(by_body);
         for (body, of_body) in self.masses.bodies.iter().enumerate() {
             let [_, _, omega] = velocities[body];
             let force = of_body.demand(omega, accelerations[body], self.masses.gravity);

@@ -4,7 +4,7 @@ use std::iter;
 use std::sync::Arc;
 
 use super::applied::{AppliedForces, Circumstances};
-use super::inertial::{DrivenBodies, Masses, by_body};
+use super::inertial::{DriverLoads, Masses, by_body};
 use super::quantity::{ForceQuantity, input_places};
 use super::results::{DriverForces, Results};
 use super::self_stress::SelfStresses;
@@ -41,14 +41,14 @@ pub struct Forces {
     work: Work,
 }
 
+/// Work space for mechanisms with several drivers.
 #[derive(Debug)]
 struct Work {
     /// Per driver: its rates, without the acceleration of an input.
     coasting: Vec<Jet>,
     /// Per driver: the acceleration of an input, zero for a prescribed motion.
     free: Vec<f64>,
-    /// ∂q/∂u, if there are several drivers: the first three unknowns for each driver, the next
-    /// three, …
+    /// ∂q/∂u: the first three unknowns for each driver, the next three, …
     units: Vec<[f64; 3]>,
     unit_rates: Vec<Jet>,
     rates: Rates,
@@ -214,23 +214,23 @@ impl Forces {
         Ok(())
     }
 
-    /// Adds the energies of bodies, without forces of drivers: w is not completed.
+    /// Adds the energies of bodies. Leaves w without meaning.
     fn add_energies(&mut self, state: &State, motion: KnownMotion<'_>) {
         let Results {
             demand, energies, ..
         } = &mut self.results;
-        let drivers = DrivenBodies {
+        let drivers = DriverLoads {
             units: &[],
             free: &[],
             forces: &mut [],
         };
-        let any = iter::repeat([0.0; 3]);
+        let unused = iter::repeat([0.0; 3]);
         let velocity = motion.rates.velocity();
         self.masses
-            .load(&state.at, velocity, any, drivers, demand, energies);
+            .load(&state.at, velocity, unused, drivers, demand, energies);
     }
 
-    /// Completes w, and finds the forces of drivers.
+    /// Completes w and the energies, and finds the forces of drivers.
     ///
     /// # Errors
     ///
@@ -265,7 +265,7 @@ impl Forces {
                 [0, 1, 2].map(|k| curvature[k] * square + unit[k] * second)
             });
             let mut forces = [DriverForces::default()];
-            let driven = DrivenBodies {
+            let driven = DriverLoads {
                 units,
                 free: &[free],
                 forces: &mut forces,
@@ -281,7 +281,7 @@ impl Forces {
             solve_rates(model, state, &work.coasting, &mut work.rates);
             let accelerations = by_body(work.rates.acceleration()).iter().copied();
             drivers.fill(DriverForces::default());
-            let driven = DrivenBodies {
+            let driven = DriverLoads {
                 units: &work.units,
                 free: &work.free,
                 forces: drivers,
@@ -307,6 +307,7 @@ impl Forces {
         if !self.set_aside.iter().eq(&model.redundant.now) {
             self.factors = JacobianFactors::new(system, &model.structure, &model.plan);
             self.set_aside.clone_from(&model.redundant.now);
+            // The solution leaves λ of rows set aside as it is.
             self.results.multipliers.fill(0.0);
         }
         let is_of_least_norm = self.is_of_least_norm();
@@ -348,7 +349,7 @@ impl Forces {
         wanted && !self.set_aside.is_empty()
     }
 
-    /// Returns ∂q/∂u of a driver.
+    /// Returns ∂q/∂u of a driver at the pose of the last efforts, at which `state` still is.
     pub(super) fn unit(&self, state: &State, driver: DriverId) -> Vec<f64> {
         if state.has_single_driver() {
             return state.tangent.velocity().to_vec();
