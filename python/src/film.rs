@@ -65,20 +65,23 @@ impl Film {
     /// without a pose.
     pub(crate) fn page(&self, mechanism: &Mechanism, with_forces: bool) -> Option<String> {
         self.moments.first()?;
-        let (clock, mut moments) = self.paced();
-        let mut forces = self.forces.clone();
-        if !with_forces {
-            forces.clear();
-            moments.iter_mut().for_each(|moment| moment.forces.clear());
-        }
-        Some(page(&Animation::of_moments(
+        let (clock, moments) = self.paced();
+        let mut animation = Animation::of_moments(
             mechanism,
             &self.parameters,
             &self.columns,
-            forces,
+            self.forces.clone(),
             clock,
-            moments,
-        )))
+            self.moments.clone(),
+        );
+        // The paths of points are those of all moments.
+        animation.moments = moments;
+        if !with_forces {
+            animation.forces.clear();
+            let moments = animation.moments.iter_mut();
+            moments.for_each(|moment| moment.forces.clear());
+        }
+        Some(page(&animation))
     }
 
     /// Returns the moments with equal times between them, each the last one not after its time.

@@ -27,8 +27,8 @@ impl Film {
     /// Returns an empty film of a run of `steps` steps from `start`, `step` seconds apart, which
     /// tells these columns in numbers.
     pub(super) fn new(columns: Vec<Output>, steps: u64, [start, step]: [f64; 2]) -> Self {
-        let rows = usize::try_from(steps).unwrap_or(usize::MAX);
-        let stride = Animation::stride(rows.saturating_add(1));
+        let steps = usize::try_from(steps).unwrap_or(usize::MAX);
+        let stride = Animation::stride(steps.saturating_add(1));
         Self {
             columns,
             clock: Clock {

@@ -101,11 +101,11 @@ impl ForcePlace {
     /// Returns the [values](Self::value) of forces at a solver's pose; none unless they are sought.
     #[must_use]
     pub fn values(places: &[Self], solver: &Solver, solution: &Solution) -> Vec<[f64; 3]> {
-        let forces = solution.forces().into_iter();
+        let Some(forces) = solution.forces() else {
+            return Vec::new();
+        };
         let q = &solver.pose().q;
-        forces
-            .flat_map(|forces| places.iter().map(|place| place.value(forces, q)))
-            .collect()
+        places.iter().map(|place| place.value(forces, q)).collect()
     }
 
     /// Returns the force in ground axes \[N\] and the torque \[N m\] at the pose q.

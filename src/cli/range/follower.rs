@@ -55,9 +55,9 @@ impl<'a> Follower<'a> {
         self.solution.solve(self.solver)
     }
 
-    /// Follows the driver to a value in its range, from where it is or a pose known nearer by. `None`
-    /// without velocities or forces there, or where it cannot go; then it returns to the known pose, because
-    /// two motions may meet where it stopped.
+    /// Follows the driver to a value in its range, from where it is or a pose known nearer by.
+    /// Returns `None` where it cannot go, or without rates or forces there. Where it cannot go it
+    /// returns to the known pose: two motions may meet where it stopped.
     pub(super) fn follow(&mut self, value: f64) -> Option<()> {
         let index = self.driver.index();
         let distance = |pose: &Pose| (pose.drivers[index] - value).abs();

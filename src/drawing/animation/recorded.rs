@@ -11,7 +11,7 @@ const MOST_MOMENTS: usize = 10_000;
 const MOST_POSES: usize = 2000;
 
 impl Animation {
-    /// Returns the number of rows of a run per moment that is recorded.
+    /// Returns how many rows of a run there are to each recorded moment.
     #[must_use]
     pub fn stride(rows: usize) -> usize {
         rows.div_ceil(MOST_MOMENTS).max(1)

@@ -155,12 +155,12 @@ impl MechanismModel {
     pub(super) fn set_driver_rates(&mut self, start: f64, h: f64, s: f64) {
         let rule = self.rule();
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            // Written in place: a value that is copied on waits for its parts.
             match driver.source {
                 DriverSource::Input { .. } => {
                     let (rates, sources) =
                         self.course.inputs[index].rates_after(rule, start, s * h);
                     self.sources[index] = sources;
+                    // A whole number would be copied, which waits for its parts.
                     self.driver_rates[index].derivatives = [rates.velocity, rates.acceleration];
                 }
                 DriverSource::Motion(_) => {

@@ -13,7 +13,7 @@ use crate::kinematics::system::{RowValue, System};
 /// Most entries of a row: of three bodies and one joint unknown.
 pub(super) const ENTRIES: usize = 10;
 
-/// The block that finds an unknown, and the index of the unknown in that block.
+/// The block that finds an unknown, the index of the unknown in that block, and its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::kinematics::block) struct ColumnOwner {
     pub(super) block: usize,
