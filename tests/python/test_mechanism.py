@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import importlib
 import pickle
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as xml
@@ -120,6 +121,15 @@ def test_pictures_are_shown_in_notebooks(four_bar):
     result = four_bar.run(t=[0, 0.1, 0.3], drive={"crank_angle": "1 + t"})
     assert "four_bar" in result.to_html() and result._repr_html_().startswith("<iframe srcdoc=")
     assert four_bar.run(drive={"crank_angle": [1.0, 1.1]}).to_html()
+
+
+def test_paths_in_a_film_have_all_poses_of_uneven_times(four_bar):
+    # Moments with equal times between them would have 4 of the first 51 poses.
+    times = [*np.linspace(0, 0.5, 51), 10]
+    angles = [*np.linspace(1, 6, 51), 6.1]
+    page = four_bar.run(t=times, drive={"crank_angle": angles}).to_html()
+    path = re.search(r'<g class="traces"[^>]*><path d="M([^"]*)"', page).group(1)
+    assert len(set(path.split("L"))) == len(times)
 
 
 def test_an_exported_fmu_has_the_motion_of_the_module(four_bar, tmp_path):
