@@ -358,37 +358,44 @@ impl Configuration {
         if self.size > 0.0 { self.size } else { 1.0 }
     }
 
-    /// Makes the [size](Self::size) at least a length that a joint holds.
+    /// Makes the [size](Self::size) at least a length that a joint holds, unless it is rounding.
     pub(super) fn enlarge(&mut self, length: f64) {
-        self.size = self.size.max(length);
+        if length > ROUNDING {
+            self.size = self.size.max(length);
+        }
+    }
+}
+
+/// Largest length that may be the rounding of an expression \[m\]; between places more than 1 m from
+/// their origin, as a part of that distance. No mechanism is as small.
+pub(super) const ROUNDING: f64 = 1e-13;
+
+/// Returns the diagonal of the box around places; zero if rounding alone tells them apart, and
+/// without any finite place.
+pub(super) fn extent(places: impl Iterator<Item = Vector2<f64>>) -> f64 {
+    let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
+    for place in places {
+        (low, high) = (low.inf(&place), high.sup(&place));
+    }
+    let diagonal = (high - low).norm();
+    let farthest = low.abs().sup(&high.abs()).max();
+    if low.x <= high.x && diagonal > ROUNDING * farthest.max(1.0) {
+        diagonal
+    } else {
+        0.0
     }
 }
 
 /// Returns the extent of the largest body or cam, or of ground's markers; zero if none has any.
 fn size(mechanism: &Mechanism, frames: &[LocalFrame], profiles: &[CamProfile]) -> f64 {
-    let extent = |markers: &mut dyn Iterator<Item = &LocalFrame>| {
-        let (low, high) = markers.fold(
-            (
-                Vector2::repeat(f64::INFINITY),
-                Vector2::repeat(f64::NEG_INFINITY),
-            ),
-            |(low, high), frame| (low.inf(&frame.position), high.sup(&frame.position)),
-        );
-        if low.x <= high.x {
-            (high - low).norm()
-        } else {
-            0.0
-        }
-    };
-    let bodies = mechanism
-        .bodies
-        .iter()
-        .map(|body| extent(&mut body.markers.iter().map(|m| &frames[m.index()])))
+    let bodies = (mechanism.bodies.iter())
+        .map(|body| extent(body.markers.iter().map(|m| frames[m.index()].position)))
         .fold(0.0, f64::max);
     let cams = profiles.iter().map(|p| p.in_force.radius(0.0).value);
     let largest = cams.fold(bodies, f64::max);
     if largest > 0.0 {
         return largest;
     }
-    extent(&mut frames.iter().filter(|frame| frame.body.is_none()))
+    let of_ground = frames.iter().filter(|frame| frame.body.is_none());
+    extent(of_ground.map(|frame| frame.position))
 }

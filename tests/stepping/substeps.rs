@@ -280,3 +280,42 @@ fn a_large_mechanism_beside_a_small_one_costs_it_no_sub_steps() {
         );
     }
 }
+
+/// Lengths that are nothing but rounding, here 0.1 + 0.2 - 0.3, give a mechanism no size: it has the
+/// same condition as with zeros in their places.
+#[test]
+fn rounding_is_no_size() {
+    let gears = |off: &str| {
+        parse(&format!(
+            "format = 1\nname = \"gears\"\n[ground.markers]\nO = [0, 0]\nP = [0.3, 0]\n\
+             [bodies.a.markers]\nO = [0.3, 0]\nT = [\"0.3 + {off}\", 0]\n\
+             [bodies.b.markers]\nP = [0, 0]\n[joints]\n\
+             O = {{ type = \"revolute\", markers = [\"ground.O\", \"a.O\"] }}\n\
+             P = {{ type = \"revolute\", markers = [\"ground.P\", \"b.P\"] }}\n\
+             g = {{ type = \"gear\", markers = [\"a.T\", \"b.P\"], radii = [1, 2] }}\n[drivers]\n\
+             u = {{ coordinate = \"angle\", markers = [\"ground.O\", \"a.O\"], start = 1 }}\n"
+        ))
+    };
+    let crank = "[bodies.crank.markers]\nO = [0, 0]\nA = [0.02, 0]\n[drivers]\n\
+        v = { coordinate = \"angle\", markers = [\"ground.O\", \"crank.O\"], start = 1 }\n[joints]\n\
+        O = { type = \"revolute\", markers = [\"ground.O\", \"crank.O\"] }";
+    let alone = "[drivers]\n[joints]";
+    let slides = |beside: &str, off: &str| {
+        let (before, joints) = beside.split_once("[drivers]").expect("it has drivers");
+        let (drivers, joints) = joints.split_once("[joints]").expect("it has joints");
+        parse(&format!(
+            "format = 1\nname = \"slides\"\n[ground.markers]\nO = [0, 0]\nW = [0, 0, \"90*deg\"]\n\
+             {before}\n[bodies.s.markers]\nB = [0, 0]\n[bodies.u.markers]\nC = [0, 0]\n\
+             [joints]\n{joints}\n\
+             w = {{ type = \"translational\", markers = [\"ground.O\", \"s.B\"] }}\n\
+             w2 = {{ type = \"translational\", markers = [\"ground.W\", \"u.C\"] }}\n\
+             c = {{ type = \"revolute_translational\", markers = [\"s.B\", \"u.C\"], \
+             offset = \"{off}\" }}\n[drivers]\n{drivers}\n\
+             e = {{ coordinate = \"x\", markers = [\"ground.O\", \"s.B\"], start = 0.01 }}\n"
+        ))
+    };
+    let pairs = ["0.1 + 0.2 - 0.3", "0"].map(|off| {
+        [gears(off), slides(alone, off), slides(crank, off)].map(|file| assembled(&file).0.rcond())
+    });
+    assert_eq!(pairs[0].map(f64::to_bits), pairs[1].map(f64::to_bits));
+}

@@ -20,7 +20,7 @@ use super::elimination::EliminationOrder;
 use super::solve::{BlockBranches, SolveBlock};
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
-use crate::kinematics::configuration::Configuration;
+use crate::kinematics::configuration::{Configuration, ROUNDING};
 use crate::kinematics::linear::{Condition, Factors, Lu, nan_or_larger};
 use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
 use crate::kinematics::system::{System, Targets};
@@ -153,7 +153,7 @@ impl SolveBlock for CoupledBlock {
         self.equations.set_size(system, at);
         let arms = self.markers.iter().map(|&marker| at.local(marker).0.norm());
         let longest = arms.fold(0.0, f64::max);
-        self.length = if longest > 0.0 {
+        self.length = if longest > ROUNDING {
             (longest / (at.size() * self.part)).min(1.0)
         } else {
             1.0

@@ -1,13 +1,12 @@
 //! The parts of a mechanism that do not move each other, and their sizes.
 
+use nalgebra::Vector2;
 use petgraph::unionfind::UnionFind;
 
 use super::{Equation, Target};
+use crate::kinematics::configuration::{ROUNDING, extent};
 use crate::kinematics::constraint::{Dimension, Incidence};
-use crate::mechanism::{JointKind, MarkerId, Mechanism, ProfileInForce};
-
-/// Least part of the mechanism's size that counts: a body of some eps of it is a point.
-const LEAST: f64 = 1e-15;
+use crate::mechanism::{JointKind, Mechanism, ProfileInForce};
 
 /// Returns the size of the part that each body belongs to, as a part of the mechanism's size:
 /// powers of two, so that scaling rounds nothing.
@@ -40,7 +39,11 @@ pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f
     let mut sizes = vec![0.0_f64; bodies];
     for (index, body) in mechanism.bodies.iter().enumerate() {
         let part = parts.find(index);
-        sizes[part] = sizes[part].max(extent(mechanism, &body.markers, value));
+        let places = body.markers.iter().map(|marker| {
+            let [x, y] = &mechanism.markers[marker.index()].position;
+            Vector2::new(x.evaluate(&value, 0.0), y.evaluate(&value, 0.0))
+        });
+        sizes[part] = sizes[part].max(extent(places));
     }
     for joint in &mechanism.joints {
         if let JointKind::Cam { profile, .. } = &joint.kind
@@ -65,30 +68,11 @@ pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f
     let largest = sizes.iter().copied().fold(0.0, f64::max);
     let relative = |body: usize| {
         let part = sizes[parts.find(body)] / largest;
-        if part > LEAST && part < 1.0 {
+        if part > ROUNDING && part < 1.0 {
             part.log2().round().exp2()
         } else {
             1.0
         }
     };
     (0..bodies).map(relative).collect()
-}
-
-/// Returns the diagonal of the box around the markers of a body; zero where they have no place.
-fn extent(
-    mechanism: &Mechanism,
-    markers: &[MarkerId],
-    value: impl Fn(crate::mechanism::ParameterId) -> f64 + Copy,
-) -> f64 {
-    let side = |axis: usize| {
-        let places = markers
-            .iter()
-            .map(|marker| mechanism.markers[marker.index()].position[axis].evaluate(&value, 0.0));
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
-            (low.min(place), high.max(place))
-        });
-        high - low
-    };
-    let extent = f64::hypot(side(0), side(1));
-    if extent.is_finite() { extent } else { 0.0 }
 }
