@@ -294,3 +294,45 @@ fn a_second_crossing_begins_at_the_end_of_the_first() {
         assert!((q[11] - 0.196_674_990_629_006_18).abs() < 1e-9);
     }
 }
+
+/// A knife edge on an arm hardly shorter than the radius of its eccentric cam: arm and contour nearly
+/// coincide, and thousands of sub-steps lead to the dead point, where the distance of their centres
+/// is the difference of arm and radius.
+#[test]
+fn a_dead_point_is_found_where_curves_nearly_coincide() {
+    /// Radius of the cam, and its eccentricity, which is also the distance of the pivots.
+    const RADIUS: f64 = 0.33;
+    const ECCENTRICITY: f64 = 0.1;
+    for shorter in [1e-2, 3e-3] {
+        let arm = RADIUS - shorter;
+        let start = 1.0_f64;
+        // The triangle of the two centres, 2 e sin(u/2) apart, and the edge.
+        let apart = 2.0 * ECCENTRICITY * (0.5 * start).sin();
+        let along = (arm * arm - RADIUS * RADIUS + apart * apart) / (2.0 * apart);
+        let phi = 0.5 * (start + PI) + (along / arm).acos();
+        let text = format!(
+            "format = 1\nname = \"knife\"\n[ground.markers]\nO = [0, 0]\nQ = [{ECCENTRICITY}, 0]\n\
+             [bodies.cam]\nmarkers = {{ O = [0, 0] }}\nestimate = [0, 0, {start}]\n\
+             [bodies.arm]\nmarkers = {{ Q = [0, 0], K = [{arm}, 0] }}\n\
+             estimate = [{ECCENTRICITY}, 0, {phi}]\n[joints]\n\
+             O = {{ type = \"revolute\", markers = [\"ground.O\", \"cam.O\"] }}\n\
+             Q = {{ type = \"revolute\", markers = [\"ground.Q\", \"arm.Q\"] }}\n\
+             c = {{ type = \"cam\", markers = [\"cam.O\", \"arm.K\"], follower = \"knife\", profile = \
+             \"{ECCENTRICITY}*cos(theta) + sqrt({RADIUS}^2 - ({ECCENTRICITY}*sin(theta))^2)\" }}\n\
+             [drivers]\n\
+             u = {{ coordinate = \"angle\", markers = [\"ground.O\", \"cam.O\"], start = {start} }}\n"
+        );
+        let (mut solver, _) = assembled(&parse(&text));
+        assert!((solver.pose().q[5] - phi).abs() < 1e-9, "the other mode");
+        let blocked = go(&mut solver, 0.0).expect_err("it turns back");
+        let Reason::Singular(point) = &blocked.reason else {
+            panic!("{shorter}: {:?}", blocked.reason)
+        };
+        assert_eq!(point.kind, SingularKind::DeadPoint);
+        let truth = 2.0 * (0.5 * shorter / ECCENTRICITY).asin();
+        // Some roundings of the lengths, where a length changes by e for a radian.
+        let rounding = 16.0 * f64::EPSILON * RADIUS / ECCENTRICITY;
+        let off = (point.drivers[0] - truth).abs();
+        assert!(off < rounding, "{shorter}: {off:e}");
+    }
+}

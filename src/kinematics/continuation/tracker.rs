@@ -295,7 +295,18 @@ impl Run<'_> {
         }
         self.judged = (substeps, self.s);
         let pace = (self.s - from) / since;
-        f64::from(substeps) >= most || pace * 2.0 * most < 1.0 - self.s
+        let is_slow = pace * 2.0 * most < 1.0 - self.s;
+        f64::from(substeps) >= most || is_slow && !self.nears_end()
+    }
+
+    /// Returns whether a singular position ahead stops the motion, which slows down in front of it.
+    #[cold]
+    fn nears_end(&mut self) -> bool {
+        let may_end =
+            self.state.regularity < NEAR && !self.drivers.parameters_move && !self.gives_up;
+        may_end
+            && singular::find_end(self.model, self.state, self.path, self.s)
+                .is_some_and(|end| self.s < end.s && end.s <= 1.0)
     }
 
     /// Returns the most sub-steps of a path: fewer for a mechanism that takes more work.
