@@ -1,22 +1,29 @@
-//! Jumps of generated mechanisms against the same motions in tiny steps, and against themselves at
-//! another scale and under other names.
+//! Jumps of generated mechanisms against the same motions in tiny steps, and against themselves
+//! written down in other ways.
 //!
-//! Each case draws a mechanism, a jump of its drivers or parameters, and expects:
+//! Each case draws a mechanism, a jump of its drivers and perhaps of some lengths, and expects:
 //! - one jump ends where tiny steps end: at the same pose, or at the same position that stops the
 //!   motion; a jump that the solver gives up for its number of sub-steps ends where tiny steps to
 //!   the same place end, as that number is a limit per call and tiny steps come farther with it;
-//! - lengths times a thousand or a thousandth, and other names, change nothing: the same verdict,
-//!   the same pose, sub-steps within a factor of two;
+//! - the jump back ends at the start;
+//! - a motion stops at a singular pose only;
+//! - lengths times a thousand or a thousandth, other names, another order of bodies and joints, and
+//!   another place in the plane change nothing: the same verdict, the same pose, sub-steps within a
+//!   factor of two;
 //! - no call takes more than [`MOST_SUBSTEPS`] sub-steps.
 
 mod kinds;
+mod text;
 
+use std::fmt::Write as _;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
-use biela::kinematics::{Curve, Path, Reason, Solver};
+use biela::kinematics::{Blocked, Curve, Path, Progress, Reason, Solver};
 use biela::mechanism::{Mechanism, Source};
 
 use crate::mutation::Chance;
+use text::{Text, View};
 
 pub use kinds::{Draw, KINDS};
 
@@ -27,9 +34,20 @@ const TINY: u32 = 400;
 /// Largest difference of poses, in radians and parts of the scale: rounding next to positions that
 /// are nearly singular.
 const SAME: f64 = 1e-7;
+/// The same far from the origin, where coordinates have the rounding of the distance.
+const SAME_FAR: f64 = 1e-4;
 /// Largest difference of the places where a motion stops, as part of the jump: tiny steps end in
 /// front of a dead point to the root of the rounding.
 const SAME_STOP: f64 = 1e-5;
+/// The same far from the origin.
+const SAME_STOP_FAR: f64 = 1e-4;
+/// Least reciprocal condition of a pose that is not singular: a motion that stops has come as near
+/// to a dead point as the root of the smallest sub-step.
+const REGULAR: f64 = 1e-3;
+/// Distance of a mechanism that is far from the origin, in parts of its scale.
+const FAR: f64 = 1000.0;
+/// A call that takes longer is slow.
+const SLOW: Duration = Duration::from_secs(1);
 
 /// A mechanism of a kind and a jump of it.
 #[derive(Clone, Debug)]
@@ -47,12 +65,49 @@ pub struct Case {
 struct End {
     /// The part of the jump that was possible.
     reached: f64,
-    /// q there, lengths divided by the scale.
+    /// q there, as it is in the view that changes nothing.
     q: Vec<f64>,
     substeps: u32,
     message: String,
     /// Whether the motion was given up for its number of sub-steps, at no particular place.
     given_up: bool,
+    /// Reciprocal condition of the pose, if the motion stops there because it is singular.
+    stop: Option<f64>,
+    /// The jump back.
+    back: Option<Back>,
+    slowest: Duration,
+}
+
+impl End {
+    /// Describes the end in a line.
+    fn describe(&self) -> String {
+        let Self {
+            reached,
+            substeps,
+            message,
+            ..
+        } = self;
+        let mut words = format!("reaches {reached} in {substeps} sub-steps");
+        if let Some(rcond) = self.stop {
+            let _ = write!(words, ", rcond {rcond:.1e}");
+        }
+        if !message.is_empty() {
+            let _ = write!(words, ", {message:.150}");
+        }
+        if let Some(Back { off, message }) = &self.back {
+            let _ = write!(words, ", back to {off:.1e} {message:.150}");
+        }
+        words
+    }
+}
+
+/// The end of the jump back.
+#[derive(Clone, Debug)]
+struct Back {
+    /// Why it does not end.
+    message: String,
+    /// Largest difference from the start, in radians and parts of the scale.
+    off: f64,
 }
 
 /// The result of a case.
@@ -71,21 +126,37 @@ pub enum Finding {
 pub struct Counts {
     /// Cases that agree.
     pub agree: u32,
+    /// Jumps among them that end before their end.
+    pub stopped: u32,
+    /// Jumps among them that are given up for their number of sub-steps.
+    pub given_up: u32,
     /// Cases that did not close.
     pub not_assembled: u32,
     /// Cases that differ.
     pub differ: u32,
+    /// Cases with a call of more than a second.
+    pub slow: u32,
     /// The most sub-steps of a call.
     pub substeps: u32,
 }
 
-/// Runs a number of cases of a kind and reports each difference to `found`, with the seed of its
-/// case.
-pub fn run(kind: usize, seed: u64, cases: u64, mut found: impl FnMut(u64, &str)) -> Counts {
+/// Runs a number of cases of a kind, with lengths that jump as well if `moving`, and reports each
+/// difference to `found`, with the seed of its case.
+pub fn run(
+    (kind, moving): (usize, bool),
+    seed: u64,
+    cases: u64,
+    mut found: impl FnMut(u64, &str),
+) -> Counts {
     let mut counts = Counts::default();
     for case in seed..seed + cases {
-        let (finding, substeps) = try_case(kind, case);
-        counts.substeps = counts.substeps.max(substeps);
+        let (finding, jump) = try_case((kind, moving), case);
+        if let Some(jump) = jump {
+            counts.substeps = counts.substeps.max(jump.substeps);
+            counts.given_up += u32::from(jump.given_up);
+            counts.stopped += u32::from(jump.stop.is_some());
+            counts.slow += u32::from(jump.slowest > SLOW);
+        }
         match finding {
             Finding::Agrees => counts.agree += 1,
             Finding::NotAssembled => counts.not_assembled += 1,
@@ -98,81 +169,151 @@ pub fn run(kind: usize, seed: u64, cases: u64, mut found: impl FnMut(u64, &str))
     counts
 }
 
-/// Returns a case at a scale, its names beginning with `prefix`.
-#[must_use]
-pub fn case(kind: usize, seed: u64, scale: f64, prefix: &str) -> Case {
+/// Returns a case as it is written down in a view.
+fn case((kind, moving): (usize, bool), seed: u64, view: View<'_>) -> Case {
     // Neighbouring seeds shall have nothing in common.
     let mut chance = Chance::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    (KINDS[kind].1)(&mut chance, scale, prefix)
+    (KINDS[kind].1)(&mut chance, Text::new(view, moving))
 }
 
-/// Tries a case. Returns the most sub-steps of a call, too.
+/// Returns the mechanism file of a case, and the jump.
 #[must_use]
-pub fn try_case(kind: usize, seed: u64) -> (Finding, u32) {
-    let plain = case(kind, seed, 1.0, "");
-    let Some(jump) = end(&plain, 1.0, 1, 1.0) else {
-        return (Finding::NotAssembled, 0);
+pub fn plain_case(kind: (usize, bool), seed: u64) -> Case {
+    case(kind, seed, View::default())
+}
+
+/// Tries a case. Returns the end of the jump, too, if the mechanism closes.
+#[must_use]
+fn try_case(kind: (usize, bool), seed: u64) -> (Finding, Option<End>) {
+    let plain = plain_case(kind, seed);
+    let Some(jump) = end(&plain, View::default(), 1, 1.0) else {
+        return (Finding::NotAssembled, None);
     };
+    let finding = differences(kind, seed, &plain, &jump);
+    let finding = finding.map_or_else(Finding::Differs, |()| Finding::Agrees);
+    (finding, Some(jump))
+}
+
+/// # Errors
+///
+/// The first difference, in words.
+fn differences(
+    kind: (usize, bool),
+    seed: u64,
+    plain: &Case,
+    jump: &End,
+) -> Result<(), String> {
     let differs = |what: &str, other: &End| {
-        let words = format!("{what}: jump {jump:?}, other {other:?}");
-        (Finding::Differs(words), jump.substeps)
+        let [jump, other] = [jump, other].map(End::describe);
+        Err(format!("{what}: jump {jump}; other {other}"))
     };
     if jump.substeps > MOST_SUBSTEPS {
-        return differs("too many sub-steps", &jump);
+        return differs("too many sub-steps", jump);
     }
     let part = if jump.given_up { jump.reached } else { 1.0 };
-    let Some(tiny) = end(&plain, 1.0, TINY, part) else {
-        return (Finding::NotAssembled, 0);
+    let Some(tiny) = end(plain, View::default(), TINY, part) else {
+        return Err("closes once only".to_owned());
     };
-    if let Some(what) = difference(&jump, &tiny) {
-        return differs(what, &tiny);
+    if let Some(what) = difference(jump, &tiny, [SAME, SAME_STOP]) {
+        return differs(&what, &tiny);
     }
-    for (scale, prefix) in [(1e-3, ""), (1e3, ""), (1.0, "other_")] {
-        let Some(there) = end(&case(kind, seed, scale, prefix), scale, 1, 1.0) else {
-            return (
-                Finding::Differs(format!("closes, but not at scale {scale}")),
-                jump.substeps,
-            );
+    if jump.stop.is_some_and(|rcond| rcond > REGULAR) {
+        return differs("stops at a regular pose", &tiny);
+    }
+    if jump.back.as_ref().is_some_and(|back| !(back.off <= SAME)) {
+        return differs("the way back leads elsewhere", &tiny);
+    }
+    let mut chance = Chance::new(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
+    let turn = text::angle(&mut chance);
+    let away = text::angle(&mut chance);
+    let [x, y] = text::end([0.0; 2], FAR, away);
+    let plain = View::default();
+    let views = [
+        View { scale: 1e-3, ..plain },
+        View { scale: 1e3, ..plain },
+        View { prefix: "other_", reversed: true, ..plain },
+        View { place: [0.1, -0.2, turn], ..plain },
+        View { place: [x, y, turn], ..plain },
+    ];
+    for view in views {
+        let Some(there) = end(&case(kind, seed, view), view, 1, 1.0) else {
+            return Err(format!("closes, but not in {view:?}"));
         };
-        if let Some(what) = difference(&jump, &there) {
-            return differs(&format!("at scale {scale}, names {prefix}: {what}"), &there);
+        // The limit of sub-steps stands at no particular place.
+        if jump.given_up || there.given_up {
+            continue;
         }
-        let [fewer, more] = [
-            jump.substeps.min(there.substeps),
-            jump.substeps.max(there.substeps),
-        ];
+        let is_far = view.place[0].hypot(view.place[1]) > 1.0;
+        let same = if is_far { [SAME_FAR, SAME_STOP_FAR] } else { [SAME, SAME_STOP] };
+        if let Some(what) = difference(jump, &there, same) {
+            return differs(&format!("in {view:?}: {what}"), &there);
+        }
+        let fewer = jump.substeps.min(there.substeps);
+        let more = jump.substeps.max(there.substeps);
         // In front of a stop the number of sub-steps is that of halvings.
         if jump.reached >= 1.0 && more > 2 * fewer + 1 {
-            return differs(&format!("other sub-steps at scale {scale}"), &there);
+            return differs(&format!("other sub-steps in {view:?}"), &there);
         }
     }
-    (Finding::Agrees, jump.substeps)
+    Ok(())
 }
 
-/// Returns the difference of two ends of a jump.
-fn difference(a: &End, b: &End) -> Option<&'static str> {
-    if (a.reached - b.reached).abs() > SAME_STOP {
-        return Some(match a.reached < b.reached {
-            true => "stops earlier",
-            false => "stops later",
-        });
+/// Returns the difference of two ends of a jump, larger than those of poses and of places where the
+/// motion stops.
+fn difference(a: &End, b: &End, [same, same_stop]: [f64; 2]) -> Option<String> {
+    if (a.reached - b.reached).abs() > same_stop {
+        let when = ["later", "earlier"][usize::from(a.reached < b.reached)];
+        return Some(format!("stops {when}"));
     }
     let off = a.q.iter().zip(&b.q).map(|(a, b)| (a - b).abs());
     let most = off.fold(0.0, f64::max);
     // A motion that stops at a dead point has come to the root of the rounding of its place.
-    let same = if a.reached < 1.0 { 0.02 } else { SAME };
-    (most.is_nan() || most > same).then_some("another pose")
+    let same = if a.reached < 1.0 { 0.02 } else { same };
+    (most.is_nan() || most > same).then(|| format!("another pose, {most:.1e} away"))
 }
 
-/// Moves along the first `part` of the jump in a number of steps. `None` if the mechanism does not
-/// close.
-fn end(case: &Case, scale: f64, steps: u32, part: f64) -> Option<End> {
+/// A mechanism on its way from the start to the end of a jump.
+struct Jump {
+    solver: Solver,
+    path: Path,
+    from: [Vec<f64>; 2],
+    to: [Vec<f64>; 2],
+}
+
+impl Jump {
+    /// Tracks the path from the pose to a part of the jump.
+    fn track(&mut self, s: f64) -> Result<Progress, Blocked> {
+        let between = |from: f64, to: f64| from + s * (to - from);
+        let pose = self.solver.pose().clone();
+        let path = &mut self.path;
+        path.start = pose.time;
+        path.duration = 0.0;
+        path.from.clone_from(&pose.parameters);
+        for (k, value) in path.to.iter_mut().enumerate() {
+            *value = between(self.from[0][k], self.to[0][k]);
+        }
+        for (k, curve) in path.curves.iter_mut().enumerate() {
+            let position = between(self.from[1][k], self.to[1][k]);
+            *curve = Curve::Input {
+                position,
+                velocity: 0.0,
+                acceleration: 0.0,
+                jump: pose.drivers[k] - position,
+            };
+        }
+        self.solver.track(path)
+    }
+}
+
+/// Moves along the first `part` of the jump in a number of steps, and back if it is one. `None` if
+/// the mechanism does not close.
+fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Option<End> {
     let source = Source::new("attack.toml", case.text.as_str());
     let mechanism = match Mechanism::parse(&source) {
         Ok((mechanism, _)) => Arc::new(mechanism),
         Err(problems) => panic!("{problems:#?}\n{}", case.text),
     };
-    let mut path = Path::new(&mechanism);
+    let path = Path::new(&mechanism);
     let mut solver = Solver::new(Arc::clone(&mechanism)).ok()?;
     solver.assemble(&path).ok()?;
     let start = solver.pose().clone();
@@ -182,33 +323,29 @@ fn end(case: &Case, scale: f64, steps: u32, part: f64) -> Option<End> {
         let index = parameters.iter().position(|p| p.name == *name)?;
         to[index] = *value;
     }
+    let bodies = 3 * mechanism.bodies.len();
+    let mut jump = Jump {
+        solver,
+        path,
+        from: [start.parameters.clone(), start.drivers.clone()],
+        to: [to, case.drivers.clone()],
+    };
     let mut end = End {
         reached: 0.0,
         q: Vec::new(),
         substeps: 0,
         message: String::new(),
         given_up: false,
+        stop: None,
+        back: None,
+        slowest: Duration::ZERO,
     };
     for step in 1..=steps {
         let s = part * f64::from(step) / f64::from(steps);
-        let between = |from: f64, to: f64| from + s * (to - from);
-        let pose = solver.pose().clone();
-        path.start = pose.time;
-        path.duration = 0.0;
-        path.from.clone_from(&pose.parameters);
-        for (k, value) in path.to.iter_mut().enumerate() {
-            *value = between(start.parameters[k], to[k]);
-        }
-        for (k, curve) in path.curves.iter_mut().enumerate() {
-            let position = between(start.drivers[k], case.drivers[k]);
-            *curve = Curve::Input {
-                position,
-                velocity: 0.0,
-                acceleration: 0.0,
-                jump: pose.drivers[k] - position,
-            };
-        }
-        match solver.track(&path) {
+        let begin = Instant::now();
+        let tracked = jump.track(s);
+        end.slowest = end.slowest.max(begin.elapsed());
+        match tracked {
             Ok(progress) => {
                 end.substeps = end.substeps.max(progress.substeps);
                 end.reached = s;
@@ -217,15 +354,26 @@ fn end(case: &Case, scale: f64, steps: u32, part: f64) -> Option<End> {
                 end.substeps = end.substeps.max(blocked.progress.substeps);
                 end.reached = part * (f64::from(step - 1) + blocked.s) / f64::from(steps);
                 end.given_up = matches!(blocked.reason, Reason::TooLong | Reason::NearSingular);
+                if matches!(blocked.reason, Reason::Singular(_) | Reason::Lost) {
+                    end.stop = Some(jump.solver.rcond());
+                }
                 end.message = format!("{:?}", blocked.reason);
                 break;
             }
         }
     }
-    let bodies = 3 * mechanism.bodies.len();
-    let q = solver.pose().q[..bodies].iter().enumerate();
-    end.q = q
-        .map(|(k, value)| if k % 3 == 2 { *value } else { value / scale })
-        .collect();
+    end.q = view.undo(&jump.solver.pose().q[..bodies]);
+    if steps == 1 && end.reached >= 1.0 {
+        let tracked = jump.track(0.0);
+        let message = tracked.map_or_else(|blocked| format!("{blocked:?}"), |_| String::new());
+        let ends = jump.solver.pose().q.iter().zip(&start.q).take(bodies);
+        let off = ends.enumerate().map(|(k, (a, b))| match k % 3 {
+            2 => (a - b).abs(),
+            _ => (a - b).abs() / view.scale,
+        });
+        let off = off.fold(0.0, f64::max);
+        let off = if message.is_empty() { off } else { f64::INFINITY };
+        end.back = Some(Back { message, off });
+    }
     Some(end)
 }
