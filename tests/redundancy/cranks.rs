@@ -51,6 +51,43 @@ fn turn_three_cranks(runs: &[(u32, u32)]) {
     }
 }
 
+/// The same while the cranks become longer: rows near dependence are left in time, however the
+/// sub-steps come to lie.
+#[test]
+fn three_cranks_of_moving_length_turn_through_their_flat_poses() {
+    let text = parallelogram(&[[0.2, 0.1]], 60.0, true)
+        .replace("[0.1, 0]", "['r', 0]")
+        .replace(
+            "[ground.markers]",
+            "[parameters]\nr = { value = 0.1, tunable = true }\n[ground.markers]",
+        );
+    let mechanism = parse(&text);
+    let phi = |name: &str| 3 * mechanism.body_id(name).expect("it has it").index() + 2;
+    let phi = ["crank", "rocker", "crank_5", "coupler"].map(phi);
+    let start = TAU / 6.0;
+    for turn in [-4.0, -3.4, -2.7, -1.9, 2.2, 2.9, 3.5, 4.1] {
+        for length in [0.07, 0.085, 0.12, 0.16] {
+            let (mut solver, mut path) = assembled(&mechanism);
+            for (angle, length) in [(start + turn, length), (start, 0.1)] {
+                straight_to(&solver, &mut path, angle);
+                path.from.clone_from(&solver.pose().parameters);
+                path.to[0] = length;
+                let progress = solver
+                    .track(&path)
+                    .unwrap_or_else(|blocked| panic!("{turn}, {length}: {blocked:?}"));
+                assert!(progress.substeps < 500, "{turn}, {length}: {progress:?}");
+                let q = &solver.pose().q;
+                // As above.
+                let rounding = 1e3 * f64::EPSILON * angle.abs().max(1.0);
+                for &phi in &phi[..3] {
+                    assert!((q[phi] - angle).abs() < rounding, "{turn}, {length}");
+                }
+                assert!(q[phi[3]].abs() < rounding, "{turn}, {length}");
+            }
+        }
+    }
+}
+
 /// With their pins in line cranks laid flat lose rank whatever rows are chosen: change points that
 /// are crossed part by part, each part reading the crossing of the one before.
 #[test]

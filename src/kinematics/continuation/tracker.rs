@@ -233,10 +233,23 @@ impl Run<'_> {
     #[inline]
     fn look_ahead(&mut self) -> Result<(), Reason> {
         self.limit = None;
-        if self.state.regularity < NEAR && !self.drivers.parameters_move && !self.gives_up {
-            self.limit = self.limit_near()?;
+        if self.state.regularity < NEAR && !self.gives_up {
+            if self.drivers.parameters_move {
+                self.take_fitter_rows();
+            } else {
+                self.limit = self.limit_near()?;
+            }
         }
         Ok(())
+    }
+
+    /// Takes fitter rows near a singular position of those in use, if there are any. Sub-steps that
+    /// shorten without a rejection would never come to it.
+    #[cold]
+    fn take_fitter_rows(&mut self) {
+        if redundancy::change_rows(self.model, self.state) {
+            self.return_to_pose();
+        }
     }
 
     /// Returns the limit of the next sub-step near a singular position.

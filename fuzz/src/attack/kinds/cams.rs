@@ -24,7 +24,11 @@ impl Contour {
         let waves = chance.between(1.0, 4.0).floor();
         let (lift, lobe) = (chance.between(0.0, 0.05), chance.between(-0.02, 0.05));
         let (width, place) = (chance.between(0.02, 0.5), angle(chance));
-        let lift = if convex { 0.9 * lift / (waves * waves + 1.0) } else { lift };
+        let lift = if convex {
+            0.9 * lift / (waves * waves + 1.0)
+        } else {
+            lift
+        };
         Self {
             base,
             lift,
@@ -89,7 +93,11 @@ pub fn cam_slide(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let height = contour.radius(0.5 * PI - cam) + if kind == "roller" { ROLLER } else { 0.0 };
     text.ground("G", [aside, 0.0], 0.5 * PI);
     // The x-axis of a flat face lies across the guide, more or less.
-    let face = if kind == "flat" { chance.between(-0.3, 0.3) } else { 0.0 };
+    let face = if kind == "flat" {
+        chance.between(-0.3, 0.3)
+    } else {
+        0.0
+    };
     let place = [aside, height];
     let marks = [frame("g", place, 0.5 * PI), frame("a", place, face)];
     text.plate(chance, "follower", [aside, height, 0.0], &marks);
@@ -102,13 +110,22 @@ pub fn cam_slide(chance: &mut Chance, mut text: Text<'_>) -> Case {
 
 /// Adds a follower on an arm, its marker `b` at the pin of a rod. Returns that pin and the arm's
 /// angle.
-fn add_arm(chance: &mut Chance, text: &mut Text<'_>, contour: &Contour, kind: &str) -> (Point, f64) {
+fn add_arm(
+    chance: &mut Chance,
+    text: &mut Text<'_>,
+    contour: &Contour,
+    kind: &str,
+) -> (Point, f64) {
     let cam = angle(chance);
     text.body("cam", "a = [0, 0]", [0.0, 0.0, cam]);
     let touch = chance.between(0.5, 2.5);
     let height = contour.radius(touch - cam) + if kind == "roller" { ROLLER } else { 0.0 };
     let place = end([0.0, 0.0], height, touch);
-    let pivot = end([0.0, 0.0], chance.between(0.25, 0.5), touch + chance.between(0.4, 1.2));
+    let pivot = end(
+        [0.0, 0.0],
+        chance.between(0.25, 0.5),
+        touch + chance.between(0.4, 1.2),
+    );
     let arm = direction(pivot, place);
     let pin = end(pivot, chance.between(0.05, 0.2), angle(chance));
     text.ground("P", pivot, 0.0);
@@ -136,7 +153,11 @@ pub fn cam_in_loop(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let contour = Contour::draw(chance, kind == "flat");
     let (pin, _) = add_arm(chance, &mut text, &contour, kind);
     let bars = [0; 2].map(|_| chance.between(0.1, 0.5));
-    let pivot = end(pin, (bars[0] + bars[1]) * chance.between(0.3, 0.95), angle(chance));
+    let pivot = end(
+        pin,
+        (bars[0] + bars[1]) * chance.between(0.3, 0.95),
+        angle(chance),
+    );
     let angles = dyad(pin, pivot, bars, sign(chance));
     text.ground("D", pivot, 0.0);
     let bars = bars.map(|length| text.length(chance, length));

@@ -23,7 +23,11 @@ pub fn platform(chance: &mut Chance, mut text: Text<'_>) -> Case {
         let markers = [markers[0].as_str(), markers[1].as_str()];
         text.push(&format!("u{k}"), "distance", markers, [length, to]);
     }
-    let marks = [point("b0", tops[0]), point("b1", tops[1]), point("b2", tops[2])];
+    let marks = [
+        point("b0", tops[0]),
+        point("b1", tops[1]),
+        point("b2", tops[2]),
+    ];
     text.plate(chance, "platform", [x, y, phi], &marks);
     text.case()
 }
@@ -61,7 +65,10 @@ pub fn triad(chance: &mut Chance, mut text: Text<'_>) -> Case {
             format!("ground.F{k}")
         };
         text.pin(&format!("A{k}"), [&foot, &format!("{bar}.a")]);
-        text.pin(&format!("B{k}"), [&format!("{bar}.b"), &format!("plate.m{k}")]);
+        text.pin(
+            &format!("B{k}"),
+            [&format!("{bar}.b"), &format!("plate.m{k}")],
+        );
     }
     let to = crank + chance.between(-5.0, 5.0);
     text.turn("u", ["ground.O", "crank.a"], crank, to);
@@ -137,7 +144,10 @@ pub fn any_group(chance: &mut Chance, mut text: Text<'_>) -> Case {
                 there
             }
         };
-        let markers = [format!("{}.{other}", name(j)), format!("{}.{here}", name(i))];
+        let markers = [
+            format!("{}.{other}", name(j)),
+            format!("{}.{here}", name(i)),
+        ];
         let markers = [markers[0].as_str(), markers[1].as_str()];
         match kind {
             0 => text.slide(&format!("J{number}"), markers),

@@ -1,9 +1,7 @@
 //! Machines with several drivers, and long chains.
 
 use crate::attack::Case;
-use crate::attack::text::{
-    Text, angle, direction, distance, dyad, end, point, sign, somewhere,
-};
+use crate::attack::text::{Text, angle, direction, distance, dyad, end, point, sign, somewhere};
 use crate::mutation::Chance;
 
 /// Boom, stick and bucket with three cylinders, the last of them on a four-bar.
@@ -12,7 +10,8 @@ pub fn excavator(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let knee = end(foot, chance.between(0.4, 0.7), chance.between(0.2, 1.2));
     let wrist = end(knee, chance.between(0.2, 0.4), chance.between(-2.0, 0.3));
     let tooth = end(wrist, chance.between(0.1, 0.2), angle(chance));
-    let mut near = |[x, y]: [f64; 2]| [x + chance.between(-0.2, 0.2), y + chance.between(-0.2, 0.2)];
+    let mut near =
+        |[x, y]: [f64; 2]| [x + chance.between(-0.2, 0.2), y + chance.between(-0.2, 0.2)];
     let [base, on_boom, behind, rear] = [foot, foot, knee, knee].map(&mut near);
     let [front, pivot, ear] = [wrist, wrist, wrist].map(&mut near);
     let joint = near(pivot);
@@ -36,14 +35,24 @@ pub fn excavator(chance: &mut Chance, mut text: Text<'_>) -> Case {
     ];
     text.plate(chance, "stick", pose, &marks);
     let pose = [wrist[0], wrist[1], direction(wrist, tooth)];
-    text.plate(chance, "bucket", pose, &[point("a", wrist), point("e", ear)]);
+    text.plate(
+        chance,
+        "bucket",
+        pose,
+        &[point("a", wrist), point("e", ear)],
+    );
     text.bar_between(chance, "lever", pivot, joint);
     text.pin("O", ["ground.O", "boom.a"]);
     text.pin("K", ["boom.b", "stick.a"]);
     text.pin("W", ["stick.b", "bucket.a"]);
     text.pin("L", ["stick.l", "lever.a"]);
     let length = text.length(chance, distance(joint, ear));
-    text.joint("rod", "link", ["lever.b", "bucket.e"], &format!(", length = {length}"));
+    text.joint(
+        "rod",
+        "link",
+        ["lever.b", "bucket.e"],
+        &format!(", length = {length}"),
+    );
     for (name, markers, length) in [
         ("u", ["ground.F", "boom.c"], distance(base, on_boom)),
         ("v", ["boom.s", "stick.r"], distance(behind, rear)),

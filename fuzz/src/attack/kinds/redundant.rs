@@ -19,8 +19,14 @@ pub fn three_cranks(chance: &mut Chance, mut text: Text<'_>) -> Case {
         let name = format!("crank{k}");
         text.ground(&format!("O{k}"), foot, 0.0);
         text.bar(&name, &crank, foot, start);
-        text.pin(&format!("O{k}"), [&format!("ground.O{k}"), &format!("{name}.a")]);
-        text.pin(&format!("A{k}"), [&format!("{name}.b"), &format!("coupler.m{k}")]);
+        text.pin(
+            &format!("O{k}"),
+            [&format!("ground.O{k}"), &format!("{name}.a")],
+        );
+        text.pin(
+            &format!("A{k}"),
+            [&format!("{name}.b"), &format!("coupler.m{k}")],
+        );
     }
     let marks = ["m0", "m1", "m2"];
     // The coupler does not change, or it would contradict ground.
@@ -28,10 +34,17 @@ pub fn three_cranks(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let mut markers = Vec::new();
     for (name, pin) in marks.iter().zip(pins) {
         let (x, y) = (pin[0] - pins[0][0], pin[1] - pins[0][1]);
-        let (x, y) = (text.number(cos * x + sin * y), text.number(cos * y - sin * x));
+        let (x, y) = (
+            text.number(cos * x + sin * y),
+            text.number(cos * y - sin * x),
+        );
         markers.push(format!("{name} = [{x}, {y}]"));
     }
-    text.body("coupler", &markers.join(", "), [pins[0][0], pins[0][1], tilt]);
+    text.body(
+        "coupler",
+        &markers.join(", "),
+        [pins[0][0], pins[0][1], tilt],
+    );
     let to = start + chance.between(-4.0, 4.0);
     text.turn("u", ["ground.O0", "crank0.a"], start, to);
     text.case()
@@ -90,7 +103,8 @@ pub fn cardan(chance: &mut Chance, mut text: Text<'_>) -> Case {
     text.body("bar", &markers, [pin[0], pin[1], bar]);
     text.pin("O", ["ground.O", "crank.a"]);
     text.pin("A", ["crank.b", "bar.m"]);
-    for (name, place, guide, direction) in [("mx", ends[0], "O", tilt), ("my", ends[1], "U", other)] {
+    for (name, place, guide, direction) in [("mx", ends[0], "O", tilt), ("my", ends[1], "U", other)]
+    {
         let marker = format!("bar.{name}");
         let ground = format!("ground.{guide}");
         if chance.between(0.0, 1.0) < 0.5 {
@@ -126,9 +140,18 @@ pub fn twin_slider_cranks(chance: &mut Chance, mut text: Text<'_>) -> Case {
         text.ground(&format!("O{k}"), origin, 0.0);
         text.bar(&turning, &length, origin, crank);
         text.bar(&pushing, &rod, at(pin), slope);
-        text.pin(&format!("O{k}"), [&format!("ground.O{k}"), &format!("{turning}.a")]);
-        text.pin(&format!("A{k}"), [&format!("{turning}.b"), &format!("{pushing}.a")]);
-        text.pin(&format!("B{k}"), [&format!("{pushing}.b"), &format!("slider.m{k}")]);
+        text.pin(
+            &format!("O{k}"),
+            [&format!("ground.O{k}"), &format!("{turning}.a")],
+        );
+        text.pin(
+            &format!("A{k}"),
+            [&format!("{turning}.b"), &format!("{pushing}.a")],
+        );
+        text.pin(
+            &format!("B{k}"),
+            [&format!("{pushing}.b"), &format!("slider.m{k}")],
+        );
     }
     let (sin, cos) = guide.sin_cos();
     let across = text.number(cos * apart[0] + sin * apart[1]);

@@ -203,7 +203,11 @@ pub fn quick_return(chance: &mut Chance, mut text: Text<'_>) -> Case {
     };
     // The line of the slot passes the lever's pivot at the distance `aside`.
     let lever = direction(pivot, pin) - (aside / distance(pivot, pin)).clamp(-1.0, 1.0).asin();
-    let head = end(pivot, chance.between(0.1, 0.5), lever + chance.between(-0.5, 3.0));
+    let head = end(
+        pivot,
+        chance.between(0.1, 0.5),
+        lever + chance.between(-0.5, 3.0),
+    );
     let marks = [
         point("a", pivot),
         frame("s", end(pivot, aside, lever + 0.5 * PI), lever),

@@ -55,7 +55,11 @@ pub fn planet_crank(chance: &mut Chance, mut text: Text<'_>) -> Case {
     text.ground("W", [0.0, 0.0], crank);
     text.bar_between(chance, "crank", [0.0, 0.0], centre);
     let pose = [centre[0], centre[1], angle(chance)];
-    let marks = [point("a", centre), point("b", pin), frame("w", centre, crank)];
+    let marks = [
+        point("a", centre),
+        point("b", pin),
+        frame("w", centre, crank),
+    ];
     text.plate(chance, "planet", pose, &marks);
     text.pin("O", ["ground.O", "crank.a"]);
     text.pin("A", ["crank.b", "planet.a"]);
@@ -94,7 +98,9 @@ pub fn rack_in_loop(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let pin = end([0.0, 0.0], arm, crank);
     let centre = somewhere(chance, [-0.5, 0.5], [-0.5, 0.5]);
     // The rack's line passes the centre at the radius.
-    let lean = (side * radius / distance(pin, centre)).clamp(-1.0, 1.0).asin();
+    let lean = (side * radius / distance(pin, centre))
+        .clamp(-1.0, 1.0)
+        .asin();
     let rack = direction(pin, centre) - lean;
     let tooth = end(centre, chance.between(0.02, 0.2), angle(chance));
     text.ground("O", [0.0, 0.0], 0.0);
@@ -103,9 +109,16 @@ pub fn rack_in_loop(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let marks = [frame("r", pin, rack)];
     text.plate(chance, "rack", [pin[0], pin[1], rack], &marks);
     // Pinion and rack are in phase where the rack's travel and the pinion's angle are zero.
-    let travel = (distance(pin, centre).powi(2) - radius * radius).max(0.0).sqrt();
+    let travel = (distance(pin, centre).powi(2) - radius * radius)
+        .max(0.0)
+        .sqrt();
     let pose = [centre[0], centre[1], rack - side * travel / radius];
-    text.plate(chance, "pinion", pose, &[point("a", centre), point("b", tooth)]);
+    text.plate(
+        chance,
+        "pinion",
+        pose,
+        &[point("a", centre), point("b", tooth)],
+    );
     text.pin("O", ["ground.O", "crank.a"]);
     text.pin("A", ["crank.b", "rack.r"]);
     text.pin("P", ["ground.P", "pinion.a"]);
@@ -116,7 +129,12 @@ pub fn rack_in_loop(chance: &mut Chance, mut text: Text<'_>) -> Case {
     } else {
         format!(", offset = {}", text.number(side * radius))
     };
-    text.joint("guide", "revolute_translational", ["rack.r", "ground.P"], &offset);
+    text.joint(
+        "guide",
+        "revolute_translational",
+        ["rack.r", "ground.P"],
+        &offset,
+    );
     let side = if side > 0.0 { "above" } else { "below" };
     let more = format!(", radius = {written}, side = '{side}'");
     text.joint("teeth", "rack_and_pinion", ["pinion.a", "rack.r"], &more);
@@ -145,11 +163,20 @@ pub fn rolling_wheel(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let side = sign(chance);
     text.ground("O", [0.0, 0.0], 0.0);
     // At travel zero the axes have one direction.
-    text.ground("T", end(centre, -side * radius, slope + 0.5 * std::f64::consts::PI), slope);
+    text.ground(
+        "T",
+        end(centre, -side * radius, slope + 0.5 * std::f64::consts::PI),
+        slope,
+    );
     text.bar_between(chance, "crank", [0.0, 0.0], pin);
     text.bar_between(chance, "rod", pin, hook);
     let pose = [centre[0], centre[1], slope];
-    text.plate(chance, "wheel", pose, &[point("c", centre), point("b", hook)]);
+    text.plate(
+        chance,
+        "wheel",
+        pose,
+        &[point("c", centre), point("b", hook)],
+    );
     text.pin("O", ["ground.O", "crank.a"]);
     text.pin("A", ["crank.b", "rod.a"]);
     text.pin("B", ["rod.b", "wheel.b"]);
@@ -165,10 +192,11 @@ pub fn rolling_wheel(chance: &mut Chance, mut text: Text<'_>) -> Case {
 /// A four-bar with a wheel on its coupler that drives another on the crank's or the rocker's pivot,
 /// whose pin a rod joins to a slider; driven at the crank or, as one block, at the slider.
 pub fn wheel_on_coupler(chance: &mut Chance, mut text: Text<'_>) -> Case {
-    let [a, b, c, d] = [0; 4].map(|_| chance.between(0.1, 0.6));
-    let crank = angle(chance);
-    let pin = end([0.0, 0.0], a, crank);
-    let [coupler, rocker] = dyad(pin, [d, 0.0], [b, c], sign(chance));
+    let (d, crank) = (chance.between(0.1, 0.6), angle(chance));
+    let pin = end([0.0, 0.0], chance.between(0.1, 0.6), crank);
+    let top = somewhere(chance, [-0.6, 0.6], [-0.6, 0.6]);
+    let (coupler, rocker) = (direction(pin, top), direction([d, 0.0], top));
+    let [a, b, c] = [([0.0; 2], pin), (pin, top), ([d, 0.0], top)].map(|(a, b)| distance(a, b));
     let hook = end([0.0, 0.0], chance.between(0.05, 0.2), angle(chance));
     let slider = end(hook, chance.between(0.1, 0.5), angle(chance));
     let guide = angle(chance);
@@ -182,8 +210,17 @@ pub fn wheel_on_coupler(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let markers = format!("a = [0, 0], b = [{b}, 0], w = [0, 0, {phase:?}]");
     text.body("coupler", &markers, [pin[0], pin[1], coupler]);
     text.bar("rocker", &c, [d, 0.0], rocker);
-    let marks = [point("a", [0.0; 2]), point("b", hook), frame("w", [0.0; 2], crank)];
-    text.plate(chance, "wheel", [0.0, 0.0, direction([0.0; 2], hook)], &marks);
+    let marks = [
+        point("a", [0.0; 2]),
+        point("b", hook),
+        frame("w", [0.0; 2], crank),
+    ];
+    text.plate(
+        chance,
+        "wheel",
+        [0.0, 0.0, direction([0.0; 2], hook)],
+        &marks,
+    );
     text.bar_between(chance, "rod", hook, slider);
     text.pin("O", ["ground.O", "crank.a"]);
     text.pin("W", ["ground.O", "wheel.a"]);
