@@ -70,14 +70,17 @@ fn call_sequences() {
     );
 }
 
-/// The law of `make attack` for some mechanisms of each kind: one jump ends where tiny steps end,
-/// and other scales and names change neither verdict nor branch, nor double the sub-steps.
+/// The law of `make attack` for some mechanisms of each kind: one jump ends where tiny steps end
+/// and comes back, and other scales, names, orders and places change neither verdict nor branch,
+/// nor the sub-steps by much.
 #[test]
-fn generated_mechanisms_move_alike_in_any_steps_and_at_any_scale() {
+fn generated_mechanisms_move_alike_in_any_steps_and_however_they_are_written() {
     for (kind, (name, _)) in fuzz::attack::KINDS.iter().enumerate() {
-        let counts = fuzz::attack::run(kind, 1, CASES, |seed, words| {
-            panic!("{name}, seed {seed}: {words}");
-        });
-        assert!(counts.agree > 0, "{name}: {counts:?}");
+        for moving in [false, true] {
+            let counts = fuzz::attack::run((kind, moving), 1, CASES, |seed, words| {
+                panic!("{name}, moving {moving}, seed {seed}: {words}");
+            });
+            assert!(counts.agree > 0, "{name}: {counts:?}");
+        }
     }
 }

@@ -66,8 +66,9 @@ pub struct Case {
 struct End {
     /// The part of the jump that was possible.
     reached: f64,
-    /// q there, as it is in the view that changes nothing.
+    /// q there and at the start, as it is in the view that changes nothing.
     q: Vec<f64>,
+    start: Vec<f64>,
     substeps: u32,
     message: String,
     /// Whether the motion was given up for its number of sub-steps, at no particular place.
@@ -250,13 +251,17 @@ fn differences(kind: (usize, bool), seed: u64, plain: &Case, jump: &End) -> Resu
     for view in views {
         let there = end(&case(kind, seed, view), view, 1, 1.0)
             .map_err(|error| format!("closes, but not in {view:?}: {error}"))?;
+        let is_far = view.place[0].hypot(view.place[1]) > 1.0;
+        let off = distance(&jump.start, &there.start);
+        if off > if is_far { SAME_FAR } else { SAME } {
+            return differs(&format!("in {view:?}: begins {off:.1e} away"), &there);
+        }
         // The limit of sub-steps stands at no particular place.
         if jump.given_up || there.given_up {
             continue;
         }
         // Boxes round a motion are larger along some directions than along others.
         let most_ratio = if view.place[2] == 0.0 { 2 } else { 6 };
-        let is_far = view.place[0].hypot(view.place[1]) > 1.0;
         let same = if is_far {
             [SAME_FAR, SAME_STOP_FAR]
         } else {
@@ -284,8 +289,7 @@ fn difference(a: &End, b: &End, [same, same_stop]: [f64; 2]) -> Option<String> {
         let when = ["later", "earlier"][usize::from(a.reached < b.reached)];
         return Some(format!("stops {when}"));
     }
-    let off = a.q.iter().zip(&b.q).map(|(a, b)| (a - b).abs());
-    let most = off.fold(0.0, f64::max);
+    let most = distance(&a.q, &b.q);
     // A motion that stops at a dead point has come to the root of the rounding of its place.
     let same = match a.reached < 1.0 {
         true if same_stop > SAME_STOP => 0.5,
@@ -293,6 +297,18 @@ fn difference(a: &End, b: &End, [same, same_stop]: [f64; 2]) -> Option<String> {
         false => same,
     };
     (most.is_nan() || most > same).then(|| format!("another pose, {most:.1e} away"))
+}
+
+/// Returns the largest difference of coordinates.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    off.fold(0.0, |most, off| {
+        if off > most || off.is_nan() {
+            off
+        } else {
+            most
+        }
+    })
 }
 
 /// A mechanism on its way from the start to the end of a jump.
@@ -362,6 +378,7 @@ fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Result<End, String
     let mut end = End {
         reached: 0.0,
         q: Vec::new(),
+        start: view.undo(&start.q[..bodies]),
         substeps: 0,
         message: String::new(),
         given_up: false,
