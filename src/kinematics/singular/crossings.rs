@@ -12,6 +12,10 @@ use crate::mechanism::Jet;
 
 /// Largest distance of q from a crossing of the pose.
 const ON: f64 = 1e-9;
+/// Largest distance of a pose from the crossing that it enters, in radians and characteristic
+/// lengths: motions that rounding parts at a change point are no farther apart. A change point on
+/// another sheet, behind a dead point, is.
+const OFF_THE_POSE: f64 = 1e-4;
 /// The part of a crossing next to its end that counts as the end.
 pub(in crate::kinematics) const CROSSING_END: f64 = 1e-6;
 
@@ -61,14 +65,18 @@ pub(in crate::kinematics) fn admits_crossings(model: &Model, pose: &Pose) -> boo
 }
 
 /// Lets a block's unknowns come from a crossing that the pose is within, and closes the blocks
-/// behind it; if they do not close, the pose stays as it was.
-pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Crossing) {
+/// behind it; if they do not close, the pose stays as it was. Returns false if the crossing is one
+/// of other motions than that through the pose.
+pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Crossing) -> bool {
     if crossing
         .place(state.pose.drivers[crossing.driver.index()])
         .abs()
         >= 1.0 - CROSSING_END
     {
-        return;
+        return true;
+    }
+    if !passes_through_pose(model, state, &crossing) {
+        return false;
     }
     let first = crossing.block;
     state.add_crossing(model, &Arc::new(crossing));
@@ -89,6 +97,20 @@ pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Cro
         state.remove_crossing(model, last);
         state.move_to_pose(&model.system);
     }
+    true
+}
+
+/// Returns whether the block's unknowns are on a crossing, up to rounding.
+fn passes_through_pose(model: &Model, state: &State, crossing: &Crossing) -> bool {
+    let pose = &state.pose;
+    let size = state.at.size();
+    let value = pose.drivers[crossing.driver.index()];
+    let columns = model.plan.blocks[crossing.block].columns();
+    columns.iter().enumerate().all(|(local, &column)| {
+        let [there, ..] = crossing.evaluate(local, value);
+        let off = (there - pose.q[column]).abs();
+        off <= OFF_THE_POSE * model.system.column_scale(column, size)
+    })
 }
 
 /// Removes the crossings at whose end the drivers, with these derivatives along the path, lead out

@@ -202,7 +202,9 @@ fn enter_near_crossings(
             });
         }
         if let Some(crossing) = crossing_of(&mut equation, finding, block, driver) {
-            enter_crossing(model, state, crossing);
+            if !enter_crossing(model, state, crossing) {
+                fruitless.note(block, regularity);
+            }
         }
     }
     return_to_regular_pose(model, state);
