@@ -47,6 +47,9 @@ const SAME_STOP_FAR: f64 = 1e-2;
 const REGULAR: f64 = 1e-3;
 /// Distance of a mechanism that is far from the origin, in parts of its scale.
 const FAR: f64 = 1000.0;
+/// A mechanism that stops with a coordinate beyond this, in radians and parts of the scale, runs to
+/// infinity there, as between guides that become parallel.
+const INFINITE: f64 = 1e4;
 /// A call that takes longer is slow.
 const SLOW: Duration = Duration::from_secs(1);
 
@@ -290,6 +293,11 @@ fn difference(a: &End, b: &End, [same, same_stop]: [f64; 2]) -> Option<String> {
         return Some(format!("stops {when}"));
     }
     let most = distance(&a.q, &b.q);
+    // In front of an asymptote a motion comes as far as rounding lets it.
+    let is_at_infinity = |end: &End| end.q.iter().any(|q| q.abs() > INFINITE);
+    if a.reached < 1.0 && is_at_infinity(a) && is_at_infinity(b) {
+        return None;
+    }
     // A motion that stops at a dead point has come to the root of the rounding of its place.
     let same = match a.reached < 1.0 {
         true if same_stop > SAME_STOP => 0.5,
