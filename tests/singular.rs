@@ -409,3 +409,68 @@ fn a_parallelogram_far_from_the_origin_stays_one() {
         }
     }
 }
+
+/// An arm whose cylinder has its foot next to the arm's pivot is near a dead point of its own all
+/// along, while a short link stops the bucket: the position that is named is that of the bucket.
+#[test]
+fn the_dead_point_that_stops_the_motion_is_named_not_another_one_behind_it() {
+    let mechanism = parse(
+        "format = 1\nname = 'excavator'\n[ground.markers]\nO = [0, 0]\n\
+         F = [-0.0019341133183708448, 0.012326242769921919]\n\
+         [bodies.boom]\nmarkers = { a = [0, 0], c = [-0.13331191324361524, -0.11585126957380293], \
+         s = [0.4698636064379762, -0.1280040389299235], b = [0.6279906298059906, 0] }\n\
+         estimate = [0, 0, 1.1266159773968458]\n\
+         [bodies.stick]\nmarkers = { a = [0, 0], r = [0.04186620627463532, 0.03295391437930634], \
+         f = [0.09222916224856116, 0.05839989293378037], \
+         l = [0.37827540813364663, 0.05453885610244458], b = [0.21018348202805498, 0] }\n\
+         estimate = [0.26985882119848437, 0.5670524206327746, -1.8910565183900072]\n\
+         [bodies.bucket]\n\
+         markers = { a = [0, 0], e = [-0.05980381615550692, -0.1283489055748533] }\n\
+         estimate = [0.2036902166339794, 0.3675560249575046, -0.8485026892109385]\n\
+         [bodies.lever]\nmarkers = { a = [0, 0], b = [0.19590640131493625, 0] }\n\
+         estimate = [0.2025383517493513, 0.19084140854409523, 2.399361771408058]\n\
+         [joints]\nO = { type = 'revolute', markers = ['ground.O', 'boom.a'] }\n\
+         K = { type = 'revolute', markers = ['boom.b', 'stick.a'] }\n\
+         W = { type = 'revolute', markers = ['stick.b', 'bucket.a'] }\n\
+         L = { type = 'revolute', markers = ['stick.l', 'lever.a'] }\n\
+         rod = { type = 'link', markers = ['lever.b', 'bucket.e'], length = 0.010607983911173723 }\n\
+         [drivers]\n\
+         u = { coordinate = 'distance', markers = ['ground.F', 'boom.c'], start = 0.1890162977763308 }\n\
+         v = { coordinate = 'distance', markers = ['boom.s', 'stick.r'], start = 0.1506011515061987 }\n\
+         w = { coordinate = 'distance', markers = ['stick.f', 'lever.b'], start = 0.27512688959228226 }\n",
+    );
+    let (mut solver, mut path) = assembled(&mechanism);
+    let targets = [0.20534713219285566, 0.1311047561749372, 0.3565392472904871];
+    let start = solver.pose().drivers.clone();
+    for (curve, (from, to)) in path.curves.iter_mut().zip(start.iter().zip(targets)) {
+        *curve = biela::kinematics::Curve::Input {
+            position: to,
+            velocity: 0.0,
+            acceleration: 0.0,
+            jump: from - to,
+        };
+    }
+    let blocked = solver.track(&path).expect_err("the link stops the bucket");
+    let Reason::Singular(point) = &blocked.reason else {
+        panic!("{blocked:?}");
+    };
+    // There the link and the bucket's arm are in line.
+    let q = &solver.pose().q;
+    let at = |body: &str, [x, y]: [f64; 2]| {
+        let body = 3 * mechanism.body_id(body).expect("it has it").index();
+        let (sin, cos) = q[body + 2].sin_cos();
+        [q[body] + cos * x - sin * y, q[body + 1] + sin * x + cos * y]
+    };
+    let [pin, ear] =
+        [[0.0, 0.0], [-0.05980381615550692, -0.1283489055748533]].map(|place| at("bucket", place));
+    let end = at("lever", [0.19590640131493625, 0.0]);
+    let (arm, link) = (
+        [ear[0] - pin[0], ear[1] - pin[1]],
+        [end[0] - ear[0], end[1] - ear[1]],
+    );
+    let sine =
+        (arm[0] * link[1] - arm[1] * link[0]) / (arm[0].hypot(arm[1]) * link[0].hypot(link[1]));
+    assert!(sine.abs() < 0.1, "{sine} {blocked:?}");
+    assert!((point.s - blocked.s).abs() < 1e-4, "{blocked:?}");
+    assert_eq!(point.bodies, ["body `bucket`", "joint `rod`"], "{point:?}");
+}

@@ -220,7 +220,8 @@ fn differences(kind: (usize, bool), seed: u64, plain: &Case, jump: &End) -> Resu
     if jump.stop.is_some_and(|rcond| rcond > REGULAR) {
         return differs("stops at a regular pose", &tiny);
     }
-    if jump.back.as_ref().is_some_and(|back| !(back.off <= SAME)) {
+    let leads_elsewhere = |back: &Back| back.off.is_nan() || back.off > SAME;
+    if jump.back.as_ref().is_some_and(leads_elsewhere) {
         return differs("the way back leads elsewhere", &tiny);
     }
     let mut chance = Chance::new(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
@@ -421,12 +422,7 @@ fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Result<End, String
     if steps == 1 && end.reached >= 1.0 {
         let tracked = jump.track(0.0);
         let message = tracked.map_or_else(|blocked| format!("{blocked:?}"), |_| String::new());
-        let ends = jump.solver.pose().q.iter().zip(&start.q).take(bodies);
-        let off = ends.enumerate().map(|(k, (a, b))| match k % 3 {
-            2 => (a - b).abs(),
-            _ => (a - b).abs() / view.scale,
-        });
-        let off = off.fold(0.0, f64::max);
+        let off = distance(&view.undo(&jump.solver.pose().q[..bodies]), &end.start);
         let off = if message.is_empty() {
             off
         } else {

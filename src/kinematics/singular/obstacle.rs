@@ -201,10 +201,10 @@ fn enter_near_crossings(
                 is_next: way * equation.speed < STOPPED,
             });
         }
-        if let Some(crossing) = crossing_of(&mut equation, finding, block, driver) {
-            if !enter_crossing(model, state, crossing) {
-                fruitless.note(block, regularity);
-            }
+        if let Some(crossing) = crossing_of(&mut equation, finding, block, driver)
+            && !enter_crossing(model, state, crossing)
+        {
+            fruitless.note(block, regularity);
         }
     }
     return_to_regular_pose(model, state);
