@@ -237,7 +237,7 @@ pub(in crate::kinematics) fn find_end(
         .filter_map(|&block| singular_point(model, state, path, s, block));
     let located: Vec<_> = located.collect();
     return_to_regular_pose(model, state);
-    // Of a block and those that read it, which lose rank at the same place, the first.
+    // A block and those that read it lose rank at the same place: the first of them counts.
     let nearest = located.iter().map(|point| point.s - s);
     let nearest = nearest.fold(f64::INFINITY, f64::min);
     let is_nearest = |point: &SingularPoint| point.s - s <= 1.01 * nearest + AT_ONE_PLACE;
