@@ -68,9 +68,10 @@ pub fn planet_crank(chance: &mut Chance, mut text: Text<'_>) -> Case {
     let more = format!(", teeth = {teeth:?}, carrier = '{carrier}'{more}");
     let mesh = ["gear", "gear", "belt"][kind];
     text.joint("mesh", mesh, ["ground.W", "planet.w"], &more);
-    let bars = [0; 2].map(|_| chance.between(0.2, 0.7));
     let pivot = somewhere(chance, [-0.6, 0.6], [-0.6, 0.6]);
-    let angles = dyad(pin, pivot, bars, sign(chance));
+    let top = somewhere(chance, [-0.6, 0.6], [-0.6, 0.6]);
+    let bars = [distance(pin, top), distance(pivot, top)];
+    let angles = [direction(pin, top), direction(pivot, top)];
     text.ground("D", pivot, 0.0);
     let bars = bars.map(|length| text.length(chance, length));
     text.bar("rod", &bars[0], pin, angles[0]);
