@@ -366,8 +366,8 @@ impl Configuration {
     }
 }
 
-/// Largest length that may be the rounding of an expression \[m\]; between places more than 1 m from
-/// their origin, as a part of that distance. No mechanism is as small.
+/// Lengths up to this one count as rounding \[m\]; between places farther than 1 m from their
+/// origin, lengths up to this part of that distance.
 pub(super) const ROUNDING: f64 = 1e-13;
 
 /// Returns the diagonal of the box around places; zero if rounding alone tells them apart, and
@@ -377,9 +377,9 @@ pub(super) fn extent(places: impl Iterator<Item = Vector2<f64>>) -> f64 {
     for place in places {
         (low, high) = (low.inf(&place), high.sup(&place));
     }
-    let diagonal = (high - low).norm();
+    let diagonal = f64::hypot(high.x - low.x, high.y - low.y);
     let farthest = low.abs().sup(&high.abs()).max();
-    if low.x <= high.x && diagonal > ROUNDING * farthest.max(1.0) {
+    if diagonal.is_finite() && diagonal > ROUNDING * farthest.max(1.0) {
         diagonal
     } else {
         0.0

@@ -296,9 +296,13 @@ fn rounding_is_no_size() {
              u = {{ coordinate = \"angle\", markers = [\"ground.O\", \"a.O\"], start = 1 }}\n"
         ))
     };
-    let crank = "[bodies.crank.markers]\nO = [0, 0]\nA = [0.02, 0]\n[drivers]\n\
-        v = { coordinate = \"angle\", markers = [\"ground.O\", \"crank.O\"], start = 1 }\n[joints]\n\
-        O = { type = \"revolute\", markers = [\"ground.O\", \"crank.O\"] }";
+    let [crank, short, tiny] = ["0.02", "5e-4", "1e-6"].map(|length| {
+        format!(
+            "[bodies.crank.markers]\nO = [0, 0]\nA = [{length}, 0]\n[drivers]\n\
+             v = {{ coordinate = \"angle\", markers = [\"ground.O\", \"crank.O\"], start = 1 }}\n\
+             [joints]\nO = {{ type = \"revolute\", markers = [\"ground.O\", \"crank.O\"] }}"
+        )
+    });
     let alone = "[drivers]\n[joints]";
     let slides = |beside: &str, off: &str| {
         let (before, joints) = beside.split_once("[drivers]").expect("it has drivers");
@@ -315,7 +319,8 @@ fn rounding_is_no_size() {
         ))
     };
     let pairs = ["0.1 + 0.2 - 0.3", "0"].map(|off| {
-        [gears(off), slides(alone, off), slides(crank, off)].map(|file| assembled(&file).0.rcond())
+        let [a, b, c, d] = [alone, &crank, &short, &tiny].map(|beside| slides(beside, off));
+        [gears(off), a, b, c, d].map(|file| assembled(&file).0.rcond())
     });
     assert_eq!(pairs[0].map(f64::to_bits), pairs[1].map(f64::to_bits));
 }

@@ -6,7 +6,8 @@ use crate::kinematics::constraint::TurnEffect;
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
 
-/// Largest scaled change of a row by turns that it does not count: some eps of a million turns.
+/// Largest scaled change of a row that is rounding when all its bodies turn once: some eps of a
+/// million turns.
 const ROUNDING: f64 = 1e-9;
 
 /// Fixes the whole turns of the angle rows: those nearest the present places of the bodies.
@@ -16,8 +17,8 @@ pub(super) fn fix_turns(system: &System, state: &mut State) {
 }
 
 /// Adds whole turns to the bodies so that each angle is nearest its estimate. Bodies whose angles
-/// a row ties together turn together, as most of them ask for; bodies that it ties to ground do not
-/// turn.
+/// a row ties together turn together, by the median of their turns; bodies that it ties to ground do
+/// not turn.
 pub(in crate::kinematics) fn choose_turns(system: &System, state: &mut State, estimate: &[f64]) {
     let bodies = system.mechanism().bodies.len();
     let ground = bodies;

@@ -110,6 +110,7 @@ impl PathTracker {
             is_last_attempt: false,
             gives_up,
             judged: (0, 0.0),
+            searched: 0.0,
             progress: Progress::default(),
         };
         match run.run() {
@@ -148,6 +149,8 @@ struct Run<'a> {
     gives_up: bool,
     /// The number of sub-steps at which their pace was judged last, and the place on the path.
     judged: (u32, f64),
+    /// The regularity at which no fitter rows were found last; zero at first.
+    searched: f64,
     progress: Progress,
 }
 
@@ -243,11 +246,18 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Takes fitter rows near a singular position of those in use, if there are any. Sub-steps that
-    /// shorten without a rejection would never come to it.
+    /// Takes fitter rows near a singular position of those in use, if there are any: sub-steps may
+    /// shorten without a rejection. Searches again once the regularity has changed by a factor of
+    /// two.
     #[cold]
     fn take_fitter_rows(&mut self) {
+        let regularity = self.state.regularity;
+        if regularity > 0.5 * self.searched && regularity < 2.0 * self.searched {
+            return;
+        }
+        self.searched = regularity;
         if redundancy::change_rows(self.model, self.state) {
+            self.searched = 0.0;
             self.return_to_pose();
         }
     }
@@ -312,7 +322,8 @@ impl Run<'_> {
         f64::from(substeps) >= most || is_slow && !self.nears_end()
     }
 
-    /// Returns whether a singular position ahead stops the motion, which slows down in front of it.
+    /// Returns whether a singular position lies ahead on the path: the motion slows down in front of
+    /// it.
     #[cold]
     fn nears_end(&mut self) -> bool {
         let may_end =

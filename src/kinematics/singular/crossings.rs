@@ -13,8 +13,8 @@ use crate::mechanism::Jet;
 /// Largest distance of q from a crossing of the pose.
 const ON: f64 = 1e-9;
 /// Largest distance of a pose from the crossing that it enters, in radians and characteristic
-/// lengths: motions that rounding parts at a change point are no farther apart. A change point on
-/// another sheet, behind a dead point, is.
+/// lengths: rounding moves a pose next to a change point by less. A crossing of other poses, behind
+/// a dead point, is farther away.
 const OFF_THE_POSE: f64 = 1e-4;
 /// The part of a crossing next to its end that counts as the end.
 pub(in crate::kinematics) const CROSSING_END: f64 = 1e-6;
@@ -65,8 +65,8 @@ pub(in crate::kinematics) fn admits_crossings(model: &Model, pose: &Pose) -> boo
 }
 
 /// Lets a block's unknowns come from a crossing that the pose is within, and closes the blocks
-/// behind it; if they do not close, the pose stays as it was. Returns false if the crossing is one
-/// of other motions than that through the pose.
+/// behind it; at the end of the crossing, or if they do not close, the pose stays as it was. Returns
+/// false if the crossing is one of other poses.
 pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Crossing) -> bool {
     if crossing
         .place(state.pose.drivers[crossing.driver.index()])

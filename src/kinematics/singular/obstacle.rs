@@ -25,8 +25,10 @@ const REACH_TO_END: f64 = 0.5;
 const STOPPED: f64 = 0.02;
 /// A singular position at most this far behind the current place on the path counts as reached.
 const JUST_BEHIND: f64 = 1e-9;
-/// Singular positions within this part of the path ahead are at one place: that of their rounding.
+/// Singular positions whose places on the path differ by less count as one, as do those whose
+/// distances ahead differ by less than this part.
 const AT_ONE_PLACE: f64 = 1e-9;
+const ALIKE: f64 = 0.01;
 /// Ratio of regularities up to which two blocks are nearly singular for the same reason.
 const SAME_ORDER: f64 = 100.0;
 /// Singular values below this part of the largest one count as lost, some 1e-12 of the path in
@@ -240,7 +242,8 @@ pub(in crate::kinematics) fn find_end(
     // A block and those that read it lose rank at the same place: the first of them counts.
     let nearest = located.iter().map(|point| point.s - s);
     let nearest = nearest.fold(f64::INFINITY, f64::min);
-    let is_nearest = |point: &SingularPoint| point.s - s <= 1.01 * nearest + AT_ONE_PLACE;
+    let farthest = nearest + ALIKE * nearest.abs() + AT_ONE_PLACE;
+    let is_nearest = |point: &SingularPoint| point.s - s <= farthest;
     let found = located.into_iter().find(is_nearest).or_else(|| {
         near.iter()
             .find_map(|&block| loss_of_ranks(model, state, s, block))

@@ -8,6 +8,9 @@ use crate::kinematics::configuration::{ROUNDING, extent};
 use crate::kinematics::constraint::{Dimension, Incidence};
 use crate::mechanism::{JointKind, Mechanism, ProfileInForce};
 
+/// Least part of the mechanism's size that counts: a body of some eps of it is a point.
+const LEAST: f64 = 1e-15;
+
 /// Returns the size of the part that each body belongs to, as a part of the mechanism's size:
 /// powers of two, so that scaling rounds nothing.
 ///
@@ -67,8 +70,9 @@ pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f
     }
     let largest = sizes.iter().copied().fold(0.0, f64::max);
     let relative = |body: usize| {
-        let part = sizes[parts.find(body)] / largest;
-        if part > ROUNDING && part < 1.0 {
+        let size = sizes[parts.find(body)];
+        let part = size / largest;
+        if size > ROUNDING && part > LEAST && part < 1.0 {
             part.log2().round().exp2()
         } else {
             1.0
