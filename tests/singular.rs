@@ -209,6 +209,31 @@ fn a_pose_next_to_a_change_point_leads_on_with_the_same_bits() {
     assert_eq!(on(&mut other), first);
 }
 
+/// A wheel that turns fifty times as fast as the crank, and that nothing else reads, leaves the
+/// crossing as it is to the last bit.
+#[test]
+fn a_body_that_a_block_does_not_read_changes_no_crossing() {
+    let alone = std::fs::read_to_string("mechanisms/parallelogram.toml").expect("it is shipped");
+    let wheel = "[bodies.wheel]\nmarkers = { O = [0, 0] }\nestimate = [0, 0.51, 0]\n\n";
+    let joints = "O5 = { type = \"revolute\", markers = [\"ground.O5\", \"wheel.O\"] }\n\
+        mesh = { type = \"gear\", markers = [\"crank.O\", \"wheel.O\"], radii = [0.5, 0.01] }\n\n";
+    let with_wheel = alone
+        .replace("O4 = [\"base\", 0]", "O4 = [\"base\", 0]\nO5 = [0, 0.51]")
+        .replace("[bodies.crank]", &format!("{wheel}[bodies.crank]"))
+        .replace("[drivers]", &format!("{joints}[drivers]"));
+    let crossing = |text: &str| {
+        let (mut solver, mut path) = assembled(&parse(text));
+        straight_to(&solver, &mut path, PI - 0.001);
+        solver.track(&path).expect("nothing is in the way");
+        let [crossing] = &solver.pose().crossings[..] else {
+            panic!("one change point is near");
+        };
+        let of_block = (crossing.center, crossing.half_width);
+        (of_block, crossing.coefficients.clone())
+    };
+    assert_eq!(crossing(&with_wheel), crossing(&alone));
+}
+
 /// A four-bar driven by a link that does not turn fully: lengths of crank, coupler, rocker and
 /// base, and the assembly mode.
 fn four_bar(lengths: [f64; 4], crank: f64, side: f64) -> Option<Arc<Mechanism>> {

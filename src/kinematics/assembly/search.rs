@@ -10,7 +10,6 @@ use super::branches::{Branches, SearchEffort};
 use crate::kinematics::block::{BlockSolver, BlockState};
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
-use crate::kinematics::system::System;
 
 /// Least reciprocal condition of a block in closed form behind which rounding is small enough for a
 /// proof.
@@ -69,8 +68,10 @@ pub(in crate::kinematics) struct BranchSearch<'a> {
     effort: SearchEffort,
     /// The blocks that are on a branch, in order.
     levels: Vec<Level>,
-    /// The blocks that each block reads, once a block has not closed.
-    reads: Option<Vec<BTreeSet<usize>>>,
+    /// The blocks that each block reads.
+    reads: &'a [Vec<usize>],
+    /// Whether a block has not closed.
+    goes_back: bool,
     work_left: f64,
     failure: NoBranch,
     /// Whether the blocks given up have no other branches than those tried.
@@ -114,7 +115,8 @@ impl<'a> BranchSearch<'a> {
             state: state.block_state(system),
             estimate,
             effort,
-            reads: None,
+            reads: &plan.reads,
+            goes_back: false,
             work_left: most_work,
             failure: NoBranch {
                 block: 0,
@@ -170,7 +172,7 @@ impl<'a> BranchSearch<'a> {
             let block = &mut *self.blocks[index];
             let starts = level.branches.starts;
             let corrected = level.branches.next(block, &mut self.state, self.estimate);
-            if self.reads.is_some() {
+            if self.goes_back {
                 let size = block.columns().len() as f64 / UNIT_OF_WORK;
                 let cost = if block.is_closed_form() {
                     1.0
@@ -190,11 +192,9 @@ impl<'a> BranchSearch<'a> {
                 self.starts = self.starts.max(level.branches.starts);
             }
             self.note_dead_end(index);
-            let blocks = &*self.blocks;
-            let system = self.state.system;
-            let reads = self.reads.get_or_insert_with(|| reads_of(system, blocks));
+            self.goes_back = true;
             let mut conflict = std::mem::take(&mut self.levels[index].conflict);
-            conflict.extend(&reads[index]);
+            conflict.extend(&self.reads[index]);
             let Some(back) = conflict.pop_last() else {
                 self.failure.proved = !in_doubt;
                 self.levels.clear();
@@ -236,21 +236,4 @@ impl<'a> BranchSearch<'a> {
             });
         }
     }
-}
-
-/// Returns the blocks that each block reads.
-fn reads_of(system: &System, blocks: &[BlockSolver]) -> Vec<BTreeSet<usize>> {
-    let mut owner = vec![0; system.unknowns()];
-    for (index, block) in blocks.iter().enumerate() {
-        for &column in block.columns() {
-            owner[column] = index;
-        }
-    }
-    let reads = blocks.iter().enumerate().map(|(index, block)| {
-        let rows = block.rows().iter();
-        let unknowns = rows.flat_map(|&row| system.incidence(row).unknowns);
-        let read = unknowns.map(|column| owner[column]);
-        read.filter(|&read| read != index).collect()
-    });
-    reads.collect()
 }

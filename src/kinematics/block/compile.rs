@@ -1,7 +1,7 @@
 //! Compiles the plan from the equations and their structure.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
@@ -62,9 +62,10 @@ impl BlockPlan {
             groups: Vec::new(),
         };
         search.find();
-        let order = search.order();
+        let (order, reads) = search.order();
         Self {
             blocks: search.solvers(&order),
+            reads,
             pivots: Pivots::new(system.mechanism().bodies.len()),
             has_pivots: false,
         }
@@ -423,14 +424,22 @@ impl Search<'_> {
     }
 
     /// Returns an order of the groups in which each comes after those it reads, close to the order
-    /// of the blocks. Where grouping has tied a knot, two groups that read parts of each other,
-    /// such groups are taken apart again.
-    fn order(&mut self) -> Vec<usize> {
+    /// of the blocks, and the places in it of the groups that each one reads. Where grouping has tied
+    /// a knot, two groups that read parts of each other, such groups are taken apart again.
+    fn order(&mut self) -> (Vec<usize>, Vec<Vec<usize>>) {
         loop {
             let reads = self.reads();
             let knots = knots(&reads);
             if knots.iter().all(|knot| !knot) {
-                return self.sorted(&reads);
+                let order = self.sorted(&reads);
+                let mut place_of = vec![0; order.len()];
+                for (place, &group) in order.iter().enumerate() {
+                    place_of[group] = place;
+                }
+                let places =
+                    |group: &usize| reads[*group].iter().map(|&read| place_of[read]).collect();
+                let reads = order.iter().map(places).collect();
+                return (order, reads);
             }
             let groups = std::mem::take(&mut self.groups).into_iter().zip(knots);
             self.groups = groups
@@ -454,7 +463,8 @@ impl Search<'_> {
                 let blocks = group.blocks.iter();
                 let reads = blocks.flat_map(|&block| &self.structure.blocks()[block].reads);
                 let groups = reads.filter_map(|&block| self.group_of[block]);
-                groups.filter(|&read| read != index).collect()
+                let others: BTreeSet<_> = groups.filter(|&read| read != index).collect();
+                others.into_iter().collect()
             })
             .collect()
     }

@@ -42,11 +42,10 @@ impl InterpolatedBlock {
     ///
     /// [`Rejected`] outside of the crossing.
     fn interpolate(&self, state: &mut BlockState<'_>) -> Result<Correction, Rejected> {
-        let value = state.drivers[self.crossing.driver.index()];
-        let place = self.crossing.place(value).abs();
-        if place.is_nan() || place > SEAM {
+        if !self.is_within(state.drivers) {
             return Err(Rejected);
         }
+        let value = state.drivers[self.crossing.driver.index()];
         for (local, &column) in self.block.columns().iter().enumerate() {
             let [position, ..] = self.crossing.evaluate(local, value);
             state.at.set_coordinate(column, position);
@@ -57,16 +56,21 @@ impl InterpolatedBlock {
         })
     }
 
+    /// Returns whether these values of the drivers are within the crossing.
+    pub(in crate::kinematics) fn is_within(&self, drivers: &[f64]) -> bool {
+        let value = drivers[self.crossing.driver.index()];
+        self.crossing.place(value).abs() <= SEAM
+    }
+
     /// Puts the unknowns near the motion beyond the crossing, ahead of its end. Returns false within
     /// the crossing.
     pub(in crate::kinematics) fn start_beyond(&self, state: &mut BlockState<'_>) -> bool {
-        let crossing = &self.crossing;
-        let value = state.drivers[crossing.driver.index()];
-        let place = crossing.place(value);
-        if place.abs() <= SEAM {
+        if self.is_within(state.drivers) {
             return false;
         }
-        let end = crossing.center + crossing.half_width.copysign(place);
+        let crossing = &self.crossing;
+        let value = state.drivers[crossing.driver.index()];
+        let end = crossing.center + crossing.half_width.copysign(value - crossing.center);
         let off = value - end;
         for (local, &column) in self.block.columns().iter().enumerate() {
             let [position, first, second] = crossing.evaluate(local, end);

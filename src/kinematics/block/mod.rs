@@ -65,6 +65,8 @@ pub(super) use step::{BlockState, Extrapolation, Step};
 #[derive(Debug, Default)]
 pub(super) struct BlockPlan {
     pub(super) blocks: Vec<BlockSolver>,
+    /// The blocks that each block reads.
+    pub(super) reads: Vec<Vec<usize>>,
     pub(super) pivots: Pivots,
     /// Whether sparse matrices have chosen their pivots.
     has_pivots: bool,

@@ -271,7 +271,7 @@ fn singular_point(
     if behind > JUST_BEHIND && behind * point.first[1].abs() > 4.0 * ROUNDING {
         return None;
     }
-    let (q, drivers) = (equation.pose(), equation.drivers().to_vec());
+    let (q, drivers) = (equation.pose(point.tau), equation.drivers().to_vec());
     Some(SingularPoint {
         drivers,
         q,

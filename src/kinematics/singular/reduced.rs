@@ -13,9 +13,11 @@
 //!
 //! ε_αα = −ψᵀF″\[V₁, V₁\], ε_ατ = −ψᵀF″\[V₁, V₂\], ε_ττ = −ψᵀ(F″\[V₂, V₂\] + F_p p″).
 
+use std::collections::BTreeSet;
+
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use crate::kinematics::block::{BlockSolver, BlockState};
+use crate::kinematics::block::{BlockPlan, BlockSolver, BlockState};
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::Gradient;
 use crate::kinematics::model::Model;
@@ -61,17 +63,25 @@ pub(super) struct ReducedEquation<'a> {
     targets: &'a Targets,
     motions: &'a Motions,
     line: Line<'a>,
-    /// The blocks before it, which find the unknowns that it reads.
+    /// The block's index in the plan, the blocks before it, and the blocks that each block reads.
+    block: usize,
     before: &'a mut [BlockSolver],
+    reads: &'a [Vec<usize>],
+    /// The blocks before it that were moved to the last place, ascending.
+    moved: BTreeSet<usize>,
     rows: Vec<usize>,
+    /// The unknowns that the rows read, of the blocks before it.
+    read_columns: Vec<usize>,
     pub(super) columns: Vec<usize>,
     /// Index of each unknown of the mechanism in the block.
     place_of: Vec<Option<usize>>,
     /// Scale factor of each unknown \[m or rad\].
     scales: Vec<f64>,
     at: Configuration,
-    /// Rates along the line of the unknowns before the block; elsewhere zero.
+    /// Rates along the line of the unknowns of the blocks moved.
     tangent: Rates,
+    /// Rates of one combination of motions, of the unknowns in the rows.
+    combined: Vec<f64>,
     held: Vec<f64>,
     jets: Vec<Jet>,
     drivers: Vec<f64>,
@@ -124,8 +134,11 @@ impl<'a> ReducedEquation<'a> {
         } = state;
         let Model { system, plan, .. } = model;
         let system = &*system;
-        let (block, before) = plan.blocks[..=block].split_last_mut()?;
-        let columns = block.columns().to_vec();
+        let BlockPlan { blocks, reads, .. } = plan;
+        let (own, before) = blocks[..=block].split_last_mut()?;
+        let columns = own.columns().to_vec();
+        let read = reads[block].iter();
+        let read_columns = read.flat_map(|&read| before[read].columns()).copied();
         let mut place_of = vec![None; system.unknowns()];
         for (place, &column) in columns.iter().enumerate() {
             place_of[column] = Some(place);
@@ -137,8 +150,12 @@ impl<'a> ReducedEquation<'a> {
             targets,
             motions,
             line,
+            block,
+            read_columns: read_columns.collect(),
             before,
-            rows: block.rows().to_vec(),
+            reads,
+            moved: BTreeSet::new(),
+            rows: own.rows().to_vec(),
             scales: columns
                 .iter()
                 .map(|&column| system.column_scale(column, size))
@@ -147,6 +164,7 @@ impl<'a> ReducedEquation<'a> {
             place_of,
             at: at.clone(),
             tangent: Rates::new(system.unknowns()),
+            combined: vec![0.0; system.unknowns()],
             held: pose.drivers.clone(),
             jets: vec![Jet::constant(0.0); pose.drivers.len()],
             drivers: pose.drivers.clone(),
@@ -158,7 +176,7 @@ impl<'a> ReducedEquation<'a> {
             epsilon: 0.0,
             speed: 0.0,
         };
-        reduced.move_before(start)?;
+        reduced.move_all_before(start)?;
         reduced.origin_tangent = reduced.tangent.clone();
         reduced.border()?;
         let point = reduced.solve(0.0, start)?;
@@ -166,10 +184,11 @@ impl<'a> ReducedEquation<'a> {
         (reduced.speed > 0.0 && reduced.speed.is_finite()).then_some(reduced)
     }
 
-    /// Returns the largest scaled rate of the unknowns before the block and of these of its own.
+    /// Returns the largest scaled rate of the unknowns of the blocks moved and of these of its own.
     pub(super) fn scaled_speed(&self, own: &DVector<f64>) -> f64 {
         let size = self.at.size();
-        let read = self.before.iter().flat_map(|block| block.columns());
+        let moved = self.moved.iter();
+        let read = moved.flat_map(|&block| self.before[block].columns());
         let read = read.map(|&column| {
             (self.tangent.velocity()[column] / self.system.column_scale(column, size)).abs()
         });
@@ -200,52 +219,79 @@ impl<'a> ReducedEquation<'a> {
         Some(())
     }
 
-    fn state(&mut self) -> (&mut [BlockSolver], BlockState<'_>) {
-        let state = BlockState {
+    /// Moves the blocks that it reads to τ. One on a crossing depends on its driver alone: what it
+    /// reads itself stays where it is.
+    fn move_before(&mut self, tau: f64) -> Option<()> {
+        self.move_drivers(tau);
+        self.moved = self.behind(|block| match block {
+            BlockSolver::InterpolatedBlock(interpolated) => interpolated.is_within(&self.drivers),
+            _ => false,
+        });
+        self.move_blocks(tau)
+    }
+
+    /// Moves all blocks to τ that it reads, directly or through others.
+    fn move_all_before(&mut self, tau: f64) -> Option<()> {
+        self.move_drivers(tau);
+        self.moved = self.behind(|_| false);
+        self.move_blocks(tau)
+    }
+
+    /// Returns the blocks that it reads, directly or through others, but not through those at which
+    /// the search `stops`.
+    fn behind(&self, stops: impl Fn(&BlockSolver) -> bool) -> BTreeSet<usize> {
+        let mut found = BTreeSet::new();
+        let mut open = self.reads[self.block].clone();
+        while let Some(block) = open.pop() {
+            if found.insert(block) && !stops(&self.before[block]) {
+                open.extend(&self.reads[block]);
+            }
+        }
+        found
+    }
+
+    fn move_drivers(&mut self, tau: f64) {
+        self.line
+            .drivers(tau, &self.held, self.motions, &mut self.jets);
+        for (value, jet) in self.drivers.iter_mut().zip(&self.jets) {
+            *value = jet.value;
+        }
+    }
+
+    /// Moves blocks to τ, where the drivers are: along tangent and curvature from the start, then by
+    /// Newton–Raphson. A block on a crossing follows it, and goes on beyond its end.
+    fn move_blocks(&mut self, tau: f64) -> Option<()> {
+        let off = tau - self.start;
+        let tangent = &self.origin_tangent;
+        let (velocity, acceleration) = (tangent.velocity(), tangent.acceleration());
+        let mut state = BlockState {
             system: self.system,
             targets: self.targets,
             drivers: &self.drivers,
             at: &mut self.at,
             tangent: &mut self.tangent,
         };
-        (self.before, state)
-    }
-
-    /// Moves all blocks before it to τ: along tangent and curvature from the start, then by
-    /// Newton–Raphson. A block on a crossing follows it, and goes on beyond its end.
-    fn move_before(&mut self, tau: f64) -> Option<()> {
-        self.line
-            .drivers(tau, &self.held, self.motions, &mut self.jets);
-        for (value, jet) in self.drivers.iter_mut().zip(&self.jets) {
-            *value = jet.value;
-        }
-        let off = tau - self.start;
-        let tangent = &self.origin_tangent;
-        let (velocity, acceleration) = (tangent.velocity(), tangent.acceleration());
-        for &column in self.before.iter().flat_map(|block| block.columns()) {
-            let ahead = off * (velocity[column] + 0.5 * off * acceleration[column]);
-            self.at.set_coordinate(column, self.origin[column] + ahead);
-        }
-        let jets = std::mem::take(&mut self.jets);
-        let (before, mut state) = self.state();
-        let stands = before.iter_mut().all(|block| {
-            let is_beyond = matches!(
-                &*block,
-                BlockSolver::InterpolatedBlock(interpolated) if interpolated.start_beyond(&mut state)
-            );
+        for &index in &self.moved {
+            let block = &mut self.before[index];
+            for &column in block.columns() {
+                let ahead = off * (velocity[column] + 0.5 * off * acceleration[column]);
+                let predicted = self.origin[column] + ahead;
+                state.at.set_coordinate(column, predicted);
+            }
             let block = match block {
-                BlockSolver::InterpolatedBlock(interpolated) if is_beyond => &mut interpolated.block,
+                BlockSolver::InterpolatedBlock(on) if on.start_beyond(&mut state) => &mut on.block,
                 block => block,
             };
-            let closed = block.close(&mut state, MAX_ITERATIONS).is_ok()
-                && block.factorise(&mut state).is_ok();
-            if closed {
-                block.solve_rates(&mut state, &jets);
+            block.close(&mut state, MAX_ITERATIONS).ok()?;
+            block.factorise(&mut state).ok()?;
+            block.solve_rates(&mut state, &self.jets);
+            let [velocity, acceleration] = [state.tangent.velocity(), state.tangent.acceleration()];
+            let mut columns = block.columns().iter();
+            if !columns.all(|&column| (velocity[column] + acceleration[column]).is_finite()) {
+                return None;
             }
-            closed
-        });
-        self.jets = jets;
-        (stands && self.tangent.is_finite()).then_some(())
+        }
+        Some(())
     }
 
     fn driver(&self, row: usize) -> Jet {
@@ -289,21 +335,20 @@ impl<'a> ReducedEquation<'a> {
     }
 
     /// Returns F″\[V, V\], one entry per row, for V = (v, w p′).
-    fn quadratic(&self, v: &DVector<f64>, w: f64) -> DVector<f64> {
-        let mut rates: Vec<f64> = self
-            .tangent
-            .velocity()
-            .iter()
-            .map(|rate| w * rate)
-            .collect();
+    fn quadratic(&mut self, v: &DVector<f64>, w: f64) -> DVector<f64> {
+        let rates = &mut self.combined;
+        for &column in &self.read_columns {
+            rates[column] = w * self.tangent.velocity()[column];
+        }
         for ((&column, scale), v) in self.columns.iter().zip(&self.scales).zip(v.iter()) {
             rates[column] = scale * v;
         }
+        let rates = &*rates;
         DVector::from_iterator(
             self.rows.len(),
             self.rows.iter().map(|&row| {
                 let equation = &self.system.equations()[row];
-                equation.constraint.quadratic(&self.at, &rates) * equation.row_scale(&self.at)
+                equation.constraint.quadratic(&self.at, rates) * equation.row_scale(&self.at)
             }),
         )
     }
@@ -379,7 +424,7 @@ impl<'a> ReducedEquation<'a> {
     }
 
     fn derivatives(
-        &self,
+        &mut self,
         alpha: f64,
         tau: f64,
         bordered: &DMatrix<f64>,
@@ -432,7 +477,7 @@ impl<'a> ReducedEquation<'a> {
 
     /// Returns the first and second derivative of z along the line on the motion through the
     /// regular pose `point`, where the block is, unscaled.
-    pub(super) fn rates(&self, point: &ReducedPoint) -> [Vec<f64>; 2] {
+    pub(super) fn rates(&mut self, point: &ReducedPoint) -> [Vec<f64>; 2] {
         let order = self.rows.len();
         let slope = -point.first[1] / point.first[0];
         let velocity = &point.tangents[1] + slope * &point.tangents[0];
@@ -459,7 +504,7 @@ impl<'a> ReducedEquation<'a> {
 
     /// Returns whether a block before it comes from a crossing.
     pub(super) fn reads_crossings(&self) -> bool {
-        let mut blocks = self.before.iter();
+        let mut blocks = self.moved.iter().map(|&block| &self.before[block]);
         blocks.any(|block| matches!(block, BlockSolver::InterpolatedBlock(_)))
     }
 
@@ -473,8 +518,10 @@ impl<'a> ReducedEquation<'a> {
             .fold(1.0, f64::max)
     }
 
-    /// Returns q at the last place; unknowns behind the block are those of the start.
-    pub(super) fn pose(&self) -> Vec<f64> {
+    /// Returns q at τ, the last place; unknowns that it does not read are those of the start.
+    pub(super) fn pose(&mut self, tau: f64) -> Vec<f64> {
+        // The block itself stays there. A block before it may be singular at this place.
+        let _ = self.move_all_before(tau);
         let mut q = self.origin.clone();
         self.at.copy_pose(&mut q);
         q
