@@ -8,7 +8,7 @@ use super::crossings::enter_crossing;
 use super::interpolate::crossing_of;
 use super::locate::{Finding, ROUNDING, SingularKind, find};
 use super::near::{NEAR, block_jacobian, bodies_of, near_singular};
-use super::reduced::{Line, ReducedEquation};
+use super::reduced::{Line, ReducedEquation, ReducedPoint, Workspace};
 use crate::kinematics::error::in_line;
 use crate::kinematics::model::Model;
 use crate::kinematics::path::Path;
@@ -119,7 +119,8 @@ pub(in crate::kinematics) fn look_ahead(
         return Ok(None);
     };
     if is_next {
-        let point = singular_point(model, state, path, s, block);
+        let mut work = Workspace::new(state);
+        let point = singular_point(model, state, (path, s), block, &mut work);
         return_to_regular_pose(model, state);
         if let Some(point) = point {
             return Err(Box::new(point));
@@ -172,6 +173,7 @@ fn enter_near_crossings(
         return None;
     }
     let mut ahead = None;
+    let mut work = Workspace::new(state);
     for &block in &near {
         let Some(driver) = model.only_driver(block) else {
             continue;
@@ -181,7 +183,8 @@ fn enter_near_crossings(
         let value = state.pose.drivers[driver.index()];
         let direction = drivers.map_or(0.0, |drivers| drivers[driver.index()].first());
         let line = Line::Driver(driver);
-        let Some(mut equation) = ReducedEquation::new(model, state, block, line, value) else {
+        let equation = ReducedEquation::new(model, state, block, line, value, &mut work);
+        let Some(mut equation) = equation else {
             continue;
         };
         let finding = find(&mut equation, REACH);
@@ -234,33 +237,35 @@ pub(in crate::kinematics) fn find_end(
     let least = near.iter().map(|&block| regularity(block));
     let least = least.fold(f64::INFINITY, f64::min);
     near.retain(|&block| regularity(block) <= SAME_ORDER * least);
-    let located = near
-        .iter()
-        .filter_map(|&block| singular_point(model, state, path, s, block));
-    let located: Vec<_> = located.collect();
-    return_to_regular_pose(model, state);
+    let mut work = Workspace::new(state);
+    let mut located: Vec<(usize, f64)> = Vec::new();
+    for &block in &near {
+        let line = Line::Path(path);
+        let equation = ReducedEquation::new(model, state, block, line, s, &mut work);
+        let place = equation.and_then(|mut equation| place_ahead(&mut equation, s));
+        located.extend(place.map(|(_, point)| (block, point.tau - s)));
+    }
     // A block and those that read it lose rank at the same place: the first of them counts.
-    let nearest = located.iter().map(|point| point.s - s);
+    let nearest = located.iter().map(|(_, off)| *off);
     let nearest = nearest.fold(f64::INFINITY, f64::min);
     let farthest = nearest + ALIKE * nearest.abs() + AT_ONE_PLACE;
-    let is_nearest = |point: &SingularPoint| point.s - s <= farthest;
-    let found = located.into_iter().find(is_nearest).or_else(|| {
+    let first = located.iter().find(|(_, off)| *off <= farthest);
+    let found =
+        first.and_then(|(block, _)| singular_point(model, state, (path, s), *block, &mut work));
+    return_to_regular_pose(model, state);
+    let found = found.or_else(|| {
         near.iter()
             .find_map(|&block| loss_of_ranks(model, state, s, block))
     });
     found.map(Box::new)
 }
 
-/// Returns the singular position of a block ahead on a path.
-fn singular_point(
-    model: &mut Model,
-    state: &State,
-    path: &Path,
+/// Returns the kind and the place of the singular position ahead of `s` on a path.
+fn place_ahead(
+    equation: &mut ReducedEquation<'_>,
     s: f64,
-    block: usize,
-) -> Option<SingularPoint> {
-    let mut equation = ReducedEquation::new(model, state, block, Line::Path(path), s)?;
-    let (kind, point) = match find(&mut equation, REACH_TO_END) {
+) -> Option<(SingularKind, Box<ReducedPoint>)> {
+    let (kind, point) = match find(equation, REACH_TO_END) {
         Finding::End(kind, point) => (kind, point),
         Finding::Crossing(point, _) => (SingularKind::ChangePoint, point),
         Finding::Nothing => return None,
@@ -268,9 +273,20 @@ fn singular_point(
     // Rounding may overshoot the point by as much as the residual can resolve: Newton–Raphson
     // accepts a residual that has stopped falling at a hundred times its rounding.
     let behind = s - point.tau;
-    if behind > JUST_BEHIND && behind * point.first[1].abs() > 4.0 * ROUNDING {
-        return None;
-    }
+    let is_behind = behind > JUST_BEHIND && behind * point.first[1].abs() > 4.0 * ROUNDING;
+    (!is_behind).then_some((kind, point))
+}
+
+/// Returns the singular position of a block ahead on a path.
+fn singular_point(
+    model: &mut Model,
+    state: &State,
+    (path, s): (&Path, f64),
+    block: usize,
+    work: &mut Workspace,
+) -> Option<SingularPoint> {
+    let mut equation = ReducedEquation::new(model, state, block, Line::Path(path), s, work)?;
+    let (kind, point) = place_ahead(&mut equation, s)?;
     let (q, drivers) = (equation.pose(point.tau), equation.drivers().to_vec());
     Some(SingularPoint {
         drivers,

@@ -57,6 +57,32 @@ const MAX_CORRECTIONS: usize = 20;
 /// neighbourhood.
 const LARGEST_STEP: f64 = 0.5;
 
+/// Vectors over all unknowns that the reduced equations of several blocks take in turn. Only the
+/// entries of the unknowns of a block and of those that it reads are set for its equation.
+pub(super) struct Workspace {
+    at: Configuration,
+    /// Rates along the line of the unknowns of the blocks moved: at the last place and at the start.
+    tangent: Rates,
+    origin_tangent: Rates,
+    /// Rates of one combination of motions.
+    combined: Vec<f64>,
+    /// Index of each unknown in its block.
+    place_of: Vec<Option<usize>>,
+}
+
+impl Workspace {
+    pub(super) fn new(state: &State) -> Self {
+        let unknowns = state.pose.q.len();
+        Self {
+            at: state.at.clone(),
+            tangent: Rates::new(unknowns),
+            origin_tangent: Rates::new(unknowns),
+            combined: vec![0.0; unknowns],
+            place_of: vec![None; unknowns],
+        }
+    }
+}
+
 /// The reduced equation of a block.
 pub(super) struct ReducedEquation<'a> {
     system: &'a System,
@@ -73,22 +99,15 @@ pub(super) struct ReducedEquation<'a> {
     /// The unknowns that the rows read, of the blocks before it.
     read_columns: Vec<usize>,
     pub(super) columns: Vec<usize>,
-    /// Index of each unknown of the mechanism in the block.
-    place_of: Vec<Option<usize>>,
     /// Scale factor of each unknown \[m or rad\].
     scales: Vec<f64>,
-    at: Configuration,
-    /// Rates along the line of the unknowns of the blocks moved.
-    tangent: Rates,
-    /// Rates of one combination of motions, of the unknowns in the rows.
-    combined: Vec<f64>,
-    held: Vec<f64>,
+    work: &'a mut Workspace,
+    held: &'a [f64],
     jets: Vec<Jet>,
     drivers: Vec<f64>,
-    /// The start: τ, the pose there, and its rates along the line.
+    /// The start: τ and the pose there.
     pub(super) start: f64,
-    origin: Vec<f64>,
-    origin_tangent: Rates,
+    origin: &'a [f64],
     /// z⁰, and the bordering vectors, all scaled.
     b: DVector<f64>,
     c: DVector<f64>,
@@ -124,10 +143,10 @@ impl<'a> ReducedEquation<'a> {
         block: usize,
         line: Line<'a>,
         start: f64,
+        work: &'a mut Workspace,
     ) -> Option<Self> {
         let State {
             pose,
-            at,
             targets,
             motions,
             ..
@@ -139,11 +158,12 @@ impl<'a> ReducedEquation<'a> {
         let columns = own.columns().to_vec();
         let read = reads[block].iter();
         let read_columns = read.flat_map(|&read| before[read].columns()).copied();
-        let mut place_of = vec![None; system.unknowns()];
+        work.place_of.fill(None);
         for (place, &column) in columns.iter().enumerate() {
-            place_of[column] = Some(place);
+            work.place_of[column] = Some(place);
+            work.at.set_coordinate(column, pose.q[column]);
         }
-        let size = at.size();
+        let size = work.at.size();
         let order = columns.len();
         let mut reduced = Self {
             system,
@@ -161,23 +181,19 @@ impl<'a> ReducedEquation<'a> {
                 .map(|&column| system.column_scale(column, size))
                 .collect(),
             columns,
-            place_of,
-            at: at.clone(),
-            tangent: Rates::new(system.unknowns()),
-            combined: vec![0.0; system.unknowns()],
-            held: pose.drivers.clone(),
+            work,
+            held: &pose.drivers,
             jets: vec![Jet::constant(0.0); pose.drivers.len()],
             drivers: pose.drivers.clone(),
             start,
-            origin: pose.q.clone(),
-            origin_tangent: Rates::new(system.unknowns()),
+            origin: &pose.q,
             b: DVector::zeros(order),
             c: DVector::zeros(order),
             epsilon: 0.0,
             speed: 0.0,
         };
         reduced.move_all_before(start)?;
-        reduced.origin_tangent = reduced.tangent.clone();
+        reduced.keep_tangent();
         reduced.border()?;
         let point = reduced.solve(0.0, start)?;
         reduced.speed = reduced.scaled_speed(&point.tangents[1]);
@@ -186,17 +202,32 @@ impl<'a> ReducedEquation<'a> {
 
     /// Returns the largest scaled rate of the unknowns of the blocks moved and of these of its own.
     pub(super) fn scaled_speed(&self, own: &DVector<f64>) -> f64 {
-        let size = self.at.size();
+        let size = self.work.at.size();
         let moved = self.moved.iter();
         let read = moved.flat_map(|&block| self.before[block].columns());
         let read = read.map(|&column| {
-            (self.tangent.velocity()[column] / self.system.column_scale(column, size)).abs()
+            (self.work.tangent.velocity()[column] / self.system.column_scale(column, size)).abs()
         });
         let driven = self.rows.iter().map(|&row| {
-            let scale = self.system.equations()[row].row_scale(&self.at);
+            let scale = self.system.equations()[row].row_scale(&self.work.at);
             (self.driver(row).first() * scale).abs()
         });
         read.chain(driven).fold(own.amax(), f64::max)
+    }
+
+    /// Keeps the rates of all blocks moved, at the start.
+    fn keep_tangent(&mut self) {
+        let Workspace {
+            tangent,
+            origin_tangent,
+            ..
+        } = &mut *self.work;
+        let (velocity, acceleration) = origin_tangent.both_mut();
+        let moved = self.moved.iter();
+        for &column in moved.flat_map(|&block| self.before[block].columns()) {
+            velocity[column] = tangent.velocity()[column];
+            acceleration[column] = tangent.acceleration()[column];
+        }
     }
 
     /// Takes for b and c the singular vectors of the Jacobian at the start, by two steps of
@@ -252,7 +283,7 @@ impl<'a> ReducedEquation<'a> {
 
     fn move_drivers(&mut self, tau: f64) {
         self.line
-            .drivers(tau, &self.held, self.motions, &mut self.jets);
+            .drivers(tau, self.held, self.motions, &mut self.jets);
         for (value, jet) in self.drivers.iter_mut().zip(&self.jets) {
             *value = jet.value;
         }
@@ -262,14 +293,19 @@ impl<'a> ReducedEquation<'a> {
     /// Newton–Raphson. A block on a crossing follows it, and goes on beyond its end.
     fn move_blocks(&mut self, tau: f64) -> Option<()> {
         let off = tau - self.start;
-        let tangent = &self.origin_tangent;
-        let (velocity, acceleration) = (tangent.velocity(), tangent.acceleration());
+        let Workspace {
+            at,
+            tangent,
+            origin_tangent,
+            ..
+        } = &mut *self.work;
+        let (velocity, acceleration) = (origin_tangent.velocity(), origin_tangent.acceleration());
         let mut state = BlockState {
             system: self.system,
             targets: self.targets,
             drivers: &self.drivers,
-            at: &mut self.at,
-            tangent: &mut self.tangent,
+            at,
+            tangent,
         };
         for &index in &self.moved {
             let block = &mut self.before[index];
@@ -301,11 +337,11 @@ impl<'a> ReducedEquation<'a> {
     /// Returns F and J, scaled.
     fn equations(&self) -> (DVector<f64>, DMatrix<f64>) {
         let values = Values {
-            at: &self.at,
+            at: &self.work.at,
             targets: self.targets,
             drivers: &self.drivers,
         };
-        let place = |column: usize| self.place_of[column];
+        let place = |column: usize| self.work.place_of[column];
         let order = self.columns.len();
         self.system.dense_rows(&self.rows, order, place, values)
     }
@@ -319,36 +355,41 @@ impl<'a> ReducedEquation<'a> {
                 self.rows.iter().map(|&row| {
                     let equation = &self.system.equations()[row];
                     let mut gradient = Gradient::new();
-                    equation.constraint.gradient(&self.at, &mut gradient);
+                    equation.constraint.gradient(&self.work.at, &mut gradient);
                     let read = gradient
                         .entries()
-                        .filter(|(column, _)| self.place_of[*column].is_none());
+                        .filter(|(column, _)| self.work.place_of[*column].is_none());
                     let sum: f64 = read.map(|(column, value)| value * rates[column]).sum();
-                    (sum - order(self.driver(row))) * equation.row_scale(&self.at)
+                    (sum - order(self.driver(row))) * equation.row_scale(&self.work.at)
                 }),
             )
         };
         [
-            rate(self.tangent.velocity(), |jet| jet.first()),
-            rate(self.tangent.acceleration(), |jet| jet.second()),
+            rate(self.work.tangent.velocity(), |jet| jet.first()),
+            rate(self.work.tangent.acceleration(), |jet| jet.second()),
         ]
     }
 
     /// Returns F″\[V, V\], one entry per row, for V = (v, w p′).
     fn quadratic(&mut self, v: &DVector<f64>, w: f64) -> DVector<f64> {
-        let rates = &mut self.combined;
+        let Workspace {
+            at,
+            tangent,
+            combined: rates,
+            ..
+        } = &mut *self.work;
         for &column in &self.read_columns {
-            rates[column] = w * self.tangent.velocity()[column];
+            rates[column] = w * tangent.velocity()[column];
         }
         for ((&column, scale), v) in self.columns.iter().zip(&self.scales).zip(v.iter()) {
             rates[column] = scale * v;
         }
-        let rates = &*rates;
+        let (at, rates) = (&*at, &*rates);
         DVector::from_iterator(
             self.rows.len(),
             self.rows.iter().map(|&row| {
                 let equation = &self.system.equations()[row];
-                equation.constraint.quadratic(&self.at, rates) * equation.row_scale(&self.at)
+                equation.constraint.quadratic(at, rates) * equation.row_scale(at)
             }),
         )
     }
@@ -375,7 +416,7 @@ impl<'a> ReducedEquation<'a> {
                 return None;
             }
             let largest = (self.columns.iter().zip(&self.scales))
-                .map(|(&column, scale)| (self.at.coordinate(column) / scale).abs())
+                .map(|(&column, scale)| (self.work.at.coordinate(column) / scale).abs())
                 .fold(1.0, f64::max);
             self.epsilon += step[order];
             // Rounding limits the unknowns before it limits ε, which to first order does not change
@@ -385,8 +426,8 @@ impl<'a> ReducedEquation<'a> {
             }
             last = length;
             for (k, &column) in self.columns.iter().enumerate() {
-                let value = self.at.coordinate(column) + step[k] * self.scales[k];
-                self.at.set_coordinate(column, value);
+                let value = self.work.at.coordinate(column) + step[k] * self.scales[k];
+                self.work.at.set_coordinate(column, value);
             }
         }
         None
@@ -395,7 +436,7 @@ impl<'a> ReducedEquation<'a> {
     /// Puts the block's unknowns back to the start.
     pub(super) fn return_to_start(&mut self) {
         for &column in &self.columns {
-            self.at.set_coordinate(column, self.origin[column]);
+            self.work.at.set_coordinate(column, self.origin[column]);
         }
         self.epsilon = 0.0;
     }
@@ -405,7 +446,7 @@ impl<'a> ReducedEquation<'a> {
         let moved = self.columns.iter().zip(&self.scales).zip(self.c.iter());
         moved
             .map(|((&column, scale), c)| {
-                c * (self.at.coordinate(column) - self.origin[column]) / scale
+                c * (self.work.at.coordinate(column) - self.origin[column]) / scale
             })
             .sum()
     }
@@ -468,7 +509,7 @@ impl<'a> ReducedEquation<'a> {
             z: self
                 .columns
                 .iter()
-                .map(|&column| self.at.coordinate(column))
+                .map(|&column| self.work.at.coordinate(column))
                 .collect(),
             bend,
             bordered: lu,
@@ -514,7 +555,7 @@ impl<'a> ReducedEquation<'a> {
         let origin = self.columns.iter().zip(&self.scales);
         origin
             .filter(|(column, _)| !self.system.is_angle(**column))
-            .map(|(&column, scale)| (self.at.coordinate(column) / scale).abs())
+            .map(|(&column, scale)| (self.work.at.coordinate(column) / scale).abs())
             .fold(1.0, f64::max)
     }
 
@@ -522,8 +563,12 @@ impl<'a> ReducedEquation<'a> {
     pub(super) fn pose(&mut self, tau: f64) -> Vec<f64> {
         // The block itself stays there. A block before it may be singular at this place.
         let _ = self.move_all_before(tau);
-        let mut q = self.origin.clone();
-        self.at.copy_pose(&mut q);
+        let mut q = self.origin.to_vec();
+        let moved = self.moved.iter();
+        let moved = moved.flat_map(|&block| self.before[block].columns());
+        for &column in self.columns.iter().chain(moved) {
+            q[column] = self.work.at.coordinate(column);
+        }
         q
     }
 
