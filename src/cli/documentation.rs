@@ -35,6 +35,9 @@ const MOST_PLACED: usize = 24_000;
 /// Most bodies of a mechanism whose picture has a motion of its own; the picture of a larger one
 /// uses the poses of the film.
 const MOST_SWEPT: usize = 1_000;
+/// Most bodies of a mechanism that is moved: a larger one is shown at its start, without the ranges
+/// of its drivers, so that an export takes seconds.
+const MOST_MOVED: usize = 2_000;
 /// Time that the film takes for a turn of the driver, or for its range there and back \[s\].
 const PERIOD: f64 = 4.0;
 /// Coarser settings than those of `biela range`: steps of three degrees, few turns, and lengths
@@ -56,8 +59,25 @@ pub(super) struct Shown {
     pub(super) animation: Animation,
     /// The motion, in words.
     pub(super) moving: String,
-    /// The range of each driver that is an input, from the mechanism's pose.
-    ranges: Vec<Option<Range>>,
+    limits: Vec<Limits>,
+}
+
+/// The limits of a driver, from the mechanism's pose.
+enum Limits {
+    /// The file prescribes its motion.
+    Prescribed,
+    /// The mechanism is too large for a search.
+    NotSearched,
+    Found(Box<Range>),
+}
+
+impl Limits {
+    fn range(&self) -> Option<&Range> {
+        match self {
+            Self::Found(range) => Some(range),
+            Self::Prescribed | Self::NotSearched => None,
+        }
+    }
 }
 
 /// Returns the picture and the page of a mechanism, and the licences, for an FMU of a version of the
@@ -118,7 +138,7 @@ pub(super) fn documents(
 }
 
 /// Moves a mechanism along its prescribed motions, or over the range of its first driver that is
-/// an angle, or else of its first driver.
+/// an angle, or else of its first driver. One of more than [`MOST_MOVED`] bodies stays at rest.
 pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Error> {
     let own = Arc::clone(solver.mechanism());
     // A large mechanism is moved less, so that its page takes seconds.
@@ -128,19 +148,27 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
         turns: RANGE.turns.min(fewer as u32).max(1),
         ..RANGE
     };
-    let ranges: Vec<Option<Range>> = (own.drivers.iter().enumerate())
-        .map(|(index, driver)| {
-            let is_input = driver.motion().is_none();
-            is_input.then(|| solver.range(DriverId(index), &settings))
+    let is_moved = own.bodies.len() <= MOST_MOVED;
+    let limits: Vec<Limits> = (own.drivers.iter().enumerate())
+        .map(|(index, driver)| match driver.motion() {
+            Some(_) => Limits::Prescribed,
+            None if !is_moved => Limits::NotSearched,
+            None => Limits::Found(Box::new(solver.range(DriverId(index), &settings))),
         })
         .collect();
     let home = solver.pose().clone();
     let simulation = &own.simulation;
     let mut driven = Mechanism::clone(&own);
     let angle = |driver: &usize| own.drivers[*driver].coordinate.kind.is_angle();
-    let inputs = || (0..ranges.len()).filter(|driver| ranges[*driver].is_some());
+    let inputs = || (0..limits.len()).filter(|driver| limits[*driver].range().is_some());
     let first = inputs().find(angle).or_else(|| inputs().next());
-    let (duration, moving) = match first.and_then(|first| Some((first, ranges[first].as_ref()?))) {
+    let (duration, moving) = match first.and_then(|first| Some((first, limits[first].range()?))) {
+        _ if !is_moved => (
+            0.0,
+            format!(
+                "At its start: a mechanism of more than {MOST_MOVED} bodies is not moved here."
+            ),
+        ),
         _ if own.uses_time() => (
             simulation.stop - simulation.start,
             "The prescribed motion, until the stop time.".to_owned(),
@@ -183,7 +211,7 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     Ok(Shown {
         animation: film.animation(&motion),
         moving,
-        ranges,
+        limits,
     })
 }
 
@@ -256,7 +284,7 @@ fn page(
             ("about", &about(mechanism)),
             ("moving", &escape(&shown.moving)),
             ("player", &(player(&shown.animation) + live_page)),
-            ("drivers", &drivers(mechanism, &shown.ranges)),
+            ("drivers", &drivers(mechanism, &shown.limits)),
             ("parameters", &parameters(&variables, values)),
             ("outputs", &outputs(&variables)),
             ("version", env!("CARGO_PKG_VERSION")),
@@ -289,31 +317,30 @@ fn about(mechanism: &Mechanism) -> String {
     format!("<dl class=\"about\">{html}</dl>")
 }
 
-fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
-    let rows = mechanism.drivers.iter().zip(ranges).enumerate();
-    let rows = rows.map(|(index, (driver, range))| {
+fn drivers(mechanism: &Mechanism, limits: &[Limits]) -> String {
+    let rows = mechanism.drivers.iter().zip(limits).enumerate();
+    let rows = rows.map(|(index, (driver, limits))| {
         let kind = driver.coordinate.kind;
         let value = |value: f64| with_unit(kind, value);
         let start = match driver.source {
             DriverSource::Input { start } => value(start),
             DriverSource::Motion(_) => String::new(),
         };
-        let limits = match range {
-            None => "prescribed by the file: no input".to_owned(),
-            Some(Range {
-                upper: End::Turns(1),
-                ..
-            }) => "turns fully".to_owned(),
-            Some(Range {
-                upper: End::Turns(turns),
-                ..
-            }) => {
-                format!("turns fully; the mechanism is back after {turns} turns")
+        let limits = match limits {
+            Limits::Prescribed => "prescribed by the file: no input".to_owned(),
+            Limits::NotSearched => {
+                format!("biela range --driver {} finds them", driver.name)
             }
-            Some(range) => {
-                let end = |end| end_text(end, driver, DriverId(index));
-                format!("down to {}; up to {}", end(&range.lower), end(&range.upper))
-            }
+            Limits::Found(range) => match range.upper {
+                End::Turns(1) => "turns fully".to_owned(),
+                End::Turns(turns) => {
+                    format!("turns fully; the mechanism is back after {turns} turns")
+                }
+                _ => {
+                    let end = |end| end_text(end, driver, DriverId(index));
+                    format!("down to {}; up to {}", end(&range.lower), end(&range.upper))
+                }
+            },
         };
         [driver.name.clone(), start, limits.replace('`', "")]
     });

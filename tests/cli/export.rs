@@ -47,6 +47,39 @@ fn an_fmu_carries_its_picture_and_its_page() {
 }
 
 #[test]
+fn the_page_of_a_large_mechanism_shows_it_at_its_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let page_of = |welded: usize| {
+        let mut text = std::fs::read_to_string("mechanisms/pendulum.toml").unwrap();
+        for k in 0..welded {
+            text += &format!(
+                "[bodies.plate{k}]\nmarkers = {{ O = [0, 0] }}\nestimate = [{k}, 0, 0]\n\
+                 [joints.weld{k}]\ntype = \"weld\"\nmarkers = [\"ground.O\", \"plate{k}.O\"]\n"
+            );
+        }
+        let file = folder.path().join("large.toml");
+        std::fs::write(&file, text).unwrap();
+        let path = folder.path().join("large.fmu");
+        let [file, fmu] = [&file, &path].map(|path| path.to_str().unwrap());
+        biela(&["export", file, "-o", fmu]).success();
+        let mut archive = zip::ZipArchive::new(std::fs::File::open(&path).unwrap()).unwrap();
+        let mut page = String::new();
+        let mut entry = archive.by_name("documentation/index.html").unwrap();
+        entry.read_to_string(&mut page).unwrap();
+        page
+    };
+    // With the pendulum itself two thousand.
+    let moving = page_of(1_999);
+    assert!(moving.contains("turns fully") && moving.contains(" over its range"));
+    let still = page_of(2_000);
+    assert!(!still.contains("turns fully") && !still.contains(" over its range"));
+    assert!(
+        still.contains("At its start: a mechanism of more than 2000 bodies is not moved here.")
+    );
+    assert!(still.contains("biela range --driver swing_angle finds them"));
+}
+
+#[test]
 fn export_is_reproducible_and_dated_only_on_demand() {
     let folder = tempfile::tempdir().unwrap();
     let export = |name: &str, epoch: Option<&str>| {
