@@ -1,142 +1,174 @@
-//! A moving mechanism with the derivatives of its motion along a direction.
+//! A moving mechanism on numbers with derivatives.
 //!
-//! The direction is in the space of values, velocities and accelerations of the drivers, and of the
-//! parameters. Each quantity is a [`Varied`] number, on which the relations are evaluated; its
-//! arithmetic differentiates exactly.
+//! Relations are formulas on these numbers, written once for each purpose:
+//!
+//! | number | derivatives | use |
+//! |---|---|---|
+//! | [`Varied`] | in time, each with its change along a direction in the space of drivers and parameters | [`Sensitivity`](super::Sensitivity) |
+//! | [`Enclosed`] | along a sub-step, each enclosed over all of it | the certificate while parameters move |
 
 use super::configuration::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
 use crate::mechanism::{
-    BodyId, Dual, Expression, MarkerId, Mechanism, Number, ParameterId, ProfileAlong, Taylor,
+    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, Number, ParameterId,
+    ProfileAlong, Taylor,
 };
 
-/// A quantity with its first two derivatives in time, each with its change along the direction.
+/// A quantity with its first two derivatives in time, each with its change along a direction.
 pub type Varied = Taylor<Dual, 2>;
 
-/// A vector in the plane.
-pub type VariedVector = [Varied; 2];
+/// Bounds of a quantity and of its derivatives along a sub-step.
+pub type Enclosed = Jet3<Interval>;
+
+/// A number that the quantities of a moving mechanism are made of.
+pub trait Moving: Number {
+    /// The profile of a cam.
+    type Profile: std::fmt::Debug;
+
+    /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ). Derivatives that do not
+    /// exist are not finite.
+    fn radius(profile: &Self::Profile, theta: Self) -> [Self; 2];
+}
+
+impl Moving for Varied {
+    type Profile = ProfileAlong;
+
+    fn radius(profile: &ProfileAlong, theta: Self) -> [Self; 2] {
+        of_contour(profile.radius(theta.value), theta)
+    }
+}
+
+impl Moving for Enclosed {
+    /// A profile that no parameter moves.
+    type Profile = CamProfile;
+
+    fn radius(profile: &CamProfile, theta: Self) -> [Self; 2] {
+        let middle = theta.value.midpoint();
+        let reach = (theta.value - Interval::point(middle)).magnitude();
+        let Some(bounds) = profile.in_force.bounds(middle, reach) else {
+            return [Self::unknown(); 2];
+        };
+        let mut radius = bounds.radius;
+        if bounds.jumps {
+            radius.derivatives[2] = Interval::unknown();
+        }
+        of_contour(radius, theta)
+    }
+}
+
+/// Returns R(θ) and R′(θ) for a moving θ, from R and its derivatives with respect to θ.
+fn of_contour<S: Number, const N: usize>(
+    radius: Jet3<S>,
+    theta: Taylor<S, N>,
+) -> [Taylor<S, N>; 2] {
+    let [r_1, r_2, r_3] = radius.derivatives;
+    [
+        theta.chain(radius.value, |_| [r_1, r_2, r_3]),
+        theta.chain(r_1, |_| [r_2, r_3, S::unknown()]),
+    ]
+}
 
 /// A marker in a moving mechanism.
 #[derive(Clone, Copy, Debug)]
-pub struct VariedMarker {
+pub struct VariedMarker<N = Varied> {
     /// P \[m\].
-    pub point: VariedVector,
+    pub point: [N; 2],
     /// u, the marker's x-axis.
-    pub axis: VariedVector,
+    pub axis: [N; 2],
     /// theta, its direction \[rad\].
-    pub theta: Varied,
+    pub theta: N,
 }
 
 /// A marker in its body's frame.
 #[derive(Clone, Copy, Debug)]
-struct VariedFrame {
+struct VariedFrame<N> {
     body: Option<BodyId>,
-    position: VariedVector,
-    angle: Varied,
-    axis: VariedVector,
+    position: [N; 2],
+    angle: N,
+    axis: [N; 2],
 }
 
-/// The bodies of a moving mechanism: the counterpart of [`Configuration`](super::Configuration) on
-/// [`Varied`] numbers.
+/// The bodies of a moving mechanism: the counterpart of [`Configuration`](super::Configuration).
 #[derive(Clone, Debug)]
-pub struct VariedConfiguration {
-    frames: Vec<VariedFrame>,
-    coefficients: Vec<Varied>,
-    profiles: Vec<ProfileAlong>,
+pub struct VariedConfiguration<N = Varied> {
+    frames: Vec<VariedFrame<N>>,
+    coefficients: Vec<N>,
     bodies: usize,
     /// The generalized coordinates, then the joint unknowns.
-    q: Vec<Varied>,
+    q: Vec<N>,
     /// The x-axes of the bodies, which follow from q.
-    axes: Vec<VariedVector>,
+    axes: Vec<[N; 2]>,
 }
 
-impl VariedConfiguration {
-    /// Makes a mechanism that moves with q, q̇ and q̈ and whose parameters change; the changes of q
-    /// are still to be set.
-    pub(super) fn new(
-        mechanism: &Mechanism,
-        coefficients: &[Coefficient],
-        profiles: &[CamProfile],
-        parameter: impl Fn(ParameterId) -> Varied,
-        motion: impl Iterator<Item = [f64; 3]>,
-    ) -> Self {
-        let value = |expression: &Expression| evaluate(expression, &parameter);
-        let frames = mechanism.markers.iter().map(|marker| {
-            let angle = value(&marker.angle);
-            VariedFrame {
-                body: marker.body,
-                position: marker.position.each_ref().map(value),
-                angle,
-                axis: direction(angle),
-            }
-        });
-        let q = motion.map(|motion| {
-            let [value, first, second] = motion.map(Dual::constant);
-            Varied::new(value, [first, second])
-        });
-        let change = |p| parameter(p).value.first();
-        let bodies = mechanism.bodies.len();
-        let mut made = Self {
-            frames: frames.collect(),
-            coefficients: coefficients.iter().map(|c| value(&c.expression)).collect(),
-            profiles: profiles.iter().map(|p| p.in_force.along(change)).collect(),
-            bodies,
-            q: q.collect(),
-            axes: vec![[Varied::constant(0.0); 2]; bodies],
-        };
-        made.turn_bodies();
-        made
-    }
+/// A moving mechanism, as relations read it.
+#[derive(Debug)]
+pub struct VariedMechanism<'a, N: Moving = Varied> {
+    /// Its bodies.
+    pub bodies: &'a VariedConfiguration<N>,
+    /// The profiles of its cams.
+    pub profiles: &'a [N::Profile],
+}
 
-    /// Makes the axes of all bodies those that q gives.
-    fn turn_bodies(&mut self) {
-        for body in 0..self.bodies {
-            self.turn_body(body);
+impl<N: Number> VariedConfiguration<N> {
+    /// Makes a mechanism at rest at the origin; numbers and q are still to be set.
+    pub(super) fn new(mechanism: &Mechanism, coefficients: usize, unknowns: usize) -> Self {
+        let zero = N::constant(0.0);
+        let axis = [N::constant(1.0), zero];
+        let frames = mechanism.markers.iter().map(|marker| VariedFrame {
+            body: marker.body,
+            position: [zero; 2],
+            angle: zero,
+            axis,
+        });
+        let bodies = mechanism.bodies.len();
+        Self {
+            frames: frames.collect(),
+            coefficients: vec![zero; coefficients],
+            bodies,
+            q: vec![zero; unknowns],
+            axes: vec![axis; bodies],
         }
     }
 
-    fn turn_body(&mut self, body: usize) {
-        self.axes[body] = direction(self.q[3 * body + 2]);
+    /// Evaluates the numbers in the relations for these parameters. Allocates nothing.
+    pub(super) fn set_parameters(
+        &mut self,
+        mechanism: &Mechanism,
+        coefficients: &[Coefficient],
+        parameter: &impl Fn(ParameterId) -> N,
+    ) {
+        for (frame, marker) in self.frames.iter_mut().zip(&mechanism.markers) {
+            frame.position = marker.position.each_ref().map(|s| evaluate(s, parameter));
+            frame.angle = evaluate(&marker.angle, parameter);
+            frame.axis = direction(frame.angle);
+        }
+        for (value, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
+            *value = evaluate(&coefficient.expression, parameter);
+        }
     }
 
     /// Returns q\[column\].
     #[must_use]
-    pub fn coordinate(&self, column: usize) -> Varied {
+    pub fn coordinate(&self, column: usize) -> N {
         self.q[column]
     }
 
-    /// Sets the changes of q (order 0), q̇ (order 1) or q̈ (order 2).
-    pub(super) fn change(&mut self, order: usize, changes: &[f64]) {
-        for (q, change) in self.q.iter_mut().zip(changes) {
-            let coefficient = match order {
-                0 => &mut q.value,
-                _ => &mut q.derivatives[order - 1],
-            };
-            coefficient.derivatives = [*change];
-        }
-        self.turn_bodies();
-    }
-
-    /// Returns the mechanism at rest, with the same changes of q and of the parameters.
-    pub(super) fn at_rest(&self) -> Self {
-        let mut still = self.clone();
-        for q in &mut still.q {
-            *q = Varied::fixed(q.value);
-        }
-        still.turn_bodies();
-        still
-    }
-
-    /// Sets the rate of q\[column\], which does not change along the direction.
-    pub(super) fn set_velocity(&mut self, column: usize, velocity: f64) {
-        self.q[column].derivatives[0] = Dual::constant(velocity);
+    /// Sets q\[column\].
+    pub(super) fn set_coordinate(&mut self, column: usize, q: N) {
+        self.q[column] = q;
         if column < 3 * self.bodies && column % 3 == 2 {
-            self.turn_body(column / 3);
+            self.axes[column / 3] = direction(q);
         }
+    }
+
+    /// Returns a marker's point and angle in its body's frame.
+    pub(super) fn local(&self, marker: MarkerId) -> ([N; 2], N) {
+        let frame = &self.frames[marker.index()];
+        (frame.position, frame.angle)
     }
 
     /// Returns a marker.
     #[must_use]
-    pub fn marker(&self, marker: MarkerId) -> VariedMarker {
+    pub fn marker(&self, marker: MarkerId) -> VariedMarker<N> {
         let VariedFrame {
             body,
             position,
@@ -160,79 +192,108 @@ impl VariedConfiguration {
 
     /// Returns a body's angle \[rad\], zero for ground.
     #[must_use]
-    pub fn phi(&self, body: Option<BodyId>) -> Varied {
-        body.map_or(Varied::constant(0.0), |body| self.q[3 * body.index() + 2])
+    pub fn phi(&self, body: Option<BodyId>) -> N {
+        body.map_or(N::constant(0.0), |body| self.q[3 * body.index() + 2])
     }
 
     /// Returns a coefficient.
     #[must_use]
-    pub fn coefficient(&self, id: CoefficientId) -> Varied {
+    pub fn coefficient(&self, id: CoefficientId) -> N {
         self.coefficients[id.0]
     }
 
     /// Returns a joint unknown.
     #[must_use]
-    pub fn joint_unknown(&self, id: JointUnknownId) -> Varied {
+    pub fn joint_unknown(&self, id: JointUnknownId) -> N {
         self.q[3 * self.bodies + id.0]
     }
+}
 
+impl VariedConfiguration {
+    /// Returns the mechanism at rest, with the values that it has.
+    pub(super) fn at_rest(&self) -> Self {
+        let mut still = self.clone();
+        for column in 0..still.q.len() {
+            still.set_coordinate(column, Varied::fixed(still.q[column].value));
+        }
+        still
+    }
+
+    /// Sets the changes of q (order 0), q̇ (order 1) or q̈ (order 2) along the direction.
+    pub(super) fn change(&mut self, order: usize, changes: &[f64]) {
+        for (column, change) in changes.iter().enumerate() {
+            let mut q = self.q[column];
+            let coefficient = match order {
+                0 => &mut q.value,
+                _ => &mut q.derivatives[order - 1],
+            };
+            coefficient.derivatives = [*change];
+            self.set_coordinate(column, q);
+        }
+    }
+}
+
+impl<N: Moving> std::ops::Deref for VariedMechanism<'_, N> {
+    type Target = VariedConfiguration<N>;
+
+    fn deref(&self) -> &Self::Target {
+        self.bodies
+    }
+}
+
+impl<N: Moving> VariedMechanism<'_, N> {
     /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ).
     #[must_use]
-    pub fn radius(&self, profile: ProfileId, theta: Varied) -> [Varied; 2] {
-        let radius = self.profiles[profile.0].radius(theta.value);
-        let [r_1, r_2, r_3] = radius.derivatives;
-        [
-            theta.chain(radius.value, |_| [r_1, r_2, r_3]),
-            theta.chain(r_1, |_| [r_2, r_3, Dual::unknown()]),
-        ]
+    pub fn radius(&self, profile: ProfileId, theta: N) -> [N; 2] {
+        N::radius(&self.profiles[profile.0], theta)
     }
 }
 
 /// Returns the value of an expression without time.
-pub(super) fn evaluate(
+pub(super) fn evaluate<N: Number>(
     expression: &Expression,
-    parameter: &impl Fn(ParameterId) -> Varied,
-) -> Varied {
-    expression.evaluate(parameter, Varied::constant(0.0))
+    parameter: &impl Fn(ParameterId) -> N,
+) -> N {
+    expression.evaluate(parameter, N::constant(0.0))
 }
 
 /// Returns the unit vector at an angle \[rad\].
 #[must_use]
-pub fn direction(theta: Varied) -> VariedVector {
+pub fn direction<N: Number>(theta: N) -> [N; 2] {
     [theta.cos(), theta.sin()]
 }
 
 /// Returns a vector turned by an angle.
 #[must_use]
-pub fn rotate(angle: Varied, vector: VariedVector) -> VariedVector {
+pub fn rotate<N: Number>(angle: N, vector: [N; 2]) -> [N; 2] {
     turned(direction(angle), vector)
 }
 
 /// Returns a vector turned as the x-axis is to the unit vector (cos, sin).
-fn turned([cos, sin]: VariedVector, [x, y]: VariedVector) -> VariedVector {
+fn turned<N: Number>([cos, sin]: [N; 2], [x, y]: [N; 2]) -> [N; 2] {
     [cos * x - sin * y, sin * x + cos * y]
 }
 
 /// Returns a vector turned by a quarter turn.
 #[must_use]
-pub fn quarter_turn([x, y]: VariedVector) -> VariedVector {
+pub fn quarter_turn<N: Number>([x, y]: [N; 2]) -> [N; 2] {
     [-y, x]
 }
 
 /// Returns a + b.
 #[must_use]
-pub fn add(a: VariedVector, b: VariedVector) -> VariedVector {
+pub fn add<N: Number>(a: [N; 2], b: [N; 2]) -> [N; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
 
 /// Returns a − b.
 #[must_use]
-pub fn subtract(a: VariedVector, b: VariedVector) -> VariedVector {
+pub fn subtract<N: Number>(a: [N; 2], b: [N; 2]) -> [N; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
 /// Returns a · b.
 #[must_use]
-pub fn dot(a: VariedVector, b: VariedVector) -> Varied {
+pub fn dot<N: Number>(a: [N; 2], b: [N; 2]) -> N {
     a[0] * b[0] + a[1] * b[1]
 }

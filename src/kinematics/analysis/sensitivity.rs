@@ -19,9 +19,10 @@ use crate::kinematics::newton::Rejected;
 use crate::kinematics::path::Rates;
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::Target;
-use crate::kinematics::variation::{Varied, VariedConfiguration, evaluate};
+use crate::kinematics::variation::{Varied, VariedConfiguration, VariedMechanism, evaluate};
 use crate::mechanism::{
-    DerivedMeasure, DriverId, Dual, Jet, Mechanism, MotionInForce, Order, ParameterId, Signal,
+    DerivedMeasure, DriverId, Dual, Jet, Mechanism, MotionInForce, Order, ParameterId,
+    ProfileAlong, Signal,
 };
 
 /// A direction in the space of drivers and parameters.
@@ -60,6 +61,7 @@ impl Direction {
 #[derive(Debug)]
 pub struct Sensitivity<'a> {
     at: VariedConfiguration,
+    profiles: Vec<ProfileAlong>,
     drivers: Vec<Varied>,
     parameters: Vec<Varied>,
     measures: &'a [Box<dyn Constraint>],
@@ -77,8 +79,11 @@ impl Sensitivity<'_> {
     }
 
     /// Returns the mechanism along the direction.
-    pub(in crate::kinematics) fn configuration(&self) -> &VariedConfiguration {
-        &self.at
+    pub(in crate::kinematics) fn mechanism(&self) -> VariedMechanism<'_> {
+        VariedMechanism {
+            bodies: &self.at,
+            profiles: &self.profiles,
+        }
     }
 
     /// Returns a driver along the direction.
@@ -116,7 +121,7 @@ impl Sensitivity<'_> {
         match signal {
             Signal::Body(body, component) => self.at.coordinate(3 * body.index() + component),
             Signal::Marker(marker, component) => self.at.marker(marker).point[component],
-            Signal::Measure(index) => self.measures[index].along(&self.at),
+            Signal::Measure(index) => self.measures[index].along(&self.mechanism()),
             Signal::Motion(driver) => self.driver_value(driver),
         }
     }
@@ -222,7 +227,16 @@ impl State {
         let motion = motion
             .zip(rates.acceleration())
             .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
-        let mut at = system.varied(parameter, motion, self.at.profiles());
+        let mut at = system.varied();
+        system.vary_parameters(&mut at, &parameter);
+        for (column, motion) in motion.enumerate() {
+            let [value, first, second] = motion.map(Dual::constant);
+            at.set_coordinate(column, Varied::new(value, [first, second]));
+        }
+        let profiles = self.at.profiles().iter();
+        let profiles: Vec<_> = profiles
+            .map(|profile| profile.in_force.along(|p| parameter(p).value.first()))
+            .collect();
 
         let targets: Vec<_> = system
             .equations()
@@ -236,8 +250,12 @@ impl State {
         let mut change = vec![0.0; system.unknowns()];
         for order in 0..=highest as usize {
             let rows = system.equations().iter().zip(&targets);
+            let varied = VariedMechanism {
+                bodies: &at,
+                profiles: &profiles,
+            };
             for (side, (equation, target)) in side.iter_mut().zip(rows) {
-                let error = *target - equation.constraint.along(&at);
+                let error = *target - equation.constraint.along(&varied);
                 *side = [error.value, error.first(), error.second()][order].first();
             }
             factors.solve(system, &self.at, &side, &mut change);
@@ -248,6 +266,7 @@ impl State {
         }
         Ok(Sensitivity {
             at,
+            profiles,
             drivers,
             parameters,
             measures: &model.measures,

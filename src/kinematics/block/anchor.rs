@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::load::add_force;
-use crate::kinematics::certificate::{ChordBound, Pivots, Slide, StepBounds, sagitta};
+use crate::kinematics::certificate::{Change, ChordBound, Pivots, Slide, StepBounds, sagitta};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
 use crate::mechanism::{MarkerId, Mechanism};
 
@@ -117,6 +117,14 @@ impl Anchor {
         self.carrier(bounds).map_or(0.0, |(bound, length)| {
             bound.point_deviation + bound.arc_deviation(length) + self.rounding(frames)
         })
+    }
+
+    /// Bounds the further deviation that a change of its point in the body's frame makes \[m\].
+    pub(super) fn moved(&self, change: Change, bounds: &StepBounds) -> f64 {
+        match self.carrier(bounds) {
+            Some((bound, _)) => bound.deviation_of(change),
+            None => change.deviation(0.0),
+        }
     }
 
     /// Returns the part of that deviation that is uncertain: of the pivot and of the angle \[m\].

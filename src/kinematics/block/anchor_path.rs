@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::anchor::compact;
-use crate::kinematics::certificate::{ChordBound, ParameterBounds, Pivots, StepBounds};
+use crate::kinematics::certificate::{Change, ChordBound, ParameterBounds, Pivots, StepBounds};
 use crate::kinematics::configuration::{BodyPose, Configuration, rotate};
 use crate::mechanism::{MarkerId, Mechanism};
 
@@ -175,12 +175,33 @@ impl AnchorPath {
             .sum()
     }
 
-    /// Bounds the change of the path by moving parameters \[m\].
-    pub(super) fn slack(&self, parameters: &ParameterBounds) -> f64 {
-        let ends = self.legs.iter().flat_map(|leg| [leg.from, leg.to]);
-        ends.flatten()
-            .map(|marker| parameters.position(marker))
-            .sum()
+    /// Bounds the deviation of the path from its chord by moving parameters \[m\].
+    pub(super) fn moved(&self, bounds: &StepBounds, parameters: &ParameterBounds) -> f64 {
+        let deviation = |leg: &Leg| {
+            let ends = [leg.from, leg.to].into_iter().flatten();
+            let change = ends.fold(Change::default(), |sum, marker| {
+                sum + parameters.position(marker)
+            });
+            leg.body.map_or_else(
+                || change.deviation(0.0),
+                |body| bounds.body(body).deviation_of(change),
+            )
+        };
+        self.legs.iter().map(deviation).sum()
+    }
+
+    /// Returns the path at the start of the sub-step, less what it is there for the numbers at the
+    /// end \[m\].
+    pub(super) fn start(&self, bounds: &StepBounds, parameters: &ParameterBounds) -> Vector2<f64> {
+        let start = |leg: &Leg| {
+            let [from, to] = [leg.from, leg.to]
+                .map(|end| end.map_or_else(Vector2::zeros, |marker| parameters.start(marker)));
+            leg.body.map_or(to - from, |body| {
+                let bound = bounds.body(body);
+                rotate(bound.cos, bound.sin, to - from)
+            })
+        };
+        self.legs.iter().map(start).sum()
     }
 }
 

@@ -52,8 +52,8 @@ impl ExplicitUnknown {
     }
 
     /// Bounds the deviation of the unknown from its chord, which is at `before` at the start of the
-    /// sub-step.
-    fn deviation(&self, state: &BlockState<'_>, step: &mut Step<'_>, before: f64) -> f64 {
+    /// sub-step. `None` without a bound.
+    fn deviation(&self, state: &BlockState<'_>, step: &Step<'_>, before: f64) -> Option<f64> {
         let ([row], [column]) = (self.row, self.column);
         let now = state.at.coordinate(column);
         let target = state.system.target(row, state.targets, state.drivers);
@@ -64,23 +64,16 @@ impl ExplicitUnknown {
             terms += ratio * (step.from[column].abs() + state.at.coordinate(column).abs());
             deviation += ratio * step.deviation(column);
         }
-        if let Target::Driver(driver) = state.system.equations()[row].target {
+        let equation = &state.system.equations()[row];
+        if let Target::Driver(driver) = equation.target {
             deviation += step.bounds.drivers[driver.index()] * self.per_own.abs();
         }
-        if step.bounds.parameters.moving {
-            // The coefficients and the rest of the row move too; their effect is evaluated at the
-            // start only.
-            step.bounds.checked = true;
-            let drivers = &step.bounds.parameters.drivers_before;
-            let target_before = state.system.target(row, state.targets, drivers);
-            let known = self.known.iter();
-            let moved: f64 = known
-                .map(|&(column, ratio)| ratio * (state.at.coordinate(column) - step.from[column]))
-                .sum();
-            let open = now - before + moved - (target - target_before) * self.per_own;
-            deviation += 2.0 * open.abs();
+        let parameters = &step.bounds.parameters;
+        if parameters.moves(row) {
+            let bend = parameters.bend(row, equation, state.at.profiles())?;
+            deviation += 0.125 * bend * self.per_own.abs();
         }
-        deviation + ROUNDING * terms
+        Some(deviation + ROUNDING * terms)
     }
 }
 
@@ -133,7 +126,9 @@ impl SolveBlock for ExplicitUnknown {
         let frame = state.at.frames()[body];
         self.locate(state);
         let before = step.from[column];
-        let deviation = self.deviation(state, step, before);
+        let Some(deviation) = self.deviation(state, step, before) else {
+            return Err(step.bounds.reject());
+        };
         let moved = state.at.coordinate(column) - before;
         step.bounds.set_unknown(column, moved, deviation);
         if component == 2 {

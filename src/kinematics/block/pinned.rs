@@ -123,9 +123,12 @@ impl SolveBlock for PinnedBody {
         let mut point_deviation = self.anchor.deviation(bounds, state.at.frames());
         if let Some(parameters) = bounds.moving_parameters() {
             let angle = parameters.angle(parts.angle) + parameters.angle(parts.reference);
-            angle_deviation += 2.0 * (angle + parameters.constant(parts.rows[2]));
-            point_deviation +=
-                2.0 * (parameters.position(parts.pin) + parameters.position(parts.anchor));
+            angle_deviation +=
+                angle.deviation(0.0) + parameters.target(parts.rows[2]).deviation(0.0);
+            let pin = parameters.position(parts.pin);
+            point_deviation += self.anchor.moved(parameters.position(parts.anchor), bounds)
+                + pin.deviation(phi - before.phi)
+                + pin.value * angle_deviation;
         }
         *bounds.body_mut(parts.body) = ChordBound {
             cos: before.cos,

@@ -5,6 +5,7 @@ mod branches;
 mod certify;
 mod equation;
 mod forces;
+mod moved;
 mod parameters;
 mod rates;
 

@@ -30,7 +30,7 @@ mod tests;
 
 use nalgebra::Vector2;
 
-pub(super) use parameters::ParameterBounds;
+pub(super) use parameters::{Change, ParameterBounds};
 
 use super::newton::Rejected;
 use super::system::System;
@@ -270,6 +270,11 @@ impl ChordBound {
     #[inline(always)]
     pub(super) fn arc_deviation(&self, length: f64) -> f64 {
         length * (sagitta(self.turn) + self.angle_deviation)
+    }
+
+    /// Bounds the deviation from its chord of a vector that changes so in the body's frame.
+    pub(super) fn deviation_of(&self, change: Change) -> f64 {
+        change.deviation(self.turn) + change.value * self.angle_deviation
     }
 }
 

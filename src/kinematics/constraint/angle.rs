@@ -1,10 +1,10 @@
 //! The angle between two markers.
 
-use super::definition::{Constraint, Dimension, Incidence, TurnEffect};
+use super::definition::{Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
 use super::region::Region;
 use crate::kinematics::configuration::Configuration;
-use crate::kinematics::variation::{Varied, VariedConfiguration};
+use crate::kinematics::variation::{Moving, VariedMechanism};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = theta_j − theta_i, with whole turns.
@@ -14,6 +14,12 @@ pub struct Angle {
     pub from: MarkerId,
     /// Marker j.
     pub to: MarkerId,
+}
+
+impl Formula for Angle {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        at.marker(self.to).theta - at.marker(self.from).theta
+    }
 }
 
 impl Constraint for Angle {
@@ -33,10 +39,6 @@ impl Constraint for Angle {
     /// Returns zero: the angle is linear in q.
     fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
         0.0
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        at.marker(self.to).theta - at.marker(self.from).theta
     }
 
     fn is_linear(&self, _mechanism: &Mechanism) -> bool {

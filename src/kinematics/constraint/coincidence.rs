@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 
-use super::definition::{Axis, Constraint, Dimension, Incidence, is_origin_or_ground};
+use super::definition::{Axis, Constraint, Dimension, Formula, Incidence, is_origin_or_ground};
 use super::gradient::Gradient;
 use super::point::centripetal;
 use super::region::{Region, centripetal_bound};
 use crate::kinematics::configuration::Configuration;
-use crate::kinematics::variation::{Varied, VariedConfiguration};
+use crate::kinematics::variation::{Moving, VariedMechanism};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = the x or y component of P_j − P_i in ground axes.
@@ -33,6 +33,13 @@ impl Coincidence {
     }
 }
 
+impl Formula for Coincidence {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let component = self.axis as usize;
+        at.marker(self.to).point[component] - at.marker(self.from).point[component]
+    }
+}
+
 impl Constraint for Coincidence {
     fn dimension(&self) -> Dimension {
         Dimension::Length
@@ -55,11 +62,6 @@ impl Constraint for Coincidence {
         let (i, j) = (at.marker(self.from), at.marker(self.to));
         self.direction()
             .dot(&(centripetal(j, q_dot) - centripetal(i, q_dot)))
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let component = self.axis as usize;
-        at.marker(self.to).point[component] - at.marker(self.from).point[component]
     }
 
     fn is_linear(&self, mechanism: &Mechanism) -> bool {

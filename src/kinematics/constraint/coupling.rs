@@ -1,10 +1,10 @@
 //! Two wheels that turn in a fixed ratio: gears, and wheels on a belt.
 
-use super::definition::{Constraint, Dimension, Incidence, TurnEffect};
+use super::definition::{Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
 use super::region::Region;
 use crate::kinematics::configuration::{CoefficientId, Configuration};
-use crate::kinematics::variation::{Varied, VariedConfiguration};
+use crate::kinematics::variation::{Moving, VariedMechanism};
 use crate::mechanism::{BodyId, MarkerId, Mechanism};
 
 /// c = (theta_j − phi_c) − k (theta_i − phi_c), with k = ±r_i / r_j and whole turns.
@@ -32,6 +32,20 @@ impl Coupling {
     }
 }
 
+impl Formula for Coupling {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let phi = at.phi(self.carrier);
+        let [first, second] = [self.from, self.to].map(|marker| at.marker(marker).theta - phi);
+        let [i, j] = self.sizes.map(|size| at.coefficient(size));
+        let turned = i / j * first;
+        if self.opposite {
+            second + turned
+        } else {
+            second - turned
+        }
+    }
+}
+
 impl Constraint for Coupling {
     fn dimension(&self) -> Dimension {
         Dimension::Angle
@@ -53,18 +67,6 @@ impl Constraint for Coupling {
     /// Returns zero: the relation is linear in q.
     fn quadratic(&self, _at: &Configuration, _q_dot: &[f64]) -> f64 {
         0.0
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let phi = at.phi(self.carrier);
-        let [first, second] = [self.from, self.to].map(|marker| at.marker(marker).theta - phi);
-        let [i, j] = self.sizes.map(|size| at.coefficient(size));
-        let turned = i / j * first;
-        if self.opposite {
-            second + turned
-        } else {
-            second - turned
-        }
     }
 
     fn turn_effect(&self) -> TurnEffect {

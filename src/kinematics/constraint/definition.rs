@@ -7,8 +7,10 @@ use nalgebra::Vector2;
 use super::gradient::Gradient;
 use super::region::Region;
 use crate::kinematics::configuration::{self, Configuration, JointUnknownId, perp};
-use crate::kinematics::variation::{self, Varied, VariedConfiguration, VariedVector};
-use crate::mechanism::{Expression, MarkerId, Mechanism, ParameterId};
+use crate::kinematics::variation::{
+    self, Enclosed, Moving, Varied, VariedConfiguration, VariedMechanism,
+};
+use crate::mechanism::{Expression, MarkerId, Mechanism, Number, ParameterId, Taylor};
 
 /// The dimension of a relation, which decides its unit and the scale of its residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +40,7 @@ impl Axis {
     }
 
     /// Returns this axis of a moving frame whose x-axis is `u`.
-    pub(super) fn of_varied(self, u: VariedVector) -> VariedVector {
+    pub(super) fn of_varied<N: Number>(self, u: [N; 2]) -> [N; 2] {
         match self {
             Self::X => u,
             Self::Y => variation::quarter_turn(u),
@@ -57,8 +59,46 @@ pub enum TurnEffect {
     Proportional,
 }
 
-/// A scalar relation c(q) between bodies.
-pub trait Constraint: Any + std::fmt::Debug + Send + Sync {
+/// A relation as a formula on the numbers of a moving mechanism.
+pub trait Formula {
+    /// Returns c and its derivatives for a motion.
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N;
+}
+
+/// A [`Formula`] on one type of numbers.
+pub trait Along<N: Moving> {
+    /// Returns c and its derivatives for a motion.
+    fn along(&self, at: &VariedMechanism<'_, N>) -> N;
+}
+
+impl<N: Moving, F: Formula> Along<N> for F {
+    fn along(&self, at: &VariedMechanism<'_, N>) -> N {
+        self.evaluate(at)
+    }
+}
+
+/// Returns the derivative of a relation by q\[column\], the bodies being at rest.
+pub(in crate::kinematics) fn partial<S: Number, const N: usize>(
+    relation: &(impl Along<Taylor<S, N>> + ?Sized),
+    bodies: &mut VariedConfiguration<Taylor<S, N>>,
+    profiles: &[<Taylor<S, N> as Moving>::Profile],
+    column: usize,
+) -> S
+where
+    Taylor<S, N>: Moving,
+{
+    let q = bodies.coordinate(column);
+    // At rest but for a unit rate of this unknown, the rate of the relation is its derivative.
+    bodies.set_coordinate(column, Taylor::linear(q.value, S::constant(1.0)));
+    let rate = relation.along(&VariedMechanism { bodies, profiles });
+    bodies.set_coordinate(column, q);
+    rate.first()
+}
+
+/// A scalar relation c(q) between bodies. It is a [`Formula`], too.
+pub trait Constraint:
+    Any + Along<Varied> + Along<Enclosed> + std::fmt::Debug + Send + Sync
+{
     /// Returns the dimension of c.
     fn dimension(&self) -> Dimension;
 
@@ -80,9 +120,6 @@ pub trait Constraint: Any + std::fmt::Debug + Send + Sync {
     /// Returns q̇ᵀ (∂²c/∂q²) q̇, which is c̈ for q̈ = 0; Eq. 3.6.11 has it with the opposite sign.
     /// `q_dot` is as long as q.
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64;
-
-    /// Returns c and its derivatives in time for a motion, each with its change along a direction.
-    fn along(&self, at: &VariedConfiguration) -> Varied;
 
     /// Returns whether c contains the contour of a cam, which may have pieces; all else is analytic.
     fn has_contour(&self) -> bool {

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector2;
 
-use super::definition::{Constraint, Dimension, Incidence};
+use super::definition::{Constraint, Dimension, Formula, Incidence};
 use super::gradient::Gradient;
 use super::point::{centripetal, point_velocity};
 use super::region::{Region, centripetal_bound, chord, speed_bound};
 use crate::kinematics::configuration::Configuration;
-use crate::kinematics::variation::{Varied, VariedConfiguration, subtract};
-use crate::mechanism::{MarkerId, Mechanism, Number};
+use crate::kinematics::variation::{Moving, VariedMechanism, subtract};
+use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = ‖P_j − P_i‖.
 ///
@@ -32,6 +32,13 @@ impl Distance {
         } else {
             (0.0, Vector2::x())
         }
+    }
+}
+
+impl Formula for Distance {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let [x, y] = subtract(at.marker(self.to).point, at.marker(self.from).point);
+        x.hypot(y)
     }
 }
 
@@ -60,11 +67,6 @@ impl Constraint for Distance {
         // The square of the component of ḋ across e, without cancellation.
         let across = e.perp(&d_dot);
         across * across / length + e.dot(&d_ddot)
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let [x, y] = subtract(at.marker(self.to).point, at.marker(self.from).point);
-        x.hypot(y)
     }
 
     fn admits(&self, value: f64) -> bool {

@@ -98,6 +98,18 @@ impl Gradient {
         self.entries().map(|(k, value)| value * vector[k]).sum()
     }
 
+    /// Replaces each entry by a function of its index in q and its value.
+    pub(in crate::kinematics) fn replace(&mut self, mut of: impl FnMut(usize, f64) -> f64) {
+        for (body, part) in &mut self.parts[..self.len] {
+            for (k, value) in part.iter_mut().enumerate() {
+                *value = of(3 * *body + k, *value);
+            }
+        }
+        if let Some((column, value)) = &mut self.joint_unknown {
+            *value = of(*column, *value);
+        }
+    }
+
     fn part(&mut self, body: Option<BodyId>) -> Option<&mut [f64; 3]> {
         let body = body?.index();
         let known = self.parts[..self.len].iter().position(|(b, _)| *b == body);

@@ -7,12 +7,12 @@
 //!
 //! | file | subject |
 //! |---|---|
-//! | `definition` | [`Constraint`], the trait, with [`Dimension`], [`TurnEffect`], [`Incidence`] |
+//! | `definition` | the traits [`Constraint`] and [`Formula`], with [`Dimension`], [`TurnEffect`], [`Incidence`] |
 //! | `gradient` | [`Gradient`], a row of the Jacobian |
 //! | `region`, `point` | bounds around a pose; velocities and accelerations of points |
 //! | the others | a relation each |
 //!
-//! To add a relation, add a file with its `impl Constraint` and list it in `samples` of `tests.rs`,
+//! To add a relation, add a file with its `impl Constraint` and `impl Formula`, and list it in `samples` of `tests.rs`,
 //! where all tests of relations run on it.
 
 mod angle;
@@ -33,7 +33,10 @@ pub use angle::Angle;
 pub use cam::{Contour, FlatContact, FlatFace, KnifeEdge, Roller, RollerContact};
 pub use coincidence::Coincidence;
 pub use coupling::Coupling;
-pub use definition::{Axis, Constraint, Dimension, Incidence, JointUnknown, TurnEffect};
+pub(super) use definition::partial;
+pub use definition::{
+    Along, Axis, Constraint, Dimension, Formula, Incidence, JointUnknown, TurnEffect,
+};
 pub use distance::Distance;
 pub use gradient::Gradient;
 pub use point::{point_acceleration, point_velocity};

@@ -3,13 +3,13 @@
 use nalgebra::Vector2;
 
 use super::definition::{
-    Axis, Constraint, Dimension, Incidence, axis_components, is_origin_or_ground,
+    Axis, Constraint, Dimension, Formula, Incidence, axis_components, is_origin_or_ground,
 };
 use super::gradient::Gradient;
 use super::point::{angular_velocity, centripetal, point_velocity};
 use super::region::{Region, centripetal_bound, speed_bound};
 use crate::kinematics::configuration::{Configuration, perp};
-use crate::kinematics::variation::{Varied, VariedConfiguration, dot, subtract};
+use crate::kinematics::variation::{Moving, VariedMechanism, dot, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · (P_j − P_i) with the x- or y-axis e of marker k.
@@ -28,6 +28,13 @@ pub struct Projection {
 impl Projection {
     fn direction(&self, at: &Configuration) -> Vector2<f64> {
         self.axis.of(at.marker(self.axes).axis)
+    }
+}
+
+impl Formula for Projection {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let d = subtract(at.marker(self.to).point, at.marker(self.from).point);
+        dot(self.axis.of_varied(at.marker(self.axes).axis), d)
     }
 }
 
@@ -68,11 +75,6 @@ impl Constraint for Projection {
         let d_dot = point_velocity(j, q_dot) - point_velocity(i, q_dot);
         let d_ddot = centripetal(j, q_dot) - centripetal(i, q_dot);
         -omega * omega * e.dot(&d) + 2.0 * omega * perp(e).dot(&d_dot) + e.dot(&d_ddot)
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let d = subtract(at.marker(self.to).point, at.marker(self.from).point);
-        dot(self.axis.of_varied(at.marker(self.axes).axis), d)
     }
 
     /// Returns true for points that no angle moves on an axis at rest with literal components.

@@ -1,11 +1,11 @@
 //! A pinion that rolls on a rack.
 
-use super::definition::{Axis, Constraint, Dimension, Incidence, TurnEffect};
+use super::definition::{Axis, Constraint, Dimension, Formula, Incidence, TurnEffect};
 use super::gradient::Gradient;
 use super::projection::Projection;
 use super::region::Region;
 use crate::kinematics::configuration::{CoefficientId, Configuration};
-use crate::kinematics::variation::{Varied, VariedConfiguration};
+use crate::kinematics::variation::{Moving, VariedMechanism};
 use crate::mechanism::{MarkerId, Mechanism, RackSide};
 
 /// c = s + σ r (theta_p − theta_r) with the coordinate s of the pinion's centre along the rack
@@ -43,6 +43,17 @@ impl RackAndPinion {
     }
 }
 
+impl Formula for RackAndPinion {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let turn = at.marker(self.pinion).theta - at.marker(self.rack).theta;
+        let arc = at.coefficient(self.radius) * turn;
+        match self.side {
+            RackSide::Above => self.travel().evaluate(at) + arc,
+            RackSide::Below => self.travel().evaluate(at) - arc,
+        }
+    }
+}
+
 impl Constraint for RackAndPinion {
     fn dimension(&self) -> Dimension {
         Dimension::Length
@@ -61,15 +72,6 @@ impl Constraint for RackAndPinion {
 
     fn quadratic(&self, at: &Configuration, q_dot: &[f64]) -> f64 {
         self.travel().quadratic(at, q_dot)
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let turn = at.marker(self.pinion).theta - at.marker(self.rack).theta;
-        let arc = at.coefficient(self.radius) * turn;
-        match self.side {
-            RackSide::Above => self.travel().along(at) + arc,
-            RackSide::Below => self.travel().along(at) - arc,
-        }
     }
 
     fn turn_effect(&self) -> TurnEffect {

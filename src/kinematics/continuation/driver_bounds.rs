@@ -30,7 +30,13 @@ pub(super) fn bound_drivers(
         parameters
             .drivers_before
             .copy_from_slice(&state.pose.drivers);
-        if !parameters.bound(system, &state.at, &state.targets, path, part) {
+        if !parameters.bound(
+            system,
+            (&state.at, &state.targets),
+            &state.pose.parameters,
+            path,
+            part,
+        ) {
             return Err(None);
         }
     }

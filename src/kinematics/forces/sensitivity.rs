@@ -12,14 +12,14 @@ use super::quantity::ForceQuantity;
 use super::solve::{Forces, KnownMotion};
 use super::wrench::{Reported, Wrench};
 use crate::kinematics::analysis::Sensitivity;
-use crate::kinematics::constraint::{Constraint, Gradient};
+use crate::kinematics::constraint::{Constraint, Gradient, partial};
 use crate::kinematics::error::Error;
 use crate::kinematics::model::Model;
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
 use crate::kinematics::variation::{Varied, VariedConfiguration};
-use crate::mechanism::{DriverId, Dual, Load, Number, ParameterId};
+use crate::mechanism::{DriverId, Dual, Load, Number, ParameterId, ProfileAlong};
 
 /// The derivatives of all forces along a direction.
 #[derive(Debug)]
@@ -53,23 +53,24 @@ impl ForceSensitivity {
     }
 }
 
-/// The mechanism at rest along the direction, in which one coordinate moves at unit rate.
-struct Probe {
+/// The mechanism at rest along the direction.
+struct Probe<'a> {
     at: VariedConfiguration,
+    profiles: &'a [ProfileAlong],
     gradient: Gradient,
 }
 
-impl Probe {
+impl Probe<'_> {
     /// Returns the gradient of a relation with its change.
     fn entries(&mut self, relation: &dyn Constraint, state: &State) -> Entries {
         self.gradient.clear();
         relation.gradient(&state.at, &mut self.gradient);
         let columns: Vec<usize> = self.gradient.entries().map(|(column, _)| column).collect();
         let entry = |column| {
-            self.at.set_velocity(column, 1.0);
-            let rate = relation.along(&self.at).first();
-            self.at.set_velocity(column, 0.0);
-            (column, rate)
+            (
+                column,
+                partial(relation, &mut self.at, self.profiles, column),
+            )
         };
         columns.into_iter().map(entry).collect()
     }
@@ -90,7 +91,7 @@ impl Forces {
     ) -> Result<ForceSensitivity, Error> {
         let system = &model.system;
         let mechanism = std::sync::Arc::clone(&self.mechanism);
-        let at = sensitivity.motion.configuration();
+        let at = sensitivity.motion.mechanism();
         let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
         let mut masses = Masses::<Dual>::new(&mechanism, &parameter);
         for (body, of_body) in masses.bodies.iter_mut().enumerate() {
@@ -99,6 +100,7 @@ impl Forces {
         }
         let mut probe = Probe {
             at: at.at_rest(),
+            profiles: at.profiles,
             gradient: Gradient::new(),
         };
         let (mut demand, sizes, mut potential) =
@@ -124,13 +126,13 @@ impl Forces {
         self.factors
             .factorise(system, &state.at)
             .map_err(|Rejected| SINGULAR_HERE)?;
-        let multipliers = self.varied_multipliers(system, state, at, &rows, &demand)?;
+        let multipliers = self.varied_multipliers(system, state, at.bodies, &rows, &demand)?;
         let drivers = self.varied_drivers(system, state, sensitivity, &masses, &rows, &multipliers);
         let joints = 0..mechanism.joints.len();
         let reactions = joints.map(|joint| {
             let own = self.rows.joints[joint].iter();
             let own = own.map(|&row| (&*rows[row], multipliers[row]));
-            self.varied_reaction(at, joint, own)
+            self.varied_reaction(at.bodies, joint, own)
                 .map(|value| value.first())
         });
         let held = self.rows.constraints.iter();
@@ -150,10 +152,10 @@ impl Forces {
         state: &State,
         motion: KnownMotion<'_>,
         sensitivity: &Along<'_>,
-        probe: &mut Probe,
+        probe: &mut Probe<'_>,
     ) -> (Vec<Dual>, Vec<[Dual; 3]>, Dual) {
         let zero = Dual::constant(0.0);
-        let at = sensitivity.motion.configuration();
+        let at = sensitivity.motion.mechanism();
         let parameter = |p: ParameterId| sensitivity.motion.parameter_value(p);
         let inputs = motion.inputs.iter().zip(sensitivity.inputs);
         let inputs: Vec<_> = inputs.map(|(&is, &by)| Dual::new(is, [by])).collect();
@@ -168,7 +170,7 @@ impl Forces {
         for (applied, definition) in self.applied.list.iter().zip(&self.mechanism.forces) {
             match (&applied.place, &definition.load) {
                 (Place::Coordinate(relation), Load::Coordinate { law, .. }) => {
-                    let value = relation.along(at);
+                    let value = relation.along(&at);
                     let coordinate = [value.value, value.first()];
                     let [force, stored] = applied.along(law.as_ref(), coordinate, &around);
                     energy += stored;

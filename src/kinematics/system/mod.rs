@@ -13,12 +13,12 @@ use std::sync::Arc;
 use joint::JointParts;
 pub(super) use linearise::{RowValue, Values};
 
-use crate::kinematics::configuration::{CamProfile, Configuration};
+use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, TurnEffect};
 use crate::kinematics::linear::nan_or_larger;
-use crate::kinematics::variation::{Varied, VariedConfiguration};
+use crate::kinematics::variation::VariedConfiguration;
 use crate::kinematics::{Element, Error};
-use crate::mechanism::{DriverId, Expression, Jet, Mechanism, Motion, ParameterId};
+use crate::mechanism::{DriverId, Expression, Jet, Mechanism, Motion, Number, ParameterId};
 
 /// The target of c(q).
 #[derive(Clone, Debug)]
@@ -218,15 +218,19 @@ impl System {
         anywhere
     }
 
-    /// Makes the mechanism in motion, for [`Sensitivity`](super::Sensitivity).
-    pub(in crate::kinematics) fn varied(
+    /// Makes the mechanism on numbers with derivatives, at rest at the origin.
+    pub(in crate::kinematics) fn varied<N: Number>(&self) -> VariedConfiguration<N> {
+        let coefficients = self.joint_parts.coefficients.len();
+        VariedConfiguration::new(&self.mechanism, coefficients, self.unknowns())
+    }
+
+    /// Evaluates the numbers in the relations for these parameters. Allocates nothing.
+    pub(in crate::kinematics) fn vary_parameters<N: Number>(
         &self,
-        parameter: impl Fn(ParameterId) -> Varied,
-        motion: impl Iterator<Item = [f64; 3]>,
-        profiles: &[CamProfile],
-    ) -> VariedConfiguration {
-        let coefficients = &self.joint_parts.coefficients;
-        VariedConfiguration::new(&self.mechanism, coefficients, profiles, parameter, motion)
+        at: &mut VariedConfiguration<N>,
+        parameter: &impl Fn(ParameterId) -> N,
+    ) {
+        at.set_parameters(&self.mechanism, &self.joint_parts.coefficients, parameter);
     }
 
     /// Makes targets; [`set_parameters`](Self::set_parameters) gives them their values.

@@ -9,9 +9,15 @@
 //!
 //! Rows and unknowns are scaled as for Newton–Raphson. The inverse is written down for blocks of
 //! up to [`MOST_TORN`](super::contraction::MOST_TORN) torn unknowns; beyond, an
-//! [estimate](super::estimate) takes the place of the proof, and the sub-step is *checked*. While
-//! parameters move it is checked as well: their effect on each row is evaluated at the start of
-//! the sub-step only.
+//! [estimate](super::estimate) takes the place of the proof, and the sub-step is *checked*.
+//!
+//! While parameters move, rows with their numbers are enclosed as functions of the place on the
+//! sub-step ([`ParameterBounds`]): the second derivative along the chord and the gradients around
+//! it include all that the numbers do. Where the contour of a cam has no such enclosure, the row's
+//! value at the start of the sub-step for the numbers at its end replaces it, and the sub-step is
+//! checked.
+//!
+//! [`ParameterBounds`]: crate::kinematics::certificate::ParameterBounds
 //!
 //! [`Constraint::bend`]: crate::kinematics::constraint::Constraint::bend
 
@@ -30,8 +36,8 @@ const SMALLER_RADIUS: f64 = 2.0;
 const GOOD_CONTRACTION: f64 = 0.6;
 
 impl CoupledBlock {
-    /// Notes the angles at the start of the sub-step, and the values of the rows there that moving
-    /// parameters leave. The block's unknowns are at the start, earlier ones at their ends.
+    /// Notes the angles at the start of the sub-step, and what moving parameters do to rows without
+    /// bounds. The block's unknowns are at the start, earlier ones at their ends.
     pub(super) fn note_start(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         let bodies = 3 * state.system.mechanism().bodies.len();
         for &column in &self.equations.columns {
@@ -41,22 +47,36 @@ impl CoupledBlock {
                 (bound.cos, bound.sin) = (frame.cos, frame.sin);
             }
         }
-        if !step.bounds.parameters.moving {
-            self.test.slack.fill(0.0);
-            return;
+        let rows = &self.equations.rows;
+        let test = &mut *self.test;
+        test.slack.fill(0.0);
+        test.moves = rows.iter().any(|&row| step.bounds.parameters.moves(row));
+        if test.moves {
+            self.note_moved(state, step);
+        } else {
+            test.moved.fill(0.0);
         }
-        step.bounds.checked = true;
+    }
+
+    /// Notes twice the values that rows have at the start for the numbers at the end, where they
+    /// may have no bounds.
+    fn note_moved(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.test.note_ends(state);
         for &column in &self.test.known {
             state.at.set_coordinate(column, step.from[column]);
         }
-        for (slack, &row) in self.test.slack.iter_mut().zip(&self.equations.rows) {
+        let test = &mut *self.test;
+        for (moved, &row) in test.moved.iter_mut().zip(&self.equations.rows) {
             let equation = &state.system.equations()[row];
-            // A driver's chord begins at its value at the start.
-            let drivers = &step.bounds.parameters.drivers_before;
-            let target = state.system.target(row, state.targets, drivers);
-            let open = equation.constraint.value(state.at) - target;
-            *slack = 2.0 * open.abs() * equation.row_scale(state.at);
+            *moved = 0.0;
+            let moves = step.bounds.parameters.moves(row);
+            if moves && (test.inverse.is_empty() || equation.constraint.has_contour()) {
+                // A driver's chord begins at its value at the start.
+                let drivers = &step.bounds.parameters.drivers_before;
+                let target = state.system.target(row, state.targets, drivers);
+                let open = equation.constraint.value(state.at) - target;
+                *moved = 2.0 * open.abs() * equation.row_scale(state.at);
+            }
         }
         self.test.return_to_ends(state);
     }
@@ -231,12 +251,32 @@ impl CoupledBlock {
         let own = equations.columns.iter().zip(&test.radii);
         let known = test.known.iter().zip(&test.known_radii);
         for (&column, radius) in own.chain(known) {
-            bounds.region[column] = radius * scale(column);
+            let radius = radius * scale(column);
+            bounds.region[column] = radius;
+            if test.moves {
+                let from = step.from[column];
+                let ends = [from, from + bounds.chord[column]];
+                bounds.parameters.set_chord(column, ends, radius);
+            }
         }
         test.changes.clear();
         for (local, &row) in equations.rows.iter().enumerate() {
-            let bend = equations.bend(local, state, bounds, true)?;
-            let mut open = 0.125 * bend.along;
+            let moves = bounds.parameters.moves(row);
+            let enclosed = moves
+                .then(|| equations.moving_bend(local, state, &mut bounds.parameters))
+                .flatten();
+            let (bend, moved) = match enclosed {
+                Some(bend) => (bend, 0.0),
+                None if moves && !state.system.equations()[row].constraint.has_contour() => {
+                    return None;
+                }
+                None => {
+                    bounds.checked |= moves;
+                    let bend = equations.bend(local, state, bounds, true)?;
+                    (bend, test.moved[local])
+                }
+            };
+            let mut open = 0.125 * bend.along + moved;
             if let Target::Driver(driver) = state.system.equations()[row].target {
                 open += bounds.drivers[driver.index()] * bend.row_scale;
             }

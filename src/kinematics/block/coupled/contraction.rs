@@ -39,10 +39,13 @@ pub(super) struct ContractionTest {
     /// Storage of the estimate, where A is too large.
     pub(super) estimate: Estimate,
     pub(super) condition: Condition,
-    /// Bound of the rows' values on the way, and the part of it from moving parameters and
-    /// rounding.
+    /// Bound of the rows' values on the way, and the part of it from rounding.
     pub(super) open: Vec<f64>,
     pub(super) slack: Vec<f64>,
+    /// Whether parameters move numbers in the rows.
+    pub(super) moves: bool,
+    /// Estimate of the values of rows without bounds while parameters move.
+    pub(super) moved: Vec<f64>,
     /// Bounds of the change of the Jacobian's entries: row, column, scaled value.
     pub(super) changes: Vec<(usize, usize, f64)>,
     /// Scaled radii: of known unknowns, the trial radii r, and η + K r.
@@ -133,6 +136,8 @@ impl ContractionTest {
             condition: Condition::new(n),
             open: vec![0.0; n],
             slack: vec![0.0; n],
+            moves: false,
+            moved: vec![0.0; n],
             changes: Vec::with_capacity(ENTRIES * n),
             radii: vec![0.0; n],
             eta: vec![0.0; n],

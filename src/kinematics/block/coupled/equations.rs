@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use crate::kinematics::block::elimination::EliminationOrder;
 use crate::kinematics::block::step::BlockState;
-use crate::kinematics::certificate::StepBounds;
+use crate::kinematics::certificate::{ParameterBounds, StepBounds};
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::linear::{Factors, Lu};
 use crate::kinematics::system::{RowValue, System};
+use crate::mechanism::Interval;
 
 /// Most entries of a row: of three bodies and one joint unknown.
 pub(super) const ENTRIES: usize = 10;
@@ -176,6 +177,35 @@ impl BlockEquations {
             .bend(state.at, &region, &bounds.chord, &mut change)?;
         Some(Bend {
             along: along * row_scale,
+            row_scale,
+            change,
+        })
+    }
+}
+
+impl BlockEquations {
+    /// Bounds the bend of a row along its chord and around it while parameters move: the gradient
+    /// changes from that at the pose in `state`. `None` if the row is not smooth there.
+    pub(super) fn moving_bend(
+        &self,
+        local: usize,
+        state: &BlockState<'_>,
+        parameters: &mut ParameterBounds,
+    ) -> Option<Bend> {
+        let row = self.rows[local];
+        let equation = &state.system.equations()[row];
+        let profiles = state.at.profiles();
+        let row_scale = self.row_scales[local];
+        let along = parameters.bend(row, equation, profiles)? * row_scale;
+        let mut change = Gradient::new();
+        equation.constraint.gradient(state.at, &mut change);
+        change.replace(|column, value| {
+            let range = parameters.partial(equation, profiles, column);
+            (range - Interval::point(value)).magnitude()
+        });
+        let finite = change.entries().all(|(_, value)| value.is_finite());
+        finite.then_some(Bend {
+            along,
             row_scale,
             change,
         })

@@ -92,8 +92,8 @@ impl CoupledBlock {
         self.move_to_chord(state, step, 0.5);
         self.evaluate_rows(state);
         let test = &mut *self.test;
-        for (slack, rounding) in test.slack.iter_mut().zip(&test.row) {
-            *slack += rounding;
+        for ((slack, rounding), moved) in test.slack.iter_mut().zip(&test.row).zip(&test.moved) {
+            *slack += rounding + moved;
         }
         let larger = 1.0 / (1.0 - drift);
         let gap = larger * MARGIN * (self.farthest() + astray);

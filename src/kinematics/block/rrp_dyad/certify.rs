@@ -26,10 +26,11 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
+use super::moved::Moved;
 use super::{Found, Line, Point, RrpDyad, Second};
 use crate::kinematics::block::anchor::Anchor;
 use crate::kinematics::block::step::{BlockState, Step};
-use crate::kinematics::certificate::{ChordBound, Gap, Pivots, Slide, StepBounds, sagitta};
+use crate::kinematics::certificate::{Change, ChordBound, Gap, Pivots, Slide, StepBounds, sagitta};
 use crate::kinematics::configuration::{BodyPose, perp, rotate};
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::system::Target;
@@ -72,18 +73,6 @@ struct Surroundings<'a> {
     pivots: &'a Pivots,
 }
 
-/// Bounds of the change of the numbers in the equations by moving parameters.
-#[derive(Default)]
-struct Slack {
-    /// Change of all points together \[m\].
-    points: f64,
-    /// Change of the axis, and of the angle of b from its reference \[rad\].
-    axis: f64,
-    second: f64,
-    /// Change of the target of f \[m\].
-    target: f64,
-}
-
 impl RrpDyad {
     /// Proves that one motion joins the two ends of a sub-step, and writes its chord bounds.
     ///
@@ -101,10 +90,26 @@ impl RrpDyad {
         let Found { known, open, .. } = found;
         let frames = state.at.frames();
         let turn = frames[self.body as usize].phi - before.first.phi;
-        let slack = self.slack(bounds);
-        // The turn of b, if it is carried, and its largest deviation from that.
-        let second_turn = known.second.phi - before.second.phi;
-        let second_deviation = self.second_deviation(state, bounds) + 2.0 * slack.second;
+        let second_turn = match &self.second {
+            Second::None => 0.0,
+            Second::Carried { body, .. } | Second::Parallel { body, .. } => {
+                frames[*body as usize].phi - before.second.phi
+            }
+        };
+        let reach = before.still.norm().max(known.still.norm());
+        let still_moved = (known.still - before.still).norm();
+        let moved = if bounds.parameters.moving {
+            let still = Change {
+                value: reach,
+                first: still_moved,
+                second: 0.0,
+            };
+            self.moved(state, bounds, [turn, second_turn], still)
+        } else {
+            Moved::default()
+        };
+        // The deviation of b, if it is carried.
+        let second_deviation = self.second_deviation(state, bounds) + moved.second_angle;
 
         let own = self.anchor.deviation(bounds, frames);
         let [i, j] = self.points.map(|point| {
@@ -126,19 +131,19 @@ impl RrpDyad {
         let bases = if shared { 0.0 } else { i.0 + j.0 };
         let deviations = bases + i.1 + j.1;
 
-        let reach = before.still.norm().max(known.still.norm()) + slack.points;
-        let moved = (known.still - before.still).norm() + 2.0 * slack.points;
         let g = known.g.norm();
-        let off = slack.points + (slack.axis + slack.second) * (reach + g);
+        let reach = reach + moved.points.value;
+        let still_moved = still_moved + 2.0 * moved.points.value;
+        let off = moved.off();
         let least = before.slope.abs().min(self.slope.abs()) - off;
         if !(before.slope * self.slope > 0.0 && least > 0.0) {
             return Err(bounds.reject());
         }
         let target = match state.system.equations()[self.parts.row].target {
             Target::Driver(driver) => bounds.drivers[driver.index()],
-            Target::Constant(_) => 2.0 * slack.target,
+            Target::Constant(_) => 0.0,
         };
-        let outside = 2.0 * (open + off) + target + i.1 + j.1;
+        let outside = 2.0 * open + target + i.1 + j.1;
 
         let axis = match self.axis {
             Line::Known(None, _) => Some((0.0, 0.0)),
@@ -154,9 +159,11 @@ impl RrpDyad {
             if spread.abs() >= PI {
                 return Err(bounds.reject());
             }
-            let bend =
-                sagitta(axis_turn) * reach + 0.25 * axis_turn.abs() * moved + sagitta(spread) * g;
-            let open = outside + bend + axis_deviation * (reach + g + deviations);
+            let bend = sagitta(axis_turn) * reach
+                + 0.25 * axis_turn.abs() * still_moved
+                + sagitta(spread) * g;
+            let open =
+                outside + bend + moved.open(axis_turn) + axis_deviation * (reach + g + deviations);
             let open = self.opened(
                 open,
                 bases,
@@ -172,14 +179,14 @@ impl RrpDyad {
             let linear = (g * axis_deviation + off) * inverse;
             (Gap::new(open, linear, g * inverse * inverse), least)
         } else {
-            let bend = sagitta(turn) * reach + 0.25 * turn.abs() * moved;
+            let bend = sagitta(turn) * reach + 0.25 * turn.abs() * still_moved;
             // At most half of the slope may be lost on the way.
             bounds.require(2.0 * bend / least)?;
             let slope = least - bend;
             let inverse = 1.0 / slope;
             let linear = (deviations + off) * inverse;
             let open = self.opened(
-                outside + bend,
+                outside + bend + moved.open(turn),
                 bases,
                 turn,
                 &Surroundings {
@@ -194,7 +201,14 @@ impl RrpDyad {
         bounds.require(gap.step_ratio)?;
 
         let angle_deviation = gap.value / slope;
-        let point_deviation = own + 2.0 * slack.points;
+        let second_deviation = match &self.second {
+            Second::Parallel { .. } => angle_deviation + moved.second_angle,
+            Second::Carried { .. } | Second::None => second_deviation,
+        };
+        let pivot = moved
+            .pivots
+            .map(|pivot| pivot.deviation([angle_deviation, second_deviation]));
+        let point_deviation = own + pivot[0];
         let bound = |frame: BodyPose, turn, angle_deviation, point_deviation| ChordBound {
             cos: frame.cos,
             sin: frame.sin,
@@ -205,11 +219,10 @@ impl RrpDyad {
         match &self.second {
             Second::None => {}
             Second::Carried { body, l, .. } => {
-                let mut inner = point_deviation + l.norm() * (sagitta(turn) + angle_deviation);
-                if self.slide_is_read
-                    && self.slides_on_ground()
-                    && bounds.moving_parameters().is_none()
-                {
+                let mut inner =
+                    point_deviation + l.norm() * (sagitta(turn) + angle_deviation) + pivot[1];
+                let slides = self.slide_is_read && self.slides_on_ground();
+                if slides && !bounds.parameters.moving {
                     let mut slide =
                         self.slide(before, frames, bounds, [gap.value, angle_deviation]);
                     slide.along = slide.along.min(inner);
@@ -221,13 +234,13 @@ impl RrpDyad {
                     bound(before.second, second_turn, second_deviation, inner);
             }
             Second::Parallel { body, .. } => {
-                let body = *body as usize;
-                let turn = frames[body].phi - before.second.phi;
-                let angle_deviation = angle_deviation + 2.0 * slack.second;
-                let point_deviation =
-                    self.second_point_deviation(bounds, frames) + 2.0 * slack.points;
-                *bounds.body_mut(body) =
-                    bound(before.second, turn, angle_deviation, point_deviation);
+                let point_deviation = self.second_point_deviation(bounds, frames) + pivot[1];
+                *bounds.body_mut(*body as usize) = bound(
+                    before.second,
+                    second_turn,
+                    second_deviation,
+                    point_deviation,
+                );
             }
         }
         *bounds.body_mut(self.body as usize) =
@@ -354,35 +367,5 @@ impl RrpDyad {
             Target::Constant(_) => 0.0,
         };
         rounding + known + held
-    }
-
-    /// Returns the changes that moving parameters may make.
-    fn slack(&self, bounds: &StepBounds) -> Slack {
-        let Some(parameters) = bounds.moving_parameters() else {
-            return Slack::default();
-        };
-        let parts = &self.parts;
-        let ends = [
-            parts.pin,
-            parts.anchor,
-            parts.projection.from,
-            parts.projection.to,
-        ];
-        let mut slack = Slack {
-            points: ends
-                .into_iter()
-                .map(|marker| parameters.position(marker))
-                .sum(),
-            axis: parameters.angle(parts.projection.axes),
-            second: 0.0,
-            target: parameters.constant(parts.row),
-        };
-        if let Some(b) = &parts.second {
-            slack.points += parameters.position(b.pin) + parameters.position(b.partner);
-            slack.second = parameters.angle(b.angle)
-                + parameters.angle(b.reference)
-                + parameters.constant(b.row);
-        }
-        slack
     }
 }

@@ -36,8 +36,9 @@
 //! of which the least bound counts. If both turn alike, the dyad turns with them: from cell to cell
 //! of a scissor lift σ depends on σ alone, and the angles grow by a multiple of it.
 //!
-//! While parameters move, the chord is that of the links in force at the end. The numbers on the
-//! way differ from them by the parameter bounds, which add to the gap.
+//! While parameters move, the arms and links of the chord are those in force at the end. The rest
+//! of each arm, which turns with its body too, deviates from its own chord by an eighth of the
+//! bound of its second derivative; with it the loop closes at both ends.
 
 use std::f64::consts::PI;
 
@@ -96,8 +97,9 @@ impl RrrDyad {
         let (mut before_links, mut before_determinant) = (before.links, before.determinant);
         let mut gap = 2.0 * found.rounding;
         let mut deviations = [a, b].map(|side| side.anchor.deviation(bounds, frames));
-        // Bounds of the change of the links and of the path by moving parameters.
-        let (mut slack, mut path_slack) = ([0.0; 2], 0.0);
+        // Bounds of the change of the links and of the outer points by moving parameters; the loop
+        // at the start, less what it is there for the numbers at the end.
+        let (mut slack, mut outer_slack, mut start) = ([0.0; 2], [0.0; 2], Vector2::zeros());
         if let Some(parameters) = bounds.moving_parameters() {
             // The loop at the start with the lengths in force now.
             before_links = [a, b].map(|side| {
@@ -105,20 +107,18 @@ impl RrrDyad {
                 rotate(bound.cos, bound.sin, side.l)
             });
             before_determinant = before_links[0].perp(&before_links[1]);
-            path_slack = self.path.slack(parameters);
+            start = self.path.start(bounds, parameters) + (before.links[0] - before_links[0])
+                - (before.links[1] - before_links[1]);
+            gap += self.path.moved(bounds, parameters);
             for (k, parts) in self.parts.sides.iter().enumerate() {
                 let [outer, inner, anchor] =
                     [parts.outer, parts.inner, parts.anchor].map(|m| parameters.position(m));
-                deviations[k] += 2.0 * (outer + anchor);
-                slack[k] = outer + inner;
+                deviations[k] +=
+                    self.sides[k].anchor.moved(anchor, bounds) + outer.deviation(turns[k]);
+                gap += (outer + inner).deviation(turns[k]);
+                slack[k] = outer.value + inner.value;
+                outer_slack[k] = outer.value;
             }
-            // Along a chain the gap at the start is found with the numbers in force.
-            let times = if self.path.kind == PathKind::Chain {
-                1.0
-            } else {
-                2.0
-            };
-            gap += times * (slack[0] + slack[1] + path_slack);
         }
         let spread = turns[1] - turns[0];
         if !(before_determinant * self.determinant > 0.0 && spread.abs() < PI) {
@@ -138,7 +138,7 @@ impl RrrDyad {
         // The gap at both ends.
         gap += match self.path.kind {
             PathKind::Short => 2.0 * found.open + self.roundings(frames),
-            PathKind::Chain => loop_of().gap_at_ends(&self.path, bounds, frames),
+            PathKind::Chain => loop_of().gap_at_ends(&self.path, start, bounds, frames),
             PathKind::ByPivots => {
                 2.0 * found.open + self.roundings(frames) + self.path.loose(bounds)
             }
@@ -156,14 +156,14 @@ impl RrrDyad {
             let swung = arm.length * bound.angle_deviation;
             gap += beyond_parabola(arm.length, bound.turn);
             if arm.paired {
-                gap += (0.5 * swung + path_slack) * bound.angle_deviation;
+                gap += 0.5 * swung * bound.angle_deviation;
                 continue;
             }
             if swung <= NEGLIGIBLE * gap {
                 gap += swung;
                 continue;
             }
-            gap += (0.5 * swung + path_slack) * bound.angle_deviation;
+            gap += 0.5 * swung * bound.angle_deviation;
             for (k, turned) in turned.iter_mut().enumerate() {
                 let other = 1 - k;
                 let bend = arm.length * lengths[other] * sagitta(turns[other] - bound.turn);
@@ -201,7 +201,7 @@ impl RrrDyad {
             let bound = bounds.body_mut(side.body as usize);
             bound.turn = turns[k];
             bound.angle_deviation = turned[k] + reach[k] * gap.value;
-            bound.point_deviation = deviations[k];
+            bound.point_deviation = deviations[k] + outer_slack[k] * bound.angle_deviation;
         }
         Ok(())
     }
@@ -242,10 +242,18 @@ impl Loop {
         larger(ratios[0], ratios[1]) + bend * larger(self.inverses[0], self.inverses[1])
     }
 
-    /// Returns the larger of the gaps that the loop has at its ends, with its rounding \[m\].
+    /// Returns the larger of the gaps that the loop has at its ends, with its rounding \[m\]. By
+    /// moving parameters it is open at the start by `moved` less than with the numbers in force.
     #[inline(never)]
-    fn gap_at_ends(&self, path: &AnchorPath, bounds: &StepBounds, frames: &[BodyPose]) -> f64 {
-        let between = path.ends(bounds, frames);
+    fn gap_at_ends(
+        &self,
+        path: &AnchorPath,
+        moved: Vector2<f64>,
+        bounds: &StepBounds,
+        frames: &[BodyPose],
+    ) -> f64 {
+        let mut between = path.ends(bounds, frames);
+        between[0] += moved;
         let lengths: f64 = path.arms().iter().map(|arm| arm.length).sum();
         let [start, end] = [0, 1].map(|end: usize| {
             let gap = between[end] + self.links[end][0] - self.links[end][1];

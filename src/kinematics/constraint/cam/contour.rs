@@ -8,9 +8,7 @@ use super::super::region::{Region, centripetal_bound};
 use crate::kinematics::configuration::{
     Configuration, JointUnknownId, MarkerPose, ProfileId, perp,
 };
-use crate::kinematics::variation::{
-    VariedConfiguration, VariedMarker, VariedVector, quarter_turn, rotate,
-};
+use crate::kinematics::variation::{Moving, VariedMarker, VariedMechanism, quarter_turn, rotate};
 use crate::mechanism::{
     Interval, Jet3, MarkerId, Mechanism, Number, ProfileBounds, ProfileInForce,
 };
@@ -102,10 +100,10 @@ impl Contour {
     }
 
     /// Returns the moving cam's marker, the vector from its point to the contact, and the tangent.
-    pub(super) fn along(
+    pub(super) fn along<N: Moving>(
         &self,
-        at: &VariedConfiguration,
-    ) -> (VariedMarker, VariedVector, VariedVector) {
+        at: &VariedMechanism<'_, N>,
+    ) -> (VariedMarker<N>, [N; 2], [N; 2]) {
         let cam = at.marker(self.cam);
         let theta = at.joint_unknown(self.contact);
         let [radius, slope] = at.radius(self.profile, theta);

@@ -3,14 +3,14 @@
 use nalgebra::Vector2;
 
 use super::super::definition::{
-    Axis, Constraint, Dimension, Incidence, JointUnknown, axis_components,
+    Axis, Constraint, Dimension, Formula, Incidence, JointUnknown, axis_components,
 };
 use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, speed_bound};
 use super::contour::{Contour, Shape};
 use crate::kinematics::configuration::{Configuration, MarkerPose, perp};
-use crate::kinematics::variation::{Varied, VariedConfiguration, add, dot, quarter_turn, subtract};
+use crate::kinematics::variation::{Moving, VariedMechanism, add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// The contour's tangent is parallel to the face: c = sin δ with the angle δ from the face, the
@@ -43,6 +43,14 @@ fn lean(follower: MarkerPose, contact: &Shape) -> (f64, f64) {
     )
 }
 
+impl Formula for FlatContact {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let (_, _, [x, y]) = self.contour.along(at);
+        let face = at.marker(self.follower).axis;
+        face[0] * y - face[1] * x
+    }
+}
+
 impl Constraint for FlatContact {
     fn dimension(&self) -> Dimension {
         Dimension::Angle
@@ -70,12 +78,6 @@ impl Constraint for FlatContact {
         let motion = contact.motion(angular_velocity(cam, q_dot), q_dot[self.contour.column(at)]);
         let rate = motion.tangent[0] - angular_velocity(follower, q_dot);
         cosine * motion.tangent[1] - sine * rate * rate
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let (_, _, [x, y]) = self.contour.along(at);
-        let face = at.marker(self.follower).axis;
-        face[0] * y - face[1] * x
     }
 
     fn bend(
@@ -142,6 +144,15 @@ impl FlatFace {
     }
 }
 
+impl Formula for FlatFace {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let (cam, arm, _) = self.contour.along(at);
+        let follower = at.marker(self.follower);
+        let g = subtract(add(cam.point, arm), follower.point);
+        dot(g, quarter_turn(follower.axis))
+    }
+}
+
 impl Constraint for FlatFace {
     fn dimension(&self) -> Dimension {
         Dimension::Length
@@ -185,13 +196,6 @@ impl Constraint for FlatFace {
         g_ddot.dot(&normal)
             - 2.0 * omega * g_dot.dot(&follower.axis)
             - omega * omega * g.dot(&normal)
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let (cam, arm, _) = self.contour.along(at);
-        let follower = at.marker(self.follower);
-        let g = subtract(add(cam.point, arm), follower.point);
-        dot(g, quarter_turn(follower.axis))
     }
 
     /// Bounds each factor in the terms of gradient and quadratic term.

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector2;
 
-use super::super::definition::{Constraint, Dimension, Incidence};
+use super::super::definition::{Constraint, Dimension, Formula, Incidence};
 use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, chord, speed_bound};
 use crate::kinematics::configuration::{Configuration, ProfileId, perp};
-use crate::kinematics::variation::{Varied, VariedConfiguration, subtract};
-use crate::mechanism::{Jet3, MarkerId, Mechanism, Number};
+use crate::kinematics::variation::{Moving, VariedMechanism, subtract};
+use crate::mechanism::{Jet3, MarkerId, Mechanism};
 
 /// c = ρ − R(θ) with the polar coordinates ρ and θ of the edge in the cam marker's frame.
 ///
@@ -70,6 +70,16 @@ impl KnifeEdge {
     }
 }
 
+impl Formula for KnifeEdge {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let cam = at.marker(self.cam);
+        let [x, y] = subtract(at.marker(self.follower).point, cam.point);
+        let theta = y.atan2(x) - cam.theta;
+        let [radius, _] = at.radius(self.profile, theta);
+        x.hypot(y) - radius
+    }
+}
+
 impl Constraint for KnifeEdge {
     fn dimension(&self) -> Dimension {
         Dimension::Length
@@ -103,14 +113,6 @@ impl Constraint for KnifeEdge {
         let angular =
             (across.dot(&d_ddot) - 2.0 * polar.radial.dot(&d_dot) * swing) / polar.distance;
         radial - r2 * rate * rate - r1 * angular
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let cam = at.marker(self.cam);
-        let [x, y] = subtract(at.marker(self.follower).point, cam.point);
-        let theta = y.atan2(x) - cam.theta;
-        let [radius, _] = at.radius(self.profile, theta);
-        x.hypot(y) - radius
     }
 
     /// Bounds each factor in the terms of gradient and quadratic term: ρ shrinks by at most the

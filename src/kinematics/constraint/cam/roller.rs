@@ -2,13 +2,13 @@
 
 use nalgebra::Vector2;
 
-use super::super::definition::{Axis, Constraint, Dimension, Incidence, JointUnknown};
+use super::super::definition::{Axis, Constraint, Dimension, Formula, Incidence, JointUnknown};
 use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, chord, speed_bound};
 use super::contour::{Contour, Shape};
 use crate::kinematics::configuration::{Configuration, MarkerPose, perp};
-use crate::kinematics::variation::{Varied, VariedConfiguration, add, dot, quarter_turn, subtract};
+use crate::kinematics::variation::{Moving, VariedMechanism, add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
 
 /// c = e · w with the vector e from the contact to the roller's centre, and the contour's tangent
@@ -64,6 +64,19 @@ impl Roller {
     }
 }
 
+impl Formula for Roller {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+        let (cam, arm, tangent) = self.contour.along(at);
+        let centre = at.marker(self.follower).point;
+        let e = subtract(centre, add(cam.point, arm));
+        match self.axis {
+            Axis::X => dot(e, tangent),
+            // The outward normal is a quarter turn back.
+            Axis::Y => -dot(e, quarter_turn(tangent)),
+        }
+    }
+}
+
 impl Constraint for Roller {
     fn dimension(&self) -> Dimension {
         Dimension::Length
@@ -107,17 +120,6 @@ impl Constraint for Roller {
         let [turn, turn_rate] = motion.tangent;
         e_ddot.dot(&w) + 2.0 * turn * e_dot.dot(&across) + turn_rate * e.dot(&across)
             - turn * turn * e.dot(&w)
-    }
-
-    fn along(&self, at: &VariedConfiguration) -> Varied {
-        let (cam, arm, tangent) = self.contour.along(at);
-        let centre = at.marker(self.follower).point;
-        let e = subtract(centre, add(cam.point, arm));
-        match self.axis {
-            Axis::X => dot(e, tangent),
-            // The outward normal is a quarter turn back.
-            Axis::Y => -dot(e, quarter_turn(tangent)),
-        }
     }
 
     /// Returns whether a roller's radius is positive.
