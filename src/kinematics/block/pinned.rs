@@ -6,7 +6,7 @@ use super::anchor::Anchor;
 use super::load::{add_moment, load_about};
 use super::solve::SolveBlock;
 use super::step::{BlockState, Step};
-use crate::kinematics::certificate::{ChordBound, Pivots};
+use crate::kinematics::certificate::{ChordBound, Pivots, StepBounds};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::kinematics::system::{System, Target, Targets};
@@ -78,6 +78,23 @@ impl PinnedBody {
     }
 }
 
+impl PinnedBody {
+    /// Bounds the further deviations of the angle and of the pin by moving parameters, where the
+    /// body turns by `turn` with this deviation of its angle \[rad, m\].
+    #[cold]
+    fn moved(&self, bounds: &StepBounds, turn: f64, angle_deviation: f64) -> [f64; 2] {
+        let (parameters, parts) = (&bounds.parameters, &self.parts);
+        let angle = parameters.angle(parts.angle)
+            + parameters.angle(parts.reference)
+            + parameters.target(parts.rows[2]);
+        let turned = angle.deviation(0.0);
+        let pin = parameters.position(parts.pin);
+        let anchor = self.anchor.moved(parameters.position(parts.anchor), bounds);
+        let swung = pin.value * (angle_deviation + turned);
+        [turned, anchor + pin.deviation(turn) + swung]
+    }
+}
+
 impl SolveBlock for PinnedBody {
     fn rows(&self) -> &[usize] {
         &self.parts.rows
@@ -121,14 +138,10 @@ impl SolveBlock for PinnedBody {
             angle_deviation += bounds.drivers[driver.index()];
         }
         let mut point_deviation = self.anchor.deviation(bounds, state.at.frames());
-        if let Some(parameters) = bounds.moving_parameters() {
-            let angle = parameters.angle(parts.angle) + parameters.angle(parts.reference);
-            angle_deviation +=
-                angle.deviation(0.0) + parameters.target(parts.rows[2]).deviation(0.0);
-            let pin = parameters.position(parts.pin);
-            point_deviation += self.anchor.moved(parameters.position(parts.anchor), bounds)
-                + pin.deviation(phi - before.phi)
-                + pin.value * angle_deviation;
+        if bounds.parameters.moving {
+            let [turned, moved] = self.moved(bounds, phi - before.phi, angle_deviation);
+            angle_deviation += turned;
+            point_deviation += moved;
         }
         *bounds.body_mut(parts.body) = ChordBound {
             cos: before.cos,

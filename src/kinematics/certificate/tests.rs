@@ -346,6 +346,64 @@ fn mechanisms_with_moving_parameters_stay_within_their_bounds() {
     assert!(moved > 150, "{moved}");
 }
 
+/// Returns the mechanism with markers that two parameters shift and turn, each by its own part.
+fn with_moving_markers(text: &str) -> String {
+    let mut count = 0;
+    let mut moving = |line: &str| {
+        let mut parts = line.split('[');
+        let mut text = parts.next().unwrap_or_default().to_owned();
+        for part in parts {
+            count += 1;
+            let (place, rest) = part.split_once(']').expect("it closes");
+            let (x, y) = place.split_once(',').expect("it has two coordinates");
+            // Spread evenly, so that no two markers move alike.
+            let [k, l, m] =
+                [1.0, 2.0, 3.0].map(|n: f64| 2.0 * (0.618 * n * f64::from(count)).fract() - 1.0);
+            text += &format!(
+                "[\"{x} + 0.1*({k}*sin(p) + {l}*r)\", \"{y} + 0.1*({l}*p^2 + {m}*r)\", \"0.1*{k}*(p + r)\"]"
+            );
+            text += rest;
+        }
+        text
+    };
+    let is_ground = |line: &str| line.starts_with("O = [") || line.starts_with('P');
+    let lines = text.lines().map(|line| {
+        if line.starts_with("markers =") || is_ground(line) {
+            moving(line)
+        } else {
+            line.to_owned()
+        }
+    });
+    let lines: Vec<_> = lines.collect();
+    lines.join("\n") + "\n[parameters]\np = 0\nr = 0\n"
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    /// Moving parameters change all numbers, their own terms and those of the motion among each
+    /// other.
+    #[test]
+    fn random_mechanisms_stay_within_their_bounds_while_markers_move(
+        parts in prop::collection::vec(part(), 1..4),
+        by in prop::sample::select(vec![0.3, 0.05, 1e-9]),
+        [p, r] in prop::array::uniform2(-0.4..0.4_f64),
+    ) {
+        let text = with_moving_markers(&grown(&parts));
+        let source = Source::new("grown", &text);
+        let (mechanism, _) = Mechanism::parse(&source)
+            .unwrap_or_else(|diagnostics| panic!("{text}: {diagnostics:#?}"));
+        let path = Path::new(&mechanism);
+        let [mut solver, mut other] =
+            [(); 2].map(|()| Solver::new(mechanism.clone().into()).expect("the drivers match"));
+        // Some of them do not close.
+        prop_assume!(solver.assemble(&path).is_ok() && solver.rcond() > 1e-3);
+        prop_assume!(other.assemble(&path).is_ok());
+        let mut path = move_drivers(&solver, by);
+        path.to = vec![p, r];
+        check_path(&mut solver, &mut other, &path, &text);
+    }
+}
+
 /// Returns whether a parameter is in the profile of a cam or in the table of a motion, which have no
 /// bounds while it moves.
 fn has_no_bounds(mechanism: &Mechanism, parameter: ParameterId) -> bool {

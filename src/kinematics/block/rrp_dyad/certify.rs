@@ -30,7 +30,7 @@ use super::moved::Moved;
 use super::{Found, Line, Point, RrpDyad, Second};
 use crate::kinematics::block::anchor::Anchor;
 use crate::kinematics::block::step::{BlockState, Step};
-use crate::kinematics::certificate::{Change, ChordBound, Gap, Pivots, Slide, StepBounds, sagitta};
+use crate::kinematics::certificate::{ChordBound, Gap, Pivots, Slide, StepBounds, sagitta};
 use crate::kinematics::configuration::{BodyPose, perp, rotate};
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::system::Target;
@@ -99,12 +99,7 @@ impl RrpDyad {
         let reach = before.still.norm().max(known.still.norm());
         let still_moved = (known.still - before.still).norm();
         let moved = if bounds.parameters.moving {
-            let still = Change {
-                value: reach,
-                first: still_moved,
-                second: 0.0,
-            };
-            self.moved(state, bounds, [turn, second_turn], still)
+            self.moved(state, bounds, [turn, second_turn], [reach, still_moved])
         } else {
             Moved::default()
         };
@@ -132,9 +127,9 @@ impl RrpDyad {
         let deviations = bases + i.1 + j.1;
 
         let g = known.g.norm();
-        let reach = reach + moved.points.value;
-        let still_moved = still_moved + 2.0 * moved.points.value;
-        let off = moved.off();
+        let reach = reach + moved.points;
+        let still_moved = still_moved + 2.0 * moved.points;
+        let off = moved.off;
         let least = before.slope.abs().min(self.slope.abs()) - off;
         if !(before.slope * self.slope > 0.0 && least > 0.0) {
             return Err(bounds.reject());
@@ -143,7 +138,7 @@ impl RrpDyad {
             Target::Driver(driver) => bounds.drivers[driver.index()],
             Target::Constant(_) => 0.0,
         };
-        let outside = 2.0 * open + target + i.1 + j.1;
+        let outside = 2.0 * open + target + i.1 + j.1 + moved.open;
 
         let axis = match self.axis {
             Line::Known(None, _) => Some((0.0, 0.0)),
@@ -162,8 +157,7 @@ impl RrpDyad {
             let bend = sagitta(axis_turn) * reach
                 + 0.25 * axis_turn.abs() * still_moved
                 + sagitta(spread) * g;
-            let open =
-                outside + bend + moved.open(axis_turn) + axis_deviation * (reach + g + deviations);
+            let open = outside + bend + axis_deviation * (reach + g + deviations);
             let open = self.opened(
                 open,
                 bases,
@@ -186,7 +180,7 @@ impl RrpDyad {
             let inverse = 1.0 / slope;
             let linear = (deviations + off) * inverse;
             let open = self.opened(
-                outside + bend + moved.open(turn),
+                outside + bend,
                 bases,
                 turn,
                 &Surroundings {
@@ -205,9 +199,15 @@ impl RrpDyad {
             Second::Parallel { .. } => angle_deviation + moved.second_angle,
             Second::Carried { .. } | Second::None => second_deviation,
         };
-        let pivot = moved
-            .pivots
-            .map(|pivot| pivot.deviation([angle_deviation, second_deviation]));
+        let pivot = if bounds.parameters.moving {
+            self.moved_pivots(
+                bounds,
+                [turn, second_turn],
+                [angle_deviation, second_deviation],
+            )
+        } else {
+            [0.0; 2]
+        };
         let point_deviation = own + pivot[0];
         let bound = |frame: BodyPose, turn, angle_deviation, point_deviation| ChordBound {
             cos: frame.cos,

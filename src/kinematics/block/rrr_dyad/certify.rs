@@ -97,28 +97,17 @@ impl RrrDyad {
         let (mut before_links, mut before_determinant) = (before.links, before.determinant);
         let mut gap = 2.0 * found.rounding;
         let mut deviations = [a, b].map(|side| side.anchor.deviation(bounds, frames));
-        // Bounds of the change of the links and of the outer points by moving parameters; the loop
-        // at the start, less what it is there for the numbers at the end.
-        let (mut slack, mut outer_slack, mut start) = ([0.0; 2], [0.0; 2], Vector2::zeros());
-        if let Some(parameters) = bounds.moving_parameters() {
+        // Bounds of the change of the links by moving parameters.
+        let mut slack = [0.0; 2];
+        if bounds.parameters.moving {
+            let moved = self.moved(bounds, turns);
             // The loop at the start with the lengths in force now.
-            before_links = [a, b].map(|side| {
-                let bound = bounds.body(side.body as usize);
-                rotate(bound.cos, bound.sin, side.l)
-            });
+            before_links = moved.links;
             before_determinant = before_links[0].perp(&before_links[1]);
-            start = self.path.start(bounds, parameters) + (before.links[0] - before_links[0])
-                - (before.links[1] - before_links[1]);
-            gap += self.path.moved(bounds, parameters);
-            for (k, parts) in self.parts.sides.iter().enumerate() {
-                let [outer, inner, anchor] =
-                    [parts.outer, parts.inner, parts.anchor].map(|m| parameters.position(m));
-                deviations[k] +=
-                    self.sides[k].anchor.moved(anchor, bounds) + outer.deviation(turns[k]);
-                gap += (outer + inner).deviation(turns[k]);
-                slack[k] = outer.value + inner.value;
-                outer_slack[k] = outer.value;
-            }
+            slack = moved.slack;
+            gap += moved.gap;
+            deviations[0] += moved.points[0];
+            deviations[1] += moved.points[1];
         }
         let spread = turns[1] - turns[0];
         if !(before_determinant * self.determinant > 0.0 && spread.abs() < PI) {
@@ -138,7 +127,7 @@ impl RrrDyad {
         // The gap at both ends.
         gap += match self.path.kind {
             PathKind::Short => 2.0 * found.open + self.roundings(frames),
-            PathKind::Chain => loop_of().gap_at_ends(&self.path, start, bounds, frames),
+            PathKind::Chain => loop_of().gap_at_ends(&self.path, before, bounds, frames),
             PathKind::ByPivots => {
                 2.0 * found.open + self.roundings(frames) + self.path.loose(bounds)
             }
@@ -201,9 +190,42 @@ impl RrrDyad {
             let bound = bounds.body_mut(side.body as usize);
             bound.turn = turns[k];
             bound.angle_deviation = turned[k] + reach[k] * gap.value;
-            bound.point_deviation = deviations[k] + outer_slack[k] * bound.angle_deviation;
+            bound.point_deviation = deviations[k];
+        }
+        if bounds.parameters.moving {
+            self.turn_outer_points(bounds);
         }
         Ok(())
+    }
+
+    /// Returns what moving parameters do to the loop, where the sides turn by `turns`.
+    #[cold]
+    fn moved(&self, bounds: &StepBounds, turns: [f64; 2]) -> Moved {
+        let parameters = &bounds.parameters;
+        let mut moved = Moved {
+            gap: self.path.moved(bounds, parameters),
+            ..Moved::default()
+        };
+        for (k, (side, parts)) in self.sides.iter().zip(&self.parts.sides).enumerate() {
+            let [outer, inner, anchor] =
+                [parts.outer, parts.inner, parts.anchor].map(|m| parameters.position(m));
+            let bound = bounds.body(side.body as usize);
+            moved.links[k] = rotate(bound.cos, bound.sin, side.l);
+            moved.gap += (outer + inner).deviation(turns[k]);
+            moved.slack[k] = outer.value + inner.value;
+            moved.points[k] = side.anchor.moved(anchor, bounds) + outer.deviation(turns[k]);
+        }
+        moved
+    }
+
+    /// Adds the effect of the uncertain angles of the sides on outer points that move.
+    #[cold]
+    fn turn_outer_points(&self, bounds: &mut StepBounds) {
+        for parts in &self.parts.sides {
+            let moved = bounds.parameters.position(parts.outer).value;
+            let bound = bounds.body_mut(parts.body);
+            bound.point_deviation += moved * bound.angle_deviation;
+        }
     }
 
     /// Returns the rounding of the stored origins of the bodies that carry the anchors \[m\].
@@ -212,6 +234,19 @@ impl RrrDyad {
         let [a, b] = &self.sides;
         a.anchor.rounding(frames) + b.anchor.rounding(frames)
     }
+}
+
+/// The effect of moving parameters.
+#[derive(Default)]
+struct Moved {
+    /// The links at the start with the lengths in force at the end.
+    links: [Vector2<f64>; 2],
+    /// Bounds of their changes \[m\].
+    slack: [f64; 2],
+    /// Bound of the further gap \[m\].
+    gap: f64,
+    /// Bounds of the further deviations of the outer points \[m\].
+    points: [f64; 2],
 }
 
 /// The links of a dyad over a sub-step.
@@ -242,21 +277,23 @@ impl Loop {
         larger(ratios[0], ratios[1]) + bend * larger(self.inverses[0], self.inverses[1])
     }
 
-    /// Returns the larger of the gaps that the loop has at its ends, with its rounding \[m\]. By
-    /// moving parameters it is open at the start by `moved` less than with the numbers in force.
+    /// Returns the larger of the gaps that the loop has at its ends, with its rounding \[m\].
     #[inline(never)]
     fn gap_at_ends(
         &self,
         path: &AnchorPath,
-        moved: Vector2<f64>,
+        before: &Before,
         bounds: &StepBounds,
         frames: &[BodyPose],
     ) -> f64 {
         let mut between = path.ends(bounds, frames);
-        between[0] += moved;
+        if let Some(parameters) = bounds.moving_parameters() {
+            between[0] += path.start(bounds, parameters);
+        }
         let lengths: f64 = path.arms().iter().map(|arm| arm.length).sum();
+        let links = [before.links, self.links[1]];
         let [start, end] = [0, 1].map(|end: usize| {
-            let gap = between[end] + self.links[end][0] - self.links[end][1];
+            let gap = between[end] + links[end][0] - links[end][1];
             gap.x.abs() + gap.y.abs()
         });
         larger(start, end) + ROUNDING * lengths
