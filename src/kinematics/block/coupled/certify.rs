@@ -60,6 +60,7 @@ impl CoupledBlock {
 
     /// Notes twice the values that rows have at the start for the numbers at the end, where they
     /// may have no bounds.
+    #[cold]
     fn note_moved(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.test.note_ends(state);
         for &column in &self.test.known {
@@ -261,22 +262,12 @@ impl CoupledBlock {
         }
         test.changes.clear();
         for (local, &row) in equations.rows.iter().enumerate() {
-            let moves = bounds.parameters.moves(row);
-            let enclosed = moves
-                .then(|| equations.moving_bend(local, state, &mut bounds.parameters))
-                .flatten();
-            let (bend, moved) = match enclosed {
-                Some(bend) => (bend, 0.0),
-                None if moves && !state.system.equations()[row].constraint.has_contour() => {
-                    return None;
-                }
-                None => {
-                    bounds.checked |= moves;
-                    let bend = equations.bend(local, state, bounds, true)?;
-                    (bend, test.moved[local])
-                }
-            };
-            let mut open = 0.125 * bend.along + moved;
+            let bend = equations.bend_on_chord(local, state, bounds)?;
+            let mut open = 0.125 * bend.along;
+            if bend.is_estimate {
+                bounds.checked = true;
+                open += test.moved[local];
+            }
             if let Target::Driver(driver) = state.system.equations()[row].target {
                 open += bounds.drivers[driver.index()] * bend.row_scale;
             }

@@ -85,6 +85,8 @@ pub(super) struct Bend {
     /// Scale factor of the row.
     pub(super) row_scale: f64,
     change: Gradient,
+    /// Whether it is that for the numbers at the end of the sub-step, while parameters move them.
+    pub(super) is_estimate: bool,
 }
 
 impl BlockEquations {
@@ -179,14 +181,37 @@ impl BlockEquations {
             along: along * row_scale,
             row_scale,
             change,
+            is_estimate: false,
         })
     }
-}
 
-impl BlockEquations {
-    /// Bounds the bend of a row along its chord and around it while parameters move: the gradient
-    /// changes from that at the pose in `state`. `None` if the row is not smooth there.
-    pub(super) fn moving_bend(
+    /// Bounds the bend of a row on the chord of `bounds` and around it; the pose in `state` is in
+    /// the middle of the chord. `None` if the row is not smooth there.
+    pub(super) fn bend_on_chord(
+        &self,
+        local: usize,
+        state: &BlockState<'_>,
+        bounds: &mut StepBounds,
+    ) -> Option<Bend> {
+        let row = self.rows[local];
+        if !bounds.parameters.moves(row) {
+            return self.bend(local, state, bounds, true);
+        }
+        let enclosed = self.enclosed_bend(local, state, &mut bounds.parameters);
+        let constraint = &state.system.equations()[row].constraint;
+        if enclosed.is_some() || !constraint.has_contour() {
+            return enclosed;
+        }
+        let resting = self.bend(local, state, bounds, true)?;
+        Some(Bend {
+            is_estimate: true,
+            ..resting
+        })
+    }
+
+    /// Bounds the bend of a row while parameters move its numbers. `None` if it has no enclosure.
+    #[cold]
+    fn enclosed_bend(
         &self,
         local: usize,
         state: &BlockState<'_>,
@@ -208,6 +233,7 @@ impl BlockEquations {
             along,
             row_scale,
             change,
+            is_estimate: false,
         })
     }
 }
