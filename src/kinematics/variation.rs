@@ -108,6 +108,19 @@ pub struct VariedMechanism<'a, N: Moving = Varied> {
     pub profiles: &'a [N::Profile],
 }
 
+impl<N> Default for VariedConfiguration<N> {
+    /// Makes a mechanism without bodies.
+    fn default() -> Self {
+        Self {
+            frames: Vec::new(),
+            coefficients: Vec::new(),
+            bodies: 0,
+            q: Vec::new(),
+            axes: Vec::new(),
+        }
+    }
+}
+
 impl<N: Number> VariedConfiguration<N> {
     /// Makes a mechanism at rest at the origin; numbers and q are still to be set.
     pub(super) fn new(mechanism: &Mechanism, coefficients: usize, unknowns: usize) -> Self {

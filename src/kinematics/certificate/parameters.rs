@@ -17,7 +17,7 @@ use crate::kinematics::variation::{Enclosed, VariedConfiguration, VariedMechanis
 use crate::mechanism::{Interval, Marker, MarkerId, Number, ParameterId};
 
 /// Bounds of the numbers in the equations over a sub-step.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(in crate::kinematics) struct ParameterBounds {
     /// Whether parameters move.
     pub(in crate::kinematics) moving: bool,
@@ -133,9 +133,17 @@ fn evaluated(marker: &Marker, parameters: &[f64]) -> Vector2<f64> {
 }
 
 impl ParameterBounds {
+    /// Makes the storage; a mechanism without parameters needs next to none.
     pub(super) fn new(system: &System) -> Self {
         let mechanism = system.mechanism();
         let parameters = mechanism.parameters.len();
+        let drivers_before = vec![0.0; mechanism.drivers.len()];
+        if parameters == 0 {
+            return Self {
+                drivers_before,
+                ..Self::default()
+            };
+        }
         let equations = system.equations().iter().enumerate();
         let rows = equations.map(|(row, equation)| {
             let mut parameters = system.incidence(row).parameters;
@@ -157,7 +165,7 @@ impl ParameterBounds {
             around: system.varied(),
             markers: vec![MarkerChange::default(); mechanism.markers.len()],
             rows: rows.collect(),
-            drivers_before: vec![0.0; mechanism.drivers.len()],
+            drivers_before,
         }
     }
 
