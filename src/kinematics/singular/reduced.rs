@@ -21,7 +21,7 @@ use crate::kinematics::block::{BlockPlan, BlockSolver, BlockState};
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::Gradient;
 use crate::kinematics::model::Model;
-use crate::kinematics::newton::MAX_ITERATIONS;
+use crate::kinematics::newton::Limits;
 use crate::kinematics::path::{Motions, Path, Rates};
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Targets, Values};
@@ -318,7 +318,7 @@ impl<'a> ReducedEquation<'a> {
                 BlockSolver::InterpolatedBlock(on) if on.start_beyond(&mut state) => &mut on.block,
                 block => block,
             };
-            block.close(&mut state, MAX_ITERATIONS).ok()?;
+            block.close(&mut state, Limits::STEP).ok()?;
             block.factorise(&mut state).ok()?;
             block.solve_rates(&mut state, &self.jets);
             let [velocity, acceleration] = [state.tangent.velocity(), state.tangent.acceleration()];
