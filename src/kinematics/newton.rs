@@ -50,6 +50,11 @@ impl Limits {
         iterations: 30,
         ..Self::STEP
     };
+    /// Limits of corrections that go on until the residual stops falling.
+    pub(super) const TO_THE_LAST_BIT: Self = Self {
+        residual: 0.0,
+        ..Self::STEP
+    };
 }
 
 /// A reciprocal condition below this belongs to a singular position: there Newton–Raphson ends
