@@ -30,10 +30,32 @@ pub(super) const AT_ROUNDING: f64 = 4.0;
 /// too: the estimate of the rounding leaves out the sums and products inside a row.
 pub(super) const STALLED: f64 = 100.0;
 
-/// Most corrections in a step: Newton–Raphson converges quadratically from a good prediction.
-pub(super) const MAX_ITERATIONS: u32 = 8;
-/// Most corrections in an assembly, which may also creep into a nearly singular position.
-pub(super) const MAX_ASSEMBLY_ITERATIONS: u32 = 30;
+/// Limits of Newton–Raphson.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// Most corrections.
+    pub(super) iterations: u32,
+    /// A residual up to this many times its estimated rounding error counts as zero.
+    pub(super) residual: f64,
+}
+
+impl Limits {
+    /// Limits in a step: Newton–Raphson converges quadratically from a good prediction.
+    pub(super) const STEP: Self = Self {
+        iterations: 8,
+        residual: AT_ROUNDING,
+    };
+    /// Limits in an assembly, which may also creep into a nearly singular position.
+    pub(super) const ASSEMBLY: Self = Self {
+        iterations: 30,
+        ..Self::STEP
+    };
+    /// Limits of corrections that go on until the residual stops falling.
+    pub(super) const TO_THE_LAST_BIT: Self = Self {
+        residual: 0.0,
+        ..Self::STEP
+    };
+}
 
 /// A reciprocal condition below this belongs to a singular position: there Newton–Raphson ends
 /// within the square root of the machine's rounding, and rates mean nothing.

@@ -5,7 +5,7 @@ use super::loops::{AllBranches, all_branches};
 use super::part::ATTEMPTS;
 use crate::kinematics::block::{BlockBranches, BlockState, ClosureGap, SolveBlock};
 use crate::kinematics::constraint::{Gradient, Region};
-use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS, Rejected};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 
 /// The effort of the search where neither a closed form nor bounds list all branches.
 #[derive(Clone, Copy, Debug)]
@@ -132,9 +132,9 @@ impl Branches {
         loop {
             let attempt = self.starts;
             let corrected = match &mut self.source {
-                Source::Explicit if attempt == 0 => block.close(state, MAX_ASSEMBLY_ITERATIONS),
+                Source::Explicit if attempt == 0 => block.close(state, Limits::ASSEMBLY),
                 Source::ClosedForm(angles) if attempt < angles.len() => {
-                    block.close_from(state, angles[attempt], MAX_ASSEMBLY_ITERATIONS)
+                    block.close_from(state, angles[attempt], Limits::ASSEMBLY)
                 }
                 Source::Explicit | Source::ClosedForm(_) | Source::Gap(_) => return None,
                 Source::Starts(starts) => {
@@ -192,7 +192,7 @@ impl Starts {
         let listed = self.all.as_ref().and_then(|all| all.branches.as_ref());
         if let Some(listed) = listed {
             self.part.write(state, listed.get(far)?);
-            return Some(block.close(state, MAX_ASSEMBLY_ITERATIONS));
+            return Some(block.close(state, Limits::ASSEMBLY));
         }
         (attempt < self.most).then(|| self.part.attempt_anywhere(block, state, estimate, far))
     }

@@ -12,7 +12,7 @@ use super::search::{Nearest, NoBranch};
 use crate::kinematics::element::Element;
 use crate::kinematics::error::{Error, OpenJoint, Proof, Verdict};
 use crate::kinematics::model::Model;
-use crate::kinematics::newton::MAX_ASSEMBLY_ITERATIONS;
+use crate::kinematics::newton::Limits;
 use crate::kinematics::state::State;
 
 /// A nearest pose with a scaled residual up to this one is closed: no one could measure the gap,
@@ -120,7 +120,7 @@ fn minimise_from_all(
 /// corrections of a block; `None` leaves the pose as it was.
 fn close(model: &mut Model, state: &mut State) -> Option<u32> {
     let Model { system, plan, .. } = model;
-    let closed = plan.close(&mut state.block_state(system), MAX_ASSEMBLY_ITERATIONS);
+    let closed = plan.close(&mut state.block_state(system), Limits::ASSEMBLY);
     let iterations = closed.ok()?;
     state.accept_bodies();
     Some(iterations)

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::least_squares::{LeastSquares, Pull};
 use crate::kinematics::block::{BlockState, SolveBlock};
 use crate::kinematics::constraint::{Gradient, Relation};
-use crate::kinematics::newton::{Correction, MAX_ASSEMBLY_ITERATIONS, Rejected};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::system::System;
 
 /// The weights r of Eq. 3.6.9, from one where the estimates count as much as the constraints to
@@ -107,8 +107,11 @@ impl LeastSquares {
             // One correction solves linear rows from any start, and estimates as good as that need
             // no more. A large part is worth more corrections before a minimisation.
             self.start(state, estimate, 0);
-            let large = self.columns.len() > SMALL_PART;
-            return block.close(state, if large { MAX_ASSEMBLY_ITERATIONS } else { 1 });
+            let mut limits = Limits::ASSEMBLY;
+            if self.columns.len() <= SMALL_PART {
+                limits.iterations = 1;
+            }
+            return block.close(state, limits);
         };
         self.start(state, estimate, attempt);
         let most = if attempt == 0 {
@@ -119,7 +122,7 @@ impl LeastSquares {
         if self.columns.len() <= most {
             self.minimise_growing(state);
         }
-        block.close(state, MAX_ASSEMBLY_ITERATIONS)
+        block.close(state, Limits::ASSEMBLY)
     }
 
     /// Tries to assemble the part, which is that of `block`, from anywhere: angles all around,
@@ -138,7 +141,7 @@ impl LeastSquares {
         let anywhere = |column| TAU * (scattered(attempt, column) - 0.5);
         self.start_off(state, estimate, anywhere);
         self.minimise(state, None, |_| 1.0, STEPS_FROM_ANYWHERE);
-        block.close(state, MAX_ASSEMBLY_ITERATIONS)
+        block.close(state, Limits::ASSEMBLY)
     }
 
     /// Minimises Eq. 3.6.9 for growing r from the present values, which count as the estimates.

@@ -22,7 +22,7 @@ use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::{Configuration, ROUNDING};
 use crate::kinematics::linear::{Condition, Factors, Lu, nan_or_larger};
-use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
+use crate::kinematics::newton::{Correction, Limits, Rejected, STALLED};
 use crate::kinematics::system::{System, Targets};
 use crate::mechanism::{Jet, MarkerId};
 
@@ -172,7 +172,7 @@ impl SolveBlock for CoupledBlock {
             state.at.set_coordinate(column, predicted);
         }
         let correction = self
-            .close(state, MAX_ITERATIONS)
+            .close(state, Limits::STEP)
             .map_err(|Rejected| step.bounds.reject())?;
         self.certify(state, step)?;
         Ok(Correction {
@@ -186,13 +186,13 @@ impl SolveBlock for CoupledBlock {
     fn close(
         &mut self,
         state: &mut BlockState<'_>,
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<Correction, Rejected> {
         // A single row is solved to the last bit, so that gears keep their phase.
         let at_rounding = if self.equations.rows.len() == 1 {
-            0.5
+            limits.residual.min(0.5)
         } else {
-            AT_ROUNDING
+            limits.residual
         };
         let mut outcome = Correction::default();
         let mut last_excess = f64::INFINITY;
@@ -207,7 +207,7 @@ impl SolveBlock for CoupledBlock {
             if excess <= at_rounding || stalled {
                 return Ok(outcome);
             }
-            if outcome.iterations == max_iterations {
+            if outcome.iterations == limits.iterations {
                 return Err(Rejected);
             }
             self.correction.copy_from_slice(&self.residual);

@@ -5,7 +5,7 @@ use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::constraint::Gradient;
-use crate::kinematics::newton::{Correction, Rejected};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::system::{System, Target, Targets};
 use crate::mechanism::Jet;
 
@@ -145,7 +145,7 @@ impl SolveBlock for ExplicitUnknown {
     fn close(
         &mut self,
         state: &mut BlockState<'_>,
-        _max_iterations: u32,
+        _limits: Limits,
     ) -> Result<Correction, Rejected> {
         self.locate(state);
         Ok(Correction::default())

@@ -8,7 +8,7 @@ use super::crossing::{Crossing, SEAM};
 use super::solve::SolveBlock;
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::ChordBound;
-use crate::kinematics::newton::{Correction, Rejected};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::mechanism::Jet;
 
 /// Any block while its unknowns come from a [`Crossing`].
@@ -154,7 +154,7 @@ impl SolveBlock for InterpolatedBlock {
     fn close(
         &mut self,
         state: &mut BlockState<'_>,
-        _max_iterations: u32,
+        _limits: Limits,
     ) -> Result<Correction, Rejected> {
         self.interpolate(state)
     }

@@ -42,7 +42,7 @@ use std::sync::Arc;
 
 use super::certificate::{Pivots, StepBounds};
 use super::configuration::Configuration;
-use super::newton::{Correction, Rejected};
+use super::newton::{Correction, Limits, Rejected};
 use super::path::Rates;
 use super::system::{System, Targets};
 use crate::mechanism::Jet;
@@ -288,10 +288,10 @@ impl BlockPlan {
     pub(super) fn close(
         &mut self,
         state: &mut BlockState<'_>,
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<u32, Rejected> {
         self.blocks.iter_mut().try_fold(0, |most: u32, block| {
-            let correction = block.close(state, max_iterations)?;
+            let correction = block.close(state, limits)?;
             Ok(most.max(correction.iterations))
         })
     }

@@ -8,7 +8,7 @@ use super::solve::SolveBlock;
 use super::step::{BlockState, Step};
 use crate::kinematics::certificate::{ChordBound, Pivots, StepBounds};
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
-use crate::kinematics::newton::{Correction, Rejected};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::system::{System, Target, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
@@ -160,7 +160,7 @@ impl SolveBlock for PinnedBody {
     fn close(
         &mut self,
         state: &mut BlockState<'_>,
-        _max_iterations: u32,
+        _limits: Limits,
     ) -> Result<Correction, Rejected> {
         self.locate(state);
         Ok(Correction::default())

@@ -22,7 +22,7 @@ use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp};
 use crate::kinematics::constraint::Projection;
 use crate::kinematics::error::Proof;
-use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
+use crate::kinematics::newton::{Correction, Limits, Rejected, STALLED};
 use crate::kinematics::system::{System, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
@@ -196,7 +196,7 @@ impl RrpDyad {
         &mut self,
         state: &mut BlockState<'_>,
         mut phi: f64,
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<Found, Rejected> {
         let known = self.known(state);
         let scale = known.w.norm() * known.g.norm();
@@ -209,7 +209,7 @@ impl RrpDyad {
             let slope = known.w.dot(&perp(g));
             let rounding = f64::EPSILON * (known.reach + scale * (1.0 + phi.abs()));
             let open = f.abs();
-            if open <= AT_ROUNDING * rounding
+            if open <= limits.residual * rounding
                 || (open <= STALLED * rounding && open >= 0.5 * last_gap)
             {
                 self.put(state.at.frames_mut(), &known, frame);
@@ -223,7 +223,7 @@ impl RrpDyad {
                 });
             }
             let step = -f / slope;
-            if correction.iterations == max_iterations || !step.is_finite() {
+            if correction.iterations == limits.iterations || !step.is_finite() {
                 return Err(Rejected);
             }
             phi += step;
@@ -263,7 +263,7 @@ impl SolveBlock for RrpDyad {
         let predicted = step
             .extrapolation
             .predict(column, before.first.phi, state.tangent);
-        let found = self.correct(state, predicted, MAX_ITERATIONS);
+        let found = self.correct(state, predicted, Limits::STEP);
         let found = found.map_err(|_| step.bounds.reject())?;
         self.certify(state, step, &before, &found)?;
         Ok(Correction {
@@ -275,10 +275,10 @@ impl SolveBlock for RrpDyad {
     fn close(
         &mut self,
         state: &mut BlockState<'_>,
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<Correction, Rejected> {
         let phi = state.at.frames()[self.body as usize].phi;
-        self.close_from(state, [phi, 0.0], max_iterations)
+        self.close_from(state, [phi, 0.0], limits)
     }
 
     /// Closes from an angle of body a, the first one.
@@ -286,9 +286,9 @@ impl SolveBlock for RrpDyad {
         &mut self,
         state: &mut BlockState<'_>,
         angles: [f64; 2],
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<Correction, Rejected> {
-        Ok(self.correct(state, angles[0], max_iterations)?.correction)
+        Ok(self.correct(state, angles[0], limits)?.correction)
     }
 
     /// Returns the two angles of body a at which the block closes: the minima of Eq. 3.6.9 for

@@ -15,7 +15,7 @@ use super::step::{BlockState, Extrapolation, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::{BodyPose, Configuration, perp, rotate};
 use crate::kinematics::error::Proof;
-use crate::kinematics::newton::{AT_ROUNDING, Correction, MAX_ITERATIONS, Rejected, STALLED};
+use crate::kinematics::newton::{Correction, Limits, Rejected, STALLED};
 use crate::kinematics::system::{System, Targets};
 use crate::mechanism::{Jet, MarkerId, Mechanism};
 
@@ -194,7 +194,7 @@ impl RrrDyad {
         &mut self,
         state: &mut BlockState<'_>,
         mut now: Turned,
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<Found, Rejected> {
         let [a, b] = &mut self.sides;
         let frames = state.at.frames_mut();
@@ -214,7 +214,7 @@ impl RrrDyad {
                     + a.length * (1.0 + frame_a.phi.abs())
                     + b.length * (1.0 + frame_b.phi.abs()));
             let open = largest(gap);
-            let closed = open <= AT_ROUNDING * rounding
+            let closed = open <= limits.residual * rounding
                 || (open <= STALLED * rounding && open >= 0.5 * last_gap);
             if closed && now.exact {
                 frames[a.body as usize] = BodyPose {
@@ -233,7 +233,7 @@ impl RrrDyad {
                     rounding,
                 });
             }
-            if correction.iterations == max_iterations {
+            if correction.iterations == limits.iterations {
                 return Err(Rejected);
             }
             let inverse = -1.0 / determinant;
@@ -365,7 +365,7 @@ impl SolveBlock for RrrDyad {
             links: [a.link, b.link],
             determinant: self.determinant,
         };
-        let found = self.correct(state, start, MAX_ITERATIONS);
+        let found = self.correct(state, start, Limits::STEP);
         let found = found.map_err(|_| step.bounds.reject())?;
         self.certify(state, step.bounds, &before, &found)?;
         Ok(Correction {
@@ -377,23 +377,23 @@ impl SolveBlock for RrrDyad {
     fn close(
         &mut self,
         state: &mut BlockState<'_>,
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<Correction, Rejected> {
         let phi = [0, 1].map(|k| state.at.frames()[self.sides[k].body as usize].phi);
-        self.close_from(state, phi, max_iterations)
+        self.close_from(state, phi, limits)
     }
 
     fn close_from(
         &mut self,
         state: &mut BlockState<'_>,
         angles: [f64; 2],
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<Correction, Rejected> {
         let start = Turned {
             frames: angles.map(BodyPose::turned),
             exact: true,
         };
-        Ok(self.correct(state, start, max_iterations)?.correction)
+        Ok(self.correct(state, start, limits)?.correction)
     }
 
     /// Returns the two pairs of angles at which the loop closes: the minima of Eq. 3.6.9 for r → ∞,

@@ -6,7 +6,7 @@ use super::step::{BlockState, Step};
 use crate::kinematics::certificate::Pivots;
 use crate::kinematics::configuration::Configuration;
 use crate::kinematics::error::Proof;
-use crate::kinematics::newton::{Correction, Rejected};
+use crate::kinematics::newton::{Correction, Limits, Rejected};
 use crate::kinematics::system::{System, Targets};
 use crate::mechanism::Jet;
 
@@ -69,12 +69,9 @@ pub(in crate::kinematics) trait SolveBlock:
     ///
     /// # Errors
     ///
-    /// [`Rejected`] without convergence in `max_iterations`.
-    fn close(
-        &mut self,
-        state: &mut BlockState<'_>,
-        max_iterations: u32,
-    ) -> Result<Correction, Rejected>;
+    /// [`Rejected`] without convergence within the limits.
+    fn close(&mut self, state: &mut BlockState<'_>, limits: Limits)
+    -> Result<Correction, Rejected>;
 
     /// Returns its branches. May move its bodies.
     fn branches(&self, state: &mut BlockState<'_>, estimate: &[f64]) -> BlockBranches {
@@ -87,15 +84,15 @@ pub(in crate::kinematics) trait SolveBlock:
     ///
     /// # Errors
     ///
-    /// [`Rejected`] without convergence in `max_iterations`.
+    /// [`Rejected`] without convergence within the limits.
     fn close_from(
         &mut self,
         state: &mut BlockState<'_>,
         angles: [f64; 2],
-        max_iterations: u32,
+        limits: Limits,
     ) -> Result<Correction, Rejected> {
         let _ = angles;
-        self.close(state, max_iterations)
+        self.close(state, limits)
     }
 
     /// Returns whether a closed form lists its branches.

@@ -49,12 +49,14 @@ impl DenseLu {
     /// [`Singular`] on a pivot that is zero or not finite. A matrix that is singular up to rounding
     /// passes; its condition is then near zero.
     pub fn factorise(&mut self, least_norm: f64) -> Result<(), Singular> {
-        // Compiled once for each of the orders that occur most.
+        // Compiled once for each of the orders that occur most: those of small blocks, and that of a
+        // dyad near a change point.
         match self.pivots.len() {
             1 => self.decompose(1, least_norm),
             2 => self.decompose(2, least_norm),
             3 => self.decompose(3, least_norm),
             4 => self.decompose(4, least_norm),
+            7 => self.decompose(7, least_norm),
             order => self.decompose(order, least_norm),
         }
     }
@@ -161,6 +163,7 @@ impl Factors for DenseLu {
             2 => self.substitute(2, b),
             3 => self.substitute(3, b),
             4 => self.substitute(4, b),
+            7 => self.substitute(7, b),
             order => self.substitute(order, b),
         }
     }

@@ -16,7 +16,7 @@ use crate::kinematics::assembly::least_squares::holds;
 use crate::kinematics::error::{Error, OpenJoint};
 use crate::kinematics::linear::Echelon;
 use crate::kinematics::model::{Model, RedundantRows};
-use crate::kinematics::newton::{MAX_ASSEMBLY_ITERATIONS, SINGULAR};
+use crate::kinematics::newton::{Limits, SINGULAR};
 use crate::kinematics::path::Path;
 use crate::kinematics::state::State;
 use crate::kinematics::structure::Structure;
@@ -172,7 +172,7 @@ pub(in crate::kinematics) fn assemble_on_all(
     state.accept_bodies();
     return_to_fit_rows(model, state)?;
     let Model { system, plan, .. } = &mut *model;
-    let closed = plan.close(&mut state.block_state(system), MAX_ASSEMBLY_ITERATIONS);
+    let closed = plan.close(&mut state.block_state(system), Limits::ASSEMBLY);
     let Ok(iterations) = closed else {
         return Err(singular_position(model, state));
     };

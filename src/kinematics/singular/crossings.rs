@@ -6,7 +6,7 @@ use super::near::bodies_of;
 use crate::kinematics::block::{BlockPlan, Crossing, SEAM};
 use crate::kinematics::error::in_line;
 use crate::kinematics::model::Model;
-use crate::kinematics::newton::MAX_ITERATIONS;
+use crate::kinematics::newton::Limits;
 use crate::kinematics::state::{Pose, State};
 use crate::mechanism::Jet;
 
@@ -89,7 +89,7 @@ pub(super) fn enter_crossing(model: &mut Model, state: &mut State, crossing: Cro
     let mut block_state = state.block_state(system);
     let closed = blocks[first..]
         .iter_mut()
-        .all(|block| block.close(&mut block_state, MAX_ITERATIONS).is_ok());
+        .all(|block| block.close(&mut block_state, Limits::STEP).is_ok());
     if closed {
         state.accept_bodies();
     } else {

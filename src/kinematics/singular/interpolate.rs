@@ -1,10 +1,10 @@
 //! The motion through a change point, interpolated between its two sides.
 
 use super::locate::{Finding, ROUNDING};
-use super::reduced::ReducedEquation;
+use super::reduced::{Place, ReducedEquation};
 use crate::kinematics::block::{Crossing, INNER, Polynomial, divided_differences};
 use crate::kinematics::linear::nan_or_larger;
-use crate::mechanism::DriverId;
+use crate::mechanism::{DriverId, Jet};
 
 /// Distance from the point to either end of a crossing at first, and the least one, as turn of the
 /// fastest body or its way in characteristic lengths. Newton–Raphson at the distance δ gives
@@ -20,11 +20,9 @@ const GOOD: f64 = 4e-12;
 const INTERPOLATED: f64 = 1e-6;
 /// Largest error of a prediction, as part of the distance between both motions.
 const OFF: f64 = 0.25;
-/// Least slope of the equation on a regular side.
-const FLAT: f64 = 1e-5;
 
 /// Makes the crossing of a block whose change point is in `finding`; `None` if the motion cannot
-/// be shown to go on beyond it.
+/// be shown to go on beyond it, or if the start is not within any crossing.
 pub(super) fn crossing_of(
     equation: &mut ReducedEquation<'_>,
     finding: Finding,
@@ -36,14 +34,22 @@ pub(super) fn crossing_of(
     };
     let velocity = &point.tangents[1] + slope * &point.tangents[0];
     let speed = equation.scaled_speed(&velocity);
+    if (equation.start - point.tau).abs() * speed >= REACH {
+        return None;
+    }
     let free = &point.tangents[0] / point.tangents[0].amax();
+    let rates = velocity.iter().zip(&equation.scales);
+    let rates = rates.map(|(velocity, scale)| velocity * scale);
+    let unknowns = point.z.iter().zip(rates);
     let center = Center {
+        place: Place {
+            tau: point.tau,
+            unknowns: unknowns
+                .map(|(z, rate)| Jet::new(*z, [rate, 0.0]))
+                .collect(),
+        },
         alpha: point.alpha,
-        tau: point.tau,
-        epsilon: point.epsilon,
         slopes: [slope, other],
-        rate: equation.unscaled(&velocity),
-        z: point.z,
     };
     let mut best: Option<(f64, Crossing)> = None;
     let mut reach = REACH;
@@ -54,7 +60,7 @@ pub(super) fn crossing_of(
             let crossing = Crossing {
                 block,
                 driver,
-                center: center.tau,
+                center: center.place.tau,
                 half_width,
                 coefficients,
                 free: free.iter().copied().collect(),
@@ -89,17 +95,14 @@ fn error_between(
     places: &[Place; 2],
     speed: f64,
 ) -> f64 {
-    let order = crossing.coefficients.len();
-    let unit = equation.unscaled(&nalgebra::DVector::repeat(order, 1.0));
     let width = crossing.half_width * speed;
     let mut largest = 0.0;
     for place in places {
-        for k in 0..order {
+        for (k, (known, unit)) in place.unknowns.iter().zip(&equation.scales).enumerate() {
             let [value, first, second] = crossing.evaluate(k, place.tau);
-            let [velocity, acceleration] = &place.rates;
-            let position = (value - place.z[k]).abs() / unit[k];
-            let tangent = (first - velocity[k]).abs() / (unit[k] * speed);
-            let bend = (second - acceleration[k]).abs() / (unit[k] * speed * speed);
+            let position = (value - known.value).abs() / unit;
+            let tangent = (first - known.first()).abs() / (unit * speed);
+            let bend = (second - known.second()).abs() / (unit * speed * speed);
             let error = error_of_shape(position, width).max(tangent / width);
             largest = nan_or_larger(largest, error.max(bend));
         }
@@ -109,70 +112,33 @@ fn error_between(
 
 /// The change point.
 struct Center {
+    /// The motion there, its second derivative being unknown: zero.
+    place: Place,
     alpha: f64,
-    tau: f64,
-    /// ε there, some rounding.
-    epsilon: f64,
     /// Slopes dα/dτ of the motion and of the other one, which may be infinite.
     slopes: [f64; 2],
-    z: Vec<f64>,
-    /// First derivative of z along the motion.
-    rate: Vec<f64>,
 }
 
-/// The motion at one place of a crossing.
-struct Place {
-    tau: f64,
-    alpha: f64,
-    z: Vec<f64>,
-    rates: [Vec<f64>; 2],
-}
-
-impl Place {
-    /// Finds the pose on the motion at the distance `off` from the point, where α is predicted to be
-    /// off the tangent by `bend`, by Newton's method on ε. The pose has to stay near, compared with
-    /// the distance of the other motion, and its own slope has to be nearer to that of the motion.
-    ///
-    /// The rounding of ε at the point parts the motions by its root; without it they cross.
-    fn find(
-        equation: &mut ReducedEquation<'_>,
-        center: &Center,
-        off: f64,
-        bend: f64,
-    ) -> Option<Self> {
-        let [slope, other] = center.slopes;
-        let tau = center.tau + off;
-        let tangent = center.alpha + slope * off;
-        let apart = if other.is_finite() {
-            ((slope - other) * off).abs()
-        } else {
-            off.abs() * equation.speed
-        };
-        let mut alpha = tangent + bend;
-        let mut last = f64::INFINITY;
-        for _ in 0..10 {
-            let point = equation.solve(alpha, tau)?;
-            let step = (center.epsilon - point.epsilon) / point.first[0];
-            alpha += step;
-            let astray = (alpha - tangent).abs();
-            if astray.is_nan() || astray > OFF * apart {
-                return None;
-            }
-            if step.abs() <= 1e-15 || (step.abs() < 1e-9 && step.abs() >= 0.5 * last) {
-                let own = -point.first[1] / point.first[0];
-                let kept = point.first[0].abs() >= FLAT
-                    && (!other.is_finite() || (own - slope).abs() < (own - other).abs());
-                return kept.then(|| Self {
-                    tau,
-                    alpha: point.alpha,
-                    rates: equation.rates(&point),
-                    z: point.z,
-                });
-            }
-            last = step.abs();
-        }
-        None
-    }
+/// Finds the motion at the distance `off` from the point, from a place near there. The pose has to
+/// stay near the tangent at the point, compared with the distance of the other motion, and its own
+/// slope has to be nearer to that of the motion.
+fn place_at(
+    equation: &mut ReducedEquation<'_>,
+    center: &Center,
+    near: &Place,
+    off: f64,
+) -> Option<Place> {
+    let [slope, other] = center.slopes;
+    let apart = if other.is_finite() {
+        ((slope - other) * off).abs()
+    } else {
+        off.abs() * equation.speed
+    };
+    let found = equation.follow(near, center.place.tau + off)?;
+    let [alpha, own] = equation.alpha_along(&found);
+    let astray = (alpha - (center.alpha + slope * off)).abs();
+    let is_own = !other.is_finite() || (own - slope).abs() < (own - other).abs();
+    (is_own && astray <= OFF * apart).then_some(found)
 }
 
 /// Returns the polynomials of a crossing of this width, and the motion at two places that they do
@@ -182,22 +148,22 @@ fn interpolate(
     center: &Center,
     half_width: f64,
 ) -> Option<(Vec<Polynomial>, [Place; 2])> {
-    // The second derivative of α, once it is known.
-    let mut curvature = 0.0;
-    let mut pair = |place: f64| {
+    let mut pair = |near: [&Place; 2], place: f64| {
         let off = place * half_width;
-        let mut find = |off: f64| Place::find(equation, center, off, 0.5 * curvature * off * off);
-        let (before, behind) = (find(-off)?, find(off)?);
-        curvature = (before.alpha + behind.alpha - 2.0 * center.alpha) / (off * off);
+        let before = place_at(equation, center, near[0], -off)?;
+        let behind = place_at(equation, center, near[1], off)?;
         Some([before, behind])
     };
-    let (inner, between, end) = (pair(INNER)?, pair(BETWEEN)?, pair(1.0)?);
-    let coefficients = (0..center.z.len()).map(|k| {
+    let inner = pair([&center.place; 2], INNER)?;
+    let between = pair(inner.each_ref(), BETWEEN)?;
+    let end = pair(between.each_ref(), 1.0)?;
+    let center = center.place.unknowns.iter();
+    let coefficients = center.enumerate().map(|(k, center)| {
         let parts = [(INNER, &inner), (1.0, &end)];
         let [inner, end] = parts.map(|(x, pair)| even_and_odd(x, pair, k, half_width));
         [
-            divided_differences(center.z[k], inner[0], end[0]),
-            divided_differences(center.rate[k] * half_width, inner[1], end[1]),
+            divided_differences(center.value, inner[0], end[0]),
+            divided_differences(center.first() * half_width, inner[1], end[1]),
         ]
     });
     Some((coefficients.collect(), between))
@@ -207,9 +173,9 @@ fn interpolate(
 /// first and second derivative in y, then P.
 fn even_and_odd(x: f64, [before, behind]: &[Place; 2], k: usize, half_width: f64) -> [[f64; 3]; 2] {
     let jet = |place: &Place| {
-        let [first, second] = &place.rates;
-        let square = half_width * half_width;
-        [place.z[k], first[k] * half_width, second[k] * square]
+        let unknown = &place.unknowns[k];
+        let second = unknown.second() * (half_width * half_width);
+        [unknown.value, unknown.first() * half_width, second]
     };
     let (before, behind) = (jet(before), jet(behind));
     let sum = [0, 1, 2].map(|order| 0.5 * (behind[order] + before[order]));

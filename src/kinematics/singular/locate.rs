@@ -49,6 +49,8 @@ const NEARLY: f64 = 1e-9;
 const TOUCHING: f64 = 1e-8;
 /// A singular value up to this part of the largest one is zero.
 const NO_RANK: f64 = 1e-8;
+/// Ratio of the extreme pivots of a bordered Jacobian above which it is regular.
+const REGULAR: f64 = 1e-4;
 
 /// The result of a search near a pose.
 pub(super) enum Finding {
@@ -61,39 +63,42 @@ pub(super) enum Finding {
     Crossing(Box<ReducedPoint>, [f64; 2]),
 }
 
-/// Looks for a singular position within the distance `reach` of the start, scaled by the speed of
-/// the motion there.
-pub(super) fn find(equation: &mut ReducedEquation<'_>, reach: f64) -> Finding {
-    let start = equation.start;
-    let rounding = if equation.reads_crossings() {
+/// Looks for a singular position within the distance `reach` of the point at the start, scaled by
+/// the speed of the motion there.
+pub(super) fn find(equation: &mut ReducedEquation<'_>, start: ReducedPoint, reach: f64) -> Finding {
+    let rounding = if equation.reads_crossings {
         INTERPOLATED
     } else {
         ROUNDING * equation.extent()
     };
     let mut near = None;
-    if let Some(point) = critical(equation, [0.0, start], reach) {
+    if let Some(point) = critical(equation, start.clone(), reach) {
         if point.epsilon.abs() <= rounding {
             return crossing(equation, point);
         }
-        match vertex(&point, start) {
-            Vertex::Here(place) => near = Some(place),
+        match vertex(&point, start.tau) {
+            Vertex::Here([alpha, tau]) => near = Some([alpha, tau - start.tau]),
             // The motion passes by.
             Vertex::Nowhere => return Finding::Nothing,
             Vertex::Far => {}
         }
     }
-    let from = near.unwrap_or([0.0, start]);
-    equation.return_to_start();
-    let fold = newton(equation, from, reach, |point| {
-        let [aa, at, _] = point.second;
-        ([point.epsilon, point.first[0]], [point.first, [aa, at]])
+    let from = match near {
+        Some(by) => equation.solve(start, by),
+        None => Some(start),
+    };
+    let fold = from.and_then(|from| {
+        newton(equation, from, reach, |point| {
+            let [aa, at, _] = point.second;
+            ([point.epsilon, point.first[0]], [point.first, [aa, at]])
+        })
     });
     match fold {
         Some(point) => {
             let kind = end(equation, &point);
             // Motions that cross seem to touch, too, as far as they can be told apart there.
             if kind == SingularKind::TangentBranches
-                && let Some(point) = critical(equation, [point.alpha, point.tau], reach)
+                && let Some(point) = critical(equation, point.clone(), reach)
                 && point.epsilon.abs() <= rounding
             {
                 return crossing(equation, point);
@@ -107,7 +112,7 @@ pub(super) fn find(equation: &mut ReducedEquation<'_>, reach: f64) -> Finding {
 /// Looks for a critical point of ε.
 fn critical(
     equation: &mut ReducedEquation<'_>,
-    from: [f64; 2],
+    from: ReducedPoint,
     reach: f64,
 ) -> Option<ReducedPoint> {
     newton(equation, from, reach, |point| {
@@ -116,18 +121,17 @@ fn critical(
     })
 }
 
-/// Solves two equations in the plane of α and τ by Newton's method; `equations` returns their
-/// values and their Jacobian.
+/// Solves two equations in the plane of α and τ by Newton's method from a point; `equations` returns
+/// their values and their Jacobian.
 fn newton(
     equation: &mut ReducedEquation<'_>,
-    [mut alpha, mut tau]: [f64; 2],
+    mut point: ReducedPoint,
     reach: f64,
     equations: impl Fn(&ReducedPoint) -> ([f64; 2], [[f64; 2]; 2]),
 ) -> Option<ReducedPoint> {
     let speed = equation.speed;
     let mut last = f64::INFINITY;
     for step in 0..MAX_STEPS {
-        let point = equation.solve(alpha, tau)?;
         let ([f, g], [[fa, ft], [ga, gt]]) = equations(&point);
         let determinant = fa * gt - ft * ga;
         let by_alpha = -(f * gt - g * ft) / determinant;
@@ -135,28 +139,23 @@ fn newton(
         let length = by_alpha.abs().max(by_tau.abs() * speed);
         if length <= CONVERGED {
             // The last correction takes off what rounding alone does not explain.
-            return equation.solve(alpha + by_alpha, tau + by_tau);
+            return Some(equation.extrapolate(point, [by_alpha, by_tau]));
         }
         if step > 2 && length < NEARLY && length >= 0.5 * last {
             return Some(point);
         }
         // Not a number is not within reach either.
         let within = length <= reach
-            && (alpha + by_alpha).abs() <= 2.0 * reach
-            && (tau + by_tau - equation.start).abs() * speed <= 2.0 * reach;
+            && (point.alpha + by_alpha).abs() <= 2.0 * reach
+            && (point.tau + by_tau - equation.start).abs() * speed <= 2.0 * reach;
         if !within {
             return None;
         }
-        alpha += by_alpha;
-        tau += by_tau;
+        point = equation.solve(point, [by_alpha, by_tau])?;
         last = length;
     }
     // Convergence by halves means a degenerate position, and near enough to name it.
-    if last < NEARLY {
-        equation.solve(alpha, tau)
-    } else {
-        None
-    }
+    (last < NEARLY).then_some(point)
 }
 
 /// The place where a hyperbola turns back.
@@ -183,15 +182,19 @@ fn vertex(saddle: &ReducedPoint, start: f64) -> Vertex {
     Vertex::Here([saddle.alpha - at / aa * off, saddle.tau + off])
 }
 
-/// Returns whether the Jacobian loses more than one rank.
-fn loses_more_ranks(equation: &ReducedEquation<'_>) -> bool {
+/// Returns whether the Jacobian loses more than one rank at a point, the last place.
+fn loses_more_ranks(equation: &ReducedEquation<'_>, point: &ReducedPoint) -> bool {
+    // Then the bordered Jacobian is singular, too.
+    if point.pivot_ratio > REGULAR {
+        return false;
+    }
     let values = equation.singular_values();
     values.len() > 1 && values[values.len() - 2] <= NO_RANK * values[0]
 }
 
 /// Returns the kind of a point with ε = ε_α = 0.
 fn end(equation: &ReducedEquation<'_>, point: &ReducedPoint) -> SingularKind {
-    if loses_more_ranks(equation) {
+    if loses_more_ranks(equation, point) {
         return SingularKind::HigherRank;
     }
     let [aa, at, tt] = point.second;
@@ -213,7 +216,7 @@ fn end(equation: &ReducedEquation<'_>, point: &ReducedPoint) -> SingularKind {
 /// Separates the two motions that cross at a saddle of ε with ε = 0.
 fn crossing(equation: &ReducedEquation<'_>, point: ReducedPoint) -> Finding {
     let refuse = |kind, point| Finding::End(kind, Box::new(point));
-    if loses_more_ranks(equation) {
+    if loses_more_ranks(equation, &point) {
         return refuse(SingularKind::HigherRank, point);
     }
     // Scaled, so that α and τ run equally fast.

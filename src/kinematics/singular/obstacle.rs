@@ -184,10 +184,10 @@ fn enter_near_crossings(
         let direction = drivers.map_or(0.0, |drivers| drivers[driver.index()].first());
         let line = Line::Driver(driver);
         let equation = ReducedEquation::new(model, state, block, line, value, &mut work);
-        let Some(mut equation) = equation else {
+        let Some((mut equation, start)) = equation else {
             continue;
         };
-        let finding = find(&mut equation, REACH);
+        let finding = find(&mut equation, start, REACH);
         if !matches!(finding, Finding::Nothing) {
             fruitless.note(block, 0.0);
         }
@@ -242,7 +242,7 @@ pub(in crate::kinematics) fn find_end(
     for &block in &near {
         let line = Line::Path(path);
         let equation = ReducedEquation::new(model, state, block, line, s, &mut work);
-        let place = equation.and_then(|mut equation| place_ahead(&mut equation, s));
+        let place = equation.and_then(|(mut equation, start)| place_ahead(&mut equation, start));
         located.extend(place.map(|(_, point)| (block, point.tau - s)));
     }
     // A block and those that read it lose rank at the same place: the first of them counts.
@@ -260,12 +260,13 @@ pub(in crate::kinematics) fn find_end(
     found.map(Box::new)
 }
 
-/// Returns the kind and the place of the singular position ahead of `s` on a path.
+/// Returns the kind and the place of the singular position ahead of the start on a path.
 fn place_ahead(
     equation: &mut ReducedEquation<'_>,
-    s: f64,
+    start: ReducedPoint,
 ) -> Option<(SingularKind, Box<ReducedPoint>)> {
-    let (kind, point) = match find(equation, REACH_TO_END) {
+    let s = start.tau;
+    let (kind, point) = match find(equation, start, REACH_TO_END) {
         Finding::End(kind, point) => (kind, point),
         Finding::Crossing(point, _) => (SingularKind::ChangePoint, point),
         Finding::Nothing => return None,
@@ -285,9 +286,10 @@ fn singular_point(
     block: usize,
     work: &mut Workspace,
 ) -> Option<SingularPoint> {
-    let mut equation = ReducedEquation::new(model, state, block, Line::Path(path), s, work)?;
-    let (kind, point) = place_ahead(&mut equation, s)?;
-    let (q, drivers) = (equation.pose(point.tau), equation.drivers().to_vec());
+    let line = Line::Path(path);
+    let (mut equation, start) = ReducedEquation::new(model, state, block, line, s, work)?;
+    let (kind, point) = place_ahead(&mut equation, start)?;
+    let (q, drivers) = (equation.pose(&point), equation.drivers().to_vec());
     Some(SingularPoint {
         drivers,
         q,

@@ -15,13 +15,13 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{DMatrix, DVector, Dyn, LU};
+use nalgebra::DVector;
 
 use crate::kinematics::block::{BlockPlan, BlockSolver, BlockState};
 use crate::kinematics::configuration::Configuration;
-use crate::kinematics::constraint::Gradient;
+use crate::kinematics::linear::{DenseLu, Factors, nan_or_larger};
 use crate::kinematics::model::Model;
-use crate::kinematics::newton::MAX_ITERATIONS;
+use crate::kinematics::newton::Limits;
 use crate::kinematics::path::{Motions, Path, Rates};
 use crate::kinematics::state::State;
 use crate::kinematics::system::{System, Targets, Values};
@@ -81,6 +81,22 @@ impl Workspace {
             place_of: vec![None; unknowns],
         }
     }
+
+    /// Returns the mechanism at the last place as block solvers see it.
+    fn block_state<'b>(
+        &'b mut self,
+        system: &'b System,
+        targets: &'b Targets,
+        drivers: &'b [f64],
+    ) -> BlockState<'b> {
+        BlockState {
+            system,
+            targets,
+            drivers,
+            at: &mut self.at,
+            tangent: &mut self.tangent,
+        }
+    }
 }
 
 /// The reduced equation of a block.
@@ -89,18 +105,25 @@ pub(super) struct ReducedEquation<'a> {
     targets: &'a Targets,
     motions: &'a Motions,
     line: Line<'a>,
-    /// The block's index in the plan, the blocks before it, and the blocks that each block reads.
+    /// The block's index in the plan, the block itself, those before it, and the blocks that each
+    /// block reads.
     block: usize,
+    own: &'a mut BlockSolver,
     before: &'a mut [BlockSolver],
     reads: &'a [Vec<usize>],
-    /// The blocks before it that were moved to the last place, ascending.
-    moved: BTreeSet<usize>,
+    /// The blocks before it that it reads, directly or through others, ascending; and those of them
+    /// that were moved to the last place.
+    read_blocks: Vec<usize>,
+    moved: Vec<usize>,
+    /// Whether one of them comes from a crossing.
+    pub(super) reads_crossings: bool,
     rows: Vec<usize>,
+    row_scales: Vec<f64>,
     /// The unknowns that the rows read, of the blocks before it.
     read_columns: Vec<usize>,
-    pub(super) columns: Vec<usize>,
+    columns: Vec<usize>,
     /// Scale factor of each unknown \[m or rad\].
-    scales: Vec<f64>,
+    pub(super) scales: Vec<f64>,
     work: &'a mut Workspace,
     held: &'a [f64],
     jets: Vec<Jet>,
@@ -108,16 +131,29 @@ pub(super) struct ReducedEquation<'a> {
     /// The start: τ and the pose there.
     pub(super) start: f64,
     origin: &'a [f64],
-    /// z⁰, and the bordering vectors, all scaled.
+    /// The bordering vectors, scaled.
     b: DVector<f64>,
     c: DVector<f64>,
-    /// ε at the last place.
-    epsilon: f64,
+    /// F at the last place, then F_p p′ and F_p p″, scaled.
+    residual: Vec<f64>,
+    read_rates: [Vec<f64>; 2],
+    /// The bordered Jacobian there, or its factors.
+    bordered: DenseLu,
+    /// Sides of the bordered equations.
+    side: Vec<f64>,
+    psi: Vec<f64>,
     /// The largest scaled rate with τ at the start, of the unknowns before the block, too.
     pub(super) speed: f64,
 }
 
+/// The motion of a block at one place of the line: its unknowns with their derivatives in τ.
+pub(super) struct Place {
+    pub(super) tau: f64,
+    pub(super) unknowns: Vec<Jet>,
+}
+
 /// The reduced equation at one place.
+#[derive(Clone)]
 pub(super) struct ReducedPoint {
     pub(super) alpha: f64,
     pub(super) tau: f64,
@@ -129,14 +165,13 @@ pub(super) struct ReducedPoint {
     pub(super) tangents: [DVector<f64>; 2],
     /// The block's unknowns.
     pub(super) z: Vec<f64>,
-    /// F_p p″ along the line, one entry per row of the block.
-    bend: DVector<f64>,
-    bordered: LU<f64, Dyn, Dyn>,
+    /// Ratio of the extreme pivots of the bordered Jacobian.
+    pub(super) pivot_ratio: f64,
 }
 
 impl<'a> ReducedEquation<'a> {
-    /// Reduces the equations of a block from the pose, which is at `start` of the line. `None`
-    /// where the block is regular beyond doubt or has no bordered solution.
+    /// Reduces the equations of a block from the pose, which is at `start` of the line. Returns them
+    /// with their point there; `None` where they have no bordered solution.
     pub(super) fn new(
         model: &'a mut Model,
         state: &'a State,
@@ -144,7 +179,7 @@ impl<'a> ReducedEquation<'a> {
         line: Line<'a>,
         start: f64,
         work: &'a mut Workspace,
-    ) -> Option<Self> {
+    ) -> Option<(Self, ReducedPoint)> {
         let State {
             pose,
             targets,
@@ -163,8 +198,21 @@ impl<'a> ReducedEquation<'a> {
             work.place_of[column] = Some(place);
             work.at.set_coordinate(column, pose.q[column]);
         }
+        let read_blocks = read_through(block, reads, |_| false);
+        let mut read = read_blocks.iter().map(|&block| &before[block]);
+        let reads_crossings = read.any(|block| matches!(block, BlockSolver::InterpolatedBlock(_)));
         let size = work.at.size();
         let order = columns.len();
+        let at_start = ReducedPoint {
+            alpha: 0.0,
+            tau: start,
+            epsilon: 0.0,
+            first: [0.0; 2],
+            second: [0.0; 3],
+            tangents: [DVector::zeros(order), DVector::zeros(order)],
+            z: columns.iter().map(|&column| pose.q[column]).collect(),
+            pivot_ratio: 0.0,
+        };
         let mut reduced = Self {
             system,
             targets,
@@ -172,15 +220,23 @@ impl<'a> ReducedEquation<'a> {
             line,
             block,
             read_columns: read_columns.collect(),
-            before,
-            reads,
-            moved: BTreeSet::new(),
             rows: own.rows().to_vec(),
+            row_scales: own
+                .rows()
+                .iter()
+                .map(|&row| system.equations()[row].row_scale(&work.at))
+                .collect(),
             scales: columns
                 .iter()
                 .map(|&column| system.column_scale(column, size))
                 .collect(),
             columns,
+            own,
+            before,
+            reads,
+            moved: read_blocks.clone(),
+            read_blocks,
+            reads_crossings,
             work,
             held: &pose.drivers,
             jets: vec![Jet::constant(0.0); pose.drivers.len()],
@@ -189,15 +245,19 @@ impl<'a> ReducedEquation<'a> {
             origin: &pose.q,
             b: DVector::zeros(order),
             c: DVector::zeros(order),
-            epsilon: 0.0,
+            residual: vec![0.0; order],
+            read_rates: [vec![0.0; order], vec![0.0; order]],
+            bordered: DenseLu::new(order + 1, 0),
+            side: vec![0.0; order + 1],
+            psi: vec![0.0; order + 1],
             speed: 0.0,
         };
         reduced.move_all_before(start)?;
         reduced.keep_tangent();
         reduced.border()?;
-        let point = reduced.solve(0.0, start)?;
-        reduced.speed = reduced.scaled_speed(&point.tangents[1]);
-        (reduced.speed > 0.0 && reduced.speed.is_finite()).then_some(reduced)
+        let at_start = reduced.correct(at_start)?;
+        reduced.speed = reduced.scaled_speed(&at_start.tangents[1]);
+        (reduced.speed > 0.0 && reduced.speed.is_finite()).then_some((reduced, at_start))
     }
 
     /// Returns the largest scaled rate of the unknowns of the blocks moved and of these of its own.
@@ -208,10 +268,8 @@ impl<'a> ReducedEquation<'a> {
         let read = read.map(|&column| {
             (self.work.tangent.velocity()[column] / self.system.column_scale(column, size)).abs()
         });
-        let driven = self.rows.iter().map(|&row| {
-            let scale = self.system.equations()[row].row_scale(&self.work.at);
-            (self.driver(row).first() * scale).abs()
-        });
+        let rows = self.rows.iter().zip(&self.row_scales);
+        let driven = rows.map(|(&row, scale)| (self.driver(row).first() * scale).abs());
         read.chain(driven).fold(own.amax(), f64::max)
     }
 
@@ -234,19 +292,33 @@ impl<'a> ReducedEquation<'a> {
     /// inverse iteration, the first of them from a vector that is not likely to be at right
     /// angles to anything.
     fn border(&mut self) -> Option<()> {
-        let (_, jacobian) = self.equations();
-        let order = jacobian.nrows();
-        let transposed = jacobian.transpose().lu();
-        let lu = jacobian.lu();
-        let any = DVector::from_fn(order, |k, _| 1.0 + 0.618 * (k % 3) as f64);
-        let mut right = lu.solve(&any)?.try_normalize(0.0)?;
+        let order = self.rows.len();
+        self.evaluate();
+        // Solves with the Jacobian alone, for sides that end with a zero.
+        let lu = &mut self.bordered;
+        lu.add(order, order, 1.0);
+        lu.factorise(0.0).ok()?;
+        let any = |k| {
+            if k < order {
+                1.0 + 0.618 * (k % 3) as f64
+            } else {
+                0.0
+            }
+        };
+        let mut right = DVector::from_fn(order + 1, |k, _| any(k));
+        lu.solve(right.as_mut_slice());
+        right.try_normalize_mut(0.0)?;
         let mut left = right.clone();
         for _ in 0..3 {
-            left = transposed.solve(&right)?.try_normalize(0.0)?;
-            right = lu.solve(&left)?.try_normalize(0.0)?;
+            left.copy_from(&right);
+            lu.solve_transposed(left.as_mut_slice());
+            left.try_normalize_mut(0.0)?;
+            right.copy_from(&left);
+            lu.solve(right.as_mut_slice());
+            right.try_normalize_mut(0.0)?;
         }
-        self.b = left;
-        self.c = right;
+        self.b.copy_from(&left.rows(0, order));
+        self.c.copy_from(&right.rows(0, order));
         Some(())
     }
 
@@ -254,31 +326,20 @@ impl<'a> ReducedEquation<'a> {
     /// reads itself stays where it is.
     fn move_before(&mut self, tau: f64) -> Option<()> {
         self.move_drivers(tau);
-        self.moved = self.behind(|block| match block {
-            BlockSolver::InterpolatedBlock(interpolated) => interpolated.is_within(&self.drivers),
-            _ => false,
-        });
+        if self.reads_crossings {
+            self.moved = read_through(self.block, self.reads, |block| match &self.before[block] {
+                BlockSolver::InterpolatedBlock(block) => block.is_within(&self.drivers),
+                _ => false,
+            });
+        }
         self.move_blocks(tau)
     }
 
     /// Moves all blocks to τ that it reads, directly or through others.
     fn move_all_before(&mut self, tau: f64) -> Option<()> {
         self.move_drivers(tau);
-        self.moved = self.behind(|_| false);
+        self.moved.clone_from(&self.read_blocks);
         self.move_blocks(tau)
-    }
-
-    /// Returns the blocks that it reads, directly or through others, but not through those at which
-    /// the search `stops`.
-    fn behind(&self, stops: impl Fn(&BlockSolver) -> bool) -> BTreeSet<usize> {
-        let mut found = BTreeSet::new();
-        let mut open = self.reads[self.block].clone();
-        while let Some(block) = open.pop() {
-            if found.insert(block) && !stops(&self.before[block]) {
-                open.extend(&self.reads[block]);
-            }
-        }
-        found
     }
 
     fn move_drivers(&mut self, tau: f64) {
@@ -294,84 +355,87 @@ impl<'a> ReducedEquation<'a> {
     fn move_blocks(&mut self, tau: f64) -> Option<()> {
         let off = tau - self.start;
         let Workspace {
-            at,
-            tangent,
-            origin_tangent,
-            ..
+            at, origin_tangent, ..
         } = &mut *self.work;
         let (velocity, acceleration) = (origin_tangent.velocity(), origin_tangent.acceleration());
-        let mut state = BlockState {
-            system: self.system,
-            targets: self.targets,
-            drivers: &self.drivers,
-            at,
-            tangent,
-        };
-        for &index in &self.moved {
-            let block = &mut self.before[index];
-            for &column in block.columns() {
+        for &block in &self.moved {
+            for &column in self.before[block].columns() {
                 let ahead = off * (velocity[column] + 0.5 * off * acceleration[column]);
-                let predicted = self.origin[column] + ahead;
-                state.at.set_coordinate(column, predicted);
+                at.set_coordinate(column, self.origin[column] + ahead);
             }
-            let block = match block {
+        }
+        let mut state = (self.work).block_state(self.system, self.targets, &self.drivers);
+        for &block in &self.moved {
+            let block = match &mut self.before[block] {
                 BlockSolver::InterpolatedBlock(on) if on.start_beyond(&mut state) => &mut on.block,
                 block => block,
             };
-            block.close(&mut state, MAX_ITERATIONS).ok()?;
-            block.factorise(&mut state).ok()?;
-            block.solve_rates(&mut state, &self.jets);
-            let [velocity, acceleration] = [state.tangent.velocity(), state.tangent.acceleration()];
-            let mut columns = block.columns().iter();
-            if !columns.all(|&column| (velocity[column] + acceleration[column]).is_finite()) {
-                return None;
-            }
+            close(block, &mut state, Limits::STEP, &self.jets)?;
         }
         Some(())
+    }
+
+    /// Follows the motion of the block from a place to τ, by its own solver.
+    pub(super) fn follow(&mut self, from: &Place, tau: f64) -> Option<Place> {
+        self.move_before(tau)?;
+        let off = tau - from.tau;
+        for (&column, z) in self.columns.iter().zip(&from.unknowns) {
+            let ahead = off * (z.first() + 0.5 * off * z.second());
+            self.work.at.set_coordinate(column, z.value + ahead);
+        }
+        let mut state = (self.work).block_state(self.system, self.targets, &self.drivers);
+        close(self.own, &mut state, Limits::TO_THE_LAST_BIT, &self.jets)?;
+        let BlockState { at, tangent, .. } = state;
+        let unknowns = self.columns.iter().map(|&column| {
+            let rates = [tangent.velocity()[column], tangent.acceleration()[column]];
+            Jet::new(at.coordinate(column), rates)
+        });
+        Some(Place {
+            tau,
+            unknowns: unknowns.collect(),
+        })
     }
 
     fn driver(&self, row: usize) -> Jet {
         self.system.equations()[row].target_rates(&self.jets)
     }
 
-    /// Returns F and J, scaled.
-    fn equations(&self) -> (DVector<f64>, DMatrix<f64>) {
+    /// Evaluates F, F_p p′ and F_p p″ where the bodies are, and J, whose border stays empty.
+    fn evaluate(&mut self) {
+        let Workspace {
+            at,
+            tangent,
+            place_of,
+            ..
+        } = &*self.work;
         let values = Values {
-            at: &self.work.at,
+            at,
             targets: self.targets,
             drivers: &self.drivers,
         };
-        let place = |column: usize| self.work.place_of[column];
-        let order = self.columns.len();
-        self.system.dense_rows(&self.rows, order, place, values)
+        let (velocity, acceleration) = (tangent.velocity(), tangent.acceleration());
+        self.bordered.clear();
+        for (local, (&row, &row_scale)) in self.rows.iter().zip(&self.row_scales).enumerate() {
+            let driver = self.driver(row);
+            let mut first = -driver.first() * row_scale;
+            let mut second = -driver.second() * row_scale;
+            let entry = |column: usize, value: f64| {
+                if let Some(own) = place_of[column] {
+                    self.bordered.add(local, own, value * self.scales[own]);
+                } else {
+                    first += value * velocity[column];
+                    second += value * acceleration[column];
+                }
+            };
+            let found = (self.system).evaluate_scaled_row(row, row_scale, values, entry);
+            self.residual[local] = found.value;
+            self.read_rates[0][local] = first;
+            self.read_rates[1][local] = second;
+        }
     }
 
-    /// Returns F_p times first and second derivatives along the line of the unknowns before the
-    /// block, scaled.
-    fn read_rates(&self) -> [DVector<f64>; 2] {
-        let rate = |rates: &[f64], order: fn(Jet) -> f64| {
-            DVector::from_iterator(
-                self.rows.len(),
-                self.rows.iter().map(|&row| {
-                    let equation = &self.system.equations()[row];
-                    let mut gradient = Gradient::new();
-                    equation.constraint.gradient(&self.work.at, &mut gradient);
-                    let read = gradient
-                        .entries()
-                        .filter(|(column, _)| self.work.place_of[*column].is_none());
-                    let sum: f64 = read.map(|(column, value)| value * rates[column]).sum();
-                    (sum - order(self.driver(row))) * equation.row_scale(&self.work.at)
-                }),
-            )
-        };
-        [
-            rate(self.work.tangent.velocity(), |jet| jet.first()),
-            rate(self.work.tangent.acceleration(), |jet| jet.second()),
-        ]
-    }
-
-    /// Returns F″\[V, V\], one entry per row, for V = (v, w p′).
-    fn quadratic(&mut self, v: &DVector<f64>, w: f64) -> DVector<f64> {
+    /// Returns ψᵀF″\[V, V\] for V = x V₁ + y V₂, ψ being the one solved last.
+    fn bend(&mut self, [along_alpha, along_tau]: &[DVector<f64>; 2], [x, y]: [f64; 2]) -> f64 {
         let Workspace {
             at,
             tangent,
@@ -379,174 +443,145 @@ impl<'a> ReducedEquation<'a> {
             ..
         } = &mut *self.work;
         for &column in &self.read_columns {
-            rates[column] = w * tangent.velocity()[column];
+            rates[column] = y * tangent.velocity()[column];
         }
-        for ((&column, scale), v) in self.columns.iter().zip(&self.scales).zip(v.iter()) {
-            rates[column] = scale * v;
+        for (k, (&column, scale)) in self.columns.iter().zip(&self.scales).enumerate() {
+            rates[column] = scale * (x * along_alpha[k] + y * along_tau[k]);
         }
-        let (at, rates) = (&*at, &*rates);
-        DVector::from_iterator(
-            self.rows.len(),
-            self.rows.iter().map(|&row| {
-                let equation = &self.system.equations()[row];
-                equation.constraint.quadratic(at, rates) * equation.row_scale(at)
-            }),
-        )
+        let rows = self.rows.iter().zip(&self.row_scales).zip(&self.psi);
+        let terms = rows.map(|((&row, scale), psi)| {
+            let constraint = &self.system.equations()[row].constraint;
+            psi * (scale * constraint.quadratic(at, rates))
+        });
+        terms.sum()
     }
 
-    /// Solves the bordered equations for z and ε at (α, τ), from the last place. Returns the
+    /// Solves the bordered equations for z and ε at a distance (α, τ) from a point. Returns the
     /// derivatives of ε there, too.
-    pub(super) fn solve(&mut self, alpha: f64, tau: f64) -> Option<ReducedPoint> {
-        self.move_before(tau)?;
+    pub(super) fn solve(&mut self, from: ReducedPoint, by: [f64; 2]) -> Option<ReducedPoint> {
+        let point = self.extrapolate(from, by);
+        self.move_before(point.tau)?;
+        self.correct(point)
+    }
+
+    /// Moves a point by a distance (α, τ) along its tangents; its derivatives stay.
+    pub(super) fn extrapolate(
+        &self,
+        mut point: ReducedPoint,
+        [by_alpha, by_tau]: [f64; 2],
+    ) -> ReducedPoint {
+        let [along_alpha, along_tau] = &point.tangents;
+        for (k, (z, scale)) in point.z.iter_mut().zip(&self.scales).enumerate() {
+            *z += (by_alpha * along_alpha[k] + by_tau * along_tau[k]) * scale;
+        }
+        point.alpha += by_alpha;
+        point.tau += by_tau;
+        point.epsilon += by_alpha * point.first[0] + by_tau * point.first[1];
+        point
+    }
+
+    /// Corrects z and ε of a point at its α and τ, and renews its derivatives. The blocks before are
+    /// at τ.
+    fn correct(&mut self, mut point: ReducedPoint) -> Option<ReducedPoint> {
         let order = self.rows.len();
         let mut last = f64::INFINITY;
         for _ in 0..MAX_CORRECTIONS {
-            let (residual, jacobian) = self.equations();
-            let bordered = self.bordered(&jacobian);
-            let lu = bordered.clone().lu();
-            let mut step = DVector::zeros(order + 1);
-            step.rows_mut(0, order)
-                .copy_from(&-(residual + self.epsilon * &self.b));
-            step[order] = alpha - self.alpha();
-            if !lu.solve_mut(&mut step) {
-                return None;
+            for (&column, z) in self.columns.iter().zip(&point.z) {
+                self.work.at.set_coordinate(column, *z);
             }
-            let length = step.amax();
+            self.evaluate();
+            for (k, (b, c)) in self.b.iter().zip(self.c.iter()).enumerate() {
+                self.bordered.add(k, order, *b);
+                self.bordered.add(order, k, *c);
+                self.side[k] = -(self.residual[k] + point.epsilon * b);
+            }
+            self.side[order] = point.alpha - self.alpha(point.z.iter().copied());
+            self.bordered.factorise(0.0).ok()?;
+            self.bordered.solve(&mut self.side);
+            let step = self.side.iter().map(|part| part.abs());
+            let length = step.fold(0.0, nan_or_larger);
             if length.is_nan() || length > LARGEST_STEP {
                 return None;
             }
-            let largest = (self.columns.iter().zip(&self.scales))
-                .map(|(&column, scale)| (self.work.at.coordinate(column) / scale).abs())
-                .fold(1.0, f64::max);
-            self.epsilon += step[order];
+            let unknowns = point.z.iter().zip(&self.scales);
+            let farthest = unknowns.fold(1.0, |most: f64, (z, scale)| most.max((z / scale).abs()));
+            point.epsilon += self.side[order];
             // Rounding limits the unknowns before it limits ε, which to first order does not change
             // with them.
-            if length <= 4.0 * f64::EPSILON * largest || (length < 1e-9 && length >= 0.5 * last) {
-                return Some(self.derivatives(alpha, tau, &bordered, lu));
+            if length <= 4.0 * f64::EPSILON * farthest || (length < 1e-9 && length >= 0.5 * last) {
+                self.renew_derivatives(&mut point);
+                return Some(point);
             }
             last = length;
-            for (k, &column) in self.columns.iter().enumerate() {
-                let value = self.work.at.coordinate(column) + step[k] * self.scales[k];
-                self.work.at.set_coordinate(column, value);
+            for ((z, scale), step) in point.z.iter_mut().zip(&self.scales).zip(&self.side) {
+                *z += step * scale;
             }
         }
         None
     }
 
-    /// Puts the block's unknowns back to the start.
-    pub(super) fn return_to_start(&mut self) {
-        for &column in &self.columns {
-            self.work.at.set_coordinate(column, self.origin[column]);
-        }
-        self.epsilon = 0.0;
-    }
-
-    /// Returns α = c · (z − z⁰).
-    fn alpha(&self) -> f64 {
-        let moved = self.columns.iter().zip(&self.scales).zip(self.c.iter());
-        moved
-            .map(|((&column, scale), c)| {
-                c * (self.work.at.coordinate(column) - self.origin[column]) / scale
-            })
-            .sum()
-    }
-
-    fn bordered(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+    /// Renews the derivatives of a point, with the bordered Jacobian factorised there.
+    fn renew_derivatives(&mut self, point: &mut ReducedPoint) {
         let order = self.rows.len();
-        let mut bordered = DMatrix::zeros(order + 1, order + 1);
-        bordered
-            .view_mut((0, 0), (order, order))
-            .copy_from(jacobian);
-        bordered.view_mut((0, order), (order, 1)).copy_from(&self.b);
-        bordered
-            .view_mut((order, 0), (1, order))
-            .copy_from(&self.c.transpose());
-        bordered
-    }
-
-    fn derivatives(
-        &mut self,
-        alpha: f64,
-        tau: f64,
-        bordered: &DMatrix<f64>,
-        lu: LU<f64, Dyn, Dyn>,
-    ) -> ReducedPoint {
-        let order = self.rows.len();
-        let [read, bend] = self.read_rates();
-        let solve = |mut side: DVector<f64>| {
-            // Regular: it has just been solved with.
-            lu.solve_mut(&mut side);
-            side
-        };
-        let mut side = DVector::zeros(order + 1);
+        let Self {
+            bordered,
+            side,
+            psi,
+            read_rates: [read, bend],
+            ..
+        } = self;
+        let [along_alpha, along_tau] = &mut point.tangents;
+        side.fill(0.0);
         side[order] = 1.0;
-        let psi = bordered
-            .transpose()
-            .lu()
-            .solve(&side)
-            .unwrap_or_else(|| DVector::repeat(order + 1, f64::NAN));
-        let psi = psi.rows(0, order).into_owned();
-        let by_alpha = solve(side);
-        let mut side = DVector::zeros(order + 1);
-        side.rows_mut(0, order).copy_from(&-read);
-        let by_tau = solve(side);
-        let tangents = [&by_alpha, &by_tau].map(|v| v.rows(0, order).into_owned());
-        let along = self.quadratic(&tangents[0], 0.0);
-        let across = self.quadratic(&tangents[1], 1.0);
-        let both = self.quadratic(&(&tangents[0] + &tangents[1]), 1.0);
-        let mixed = 0.5 * (both - &along - &across);
-        ReducedPoint {
-            alpha,
-            tau,
-            epsilon: self.epsilon,
-            first: [by_alpha[order], by_tau[order]],
-            second: [
-                -psi.dot(&along),
-                -psi.dot(&mixed),
-                -psi.dot(&(across + &bend)),
-            ],
-            tangents,
-            z: self
-                .columns
-                .iter()
-                .map(|&column| self.work.at.coordinate(column))
-                .collect(),
-            bend,
-            bordered: lu,
+        psi.copy_from_slice(side);
+        bordered.solve_transposed(psi);
+        bordered.solve(side);
+        along_alpha.copy_from_slice(&side[..order]);
+        point.first[0] = side[order];
+        for (side, read) in side.iter_mut().zip(&*read) {
+            *side = -read;
         }
+        side[order] = 0.0;
+        bordered.solve(side);
+        along_tau.copy_from_slice(&side[..order]);
+        point.first[1] = side[order];
+        let (low, high) = bordered.pivot_range();
+        point.pivot_ratio = low / high;
+        let read: f64 = psi.iter().zip(&*bend).map(|(psi, bend)| psi * bend).sum();
+        let along = self.bend(&point.tangents, [1.0, 0.0]);
+        let across = self.bend(&point.tangents, [0.0, 1.0]);
+        let both = self.bend(&point.tangents, [1.0, 1.0]);
+        point.second = [-along, -0.5 * (both - along - across), -(across + read)];
     }
 
-    /// Returns the first and second derivative of z along the line on the motion through the
-    /// regular pose `point`, where the block is, unscaled.
-    pub(super) fn rates(&mut self, point: &ReducedPoint) -> [Vec<f64>; 2] {
-        let order = self.rows.len();
-        let slope = -point.first[1] / point.first[0];
-        let velocity = &point.tangents[1] + slope * &point.tangents[0];
-        // J z″ = −F″[T, T] − F_p p″ in the bordered form; a step along ∂z/∂α removes the rest in ε.
-        let mut side = DVector::zeros(order + 1);
-        side.rows_mut(0, order)
-            .copy_from(&-(self.quadratic(&velocity, 1.0) + &point.bend));
-        point.bordered.solve_mut(&mut side);
-        let bend = -side[order] / point.first[0];
-        let acceleration = side.rows(0, order) + bend * &point.tangents[0];
-        [velocity, acceleration].map(|rates| self.unscaled(&rates))
+    /// Returns α of unknowns of the block: c · (z − z⁰).
+    fn alpha(&self, z: impl Iterator<Item = f64>) -> f64 {
+        let unknowns = self.columns.iter().zip(&self.scales).zip(z);
+        let moved = unknowns.map(|((&column, scale), z)| (z - self.origin[column]) / scale);
+        moved.zip(self.c.iter()).map(|(moved, c)| moved * c).sum()
     }
 
-    /// Returns scaled values of the block's unknowns in metres and radians.
-    pub(super) fn unscaled(&self, scaled: &DVector<f64>) -> Vec<f64> {
-        let unknowns = scaled.iter().zip(&self.scales);
-        unknowns.map(|(value, scale)| value * scale).collect()
+    /// Returns α at a place of the motion, with its first derivative.
+    pub(super) fn alpha_along(&self, place: &Place) -> [f64; 2] {
+        let rates = place.unknowns.iter().map(Jet::first).zip(&self.scales);
+        let scaled = rates
+            .zip(self.c.iter())
+            .map(|((rate, scale), c)| rate / scale * c);
+        let values = place.unknowns.iter().map(|jet| jet.value);
+        [self.alpha(values), scaled.sum()]
     }
 
     /// Returns the singular values of the Jacobian at the last place, descending.
     pub(super) fn singular_values(&self) -> DVector<f64> {
-        self.equations().1.singular_values()
-    }
-
-    /// Returns whether a block before it comes from a crossing.
-    pub(super) fn reads_crossings(&self) -> bool {
-        let mut blocks = self.moved.iter().map(|&block| &self.before[block]);
-        blocks.any(|block| matches!(block, BlockSolver::InterpolatedBlock(_)))
+        let values = Values {
+            at: &self.work.at,
+            targets: self.targets,
+            drivers: &self.drivers,
+        };
+        let place = |column: usize| self.work.place_of[column];
+        let order = self.columns.len();
+        let (_, jacobian) = self.system.dense_rows(&self.rows, order, place, values);
+        jacobian.singular_values()
     }
 
     /// Returns the largest distance of the block's bodies from the origin, scaled, at least one:
@@ -559,15 +594,17 @@ impl<'a> ReducedEquation<'a> {
             .fold(1.0, f64::max)
     }
 
-    /// Returns q at τ, the last place; unknowns that it does not read are those of the start.
-    pub(super) fn pose(&mut self, tau: f64) -> Vec<f64> {
-        // The block itself stays there. A block before it may be singular at this place.
-        let _ = self.move_all_before(tau);
+    /// Returns q at a point; unknowns that the block does not read are those of the start.
+    pub(super) fn pose(&mut self, point: &ReducedPoint) -> Vec<f64> {
+        // A block before it may be singular at this place.
+        let _ = self.move_all_before(point.tau);
         let mut q = self.origin.to_vec();
         let moved = self.moved.iter();
-        let moved = moved.flat_map(|&block| self.before[block].columns());
-        for &column in self.columns.iter().chain(moved) {
+        for &column in moved.flat_map(|&block| self.before[block].columns()) {
             q[column] = self.work.at.coordinate(column);
+        }
+        for (&column, z) in self.columns.iter().zip(&point.z) {
+            q[column] = *z;
         }
         q
     }
@@ -576,4 +613,33 @@ impl<'a> ReducedEquation<'a> {
     pub(super) fn drivers(&self) -> &[f64] {
         &self.drivers
     }
+}
+
+/// Returns the blocks that a block reads, directly or through others, ascending, but not through
+/// those at which the search `stops`.
+fn read_through(block: usize, reads: &[Vec<usize>], stops: impl Fn(usize) -> bool) -> Vec<usize> {
+    let mut found = BTreeSet::new();
+    let mut open = reads[block].clone();
+    while let Some(block) = open.pop() {
+        if found.insert(block) && !stops(block) {
+            open.extend(&reads[block]);
+        }
+    }
+    found.into_iter().collect()
+}
+
+/// Solves a block and its rates by its own solver from where its bodies are.
+fn close(
+    block: &mut BlockSolver,
+    state: &mut BlockState<'_>,
+    limits: Limits,
+    drivers: &[Jet],
+) -> Option<()> {
+    block.close(state, limits).ok()?;
+    block.factorise(state).ok()?;
+    block.solve_rates(state, drivers);
+    let [velocity, acceleration] = [state.tangent.velocity(), state.tangent.acceleration()];
+    let mut columns = block.columns().iter();
+    let finite = columns.all(|&column| (velocity[column] + acceleration[column]).is_finite());
+    finite.then_some(())
 }
