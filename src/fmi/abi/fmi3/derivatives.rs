@@ -1,30 +1,30 @@
 //! Partial derivatives, output derivatives and dependencies.
 
 use super::access::check_count;
-use super::types::{
-    fmi3Constant, fmi3DependencyKind, fmi3Dependent, fmi3Float64, fmi3Instance, fmi3Int32,
-    fmi3Status, fmi3ValueReference,
-};
 use crate::fmi::abi::arguments::{Room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::{Call, DependencyKind};
+
+/// Dependency with a constant factor, an `fmi3DependencyKind`.
+pub(super) const fmi3Constant: u32 = 1;
+/// Dependency without a particular structure, an `fmi3DependencyKind`.
+pub(super) const fmi3Dependent: u32 = 5;
 
 /// Defines the functions of partial derivatives, each with the lengths of its seed and of its
 /// sensitivity for some unknowns and knowns.
 macro_rules! partial_derivatives {
     ($($(#[$doc:meta])* $function:ident = $method:ident, $lengths:expr;)*) => {
         instance_calls! {
-            fmi3Instance => fmi3Status;
-            $(
+                    $(
                 $(#[$doc])*
                 $function(
-                    unknowns: *const fmi3ValueReference,
+                    unknowns: *const u32,
                     n_unknowns: usize,
-                    knowns: *const fmi3ValueReference,
+                    knowns: *const u32,
                     n_knowns: usize,
-                    seed: *const fmi3Float64,
+                    seed: *const f64,
                     n_seed: usize,
-                    sensitivity: *mut fmi3Float64,
+                    sensitivity: *mut f64,
                     n_sensitivity: usize,
                 ) = |instance| {
                     let [of_seed, of_sensitivity] = ($lengths)(n_unknowns, n_knowns);
@@ -50,13 +50,12 @@ partial_derivatives! {
 }
 
 instance_calls! {
-    fmi3Instance => fmi3Status;
     /// `fmi3GetOutputDerivatives`.
     fmi3GetOutputDerivatives(
-        value_references: *const fmi3ValueReference,
+        value_references: *const u32,
         n_value_references: usize,
-        orders: *const fmi3Int32,
-        values: *mut fmi3Float64,
+        orders: *const i32,
+        values: *mut f64,
         n_values: usize,
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
@@ -68,7 +67,7 @@ instance_calls! {
     };
     /// `fmi3GetNumberOfVariableDependencies`.
     fmi3GetNumberOfVariableDependencies(
-        value_reference: fmi3ValueReference,
+        value_reference: u32,
         n_dependencies: *mut usize,
     ) = |instance| {
         let call = Call::GetNumberOfVariableDependencies;
@@ -77,11 +76,11 @@ instance_calls! {
     };
     /// `fmi3GetVariableDependencies`. Each variable has one element, for which the index 1 stands.
     fmi3GetVariableDependencies(
-        dependent: fmi3ValueReference,
+        dependent: u32,
         element_indices_of_dependent: *mut usize,
-        independents: *mut fmi3ValueReference,
+        independents: *mut u32,
         element_indices_of_independents: *mut usize,
-        dependency_kinds: *mut fmi3DependencyKind,
+        dependency_kinds: *mut u32,
         n_dependencies: usize,
     ) = |instance| {
         let found = instance.dependencies(Call::GetVariableDependencies, dependent)?;
