@@ -352,8 +352,8 @@ fn its_state_survives_bytes_and_belongs_to_its_interface() {
 fn it_is_described_and_packed() {
     let model = Integrator::new(Interface::CoSimulation);
     let unknown = Unknown {
-        index: 3,
-        dependencies: [(1, DependencyKind::Dependent)].into(),
+        value_reference: 2,
+        dependencies: [(0, DependencyKind::Dependent)].into(),
         parameters: [].into(),
     };
     let description = ModelDescription {

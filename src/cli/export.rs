@@ -71,8 +71,7 @@ impl Export {
         if let Some(path) = self.model_description {
             files.refuse_as_outputs(&[Some(&path)])?;
             let solver = assemble(&input)?;
-            let mut description = describe(mechanism, solver.structure());
-            description.standard = self.fmi;
+            let description = describe(mechanism, solver.structure(), self.fmi);
             return write(&path, &description.write(generated.as_deref()));
         }
         let path = self

@@ -227,16 +227,12 @@ pub trait Model: Sized {
         Err(Failure::Failed(why.to_owned()))
     }
 
-    /// Returns the variables that an output or a calculated parameter depends on, by value
-    /// reference: in initialization mode, or else after it, over all settings. `None` if the model
-    /// does not know them.
-    fn dependencies(
-        &self,
-        value_reference: u32,
-        initializing: bool,
-    ) -> Option<Vec<(u32, DependencyKind)>> {
+    /// Returns the variables on which an output or a calculated parameter depends, by value
+    /// reference: in initialization mode, or otherwise after it, over all settings. None for other
+    /// variables.
+    fn dependencies(&self, value_reference: u32, initializing: bool) -> Vec<(u32, DependencyKind)> {
         let _ = (value_reference, initializing);
-        None
+        Vec::new()
     }
 
     /// Makes the point of the values set the committed one: at the end of initialization, at an

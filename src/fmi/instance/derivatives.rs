@@ -153,7 +153,6 @@ impl<M: Model> Instance<M> {
             self.course.state,
             State::Instantiated | State::InitializationMode
         );
-        let found = self.model.dependencies(value_reference, initializing);
-        Ok(found.unwrap_or_default())
+        Ok(self.model.dependencies(value_reference, initializing))
     }
 }

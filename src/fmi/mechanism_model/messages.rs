@@ -175,7 +175,7 @@ impl MechanismModel {
             if driver.motion().is_some() {
                 continue;
             }
-            for (order, source) in monitor.changes(self.sources[index]) {
+            for (order, source) in monitor.changes(self.course.sources[index]) {
                 if rates == RateSource::Auto && log.wants(Category::Events) {
                     let message = describe_source(driver, order, source, start);
                     log.write(Status::Ok, Category::Events, &message);

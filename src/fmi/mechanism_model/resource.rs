@@ -58,11 +58,9 @@ pub fn write_fmu(
     for file in &mechanism.table_files {
         resources.push((file.name.as_str(), file.text.as_bytes()));
     }
-    let mut description = describe(mechanism, structure);
-    description.standard = version;
     package::write(
         out,
-        &description,
+        &describe(mechanism, structure, version),
         libraries,
         &resources,
         documents,
