@@ -401,4 +401,8 @@ fn it_is_described_and_packed() {
     ] {
         assert!(xml.contains(part), "{part} in {xml}");
     }
+    // The schema forbids empty lists (2.2.2, 2.2.3).
+    for list in ["<UnitDefinitions", "<TypeDefinitions"] {
+        assert!(!xml.contains(list), "{list} in {xml}");
+    }
 }

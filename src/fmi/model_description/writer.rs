@@ -157,6 +157,10 @@ fn write_units<Q>(xml: &mut Xml, variables: &[Variable<Q>]) -> io::Result<()> {
         let displays = &mut units[index].1;
         displays.extend(unit.display.filter(|display| !displays.contains(display)));
     }
+    // The schemas forbid an empty list.
+    if units.is_empty() {
+        return Ok(());
+    }
     xml.create_element("UnitDefinitions").with_content(|xml| {
         for (unit, displays) in &units {
             let definition = xml
