@@ -124,7 +124,8 @@ pub(super) fn pack(
         libraries,
         &documents,
         generation_time()?.as_deref(),
-    )?;
+    )
+    .map_err(Error::Archive)?;
     Ok(archive.into_inner())
 }
 
