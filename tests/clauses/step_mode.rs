@@ -258,7 +258,7 @@ fn a_dead_point_is_an_early_return_at_its_time() {
         let [base, arm] = get(&mut instance, ["base", "arm_length"]);
         let dead_point = base + arm;
         let extrapolation = vr(&instance, "extrapolation");
-        instance.set_int64(&[extrapolation], &[2]).unwrap();
+        instance.set_integer(&[extrapolation], &[2]).unwrap();
         let start = dead_point - 0.05;
         set(&mut instance, [("side_length.position", start)]);
         instance.enter_initialization_mode_at(0.0, None).unwrap();

@@ -28,44 +28,32 @@ pub(super) unsafe fn slice<'a, T>(
     Ok(unsafe { slice::from_raw_parts(pointer, length) })
 }
 
-/// Memory of the host to be written. It may hold nothing yet, so that it is never read.
-pub(super) struct Room<'a, T>(&'a mut [MaybeUninit<T>]);
-
-impl<'a, T: Copy> Room<'a, T> {
-    /// Returns the room for `length` items at `pointer`.
-    ///
-    /// # Safety
-    ///
-    /// A pointer that is not null points to room for `length` items that nobody else touches
-    /// while the room is used.
-    pub(super) unsafe fn new(
-        name: &'static str,
-        pointer: *mut T,
-        length: usize,
-    ) -> Result<Self, Error> {
-        check_array(name, pointer, length)?;
-        if length == 0 {
-            return Ok(Self(&mut []));
-        }
-        // SAFETY: checked above as far as possible, promised by the caller beyond; items that
-        // may hold nothing have the layout of items.
-        Ok(Self(unsafe {
-            slice::from_raw_parts_mut(pointer.cast(), length)
-        }))
+/// Returns the memory for `length` items at `pointer`, to be written. It may hold nothing yet, so that
+/// it is never read.
+///
+/// # Safety
+///
+/// A pointer that is not null points to room for `length` items that nobody else touches while the
+/// memory is used.
+pub(super) unsafe fn room<'a, T: Copy>(
+    name: &'static str,
+    pointer: *mut T,
+    length: usize,
+) -> Result<&'a mut [MaybeUninit<T>], Error> {
+    check_array(name, pointer, length)?;
+    if length == 0 {
+        return Ok(&mut []);
     }
+    // SAFETY: checked above as far as possible, promised by the caller beyond; items that may hold
+    // nothing have the layout of items.
+    Ok(unsafe { slice::from_raw_parts_mut(pointer.cast(), length) })
+}
 
-    /// Returns the items to be written.
-    #[inline]
-    pub(super) fn items(self) -> &'a mut [MaybeUninit<T>] {
-        self.0
-    }
-
-    /// Writes values from the first item on, as many as there are and have room.
-    #[inline]
-    pub(super) fn fill(self, values: impl IntoIterator<Item = T>) {
-        for (item, value) in self.0.iter_mut().zip(values) {
-            item.write(value);
-        }
+/// Writes values from the first item on, as many as there are and have room.
+#[inline]
+pub(super) fn fill<T: Copy>(room: &mut [MaybeUninit<T>], values: impl IntoIterator<Item = T>) {
+    for (item, value) in room.iter_mut().zip(values) {
+        item.write(value);
     }
 }
 
@@ -127,6 +115,6 @@ pub(super) unsafe fn write<T: Copy>(
     value: T,
 ) -> Result<(), Error> {
     // SAFETY: promised by the caller.
-    unsafe { Room::new(name, pointer, 1)? }.fill([value]);
+    fill(unsafe { room(name, pointer, 1)? }, [value]);
     Ok(())
 }

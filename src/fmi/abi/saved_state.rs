@@ -37,7 +37,7 @@ macro_rules! fmu_state_calls {
     ) => {
         use std::ptr::null_mut;
 
-        use $crate::fmi::abi::arguments::{Room, slice, write};
+        use $crate::fmi::abi::arguments::{fill, room, slice, write};
         use $crate::fmi::abi::component::Handle;
         use $crate::fmi::abi::saved_state::{ARGUMENT, FmuState, hand_over, state};
         use $crate::fmi::{Call, Error, StateError};
@@ -79,13 +79,13 @@ macro_rules! fmu_state_calls {
             #[doc = concat!("`", stringify!($serialize), "`.")]
             $serialize(fmu_state: Handle, serialized_state: *mut $byte, size: usize) = |instance| {
                 let bytes = instance.serialize_fmu_state(state(fmu_state)?)?;
-                let room = Room::new("serializedState", serialized_state.cast(), size)?;
+                let room = room("serializedState", serialized_state.cast(), size)?;
                 // With more room the host would hand back more than was written.
                 if size != bytes.len() {
                     let (needed, given) = (bytes.len(), size);
                     return Err(Error::FmuState(StateError::Room { needed, given }));
                 }
-                room.fill(bytes);
+                fill(room, bytes);
                 Ok(())
             };
             #[doc = concat!("`", stringify!($deserialize), "`: makes a state, which is then the host's to free.")]
@@ -95,8 +95,8 @@ macro_rules! fmu_state_calls {
                 fmu_state: *mut Handle,
             ) = |instance| {
                 let bytes = slice("serializedState", serialized_state.cast(), size)?;
-                let room = Room::new(ARGUMENT, fmu_state, 1)?;
-                room.fill([hand_over(instance.deserialize_fmu_state(bytes)?)]);
+                let room = room(ARGUMENT, fmu_state, 1)?;
+                fill(room, [hand_over(instance.deserialize_fmu_state(bytes)?)]);
                 Ok(())
             };
         }

@@ -3,15 +3,15 @@
 use std::ffi::c_char;
 
 use crate::fmi::Call;
-use crate::fmi::abi::arguments::{Room, slice};
+use crate::fmi::abi::arguments::{fill, room, slice};
 use crate::fmi::abi::calls::instance_calls;
 
 instance_calls! {
     /// `fmi2GetReal`.
     fmi2GetReal(vr: *const u32, nvr: usize, value: *mut f64) = |instance| {
         let vr = slice("vr", vr, nvr)?;
-        let room = Room::new("value", value, nvr)?;
-        instance.reals(vr)?.write_to(room.items());
+        let room = room("value", value, nvr)?;
+        instance.reals(vr)?.write_to(room);
         Ok(())
     };
     /// `fmi2SetReal`.
@@ -22,8 +22,8 @@ instance_calls! {
     /// `fmi2GetInteger`: counts of the solver, and the choices.
     fmi2GetInteger(vr: *const u32, nvr: usize, value: *mut i32) = |instance| {
         let vr = slice("vr", vr, nvr)?;
-        let room = Room::new("value", value, nvr)?;
-        room.fill(instance.integers(vr)?);
+        let room = room("value", value, nvr)?;
+        fill(room, instance.integers(vr)?);
         Ok(())
     };
     /// `fmi2SetInteger`.
@@ -59,8 +59,8 @@ instance_calls! {
         let unknowns = slice("vUnknown_ref", vr_unknown, n_unknown)?;
         let knowns = slice("vKnown_ref", vr_known, n_known)?;
         let changes = slice("dvKnown", dv_known, n_known)?;
-        let room = Room::new("dvUnknown", dv_unknown, n_unknown)?;
-        room.fill(instance.directional_derivative(unknowns, knowns, changes)?);
+        let room = room("dvUnknown", dv_unknown, n_unknown)?;
+        fill(room, instance.directional_derivative(unknowns, knowns, changes)?);
         Ok(())
     };
 }

@@ -2,7 +2,7 @@
 
 use super::types::{fmi2EventInfo, fmi2False};
 use crate::fmi::Call;
-use crate::fmi::abi::arguments::Room;
+use crate::fmi::abi::arguments::{fill, room};
 use crate::fmi::abi::calls::instance_calls;
 
 instance_calls! {
@@ -16,9 +16,9 @@ instance_calls! {
     /// whose values no pose exists.
     fmi2NewDiscreteStates(event_info: *mut fmi2EventInfo) = |instance| {
         instance.allow(Call::NewDiscreteStates)?;
-        let to = Room::new("fmi2eventInfo", event_info, 1)?;
+        let to = room("fmi2eventInfo", event_info, 1)?;
         let must_end = instance.new_discrete_states()?;
-        to.fill([fmi2EventInfo {
+        fill(to, [fmi2EventInfo {
             newDiscreteStatesNeeded: fmi2False,
             terminateSimulation: must_end.into(),
             nominalsOfContinuousStatesChanged: fmi2False,
@@ -36,11 +36,11 @@ instance_calls! {
         terminate_simulation: *mut i32,
     ) = |instance| {
         instance.allow(Call::CompletedIntegratorStep)?;
-        let enter = Room::new("enterEventMode", enter_event_mode, 1)?;
-        let terminate = Room::new("terminateSimulation", terminate_simulation, 1)?;
+        let enter = room("enterEventMode", enter_event_mode, 1)?;
+        let terminate = room("terminateSimulation", terminate_simulation, 1)?;
         let must_end = instance.completed_integrator_step()?;
-        enter.fill([fmi2False]);
-        terminate.fill([must_end.into()]);
+        fill(enter, [fmi2False]);
+        fill(terminate, [must_end.into()]);
         Ok(())
     };
     /// `fmi2SetContinuousStates`: there are none.

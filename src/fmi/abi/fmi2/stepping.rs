@@ -3,7 +3,7 @@
 use std::ffi::c_char;
 
 use super::types::{fmi2DoStepStatus, fmi2LastSuccessfulTime, fmi2Terminated};
-use crate::fmi::abi::arguments::{Room, slice, write};
+use crate::fmi::abi::arguments::{fill, room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::abi::component::{Instance, status_code};
 use crate::fmi::{Call, Error};
@@ -28,8 +28,8 @@ instance_calls! {
         value: *mut f64,
     ) = |instance| {
         let (vr, order) = (slice("vr", vr, nvr)?, slice("order", order, nvr)?);
-        let room = Room::new("value", value, nvr)?;
-        room.fill(instance.output_derivatives(vr, order)?);
+        let room = room("value", value, nvr)?;
+        fill(room, instance.output_derivatives(vr, order)?);
         Ok(())
     };
     /// `fmi2DoStep`. Nothing is kept for going back, so that

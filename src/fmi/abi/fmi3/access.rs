@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use crate::fmi::abi::arguments::{Room, slice};
+use crate::fmi::abi::arguments::{fill, room, slice};
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::{Call, Error};
 
@@ -29,8 +29,8 @@ instance_calls! {
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
-        let room = Room::new("values", values, n_values)?;
-        instance.reals(references)?.write_to(room.items());
+        let room = room("values", values, n_values)?;
+        instance.reals(references)?.write_to(room);
         Ok(())
     };
     /// `fmi3SetFloat64`.
@@ -53,8 +53,8 @@ instance_calls! {
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
-        let room = Room::new("values", values, n_values)?;
-        room.fill(instance.integers(references)?.map(i64::from));
+        let room = room("values", values, n_values)?;
+        fill(room, instance.integers(references)?.map(i64::from));
         Ok(())
     };
     /// `fmi3SetInt64`.
@@ -66,7 +66,7 @@ instance_calls! {
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
-        instance.set_int64(references, slice("values", values, n_values)?)
+        instance.set_integer(references, slice("values", values, n_values)?)
     };
 }
 

@@ -1,7 +1,7 @@
 //! Partial derivatives, output derivatives and dependencies.
 
 use super::access::check_count;
-use crate::fmi::abi::arguments::{Room, slice, write};
+use crate::fmi::abi::arguments::{fill, room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::{Call, DependencyKind};
 
@@ -33,8 +33,8 @@ macro_rules! partial_derivatives {
                     let unknowns = slice("unknowns", unknowns, n_unknowns)?;
                     let knowns = slice("knowns", knowns, n_knowns)?;
                     let seed = slice("seed", seed, n_seed)?;
-                    let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
-                    room.fill(instance.$method(unknowns, knowns, seed)?);
+                    let room = room("sensitivity", sensitivity, n_sensitivity)?;
+                    fill(room, instance.$method(unknowns, knowns, seed)?);
                     Ok(())
                 };
             )*
@@ -61,8 +61,8 @@ instance_calls! {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
         let orders = slice("orders", orders, n_value_references)?;
-        let room = Room::new("values", values, n_values)?;
-        room.fill(instance.output_derivatives(references, orders)?);
+        let room = room("values", values, n_values)?;
+        fill(room, instance.output_derivatives(references, orders)?);
         Ok(())
     };
     /// `fmi3GetNumberOfVariableDependencies`.
@@ -86,15 +86,15 @@ instance_calls! {
         let found = instance.dependencies(Call::GetVariableDependencies, dependent)?;
         check_count("nDependencies", n_dependencies, found.len())?;
         let n = n_dependencies;
-        let of_dependent = Room::new("elementIndicesOfDependent", element_indices_of_dependent, n)?;
-        let variables = Room::new("independents", independents, n)?;
+        let of_dependent = room("elementIndicesOfDependent", element_indices_of_dependent, n)?;
+        let variables = room("independents", independents, n)?;
         let name = "elementIndicesOfIndependents";
-        let of_independents = Room::new(name, element_indices_of_independents, n)?;
-        let kinds = Room::new("dependencyKinds", dependency_kinds, n)?;
-        of_dependent.fill(found.iter().map(|_| 1));
-        variables.fill(found.iter().map(|(vr, _)| *vr));
-        of_independents.fill(found.iter().map(|_| 1));
-        kinds.fill(found.iter().map(|(_, kind)| match kind {
+        let of_independents = room(name, element_indices_of_independents, n)?;
+        let kinds = room("dependencyKinds", dependency_kinds, n)?;
+        fill(of_dependent, found.iter().map(|_| 1));
+        fill(variables, found.iter().map(|(vr, _)| *vr));
+        fill(of_independents, found.iter().map(|_| 1));
+        fill(kinds, found.iter().map(|(_, kind)| match kind {
             DependencyKind::Dependent => fmi3Dependent,
             DependencyKind::Constant => fmi3Constant,
         }));
