@@ -184,7 +184,7 @@ impl Model for Integrator {
         Ok(())
     }
 
-    fn step(&mut self, size: f64, end: f64, _: &Logger) -> Result<(), Failure> {
+    fn step(&mut self, size: f64, end: f64, _: bool, _: &Logger) -> Result<(), Failure> {
         let [y, time] = self.state.from;
         let reached = y + self.slope() * size;
         if reached > LIMIT {

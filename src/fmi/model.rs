@@ -97,7 +97,7 @@ use super::variable::Variable;
 ///     fn commit(&mut self, _: Phase, _: &Logger) -> Result<(), Failure> {
 ///         Ok(())
 ///     }
-///     fn step(&mut self, _: f64, end: f64, _: &Logger) -> Result<(), Failure> {
+///     fn step(&mut self, _: f64, end: f64, _: bool, _: &Logger) -> Result<(), Failure> {
 ///         self.state.time = end;
 ///         Ok(())
 ///     }
@@ -252,24 +252,10 @@ pub trait Model: Sized {
     ///
     /// # Errors
     ///
-    /// [`Failure::Discarded`] if the model cannot reach the end; it has then committed the point
-    /// that it reached. [`Failure::Failed`] if it has not moved.
-    fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure>;
-
-    /// Takes a step as [`step`](Self::step) does; if the model cannot reach the end, it stays as it
-    /// was before the call.
-    ///
-    /// # Errors
-    ///
-    /// As [`step`](Self::step).
-    fn try_step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        let before = self.save();
-        let stepped = self.step(size, end, log);
-        if stepped.is_err() {
-            self.restore(&before);
-        }
-        stepped
-    }
+    /// [`Failure::Discarded`] if the model cannot reach the end: with `stays` it is then as before the
+    /// call, otherwise it has committed the point that it reached. [`Failure::Failed`] if it has not
+    /// moved.
+    fn step(&mut self, size: f64, end: f64, stays: bool, log: &Logger) -> Result<(), Failure>;
 
     /// Begins a step of `size` \[s\] to the time `end` \[s\] that is taken in parts.
     fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {

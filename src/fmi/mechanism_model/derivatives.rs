@@ -26,7 +26,8 @@ impl MechanismModel {
         if unknowns.is_empty() {
             return Ok(Vec::new());
         }
-        self.refresh_rates(phase, log)?;
+        self.refresh_pose(phase, log)?;
+        self.refresh_rates()?;
         let mut direction = Direction::zero(&self.mechanism);
         let mut loads = vec![0.0; self.course.force_inputs.len()];
         for &(known, change) in knowns {

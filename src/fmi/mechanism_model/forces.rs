@@ -3,22 +3,16 @@
 use super::{MechanismModel, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::{Category, Logger};
-use crate::fmi::state::Phase;
 use crate::kinematics::ForceParts;
 
 impl MechanismModel {
-    /// Solves forces for the values set. Allocates nothing, unless other rows have become redundant.
+    /// Solves forces at the pose for its rates, which are up to date. Allocates nothing, unless other
+    /// rows have become redundant.
     ///
     /// # Errors
     ///
-    /// The pose, its rates or its forces do not exist.
-    pub(super) fn refresh_forces(
-        &mut self,
-        parts: ForceParts,
-        phase: Phase,
-        log: &Logger,
-    ) -> Result<(), Failure> {
-        self.refresh_rates(phase, log)?;
+    /// The forces do not exist.
+    pub(super) fn solve_forces(&mut self, parts: ForceParts) -> Result<(), Failure> {
         self.set_loads();
         let solved = self.solution.solve_forces(&mut self.solver, parts);
         solved.map_err(without_value)
@@ -42,7 +36,8 @@ impl MechanismModel {
             reactions: true,
         };
         // A host that reads forces learns that they do not exist.
-        if self.refresh_forces(parts, Phase::Running, log).is_err() {
+        let solved = self.refresh_rates().and_then(|()| self.solve_forces(parts));
+        if solved.is_err() {
             return;
         }
         if let Some(forces) = self.solution.forces() {

@@ -402,12 +402,8 @@ impl Model for MechanismModel {
     }
 
     #[inline(always)]
-    fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        self.take_step(size, end, log)
-    }
-
-    fn try_step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        self.take_step_or_stay(size, end, log)
+    fn step(&mut self, size: f64, end: f64, stays: bool, log: &Logger) -> Result<(), Failure> {
+        self.take_step(size, end, stays, log)
     }
 
     fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {

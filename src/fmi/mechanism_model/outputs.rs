@@ -169,17 +169,17 @@ impl MechanismModel {
         if missing == 0 {
             return Ok(());
         }
+        if missing & (POSES | RATES | SOLVER | FORCES) != 0 {
+            self.refresh_pose(phase, log)?;
+        }
+        if missing & (RATES | FORCES) != 0 {
+            self.refresh_rates()?;
+        }
         if missing & FORCES != 0 {
-            let parts = ForceParts {
+            self.solve_forces(ForceParts {
                 efforts: missing & EFFORTS != 0,
                 reactions: missing & REACTIONS != 0,
-            };
-            self.refresh_forces(parts, phase, log)?;
-        }
-        if missing & RATES != 0 {
-            self.refresh_rates(phase, log)?;
-        } else if missing & (POSES | SOLVER) != 0 {
-            self.refresh_pose(phase, log)?;
+            })?;
         }
         if missing & BODIES_AND_RATES != 0 {
             self.fill_bodies(missing);

@@ -235,10 +235,7 @@ impl MechanismModel {
                 total.checked += progress.checked;
                 Ok(())
             }
-            Err(blocked) => {
-                let (start, h) = (self.path.start, self.path.duration);
-                Err(self.fail_step(blocked, start, h, log))
-            }
+            Err(blocked) => Err(self.fail_step(&blocked, log)),
         }
     }
 }

@@ -20,70 +20,44 @@ impl MechanismModel {
     ///
     /// # Errors
     ///
-    /// [`Failure::Discarded`] if no continuous motion leads to the end. The mechanism is then at
-    /// the last time whose driver values it reached.
+    /// [`Failure::Discarded`] if no continuous motion leads to the end. With `stays` the mechanism is
+    /// then as before, otherwise at the last time whose driver values it reached.
     #[inline(always)]
-    pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        let start = self.course.time;
-        match self.follow_step(h) {
-            Ok(progress) => {
-                self.reach_end(progress, start, h, end, log);
-                Ok(())
-            }
-            Err(blocked) => {
-                self.report_falls(log);
-                Err(self.fail_step(blocked, start, h, log))
-            }
-        }
-    }
-
-    /// Takes a step as [`take_step`](Self::take_step) does, but stays at the last communication
-    /// point if it fails.
-    ///
-    /// # Errors
-    ///
-    /// [`Failure::Discarded`] if no continuous motion leads to the end.
-    pub(super) fn take_step_or_stay(
+    pub(super) fn take_step(
         &mut self,
         h: f64,
         end: f64,
+        stays: bool,
         log: &Logger,
     ) -> Result<(), Failure> {
-        let start = self.course.time;
-        let was_current = self.note_committed();
-        match self.follow_step(h) {
-            Ok(progress) => {
-                self.reach_end(progress, start, h, end, log);
-                Ok(())
-            }
-            Err(blocked) => {
-                let message = self.describe_dead_point(&blocked, start, h);
-                self.stay_at_committed(was_current);
-                Err(Failure::Discarded(message))
-            }
-        }
-    }
-
-    /// Follows the path of a step of size `h` from the committed pose.
-    fn follow_step(&mut self, h: f64) -> Result<Progress, Blocked> {
+        let was_current = stays && self.note_committed();
         if !self.course.at_committed {
             self.return_to_committed();
         }
-        self.set_path(self.course.time, h);
-        self.solver.track(&self.path)
-    }
-
-    /// Ends a step of size `h` from `start` that the solver has followed.
-    #[inline(always)]
-    fn reach_end(&mut self, progress: Progress, start: f64, h: f64, end: f64, log: &Logger) {
-        self.report_falls(log);
-        self.course.path_progress = progress;
-        self.course.progress = progress;
-        self.set_driver_rates(start, h, 1.0);
-        self.advance_forces(h);
-        self.course.time = end;
-        self.commit_pose();
-        self.complete_step(start, h, log);
+        let start = self.course.time;
+        self.set_path(start, h);
+        match self.solver.track(&self.path) {
+            Ok(progress) => {
+                self.report_falls(log);
+                self.course.path_progress = progress;
+                self.course.progress = progress;
+                self.set_driver_rates(start, h, 1.0);
+                self.advance_forces(h);
+                self.course.time = end;
+                self.commit_pose();
+                self.complete_step(start, h, log);
+                Ok(())
+            }
+            Err(blocked) if stays => {
+                let message = self.describe_dead_point(&blocked);
+                self.stay_at_committed(was_current);
+                Err(Failure::Discarded(message))
+            }
+            Err(blocked) => {
+                self.report_falls(log);
+                Err(self.fail_step(&blocked, log))
+            }
+        }
     }
 
     /// Ends a step of size `h` from `start`, or in model exchange an accepted step of the host:
@@ -275,15 +249,10 @@ impl MechanismModel {
         self.course.at_committed = true;
     }
 
-    /// Commits the last pose before a dead point at the part `blocked.s` of a step.
-    pub(super) fn fail_step(
-        &mut self,
-        blocked: Blocked,
-        start: f64,
-        h: f64,
-        log: &Logger,
-    ) -> Failure {
-        let message = self.describe_dead_point(&blocked, start, h);
+    /// Commits the last pose before a dead point on the path.
+    pub(super) fn fail_step(&mut self, blocked: &Blocked, log: &Logger) -> Failure {
+        let message = self.describe_dead_point(blocked);
+        let (start, h) = (self.path.start, self.path.duration);
         self.course.path_progress = blocked.progress;
         self.course.progress = blocked.progress;
         self.log_crossings(log);
@@ -348,13 +317,12 @@ impl MechanismModel {
         Ok(())
     }
 
-    /// Computes the rates of q for the values set.
+    /// Solves the rates at the pose, which is up to date.
     ///
     /// # Errors
     ///
-    /// The pose or its rates do not exist.
-    pub(super) fn refresh_rates(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
-        self.refresh_pose(phase, log)?;
+    /// The rates do not exist.
+    pub(super) fn refresh_rates(&mut self) -> Result<(), Failure> {
         if self.course.freshness == Freshness::Pose {
             let solved = self.solution.solve_rates(&mut self.solver);
             solved.map_err(without_value)?;
@@ -434,7 +402,7 @@ impl MechanismModel {
                 Ok(())
             }
             Err(blocked) => {
-                let message = self.describe_dead_point(&blocked, start, h);
+                let message = self.describe_dead_point(&blocked);
                 Err(Failure::Discarded(message))
             }
         }
