@@ -184,10 +184,8 @@ pub enum Error {
         kind: u32,
     },
     /// The model has no continuous states and no event indicators.
-    #[error("{call} was called for {given} values; there are none")]
+    #[error("called for {given} values, and there are none")]
     Continuous {
-        /// Name of the C function.
-        call: &'static str,
         /// The number of values.
         given: usize,
     },
