@@ -120,7 +120,12 @@ impl Model for Integrator {
     type Quantity = Quantity;
     type State = Integrated;
 
-    const OUTPUT_DERIVATIVES: i32 = 1;
+    const CAPABILITIES: Capabilities = Capabilities {
+        interpolates_inputs: false,
+        output_derivatives: 1,
+        directional_derivatives: false,
+        intermediate_update: false,
+    };
 
     fn load(_: &std::path::Path, interface: Interface) -> Result<Self, Failure> {
         Ok(Self::new(interface))
@@ -371,12 +376,7 @@ fn it_is_described_and_packed() {
             step: 0.1,
             tolerance: 1e-6,
         },
-        capabilities: Capabilities {
-            interpolates_inputs: false,
-            output_derivatives: 1,
-            directional_derivatives: false,
-            intermediate_update: false,
-        },
+        capabilities: Integrator::CAPABILITIES,
         variables: model.variables().to_vec(),
         outputs: vec![unknown.clone()],
         initial_unknowns: vec![unknown],

@@ -10,7 +10,7 @@ use std::path::Path;
 use super::codec::{Codec, Unreadable};
 use super::error::Failure;
 use super::log::Logger;
-use super::model_description::DependencyKind;
+use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 
@@ -135,12 +135,13 @@ pub trait Model: Sized {
     /// The model's own name for a variable.
     type Quantity: Copy + Debug + PartialEq;
 
-    /// Highest order of output derivatives.
-    const OUTPUT_DERIVATIVES: i32 = 0;
-
-    /// Whether the model can take a step in parts: [`begin_step`](Self::begin_step) and the methods
-    /// after it.
-    const INTERMEDIATE_UPDATE: bool = false;
+    /// The optional methods of the trait that the model has: by default none.
+    const CAPABILITIES: Capabilities = Capabilities {
+        interpolates_inputs: false,
+        output_derivatives: 0,
+        directional_derivatives: false,
+        intermediate_update: false,
+    };
 
     /// Everything that decides how the model goes on, time included.
     type State: Clone + Debug + PartialEq;

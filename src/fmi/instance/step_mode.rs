@@ -132,7 +132,7 @@ impl<M: Model> Instance<M> {
         self.allow(Call::DoStep)?;
         self.check_step(communication_point, h)?;
         let end = communication_point + h;
-        if M::INTERMEDIATE_UPDATE && self.co_simulation.intermediate_update {
+        if M::CAPABILITIES.intermediate_update && self.co_simulation.intermediate_update {
             self.model.begin_step(h, end, &self.logger);
             self.pending_step = Some(PendingStep {
                 start: communication_point,

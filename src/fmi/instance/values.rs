@@ -243,8 +243,8 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     ///
-    /// A variable is no output, an order is below 1 or above [`Model::OUTPUT_DERIVATIVES`]; or the
-    /// output has no value for the values set.
+    /// A variable is no output, an order is below 1 or above that of [`Model::CAPABILITIES`]; or
+    /// the output has no value for the values set.
     pub fn output_derivatives<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -259,7 +259,7 @@ impl<M: Model> Instance<M> {
             if variable.causality != Causality::Output {
                 return Err(Error::NotOutput { name: name() });
             }
-            let highest = M::OUTPUT_DERIVATIVES;
+            let highest = M::CAPABILITIES.output_derivatives;
             if !(1..=highest).contains(&order) {
                 return Err(Error::OutputDerivativeOrder {
                     name: name(),

@@ -6,21 +6,11 @@ use super::dependencies::{DependencyTable, Kinds};
 use super::variables::{Quantity, variables};
 use super::{MechanismModel, guid};
 use crate::fmi::model::Model;
-use crate::fmi::model_description::{
-    Capabilities, Experiment, Member, ModelDescription, Terminal, Unknown,
-};
+use crate::fmi::model_description::{Experiment, Member, ModelDescription, Terminal, Unknown};
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable};
 use crate::kinematics::{OutputSource, Structure, System};
 use crate::mechanism::{Mechanism, Order, Unit, rounded};
-
-/// Capabilities of a [`MechanismModel`](super::MechanismModel).
-const CAPABILITIES: Capabilities = Capabilities {
-    interpolates_inputs: true,
-    output_derivatives: MechanismModel::OUTPUT_DERIVATIVES as u32,
-    directional_derivatives: true,
-    intermediate_update: MechanismModel::INTERMEDIATE_UPDATE,
-};
 
 /// Returns the model description of a mechanism's FMU for a version of the standard.
 #[must_use]
@@ -67,7 +57,7 @@ pub fn describe<'a>(
             step: simulation.step,
             tolerance: simulation.tolerance,
         },
-        capabilities: CAPABILITIES,
+        capabilities: MechanismModel::CAPABILITIES,
         terminals: terminals(mechanism, &variables),
         variables,
         outputs,

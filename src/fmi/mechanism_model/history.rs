@@ -122,14 +122,13 @@ impl History {
 
     /// Visits all fields.
     pub(super) fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
-        self.0.iter_mut().try_for_each(|sample| {
+        codec.each(&mut self.0, |codec, sample| {
             codec.option(sample, Sample::default(), |codec, sample| {
-                codec.finite(&mut sample.time)?;
-                codec.finite(&mut sample.position)?;
-                for rate in [&mut sample.velocity, &mut sample.acceleration] {
-                    codec.option(rate, 0.0, |codec, value| codec.finite(value))?;
-                }
-                Ok(())
+                codec.each([&mut sample.time, &mut sample.position], Codec::finite)?;
+                codec.each(
+                    [&mut sample.velocity, &mut sample.acceleration],
+                    |codec, rate| codec.option(rate, 0.0, Codec::finite),
+                )
             })
         })
     }

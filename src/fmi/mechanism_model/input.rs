@@ -270,15 +270,14 @@ impl DriverInput {
             history,
             extrapolated_over,
         } = self;
-        for value in values.iter_mut().chain([position, extrapolated_over]) {
-            codec.finite(value)?;
-        }
-        for derivative in derivatives.as_flattened_mut() {
-            codec.option(derivative, 0.0, |codec, value| codec.finite(value))?;
-        }
-        for flag in used {
-            codec.flag(flag)?;
-        }
+        codec.each(
+            values.iter_mut().chain([position, extrapolated_over]),
+            Codec::finite,
+        )?;
+        codec.each(derivatives.as_flattened_mut(), |codec, derivative| {
+            codec.option(derivative, 0.0, Codec::finite)
+        })?;
+        codec.each(used, Codec::flag)?;
         history.visit(codec)
     }
 }

@@ -49,7 +49,7 @@ use super::codec::{Codec, Unreadable};
 use super::error::Failure;
 use super::log::Logger;
 use super::model::{Groups, Model};
-use super::model_description::DependencyKind;
+use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Carryover, Forces, Path, Pose, Progress, Solution, Solver};
@@ -265,8 +265,12 @@ impl Model for MechanismModel {
     type Quantity = Quantity;
     type State = MechanismState;
 
-    const OUTPUT_DERIVATIVES: i32 = 2;
-    const INTERMEDIATE_UPDATE: bool = true;
+    const CAPABILITIES: Capabilities = Capabilities {
+        interpolates_inputs: true,
+        output_derivatives: 2,
+        directional_derivatives: true,
+        intermediate_update: true,
+    };
 
     fn load(resources: &FilePath, interface: Interface) -> Result<Self, Failure> {
         let mechanism = Arc::new(resource::read(resources)?);

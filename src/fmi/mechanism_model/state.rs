@@ -157,36 +157,25 @@ impl MechanismState {
             checked,
         } in [path_progress, progress]
         {
-            for count in [iterations, substeps, crossings, checked] {
-                codec.count(count)?;
-            }
+            codec.each([iterations, substeps, crossings, checked], Codec::count)?;
         }
         // Derived parameters may have any value: `check_state` derives them again.
-        for value in parameters {
-            codec.real(value)?;
-        }
+        codec.each(parameters, Codec::real)?;
         codec.one_of(&mut rule.rates, &RateSource::ALL)?;
         codec.one_of(&mut rule.extrapolation, &Extrapolation::ALL)?;
         for (input, monitor) in inputs.iter_mut().zip(monitors) {
             input.visit(codec)?;
             monitor.visit(codec)?;
         }
-        for input in force_inputs {
-            input.visit(codec)?;
-        }
-        for lifted in lifted {
-            codec.flag(lifted)?;
-        }
+        codec.each(force_inputs, |codec, input| input.visit(codec))?;
+        codec.each(lifted, Codec::flag)?;
         // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {
             codec.real(&mut rates.value)?;
-            for rate in &mut rates.derivatives {
-                codec.real(rate)?;
-            }
+            codec.each(&mut rates.derivatives, Codec::real)?;
         }
-        for source in sources.iter_mut().flatten() {
-            codec.one_of(source, &Source::ALL)?;
-        }
+        let sources = sources.iter_mut().flatten();
+        codec.each(sources, |codec, source| codec.one_of(source, &Source::ALL))?;
         let (rows, unknowns) = (committed.turns.len(), committed.q.len());
         for carryover in [committed_carryover, present_carryover] {
             visit_carryover(carryover, rows, unknowns, codec)?;
@@ -228,9 +217,7 @@ fn visit_carryover(
             codec.resize(list, unknowns, || 0.0)?;
         }
         let numbers = [radius, off, off_single, driver_deviation];
-        for number in start.iter_mut().chain(way).chain(numbers) {
-            codec.real(number)?;
-        }
+        codec.each(start.iter_mut().chain(way).chain(numbers), Codec::real)?;
     }
     Ok(())
 }
@@ -242,7 +229,7 @@ fn visit_indices(
     codec: &mut impl Codec,
 ) -> Result<(), Unreadable> {
     codec.resize(list, most, || 0)?;
-    list.iter_mut().try_for_each(|index| codec.index(index))
+    codec.each(list, Codec::index)
 }
 
 fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> {
@@ -255,10 +242,11 @@ fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable>
         crossings,
     } = pose;
     codec.finite(time)?;
-    for value in parameters.iter_mut().chain(drivers).chain(&mut *q) {
-        codec.finite(value)?;
-    }
-    turns.iter_mut().try_for_each(|turn| codec.signed(turn))?;
+    codec.each(
+        parameters.iter_mut().chain(drivers).chain(&mut *q),
+        Codec::finite,
+    )?;
+    codec.each(turns, Codec::signed)?;
     let unknowns = q.len();
     codec.resize(crossings, unknowns, || {
         Arc::new(Crossing {
@@ -270,9 +258,9 @@ fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable>
             free: Vec::new(),
         })
     })?;
-    crossings
-        .iter_mut()
-        .try_for_each(|crossing| visit_crossing(Arc::make_mut(crossing), unknowns, codec))
+    codec.each(crossings, |codec, crossing| {
+        visit_crossing(Arc::make_mut(crossing), unknowns, codec)
+    })
 }
 
 fn visit_crossing(
@@ -293,9 +281,7 @@ fn visit_crossing(
     codec.finite(center)?;
     codec.finite(half_width)?;
     codec.resize(coefficients, unknowns, Polynomial::default)?;
-    for value in coefficients.iter_mut().flatten().flatten() {
-        codec.finite(value)?;
-    }
+    codec.each(coefficients.iter_mut().flatten().flatten(), Codec::finite)?;
     codec.resize(free, unknowns, || 0.0)?;
-    free.iter_mut().try_for_each(|value| codec.finite(value))
+    codec.each(free, Codec::finite)
 }

@@ -78,7 +78,7 @@ pub struct Capabilities {
     /// Whether input derivatives have an effect.
     pub interpolates_inputs: bool,
     /// Highest order of output derivatives.
-    pub output_derivatives: u32,
+    pub output_derivatives: i32,
     /// Whether the model provides directional derivatives.
     pub directional_derivatives: bool,
     /// Whether the model takes steps in parts.
