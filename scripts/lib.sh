@@ -21,3 +21,9 @@ fail() {
 }
 
 has() { command -v "$1" >/dev/null 2>&1; }
+
+# Prints a digest of the sources in files and folders.
+digest_of() { # PATH...
+    find "$@" -type f ! -name '*.md' -print0 | LC_ALL=C sort -z | xargs -0 cat |
+        if has sha256sum; then sha256sum; else shasum -a 256; fi
+}

@@ -20,13 +20,8 @@ OUT=$PWD/target/runtimes
 # Largest size, packed [bytes]: what a page in an FMU may take, with room for its scripts.
 LIMIT=1000000
 
-digest() { if has sha256sum; then sha256sum; else shasum -a 256; fi; }
-
 # Prints a digest of all that the solver is built from.
-sources() {
-    find src page scripts/page.sh Cargo.toml Cargo.lock -type f ! -name '*.md' -print0 |
-        LC_ALL=C sort -z | xargs -0 cat | digest
-}
+sources() { digest_of src page scripts/page.sh Cargo.toml Cargo.lock; }
 
 current() { [ -f "$OUT/page.wasm" ] && [ "$(cat "$OUT/.page-sources" 2>/dev/null)" = "$(sources)" ]; }
 

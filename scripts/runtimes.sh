@@ -23,12 +23,7 @@ library() { # TARGET FILE
 }
 
 # Prints a digest of all that a library is built from.
-sources() {
-    find src runtime scripts/cross.sh Cargo.toml Cargo.lock -type f ! -name '*.md' -print0 |
-        LC_ALL=C sort -z | xargs -0 cat | digest
-}
-
-digest() { if has sha256sum; then sha256sum; else shasum -a 256; fi; }
+sources() { digest_of src runtime scripts/cross.sh Cargo.toml Cargo.lock; }
 
 current() {
     local now folder

@@ -120,7 +120,12 @@ impl Model for Integrator {
     type Quantity = Quantity;
     type State = Integrated;
 
-    const OUTPUT_DERIVATIVES: i32 = 1;
+    const CAPABILITIES: Capabilities = Capabilities {
+        interpolates_inputs: false,
+        output_derivatives: 1,
+        directional_derivatives: false,
+        intermediate_update: false,
+    };
 
     fn load(_: &std::path::Path, interface: Interface) -> Result<Self, Failure> {
         Ok(Self::new(interface))
@@ -184,7 +189,7 @@ impl Model for Integrator {
         Ok(())
     }
 
-    fn step(&mut self, size: f64, end: f64, _: &Logger) -> Result<(), Failure> {
+    fn step(&mut self, size: f64, end: f64, _: bool, _: &Logger) -> Result<(), Failure> {
         let [y, time] = self.state.from;
         let reached = y + self.slope() * size;
         if reached > LIMIT {
@@ -352,8 +357,8 @@ fn its_state_survives_bytes_and_belongs_to_its_interface() {
 fn it_is_described_and_packed() {
     let model = Integrator::new(Interface::CoSimulation);
     let unknown = Unknown {
-        index: 3,
-        dependencies: [(1, DependencyKind::Dependent)].into(),
+        value_reference: 2,
+        dependencies: [(0, DependencyKind::Dependent)].into(),
         parameters: [].into(),
     };
     let description = ModelDescription {
@@ -371,12 +376,7 @@ fn it_is_described_and_packed() {
             step: 0.1,
             tolerance: 1e-6,
         },
-        capabilities: Capabilities {
-            interpolates_inputs: false,
-            output_derivatives: 1,
-            directional_derivatives: false,
-            intermediate_update: false,
-        },
+        capabilities: Integrator::CAPABILITIES,
         variables: model.variables().to_vec(),
         outputs: vec![unknown.clone()],
         initial_unknowns: vec![unknown],
@@ -400,5 +400,9 @@ fn it_is_described_and_packed() {
         "<Unknown index=\"3\" dependencies=\"1\" dependenciesKind=\"dependent\"/>",
     ] {
         assert!(xml.contains(part), "{part} in {xml}");
+    }
+    // The schema forbids empty lists (2.2.2, 2.2.3).
+    for list in ["<UnitDefinitions", "<TypeDefinitions"] {
+        assert!(!xml.contains(list), "{list} in {xml}");
     }
 }

@@ -5,6 +5,7 @@ mod common;
 mod differences;
 
 use biela::fmi::{Causality, Interface, Quantity, Variable};
+use biela::kinematics::OutputSource;
 use common::{Instance, instance_of, shipped, stems};
 use differences::{DIFFERENCE, differences, move_inputs, references};
 
@@ -42,7 +43,7 @@ fn every_derivative_agrees_with_differences() {
             let order = |place: usize| {
                 let variable = &instance.variables()[unknowns[place] as usize];
                 match variable.quantity {
-                    Quantity::Output(_, order) => order as usize,
+                    Quantity::Output(OutputSource::Signal(_, order)) => order as usize,
                     _ => 0,
                 }
             };

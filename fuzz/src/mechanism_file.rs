@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use biela::fmi::{Causality, Interface, Quantity, Version};
+use biela::kinematics::OutputSource;
 use biela::mechanism::{Mechanism, Order, Source};
 
 use crate::{instance, reals};
@@ -84,7 +85,10 @@ fn run_instance(mechanism: &Arc<Mechanism>, interface: Interface) {
             // A motion may be infinitely fast; a pose is a pose.
             let positions = values.iter().zip(&reals).filter(|&(_, &reference)| {
                 let quantity = instance.variables()[reference as usize].quantity;
-                matches!(quantity, Quantity::Output(_, Order::Position))
+                matches!(
+                    quantity,
+                    Quantity::Output(OutputSource::Signal(_, Order::Position))
+                )
             });
             for (value, _) in positions {
                 assert!(value.is_finite(), "a position is {value}");

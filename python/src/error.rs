@@ -21,15 +21,14 @@ impl From<kinematics::Error> for Failure {
     }
 }
 
-impl Failure {
-    /// Returns the exception of the package.
-    pub(crate) fn raise(self, py: Python<'_>) -> PyErr {
-        let (class, message) = match self {
-            Self::Usage(message) => ("UsageError", message),
-            Self::Assembly(message) => ("AssemblyError", message),
-            Self::File(message) => ("FileError", message),
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> Self {
+        let (class, message) = match failure {
+            Failure::Usage(message) => ("UsageError", message),
+            Failure::Assembly(message) => ("AssemblyError", message),
+            Failure::File(message) => ("FileError", message),
         };
-        exception(py, class, (message,))
+        Python::attach(|py| exception(py, class, (message,)))
     }
 }
 

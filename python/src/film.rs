@@ -6,7 +6,6 @@ use biela::kinematics::Output;
 use biela::mechanism::Mechanism;
 
 use crate::runner::Runner;
-use crate::scenario::Scenario;
 
 /// Time between two poses of a motion without times \[s\].
 const FRAME: f64 = 0.02;
@@ -44,7 +43,7 @@ impl Film {
     }
 
     /// Adds a row, if it is one to show.
-    pub(crate) fn add(&mut self, row: usize, runner: &Runner<&Scenario>) {
+    pub(crate) fn add(&mut self, row: usize, runner: &Runner) {
         if !row.is_multiple_of(self.stride) {
             return;
         }

@@ -27,8 +27,8 @@ impl Targets {
     /// Returns the costs of variants, whose free parameters are by variant, then by parameter: the
     /// index of the variant, that of its assembly mode, and the sum of squared residuals. Free
     /// timing is that of the nearest poses. Variants that do not reach all targets are left out.
-    fn costs(&self, py: Python<'_>, values: Vec<f64>) -> PyResult<Vec<(usize, usize, f64)>> {
-        let costs = py.detach(|| {
+    fn costs(&self, py: Python<'_>, values: Vec<f64>) -> Result<Vec<(usize, usize, f64)>, Failure> {
+        py.detach(|| {
             let size = self.fit.free.len();
             let batches = values.par_chunks(BATCH * size).enumerate();
             let costs: Vec<Vec<_>> = batches
@@ -44,8 +44,7 @@ impl Targets {
                 })
                 .collect::<Result<_, Failure>>()?;
             Ok(costs.into_iter().flatten().collect())
-        });
-        costs.map_err(|failure: Failure| failure.raise(py))
+        })
     }
 
     /// Begins attempts at free parameters, which are by attempt, then by parameter: each in the
@@ -55,21 +54,19 @@ impl Targets {
         py: Python<'_>,
         values: Vec<f64>,
         modes: Vec<usize>,
-    ) -> PyResult<Vec<Attempt>> {
+    ) -> Result<Vec<Attempt>, Failure> {
         py.detach(|| {
             let values = values.par_chunks(self.fit.free.len());
             let begun = values.zip(modes.par_iter());
             let begun =
                 begun.map(|(values, &mode)| Attempt::begin(&self.fit, values.to_vec(), Some(mode)));
-            begun.collect::<Result<_, _>>()
+            begun.collect()
         })
-        .map_err(|failure: Failure| failure.raise(py))
     }
 
     /// Begins an attempt at the free parameters `values`, on the continuous motion from the file's
     /// own pose.
-    fn attempt(&self, py: Python<'_>, values: Vec<f64>) -> PyResult<Attempt> {
+    fn attempt(&self, py: Python<'_>, values: Vec<f64>) -> Result<Attempt, Failure> {
         py.detach(|| Attempt::begin(&self.fit, values, None))
-            .map_err(|failure| failure.raise(py))
     }
 }

@@ -82,15 +82,14 @@ pub(crate) struct Refused;
 /// A mechanism that follows the targets.
 pub(crate) struct Follower {
     pub(crate) fit: Arc<Fit>,
-    pub(crate) runner: Runner<Box<Scenario>>,
+    pub(crate) runner: Runner,
 }
 
 impl Follower {
     pub(crate) fn new(fit: &Arc<Fit>) -> Result<Self, Failure> {
         let targets = fit.targets.iter();
         let columns: Vec<Output> = targets.flat_map(|t| t.columns.iter().cloned()).collect();
-        let scenario = Box::new(fit.scenario.clone());
-        let mut runner = Runner::new(scenario, &columns)?;
+        let mut runner = Runner::new(&fit.scenario, &columns)?;
         runner.gives_up = true;
         Ok(Self {
             fit: Arc::clone(fit),

@@ -110,7 +110,7 @@ impl Mechanism {
         text: Option<String>,
         path: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let source = source(&name, text, path).map_err(|failure| failure.raise(py))?;
+        let source = source(&name, text, path)?;
         match Model::parse(&source) {
             Ok((model, warnings)) => Ok(Self {
                 source,
@@ -139,8 +139,8 @@ impl Mechanism {
         text: Option<String>,
         path: Option<PathBuf>,
         modes: bool,
-    ) -> PyResult<String> {
-        let source = source(&name, text, path).map_err(|failure| failure.raise(py))?;
+    ) -> Result<String, Failure> {
+        let source = source(&name, text, path)?;
         Ok(py.detach(|| cli::check(&source, modes).to_string()))
     }
 
@@ -237,9 +237,8 @@ impl Mechanism {
     }
 
     /// Returns the values of all parameters \[SI\] where some are set, in the order of `parameters`.
-    fn values(&self, py: Python<'_>, parameters: Vec<(String, Value)>) -> PyResult<Vec<f64>> {
+    fn values(&self, parameters: Vec<(String, Value)>) -> Result<Vec<f64>, Failure> {
         self.in_force(parameters)
-            .map_err(|failure| failure.raise(py))
     }
 
     /// Runs the mechanism; `columns` are indices, `by` names of parameters.
@@ -250,7 +249,7 @@ impl Mechanism {
         parameters: Vec<(String, Value)>,
         columns: Vec<usize>,
         by: Vec<String>,
-    ) -> PyResult<Run> {
+    ) -> Result<Run, Failure> {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
             let parameters = self.in_force(parameters)?;
@@ -260,7 +259,6 @@ impl Mechanism {
             let told = told.cloned().collect();
             run(&scenario, &parameters, &self.chosen(&columns), &by, told)
         })
-        .map_err(|failure: Failure| failure.raise(py))
     }
 
     /// Runs variants of the mechanism; each swept parameter has one value per variant.
@@ -272,7 +270,7 @@ impl Mechanism {
         swept: Vec<(String, Vec<f64>)>,
         variants: usize,
         columns: Vec<usize>,
-    ) -> PyResult<Sweep> {
+    ) -> Result<Sweep, Failure> {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
             let parameters = self.in_force(parameters)?;
@@ -282,7 +280,6 @@ impl Mechanism {
             let columns = self.chosen(&columns);
             sweep(&scenario, &parameters, &swept, variants, &columns)
         })
-        .map_err(|failure: Failure| failure.raise(py))
     }
 
     /// Prepares a fit of the parameters `free`. The rows of the motion are those of the targets, one
@@ -294,7 +291,7 @@ impl Mechanism {
         targets: Vec<TargetRow>,
         free: Vec<String>,
         turns: Option<String>,
-    ) -> PyResult<Targets> {
+    ) -> Result<Targets, Failure> {
         py.detach(|| {
             let mut rows = 0;
             let targets = targets.into_iter();
@@ -323,14 +320,17 @@ impl Mechanism {
                 turns.map(|name| self.driver_named(&name)).transpose()?,
             )))
         })
-        .map_err(|failure: Failure| failure.raise(py))
     }
 
     /// Returns the text of the file with the parameters of these names at their values in an
     /// attempt, and its pose as estimates.
-    fn fitted(&self, py: Python<'_>, attempt: &Attempt, names: Vec<String>) -> PyResult<String> {
+    fn fitted(
+        &self,
+        py: Python<'_>,
+        attempt: &Attempt,
+        names: Vec<String>,
+    ) -> Result<String, Failure> {
         py.detach(|| self.text_at(&names, &attempt.home()))
-            .map_err(|failure| failure.raise(py))
     }
 
     /// Finds the range of a driver from the start of a motion.
@@ -340,15 +340,14 @@ impl Mechanism {
         driver: &str,
         motions: Motions,
         parameters: Vec<(String, Value)>,
-    ) -> PyResult<RangeRow<'py>> {
-        let found = py.detach(|| {
+    ) -> Result<RangeRow<'py>, Failure> {
+        let (id, range) = py.detach(|| -> Result<_, Failure> {
             let scenario = self.scenario(motions)?;
             let id = self.driver_named(driver)?;
             let mut runner = Runner::new(&scenario, &[])?;
             runner.start(&self.in_force(parameters)?)?;
             Ok((id, runner.solver.range(id, &RangeSettings::default())))
-        });
-        let (id, range) = found.map_err(|failure: Failure| failure.raise(py))?;
+        })?;
         let samples = || range.samples.iter();
         let column = |values: Vec<f64>| values.into_pyarray(py);
         let poses = 3 * self.model.bodies.len();
@@ -378,7 +377,7 @@ impl Mechanism {
         py: Python<'_>,
         motions: Motions,
         parameters: Vec<(String, Value)>,
-    ) -> PyResult<ModesRow> {
+    ) -> Result<ModesRow, Failure> {
         py.detach(|| {
             let scenario = self.scenario(motions)?;
             let mut runner = Runner::new(&scenario, &[])?;
@@ -389,7 +388,6 @@ impl Mechanism {
             let others = others.map(|Mode { q, rcond, .. }| (q[..count].to_vec(), rcond));
             Ok((others.collect(), modes.complete))
         })
-        .map_err(|failure: Failure| failure.raise(py))
     }
 
     /// Draws the mechanism at the start of a motion, as SVG.
@@ -401,7 +399,7 @@ impl Mechanism {
         width: Option<u32>,
         transparent: bool,
         contents: Contents,
-    ) -> PyResult<String> {
+    ) -> Result<String, Failure> {
         let (traces, poses, driver, dimensions, instant_centres, forces) = contents;
         py.detach(|| {
             let scenario = self.scenario(motions)?;
@@ -439,7 +437,6 @@ impl Mechanism {
             let width = width.unwrap_or(sheet.width());
             Ok(svg::write(&sheet, width, transparent))
         })
-        .map_err(|failure: Failure| failure.raise(py))
     }
 
     /// Returns the text of the file with these parameters, the start values of a motion, and its
@@ -450,7 +447,7 @@ impl Mechanism {
         motions: Motions,
         parameters: Vec<(String, Value)>,
         estimates: Option<Vec<f64>>,
-    ) -> PyResult<String> {
+    ) -> Result<String, Failure> {
         py.detach(|| {
             let names: Vec<String> = parameters.iter().map(|(name, _)| name.clone()).collect();
             let scenario = self.scenario(motions)?;
@@ -466,7 +463,6 @@ impl Mechanism {
             }
             self.text_at(&names, &pose)
         })
-        .map_err(|failure: Failure| failure.raise(py))
     }
 
     /// Returns the bytes of the FMU.
@@ -476,7 +472,7 @@ impl Mechanism {
         fmi: &str,
         runtime: Option<PathBuf>,
         platforms: Vec<String>,
-    ) -> PyResult<Vec<u8>> {
+    ) -> Result<Vec<u8>, Failure> {
         let platforms: Vec<&str> = platforms.iter().map(String::as_str).collect();
         py.detach(|| {
             cli::archive(
@@ -487,7 +483,7 @@ impl Mechanism {
                 &platforms,
             )
         })
-        .map_err(|message| Failure::File(message).raise(py))
+        .map_err(Failure::File)
     }
 }
 
@@ -514,8 +510,7 @@ impl Mechanism {
         if let Some(home) = self.home.get() {
             return Ok(Arc::clone(home));
         }
-        let mut solver = Solver::new(self.model.clone())?;
-        solver.assemble(&Path::new(&self.model))?;
+        let solver = Solver::assembled(self.model.clone(), &Path::new(&self.model))?;
         let mut carryover = Carryover::default();
         solver.carry_over(&mut carryover);
         let home = Arc::new((solver.pose().clone(), carryover));

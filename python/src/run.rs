@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use biela::drawing::ForcePlace;
-use biela::kinematics::{Direction, Output, Start};
+use biela::kinematics::{Direction, Output};
 use biela::mechanism::{Mechanism, ParameterId};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
@@ -57,10 +57,6 @@ impl Run {
     }
 }
 
-/// Message for a start that is not on the continuous motion from the file's pose.
-const REASSEMBLED: &str = "no continuous motion leads from the file's own pose to these values: \
-                           assembled there from the estimates, possibly in another assembly mode";
-
 /// Runs a mechanism; records the columns, and their derivatives by the parameters. The film tells
 /// the columns `told`.
 ///
@@ -85,11 +81,8 @@ pub(crate) fn run(
         film: Film::new(told, arrows, rows, parameters),
         rows: 0,
         stop: None,
-        notices: Vec::new(),
+        notices: began.warning().map(str::to_owned).into_iter().collect(),
     };
-    if let Start::Reassembled(_) = began {
-        result.notices.push(REASSEMBLED.to_owned());
-    }
     let directions: Vec<_> = by
         .iter()
         .map(|p| Direction::by_parameter(&scenario.own, *p))

@@ -1,13 +1,12 @@
 //! A mechanism that moves along the samples and motions of its drivers.
 
 use std::f64::consts::TAU;
-use std::ops::Deref;
 
 use biela::kinematics::{
     Blocked, Carryover, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution,
     Solver, Start,
 };
-use biela::mechanism::{DriverId, Jet, Motion, Order, ParameterId};
+use biela::mechanism::{DriverId, Jet, Order};
 
 use crate::error::Failure;
 use crate::scenario::Scenario;
@@ -16,8 +15,8 @@ use crate::scenario::Scenario;
 pub(crate) const BATCH: usize = 32;
 
 /// A mechanism that moves from one time to the next.
-pub(crate) struct Runner<S> {
-    pub(crate) scenario: S,
+pub(crate) struct Runner {
+    pub(crate) scenario: Scenario,
     /// At the file's own values, from which each motion starts.
     home: Solver,
     pub(crate) solver: Solver,
@@ -29,9 +28,9 @@ pub(crate) struct Runner<S> {
     pub(crate) gives_up: bool,
 }
 
-impl<S: Deref<Target = Scenario>> Runner<S> {
+impl Runner {
     /// Makes a runner; with a column of forces it solves them too.
-    pub(crate) fn new(scenario: S, columns: &[Output]) -> Result<Self, Failure> {
+    pub(crate) fn new(scenario: &Scenario, columns: &[Output]) -> Result<Self, Failure> {
         let home = Solver::new(scenario.own.clone())?;
         let solver = Solver::new(scenario.driven.clone())?;
         let mut solution = Solution::new(&solver);
@@ -41,7 +40,7 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
         Ok(Self {
             home,
             solution,
-            scenario,
+            scenario: scenario.clone(),
             path: Path::new(solver.mechanism()),
             carryover: Carryover::default(),
             solver,
@@ -63,30 +62,11 @@ impl<S: Deref<Target = Scenario>> Runner<S> {
     }
 
     fn begin(&mut self, parameters: &[f64]) -> Result<Start, Error> {
-        let Scenario {
-            own, driven, home, ..
-        } = &*self.scenario;
+        let Scenario { driven, home, .. } = &self.scenario;
         self.home.resume(&home.0, &home.1);
         let home = &home.0;
-        let start = self.scenario.times[0];
-        let mut path = Path::new(own);
-        path.duration = start - home.time;
-        path.to.copy_from_slice(parameters);
-        for (index, (curve, driver)) in path.curves.iter_mut().zip(&driven.drivers).enumerate() {
-            let sample = self.sample(DriverId(index), 0).map(|sample| sample.value);
-            let value = sample.or_else(|| match (driver.motion(), own.drivers[index].motion()) {
-                // A motion of the file is followed as such.
-                (Some(Motion::Expression(motion)), own)
-                    if !matches!(own, Some(Motion::Expression(own)) if own == motion) =>
-                {
-                    Some(motion.evaluate(&|p: ParameterId| parameters[p.index()], start))
-                }
-                _ => None,
-            });
-            if let Some(value) = value {
-                *curve = Curve::held(value, home.drivers[index]);
-            }
-        }
+        let value = |driver| Some(self.sample(driver, 0)?.value);
+        let path = (self.home).path_to_start(driven, parameters, self.scenario.times[0], value);
         let began = self.home.start(home, &path)?;
         self.home.carry_over(&mut self.carryover);
         self.solver.resume(self.home.pose(), &self.carryover);

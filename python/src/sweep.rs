@@ -60,7 +60,7 @@ pub(crate) fn sweep(
     let rows = scenario.times.len();
     let size = rows * columns.len();
     let mut values = vec![f64::NAN; variants * size];
-    let run = |runner: &mut Runner<&Scenario>, variant: usize, values: &mut [f64]| {
+    let run = |runner: &mut Runner, variant: usize, values: &mut [f64]| {
         let mut outcome = Outcome {
             rows: 0,
             reason: None,

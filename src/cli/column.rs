@@ -4,8 +4,7 @@ use super::conditions::unknown;
 use super::error::Error;
 use crate::kinematics::ForceQuantity;
 pub(super) use crate::kinematics::{Output, OutputSource as Source};
-use crate::mechanism::Signal;
-use crate::mechanism::{BodyId, MarkerId, Mechanism, Order, help};
+use crate::mechanism::{BodyId, MarkerId, Mechanism, Order, Signal, help};
 
 impl Output {
     /// Returns the columns of these names: of a variable, or of a body, marker, driver or measure

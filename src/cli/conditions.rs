@@ -10,7 +10,7 @@ use super::input::{Input, warn_of_misfits};
 use super::message::Message;
 use super::signals::Signals;
 use crate::fmi;
-use crate::kinematics::{self, Curve, Solver, Start};
+use crate::kinematics::{self, Solver};
 use crate::mechanism::{
     DriverId, DriverSource, Expression, ExpressionError, ForceLaw, Jet, Load, Mechanism, Motion,
     Parameter, ParameterId, Unit, Variable, help, large_angle, not_finite, quoted, shown,
@@ -219,24 +219,9 @@ impl Scenario {
     /// The values at the start cannot be reached and give no assembly either.
     pub(super) fn solver(&self, mut home_solver: Solver) -> Result<Solver, kinematics::Error> {
         let home = home_solver.pose().clone();
-        let mut path = kinematics::Path::new(home_solver.mechanism());
-        path.duration = self.start - home.time;
-        path.to.copy_from_slice(&self.parameters);
-        let drivers = (home_solver.mechanism().drivers.iter()).zip(&self.mechanism.drivers);
-        for (index, (curve, (own, driven))) in path.curves.iter_mut().zip(drivers).enumerate() {
-            let given = match driven.motion() {
-                Some(Motion::Expression(motion)) if !matches!(own.motion(), Some(Motion::Expression(own)) if own == motion) => {
-                    Some(motion.evaluate(&|p: ParameterId| self.parameters[p.index()], self.start))
-                }
-                _ => (self.signals.at(DriverId(index), self.start)).map(|signal| signal.value),
-            };
-            if let Some(position) = given {
-                *curve = Curve::held(position, home.drivers[index]);
-            }
-        }
-        if let Start::Reassembled(_) = home_solver.start(&home, &path)? {
-            let warning = "no continuous motion leads from the file's own pose to these values: \
-                           assembled there from the estimates, possibly in another assembly mode";
+        let value = |driver| Some(self.signals.at(driver, self.start)?.value);
+        let path = home_solver.path_to_start(&self.mechanism, &self.parameters, self.start, value);
+        if let Some(warning) = home_solver.start(&home, &path)?.warning() {
             Message::Warning(warning.to_owned()).show();
         }
         let mut solver = Solver::new(Arc::clone(&self.mechanism))?;

@@ -59,25 +59,9 @@ pub(super) struct Shown {
     pub(super) animation: Animation,
     /// The motion, in words.
     pub(super) moving: String,
-    limits: Vec<Limits>,
-}
-
-/// The limits of a driver, from the mechanism's pose.
-enum Limits {
-    /// The file prescribes its motion.
-    Prescribed,
-    /// The mechanism is too large for a search.
-    NotSearched,
-    Found(Box<Range>),
-}
-
-impl Limits {
-    fn range(&self) -> Option<&Range> {
-        match self {
-            Self::Found(range) => Some(range),
-            Self::Prescribed | Self::NotSearched => None,
-        }
-    }
+    /// Ranges of the drivers that are inputs, from the mechanism's pose; none of a mechanism that is
+    /// too large for a search.
+    ranges: Vec<Option<Range>>,
 }
 
 /// Returns the picture and the page of a mechanism, and the licences, for an FMU of a version of the
@@ -149,20 +133,22 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
         ..RANGE
     };
     let is_moved = own.bodies.len() <= MOST_MOVED;
-    let limits: Vec<Limits> = (own.drivers.iter().enumerate())
-        .map(|(index, driver)| match driver.motion() {
-            Some(_) => Limits::Prescribed,
-            None if !is_moved => Limits::NotSearched,
-            None => Limits::Found(Box::new(solver.range(DriverId(index), &settings))),
-        })
-        .collect();
+    let ranges = own.drivers.iter().enumerate().map(|(index, driver)| {
+        let is_searched = is_moved && driver.motion().is_none();
+        is_searched.then(|| solver.range(DriverId(index), &settings))
+    });
+    let ranges: Vec<Option<Range>> = ranges.collect();
     let home = solver.pose().clone();
     let simulation = &own.simulation;
     let mut driven = Mechanism::clone(&own);
-    let angle = |driver: &usize| own.drivers[*driver].coordinate.kind.is_angle();
-    let inputs = || (0..limits.len()).filter(|driver| limits[*driver].range().is_some());
-    let first = inputs().find(angle).or_else(|| inputs().next());
-    let (duration, moving) = match first.and_then(|first| Some((first, limits[first].range()?))) {
+    let found = ranges.iter().enumerate();
+    let found = found.filter_map(|(driver, range)| Some((driver, range.as_ref()?)));
+    let is_angle = |(driver, _): &(usize, &Range)| own.drivers[*driver].coordinate.kind.is_angle();
+    let first = found
+        .clone()
+        .find(is_angle)
+        .or_else(|| found.clone().next());
+    let (duration, moving) = match first {
         _ if !is_moved => (
             0.0,
             format!(
@@ -211,7 +197,7 @@ pub(super) fn show(solver: &mut Solver) -> Result<Shown, crate::kinematics::Erro
     Ok(Shown {
         animation: film.animation(&motion),
         moving,
-        limits,
+        ranges,
     })
 }
 
@@ -284,7 +270,7 @@ fn page(
             ("about", &about(mechanism)),
             ("moving", &escape(&shown.moving)),
             ("player", &(player(&shown.animation) + live_page)),
-            ("drivers", &drivers(mechanism, &shown.limits)),
+            ("drivers", &drivers(mechanism, &shown.ranges)),
             ("parameters", &parameters(&variables, values)),
             ("outputs", &outputs(&variables)),
             ("version", env!("CARGO_PKG_VERSION")),
@@ -317,28 +303,26 @@ fn about(mechanism: &Mechanism) -> String {
     format!("<dl class=\"about\">{html}</dl>")
 }
 
-fn drivers(mechanism: &Mechanism, limits: &[Limits]) -> String {
-    let rows = mechanism.drivers.iter().zip(limits).enumerate();
-    let rows = rows.map(|(index, (driver, limits))| {
+fn drivers(mechanism: &Mechanism, ranges: &[Option<Range>]) -> String {
+    let rows = mechanism.drivers.iter().zip(ranges).enumerate();
+    let rows = rows.map(|(index, (driver, range))| {
         let kind = driver.coordinate.kind;
         let value = |value: f64| with_unit(kind, value);
         let start = match driver.source {
             DriverSource::Input { start } => value(start),
             DriverSource::Motion(_) => String::new(),
         };
-        let limits = match limits {
-            Limits::Prescribed => "prescribed by the file: no input".to_owned(),
-            Limits::NotSearched => {
-                format!("biela range --driver {} finds them", driver.name)
-            }
-            Limits::Found(range) => match range.upper {
+        let limits = match range {
+            None if driver.motion().is_some() => "prescribed by the file: no input".to_owned(),
+            None => format!("biela range --driver {} finds them", driver.name),
+            Some(Range { upper, lower, .. }) => match upper {
                 End::Turns(1) => "turns fully".to_owned(),
                 End::Turns(turns) => {
                     format!("turns fully; the mechanism is back after {turns} turns")
                 }
                 _ => {
                     let end = |end| end_text(end, driver, DriverId(index));
-                    format!("down to {}; up to {}", end(&range.lower), end(&range.upper))
+                    format!("down to {}; up to {}", end(lower), end(upper))
                 }
             },
         };

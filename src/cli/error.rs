@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use super::message::Message;
 use super::stdout::shown;
-use crate::fmi::PackageError;
 use crate::kinematics;
 
 /// A command that could not do its work.
@@ -35,9 +34,9 @@ pub(super) enum Error {
     /// The server of `watch` cannot listen.
     #[error("cannot listen on port {port}: {source}; --port names another, 0 a free one")]
     Listen { port: u16, source: io::Error },
-    /// The FMU cannot be written.
-    #[error(transparent)]
-    Package(#[from] PackageError),
+    /// The archive of an FMU cannot be written.
+    #[error("cannot write the archive: {0}")]
+    Archive(io::Error),
 }
 
 impl Error {
@@ -76,7 +75,7 @@ impl Error {
             | Self::Read { .. }
             | Self::Write { .. }
             | Self::Listen { .. }
-            | Self::Package(_) => 2,
+            | Self::Archive(_) => 2,
         }
     }
 }

@@ -71,8 +71,7 @@ impl Export {
         if let Some(path) = self.model_description {
             files.refuse_as_outputs(&[Some(&path)])?;
             let solver = assemble(&input)?;
-            let mut description = describe(mechanism, solver.structure());
-            description.standard = self.fmi;
+            let description = describe(mechanism, solver.structure(), self.fmi);
             return write(&path, &description.write(generated.as_deref()));
         }
         let path = self
@@ -125,7 +124,8 @@ pub(super) fn pack(
         libraries,
         &documents,
         generation_time()?.as_deref(),
-    )?;
+    )
+    .map_err(Error::Archive)?;
     Ok(archive.into_inner())
 }
 

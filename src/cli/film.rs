@@ -74,13 +74,13 @@ impl Film {
     }
 }
 
-/// The page or the picture of a run's film.
-pub(super) struct Page {
+/// The file of a run's film: a page, or a picture that moves.
+pub(super) struct FilmFile {
     pub(super) film: Film,
     pub(super) path: PathBuf,
 }
 
-impl Recorder for Page {
+impl Recorder for FilmFile {
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
         self.film.add(motion);
         Ok(())

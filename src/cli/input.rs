@@ -19,20 +19,26 @@ pub(super) struct Input {
 impl Input {
     /// Reads a file and shows its errors and warnings on stderr.
     pub(super) fn read(path: &FilePath) -> Result<Self, Error> {
+        Self::read_and(path, |source, diagnostics| {
+            tell(render(source, diagnostics, true) + "\n");
+        })
+    }
+
+    /// Reads a file, and shows its errors or warnings by `show` if there are any.
+    pub(super) fn read_and(
+        path: &FilePath,
+        show: impl FnOnce(&Source, &[Diagnostic]),
+    ) -> Result<Self, Error> {
         let source = Source::open(path.display().to_string(), path).map_err(Error::read(path))?;
-        match Mechanism::parse(&source) {
-            Ok((mechanism, warnings)) => {
-                show(&source, &warnings);
-                Ok(Self {
-                    source,
-                    mechanism: Arc::new(mechanism),
-                })
-            }
-            Err(diagnostics) => {
-                show(&source, &diagnostics);
-                Err(Error::Diagnosed)
-            }
+        let (mechanism, diagnostics) = match Mechanism::parse(&source) {
+            Ok((mechanism, warnings)) => (Ok(mechanism), warnings),
+            Err(errors) => (Err(Error::Diagnosed), errors),
+        };
+        if !diagnostics.is_empty() {
+            show(&source, &diagnostics);
         }
+        let mechanism = Arc::new(mechanism?);
+        Ok(Self { source, mechanism })
     }
 
     /// Checks that there are forces to show.
@@ -85,10 +91,4 @@ pub(super) fn misfits(solver: &Solver) -> Vec<Message> {
         .into_iter()
         .map(|m| m.to_string());
     redundancies.chain(misfits).map(Message::Warning).collect()
-}
-
-fn show(source: &Source, diagnostics: &[Diagnostic]) {
-    if !diagnostics.is_empty() {
-        tell(render(source, diagnostics, true) + "\n");
-    }
 }

@@ -9,8 +9,7 @@ use super::motion::Motion;
 use super::picture::Format;
 use super::recorder::Recorder;
 use crate::drawing::{Axis, COLOURS, Chart, Line, Panel, Sheet};
-use crate::mechanism::{BodyId, Dimension, Mechanism, Unit};
-use crate::mechanism::{Order, Signal};
+use crate::mechanism::{BodyId, Dimension, Mechanism, Order, Signal, Unit};
 
 /// Largest number of bodies whose lines can be told apart.
 pub(super) const MOST_BODIES: usize = 8;
@@ -22,16 +21,10 @@ pub(super) struct Plot {
     columns: Vec<Output>,
     /// Whether a note says which bodies are left out: the user has named none.
     notes_omission: bool,
-    /// The quantity on the x-axis, `None` for time.
-    over: Option<Over>,
+    /// The quantity on the x-axis with its values, `None` for time.
+    over: Option<(Output, Vec<f64>)>,
     times: Vec<f64>,
     values: Vec<Vec<f64>>,
-}
-
-/// A quantity on the x-axis.
-struct Over {
-    column: Output,
-    values: Vec<f64>,
 }
 
 impl Plot {
@@ -46,10 +39,7 @@ impl Plot {
             path,
             format,
             notes_omission,
-            over: over.map(|column| Over {
-                column,
-                values: Vec::new(),
-            }),
+            over: over.map(|column| (column, Vec::new())),
             times: Vec::new(),
             values: vec![Vec::new(); columns.len()],
             columns,
@@ -84,7 +74,7 @@ impl Plot {
 
     /// Removes all that stays constant, and what the x-axis shows, unless nothing else is there.
     fn leave_out_constants(&mut self) {
-        let over = self.over.as_ref().map(|over| over.column.source);
+        let over = self.over.as_ref().map(|(column, _)| column.source);
         let is_kept =
             |column: &Output, values: &[f64]| varies(values) && Some(column.source) != over;
         let mut all = self.columns.iter().zip(&self.values);
@@ -102,18 +92,15 @@ impl Plot {
         (self.columns, self.values) = kept.unzip();
     }
 
-    /// Returns the chart: one panel per unit, that of the drivers by itself, positions first and
-    /// forces last; angles in degrees.
+    /// Returns the chart: one panel per unit, positions first and forces last; angles in degrees.
+    /// Drivers have panels of their own, where their ramps leave the results their scale.
     fn chart(self, mechanism: &Mechanism) -> Chart {
         let looks = looks(&self.columns, mechanism);
-        let mut panels: Vec<(PanelKey, Panel)> = Vec::new();
+        let mut panels: Vec<((Unit, bool), Panel)> = Vec::new();
         let lines = self.columns.into_iter().zip(self.values).zip(looks);
         for ((column, values), look) in lines {
             let is_driver = matches!(column.source, Source::Signal(Signal::Motion(_), _));
-            let key = PanelKey {
-                unit: column.unit,
-                is_driver,
-            };
+            let key = (column.unit, is_driver);
             panel(&mut panels, key, column.unit).lines.push(Line {
                 name: column.name,
                 look,
@@ -121,12 +108,12 @@ impl Plot {
                 marks: Vec::new(),
             });
         }
-        panels.sort_by_key(|(key, _)| {
-            let dimension = key.unit.dimension;
-            (dimension.kg, -dimension.s, dimension.rad, !key.is_driver)
+        panels.sort_by_key(|((unit, is_driver), _)| {
+            let dimension = unit.dimension;
+            (dimension.kg, -dimension.s, dimension.rad, !is_driver)
         });
         let (x, at) = match self.over {
-            Some(Over { column, values }) => {
+            Some((column, values)) => {
                 let Axis { unit, .. } = axis(column.unit);
                 let label = column.name.trim_end_matches(".position").to_owned();
                 (Axis { label, unit }, displayed(values, column.unit))
@@ -144,14 +131,6 @@ impl Plot {
             panels: panels.into_iter().map(|(_, panel)| panel).collect(),
         }
     }
-}
-
-/// The lines that share a panel: drivers are inputs and have panels of their own, where their ramps
-/// leave the results their scale.
-#[derive(Clone, Copy, PartialEq)]
-struct PanelKey {
-    unit: Unit,
-    is_driver: bool,
 }
 
 /// Returns the panel of a key, a new one with the axis of a unit if there is none.
@@ -209,7 +188,7 @@ fn looks(columns: &[Output], mechanism: &Mechanism) -> Vec<usize> {
 impl Recorder for Plot {
     fn add(&mut self, motion: &Motion) -> Result<(), Error> {
         self.times.push(motion.solver.pose().time);
-        if let Some(Over { column, values }) = &mut self.over {
+        if let Some((column, values)) = &mut self.over {
             values.push(motion.value(column));
         }
         for (values, column) in self.values.iter_mut().zip(&self.columns) {

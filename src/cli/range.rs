@@ -27,7 +27,7 @@ use super::picture::Format;
 use super::plot::{MOST_BODIES, axis, panel, varies};
 use super::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
-use crate::kinematics::{End, Extreme, Range as Motion, RangeSettings, Reason, Sample, in_line};
+use crate::kinematics::{self, End, Extreme, RangeSettings, Reason, Sample, in_line};
 use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounded, shown};
 
 /// Find how far a driver can go.
@@ -175,7 +175,7 @@ fn out_of_reach(
     driver: DriverId,
     start: f64,
     bounds: [Option<f64>; 2],
-    range: &Motion,
+    range: &kinematics::Range,
 ) -> Option<String> {
     if !range.samples.is_empty() {
         return None;
@@ -198,7 +198,7 @@ fn describe(
     mechanism: &Mechanism,
     driver: DriverId,
     start: f64,
-    range: &Motion,
+    range: &kinematics::Range,
     derived: &[DerivedRange],
 ) {
     let of_driver = &mechanism.drivers[driver.index()];
@@ -349,7 +349,7 @@ fn in_unit(kind: CoordinateKind, value: f64) -> (f64, &'static str) {
 fn table(
     mechanism: &Mechanism,
     driver: DriverId,
-    range: &Motion,
+    range: &kinematics::Range,
     derived: &[DerivedRange],
 ) -> String {
     let has_transmission = range.samples.iter().all(|s| s.transmission.is_some());
@@ -392,7 +392,11 @@ fn has_measures(mechanism: &Mechanism) -> bool {
 }
 
 /// Returns the bodies whose angles change, other than as the driver does.
-fn turning(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> impl Iterator<Item = usize> {
+fn turning(
+    mechanism: &Mechanism,
+    driver: DriverId,
+    range: &kinematics::Range,
+) -> impl Iterator<Item = usize> {
     let is_angle = mechanism.drivers[driver.index()].coordinate.kind.is_angle();
     (0..mechanism.bodies.len()).filter(move |body| {
         let angle = |s: &Sample| s.pose.q[3 * body + 2];
@@ -411,7 +415,7 @@ fn turning(mechanism: &Mechanism, driver: DriverId, range: &Motion) -> impl Iter
 fn chart(
     mechanism: &Mechanism,
     driver: DriverId,
-    range: &Motion,
+    range: &kinematics::Range,
     derived: &[DerivedRange],
 ) -> Chart {
     let of_driver = &mechanism.drivers[driver.index()];

@@ -9,7 +9,7 @@ use super::column::Output;
 use super::conditions::{Conditions, Scenario};
 use super::csv::Csv;
 use super::error::Error;
-use super::film::{Film, Page};
+use super::film::{Film, FilmFile};
 use super::input::Input;
 use super::input_files::InputFiles;
 use super::message::Message;
@@ -152,7 +152,7 @@ impl Run {
             if self.forces {
                 film.show_forces(ForcePlace::sought(&mut motion.solver, &motion.solution));
             }
-            recorders.push(Box::new(Page { film, path }));
+            recorders.push(Box::new(FilmFile { film, path }));
         }
         let outcome = self.play(&mut motion, input.source.name(), &times, &mut recorders);
         // Also after a dead point: the results up to there are written.

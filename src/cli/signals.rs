@@ -4,9 +4,8 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use super::error::Error;
-use crate::mechanism::Order;
 use crate::mechanism::{
-    DriverId, DriverSource, Jet, Mechanism, Separated, comma_hint, help, quoted, shown,
+    DriverId, DriverSource, Jet, Mechanism, Order, Separated, comma_hint, help, quoted, shown,
 };
 
 /// Values of drivers and of inputs of forces over time: linear between two points, constant before
@@ -15,30 +14,15 @@ use crate::mechanism::{
 #[derive(Debug, Default)]
 pub(super) struct Signals {
     times: Vec<f64>,
-    signals: Vec<Signal>,
-    forces: Vec<ForceSignal>,
+    /// Values of each column; a driver with a column has one of positions.
+    columns: Vec<(Target, Vec<f64>)>,
 }
 
-/// The columns of one driver.
-#[derive(Debug)]
-struct Signal {
-    driver: DriverId,
-    /// Position, velocity and acceleration; after reading the position is always there.
-    columns: [Option<Vec<f64>>; 3],
-}
-
-/// The column of one input of a force.
-#[derive(Debug)]
-struct ForceSignal {
-    /// Index among all inputs of forces.
-    input: usize,
-    values: Vec<f64>,
-}
-
-/// Place of a column, by the indices of its signal and its order.
-#[derive(PartialEq)]
-enum Place {
-    Driver(usize, usize),
+/// The variable that a column gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Target {
+    Driver(DriverId, Order),
+    /// An input of a force, by its index among all.
     Force(usize),
 }
 
@@ -47,8 +31,8 @@ const SAME: f64 = 1e-9;
 
 impl Signals {
     /// Reads a file as FMPy does: the first column is `time`, the others are variables of drivers,
-    /// `crank_angle.position` or `crank_angle` for short, and inputs of forces. Columns are separated as in the tables
-    /// of a mechanism file.
+    /// `crank_angle.position` or `crank_angle` for short, and inputs of forces. Columns are
+    /// separated as in the tables of a mechanism file.
     pub(super) fn read(path: &Path, mechanism: &Mechanism) -> Result<Self, Error> {
         let text = std::fs::read_to_string(path).map_err(Error::read(path))?;
         Self::parse(&text, mechanism)
@@ -67,18 +51,18 @@ impl Signals {
             return Err(format!("the first column is `{found}`; expected `time`"));
         }
         let mut signals = Self::default();
-        let mut places: Vec<Place> = Vec::new();
         for name in &header[1..] {
-            let place = signals.add_column(name, mechanism)?;
-            if let Some(first) = places.iter().position(|known| *known == place) {
-                let [first, second] = [first, places.len()].map(|after_time| after_time + 2);
+            let target = Target::named(name, mechanism)?;
+            let columns = &mut signals.columns;
+            if let Some(first) = columns.iter().position(|(known, _)| *known == target) {
+                let [first, second] = [first, columns.len()].map(|after_time| after_time + 2);
                 return Err(format!(
                     "two columns for `{name}`: column {first} and column {second}"
                 ));
             }
-            places.push(place);
+            columns.push((target, Vec::new()));
         }
-        if places.is_empty() {
+        if signals.columns.is_empty() {
             return Err("it has no column besides `time`".to_owned());
         }
         for (line, record) in rows {
@@ -103,21 +87,19 @@ impl Signals {
                 return Err(format!("line {line}: time goes back to {}", shown(time)));
             }
             signals.times.push(time);
-            for (place, value) in places.iter().zip(numbers) {
-                match *place {
-                    Place::Driver(signal, order) => {
-                        let column = signals.signals[signal].columns[order].as_mut();
-                        column.expect("the header has made it").push(value?);
-                    }
-                    Place::Force(signal) => signals.forces[signal].values.push(value?),
-                }
+            for ((_, values), value) in signals.columns.iter_mut().zip(numbers) {
+                values.push(value?);
             }
         }
         if signals.times.is_empty() {
             return Err("it has no rows of numbers".to_owned());
         }
-        if let Some(signal) = signals.signals.iter().find(|s| s.columns[0].is_none()) {
-            let name = &mechanism.drivers[signal.driver.index()].name;
+        let mut drivers = signals
+            .columns
+            .iter()
+            .filter_map(|(target, _)| target.driver());
+        if let Some(driver) = drivers.find(|driver| !signals.has(*driver)) {
+            let name = &mechanism.drivers[driver.index()].name;
             return Err(format!(
                 "it has rates of `{name}` but no column `{name}.position`"
             ));
@@ -129,14 +111,14 @@ impl Signals {
     /// Puts each position of a wrapped angle on the turn nearest the last value, the first on that
     /// nearest the file's start, as the FMU does.
     fn unwrap(&mut self, mechanism: &Mechanism) {
-        for signal in &mut self.signals {
-            let driver = &mechanism.drivers[signal.driver.index()];
-            let DriverSource::Input { start } = driver.source else {
-                continue;
-            };
-            if driver.wrapped {
+        for (target, values) in &mut self.columns {
+            if let Target::Driver(id, Order::Position) = *target
+                && let driver = &mechanism.drivers[id.index()]
+                && let DriverSource::Input { start } = driver.source
+                && driver.wrapped
+            {
                 let mut last = start;
-                for value in signal.columns[0].iter_mut().flatten() {
+                for value in values {
                     *value += TAU * ((last - *value) / TAU).round();
                     last = *value;
                 }
@@ -144,80 +126,58 @@ impl Signals {
         }
     }
 
-    /// Adds an empty column, unless it is there; returns its place.
-    fn add_column(&mut self, name: &str, mechanism: &Mechanism) -> Result<Place, String> {
-        let inputs = mechanism.force_inputs();
-        if let Some(input) = inputs.iter().position(|input| input.name == name) {
-            let known = self.forces.iter().position(|signal| signal.input == input);
-            let signal = known.unwrap_or_else(|| {
-                let values = Vec::new();
-                self.forces.push(ForceSignal { input, values });
-                self.forces.len() - 1
-            });
-            return Ok(Place::Force(signal));
-        }
-        let split = Order::ALL.into_iter().find_map(|order| {
-            let driver = name.strip_suffix(order.suffix())?.strip_suffix('.')?;
-            Some((driver, order as usize))
-        });
-        let (driver, order) = split.unwrap_or((name, 0));
-        let driver = (mechanism.driver_id(driver)).ok_or_else(|| unknown(name, mechanism))?;
-        let known = self.signals.iter().position(|s| s.driver == driver);
-        let signal = known.unwrap_or_else(|| {
-            let columns = [const { None }; 3];
-            self.signals.push(Signal { driver, columns });
-            self.signals.len() - 1
-        });
-        self.signals[signal].columns[order] = Some(Vec::new());
-        Ok(Place::Driver(signal, order))
-    }
-
     /// Turns the drivers that follow signals into inputs.
     pub(super) fn make_inputs(&self, mechanism: &mut Mechanism) {
-        for signal in &self.signals {
-            let start = signal.position()[0];
-            mechanism.drivers[signal.driver.index()].source = DriverSource::Input { start };
+        for (target, values) in &self.columns {
+            if let Target::Driver(id, Order::Position) = *target {
+                let start = values[0];
+                mechanism.drivers[id.index()].source = DriverSource::Input { start };
+            }
         }
     }
 
     /// Returns whether some driver follows a signal.
     pub(super) fn has_drivers(&self) -> bool {
-        !self.signals.is_empty()
+        let mut targets = self.columns.iter().map(|(target, _)| target);
+        targets.any(|target| target.driver().is_some())
     }
 
     /// Returns whether a driver follows a signal.
     pub(super) fn has(&self, driver: DriverId) -> bool {
-        self.of(driver).is_some()
+        self.of(driver, Order::Position).is_some()
     }
 
-    fn of(&self, driver: DriverId) -> Option<&Signal> {
-        self.signals.iter().find(|signal| signal.driver == driver)
+    fn of(&self, driver: DriverId, order: Order) -> Option<&[f64]> {
+        let wanted = Target::Driver(driver, order);
+        let found = self.columns.iter().find(|(target, _)| *target == wanted);
+        found.map(|(_, values)| &values[..])
     }
 
     /// Returns a driver's value, with the slope from this time on as velocity.
     pub(super) fn line(&self, driver: DriverId, time: f64) -> Option<Jet> {
-        Some(self.interpolate(self.of(driver)?.position(), time))
+        let positions = self.of(driver, Order::Position)?;
+        Some(self.interpolate(positions, time))
     }
 
     /// Returns a driver's value, velocity and acceleration. Without a column of velocities the
     /// velocity is the slope from this time on, without one of accelerations these are zero.
     pub(super) fn at(&self, driver: DriverId, time: f64) -> Option<Jet> {
-        let signal = self.of(driver)?;
-        let mut jet = self.interpolate(signal.position(), time);
-        let [_, velocity, acceleration] = &signal.columns;
-        if let Some(velocity) = velocity {
-            jet.derivatives[0] = self.interpolate(velocity, time).value;
-        }
-        if let Some(acceleration) = acceleration {
-            jet.derivatives[1] = self.interpolate(acceleration, time).value;
+        let mut jet = self.line(driver, time)?;
+        let orders = [Order::Velocity, Order::Acceleration];
+        for (rate, order) in jet.derivatives.iter_mut().zip(orders) {
+            if let Some(rates) = self.of(driver, order) {
+                *rate = self.interpolate(rates, time).value;
+            }
         }
         Some(jet)
     }
 
     /// Writes the inputs of forces at a time; those without a signal are left as they are.
     pub(super) fn write_forces(&self, time: f64, inputs: &mut [f64]) {
-        for signal in &self.forces {
-            inputs[signal.input] = self.interpolate(&signal.values, time).value;
+        for (target, values) in &self.columns {
+            if let Target::Force(input) = *target {
+                inputs[input] = self.interpolate(values, time).value;
+            }
         }
     }
 
@@ -248,9 +208,29 @@ impl Signals {
     }
 }
 
-impl Signal {
-    fn position(&self) -> &[f64] {
-        self.columns[0].as_deref().unwrap_or_default()
+impl Target {
+    /// Returns the variable of a column of this name.
+    fn named(name: &str, mechanism: &Mechanism) -> Result<Self, String> {
+        let mut inputs = mechanism.force_inputs().into_iter();
+        if let Some(input) = inputs.position(|input| input.name == name) {
+            return Ok(Self::Force(input));
+        }
+        let split = Order::ALL.into_iter().find_map(|order| {
+            let driver = name.strip_suffix(order.suffix())?.strip_suffix('.')?;
+            Some((driver, order))
+        });
+        let (driver, order) = split.unwrap_or((name, Order::Position));
+        let driver = mechanism.driver_id(driver);
+        driver
+            .map(|driver| Self::Driver(driver, order))
+            .ok_or_else(|| unknown(name, mechanism))
+    }
+
+    fn driver(self) -> Option<DriverId> {
+        match self {
+            Self::Driver(driver, _) => Some(driver),
+            Self::Force(_) => None,
+        }
     }
 }
 

@@ -14,8 +14,7 @@ use super::motion::Motion;
 use super::output::print;
 use super::times::Span;
 use crate::kinematics::Direction;
-use crate::mechanism::{Jet, Mechanism, ParameterId, Unit};
-use crate::mechanism::{Order, Signal};
+use crate::mechanism::{Mechanism, Order, ParameterId, Signal, Unit};
 
 /// Tell how tolerances of parameters change the motion.
 ///
@@ -120,11 +119,7 @@ fn add(
     tolerances: &[(ParameterId, f64)],
 ) -> Result<(), crate::kinematics::Error> {
     let time = motion.solver.pose().time;
-    let mut direction = Direction {
-        drivers: vec![Jet::constant(0.0); motion.solver.pose().drivers.len()],
-        parameters: vec![0.0; motion.solver.pose().parameters.len()],
-        time: 0.0,
-    };
+    let mut direction = Direction::zero(motion.solver.mechanism());
     let mut parts = vec![Vec::with_capacity(tolerances.len()); columns.len()];
     for (parameter, tolerance) in tolerances {
         direction.parameters[parameter.index()] = *tolerance;

@@ -23,7 +23,7 @@ use super::page_solver;
 use super::render::render;
 use crate::drawing::animation::{fill, page_with, player};
 use crate::drawing::svg::escape;
-use crate::mechanism::{Mechanism, Source};
+use crate::mechanism::Mechanism;
 use server::{Answer, PAGE, Request, Server, TEXT};
 
 const MAIN: &str = include_str!("watch/main.html");
@@ -93,8 +93,8 @@ struct View {
     /// Time and size of the file, then of the tables that it names.
     seen: Vec<Option<(SystemTime, u64)>>,
     tables: Vec<PathBuf>,
-    name: String,
-    description: String,
+    /// The mechanism of the last good picture.
+    mechanism: Option<Arc<Mechanism>>,
     /// The last good picture.
     player: String,
     /// Warnings on that picture, one per paragraph.
@@ -115,8 +115,7 @@ impl View {
             version: 0,
             seen: Vec::new(),
             tables: Vec::new(),
-            name: String::new(),
-            description: String::new(),
+            mechanism: None,
             player: String::new(),
             warnings: Vec::new(),
             error: None,
@@ -174,8 +173,7 @@ impl View {
             format!("<p>{moving}</p>\n{}", player(&shown.animation))
         };
         self.warnings = warnings;
-        self.name.clone_from(&input.mechanism.name);
-        self.description.clone_from(&input.mechanism.description);
+        self.mechanism = Some(input.mechanism);
         self.player = player;
         Ok(())
     }
@@ -196,10 +194,9 @@ impl View {
             )
         };
         let file = self.watch.file.display().to_string();
-        let name = if self.name.is_empty() {
-            &file
-        } else {
-            &self.name
+        let (name, description) = match &self.mechanism {
+            Some(mechanism) => (&*mechanism.name, &*mechanism.description),
+            None => (&*file, ""),
         };
         let main = fill(
             MAIN,
@@ -211,11 +208,11 @@ impl View {
             ],
         );
         match &self.solver {
-            None => page_with(name, &self.description, &main, STYLE),
+            None => page_with(name, description, &main, STYLE),
             Some(solver) => {
                 let main = main + solver + &live::script();
                 let style = format!("{STYLE}{}", live::STYLE);
-                page_with(name, &self.description, &main, &style)
+                page_with(name, description, &main, &style)
             }
         }
     }
@@ -234,18 +231,15 @@ impl View {
 
 /// Reads a file and returns its warnings, or its errors as text; tells nothing on the terminal.
 fn read(path: &Path) -> Result<Result<(Input, Vec<String>), String>, Error> {
-    let source = Source::open(path.display().to_string(), path).map_err(Error::read(path))?;
-    Ok(match Mechanism::parse(&source) {
-        Ok((mechanism, warnings)) => {
-            let warnings = match warnings[..] {
-                [] => Vec::new(),
-                _ => vec![render(&source, &warnings, false)],
-            };
-            let mechanism = Arc::new(mechanism);
-            Ok((Input { source, mechanism }, warnings))
-        }
-        Err(diagnostics) => Err(render(&source, &diagnostics, false)),
-    })
+    let mut shown = Vec::new();
+    let input = Input::read_and(path, |source, diagnostics| {
+        shown.push(render(source, diagnostics, false));
+    });
+    match input {
+        Ok(input) => Ok(Ok((input, shown))),
+        Err(Error::Diagnosed) => Ok(Err(shown.concat())),
+        Err(error) => Err(error),
+    }
 }
 
 /// Returns a text that no other site can guess.

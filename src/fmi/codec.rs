@@ -74,6 +74,16 @@ pub trait Codec {
         self.one_of(value, &[false, true])
     }
 
+    /// Visits each of some values.
+    fn each<'a, T: 'a>(
+        &mut self,
+        values: impl IntoIterator<Item = &'a mut T>,
+        mut visit: impl FnMut(&mut Self, &mut T) -> Result<(), Unreadable>,
+    ) -> Result<(), Unreadable> {
+        let mut values = values.into_iter();
+        values.try_for_each(|value| visit(self, value))
+    }
+
     /// Visits one of a few values by its index in `all`.
     fn one_of<T: Copy + PartialEq>(&mut self, value: &mut T, all: &[T]) -> Result<(), Unreadable> {
         let index = all.iter().position(|item| item == value);

@@ -2,7 +2,7 @@
 
 use super::UriError;
 use super::log::Category;
-use super::state::{Call, Interface, State, Version};
+use super::state::{Interface, State, Version};
 use super::status::Status;
 use crate::mechanism::shown;
 
@@ -21,25 +21,27 @@ pub enum Failure {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// An argument of a C function is unusable.
+    #[error("`{name}` {why}")]
+    Argument {
+        /// The argument.
+        name: &'static str,
+        /// The fault, as the end of a sentence.
+        why: String,
+    },
     /// The call belongs to the other interface.
     #[error("not for {interface}, for which this instance was made")]
     Interface {
-        /// The call.
-        call: Call,
         /// The instance's interface.
         interface: Interface,
     },
     /// The call is not allowed in the present state.
-    #[error("not allowed in state {state}, only in {}", states(call.allowed_in(*version, *interface)))]
+    #[error("not allowed in state {state}, only in {}", list(allowed))]
     State {
-        /// The call.
-        call: Call,
-        /// The instance's version of the standard.
-        version: Version,
-        /// The instance's interface.
-        interface: Interface,
         /// The present state.
         state: State,
+        /// The states that allow the call.
+        allowed: Vec<State>,
     },
     /// No variable has this value reference.
     #[error("there is no variable with value reference {value_reference}; the last one is {last}")]
@@ -179,13 +181,11 @@ pub enum Error {
     #[error("this function has no status of kind {kind} while no step is pending")]
     StatusKind {
         /// The number of the kind.
-        kind: i64,
+        kind: u32,
     },
     /// The model has no continuous states and no event indicators.
-    #[error("{call} was called for {given} values; there are none")]
+    #[error("called for {given} values, and there are none")]
     Continuous {
-        /// Name of the C function.
-        call: &'static str,
         /// The number of values.
         given: usize,
     },
@@ -311,15 +311,14 @@ pub enum StateError {
     },
 }
 
-fn states(states: &[State]) -> String {
+fn list(states: &[State]) -> String {
     let names: Vec<_> = states.iter().map(State::to_string).collect();
     names.join(", ")
 }
 
 fn categories() -> String {
-    Category::ALL
-        .map(|(category, _)| category.name())
-        .join(", ")
+    let names = Category::ALL.map(|(category, _)| category.name());
+    names.join(", ")
 }
 
 fn range(min: Option<f64>, max: Option<f64>) -> String {

@@ -42,7 +42,7 @@ pub use model::{Groups, Model};
 pub use model_description::{
     Capabilities, DependencyKind, Document, Experiment, Member, ModelDescription, Terminal, Unknown,
 };
-pub use package::{PackageError, Platform, RuntimeLibrary, write as write_archive};
+pub use package::{Platform, RuntimeLibrary, write as write_archive};
 pub use state::{Call, Interface, Phase, State, Version};
 pub use status::Status;
 pub use uri::{UriError, resource_path};

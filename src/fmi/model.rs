@@ -10,7 +10,7 @@ use std::path::Path;
 use super::codec::{Codec, Unreadable};
 use super::error::Failure;
 use super::log::Logger;
-use super::model_description::DependencyKind;
+use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 
@@ -97,7 +97,7 @@ use super::variable::Variable;
 ///     fn commit(&mut self, _: Phase, _: &Logger) -> Result<(), Failure> {
 ///         Ok(())
 ///     }
-///     fn step(&mut self, _: f64, end: f64, _: &Logger) -> Result<(), Failure> {
+///     fn step(&mut self, _: f64, end: f64, _: bool, _: &Logger) -> Result<(), Failure> {
 ///         self.state.time = end;
 ///         Ok(())
 ///     }
@@ -135,12 +135,13 @@ pub trait Model: Sized {
     /// The model's own name for a variable.
     type Quantity: Copy + Debug + PartialEq;
 
-    /// Highest order of output derivatives.
-    const OUTPUT_DERIVATIVES: i32 = 0;
-
-    /// Whether the model can take a step in parts: [`begin_step`](Self::begin_step) and the methods
-    /// after it.
-    const INTERMEDIATE_UPDATE: bool = false;
+    /// The optional methods of the trait that the model has: by default none.
+    const CAPABILITIES: Capabilities = Capabilities {
+        interpolates_inputs: false,
+        output_derivatives: 0,
+        directional_derivatives: false,
+        intermediate_update: false,
+    };
 
     /// Everything that decides how the model goes on, time included.
     type State: Clone + Debug + PartialEq;
@@ -227,16 +228,12 @@ pub trait Model: Sized {
         Err(Failure::Failed(why.to_owned()))
     }
 
-    /// Returns the variables that an output or a calculated parameter depends on, by value
-    /// reference: in initialization mode, or else after it, over all settings. `None` if the model
-    /// does not know them.
-    fn dependencies(
-        &self,
-        value_reference: u32,
-        initializing: bool,
-    ) -> Option<Vec<(u32, DependencyKind)>> {
+    /// Returns the variables on which an output or a calculated parameter depends, by value
+    /// reference: in initialization mode, or otherwise after it, over all settings. None for other
+    /// variables.
+    fn dependencies(&self, value_reference: u32, initializing: bool) -> Vec<(u32, DependencyKind)> {
         let _ = (value_reference, initializing);
-        None
+        Vec::new()
     }
 
     /// Makes the point of the values set the committed one: at the end of initialization, at an
@@ -256,24 +253,10 @@ pub trait Model: Sized {
     ///
     /// # Errors
     ///
-    /// [`Failure::Discarded`] if the model cannot reach the end; it has then committed the point
-    /// that it reached. [`Failure::Failed`] if it has not moved.
-    fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure>;
-
-    /// Takes a step as [`step`](Self::step) does; if the model cannot reach the end, it stays as it
-    /// was before the call.
-    ///
-    /// # Errors
-    ///
-    /// As [`step`](Self::step).
-    fn try_step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        let before = self.save();
-        let stepped = self.step(size, end, log);
-        if stepped.is_err() {
-            self.restore(&before);
-        }
-        stepped
-    }
+    /// [`Failure::Discarded`] if the model cannot reach the end: with `stays` it is then as before the
+    /// call, otherwise it has committed the point that it reached. [`Failure::Failed`] if it has not
+    /// moved.
+    fn step(&mut self, size: f64, end: f64, stays: bool, log: &Logger) -> Result<(), Failure>;
 
     /// Begins a step of `size` \[s\] to the time `end` \[s\] that is taken in parts.
     fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {

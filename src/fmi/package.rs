@@ -1,7 +1,7 @@
 //! The `.fmu` archive (FMI 2.0, 2.3; FMI 3.0, 2.5).
 
 use std::borrow::Cow;
-use std::io::{Seek, Write};
+use std::io::{self, Seek, Write};
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
@@ -95,20 +95,8 @@ pub struct RuntimeLibrary {
     pub content: Cow<'static, [u8]>,
 }
 
-/// The archive could not be written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum PackageError {
-    /// The archive cannot be written.
-    #[error("cannot write the archive: {0}")]
-    Archive(#[from] zip::result::ZipError),
-    /// The archive's content cannot be written.
-    #[error("cannot write the archive: {0}")]
-    Write(#[from] std::io::Error),
-}
-
-/// Writes an FMU: model description, terminals, documents, runtime libraries and resources, each resource
-/// with its name in `resources/`.
+/// Writes an FMU: model description, terminals, documents, runtime libraries and resources, each
+/// resource with its name in `resources/`.
 ///
 /// The same input gives the same bytes: entries have a fixed order and a fixed date.
 ///
@@ -122,7 +110,7 @@ pub fn write<Q>(
     resources: &[(&str, &[u8])],
     documents: &[Document],
     generated: Option<&str>,
-) -> Result<(), PackageError> {
+) -> io::Result<()> {
     let mut zip = ZipWriter::new(out);
     let text = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)

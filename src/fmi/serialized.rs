@@ -10,7 +10,7 @@
 //! | … | the state |
 //! | 4 | CRC-32 of all preceding bytes |
 
-use super::codec::{Reader, Unreadable, Writer};
+use super::codec::{Codec as _, Reader, Unreadable, Writer};
 use super::error::StateError;
 
 /// First bytes of every serialized state. They are not valid UTF-8, so that no text file starts
@@ -20,9 +20,9 @@ const SIGNATURE: [u8; 8] = *b"\x8bbiela\x1a\n";
 /// Version of the format, raised with every change of it.
 const VERSION: u32 = 6;
 
+/// Length of signature, version and total length.
+const HEADER: usize = SIGNATURE.len() + 4 + 8;
 const CHECKSUM: usize = 4;
-/// Length without GUID and state.
-const SHORTEST: usize = SIGNATURE.len() + 4 + 8 + 4 + CHECKSUM;
 
 /// Returns the bytes that `visit` writes, in their envelope.
 pub(super) fn write(
@@ -52,32 +52,20 @@ pub(super) fn read(
     bytes: &[u8],
     visit: impl FnOnce(&mut Reader<'_>) -> Result<(), Unreadable>,
 ) -> Result<(), StateError> {
-    let foreign = StateError::Foreign {
+    let foreign = || StateError::Foreign {
         length: bytes.len(),
     };
-    let Some(mut rest) = bytes.strip_prefix(&SIGNATURE) else {
-        return Err(foreign);
-    };
-    let mut number = |size: usize| {
-        let (number, tail) = rest.split_at_checked(size)?;
-        rest = tail;
-        Some(
-            number
-                .iter()
-                .rev()
-                .fold(0, |sum, &byte| sum << 8 | u64::from(byte)),
-        )
-    };
-    let (Some(version), Some(announced)) = (number(4), number(8)) else {
-        return Err(foreign);
-    };
-    if version != u64::from(VERSION) {
+    let mut header = Reader(bytes.strip_prefix(&SIGNATURE).ok_or_else(foreign)?);
+    let version = header.bytes([0; 4]).map_err(|Unreadable| foreign())?;
+    let announced = header.bytes([0; 8]).map_err(|Unreadable| foreign())?;
+    let (version, announced) = (u32::from_le_bytes(version), u64::from_le_bytes(announced));
+    if version != VERSION {
         return Err(StateError::Version {
-            given: version as u32,
+            given: version,
             expected: VERSION,
         });
     }
-    if announced != bytes.len() as u64 || bytes.len() < SHORTEST {
+    if announced != bytes.len() as u64 || bytes.len() < HEADER + CHECKSUM {
         return Err(StateError::Length {
             announced,
             given: bytes.len(),
@@ -87,10 +75,10 @@ pub(super) fn read(
     if crc32fast::hash(content).to_le_bytes() != checksum {
         return Err(StateError::Checksum);
     }
-    let guid_length = number(4).and_then(|length| usize::try_from(length).ok());
-    let content = &content[SHORTEST - CHECKSUM..];
-    let parts = guid_length.and_then(|length| content.split_at_checked(length));
-    let Some((given, state)) = parts else {
+    let mut reader = Reader(&content[HEADER..]);
+    let length = reader.bytes([0; 4]).map(u32::from_le_bytes);
+    let parts = length.map(|length| reader.0.split_at_checked(length as usize));
+    let Ok(Some((given, state))) = parts else {
         return Err(StateError::Impossible {
             why: "its GUID is longer than itself".to_owned(),
         });

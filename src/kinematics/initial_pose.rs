@@ -23,6 +23,20 @@ pub enum Start {
     Reassembled(Assembly),
 }
 
+impl Start {
+    /// Returns the warning of a start that may be in another assembly mode than the file's pose.
+    #[must_use]
+    pub fn warning(&self) -> Option<&'static str> {
+        match self {
+            Self::Continuous(_) => None,
+            Self::Reassembled(_) => Some(
+                "no continuous motion leads from the file's own pose to these values: assembled \
+                 there from the estimates, possibly in another assembly mode",
+            ),
+        }
+    }
+}
+
 /// The outcome of an assembly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assembly {

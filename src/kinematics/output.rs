@@ -29,7 +29,7 @@ pub struct Output {
 }
 
 /// Meaning of an output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OutputSource {
     /// A signal or a time derivative of it.
     Signal(Signal, Order),

@@ -2,7 +2,7 @@
 
 use super::analysis::Direction;
 use super::error::Error;
-use super::forces::{ForceParts, ForceQuantity, Forces, KnownMotion, LiftOff};
+use super::forces::{ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff};
 use super::output::{Output, OutputSource};
 use super::path::Rates;
 use super::solver::Solver;
@@ -100,12 +100,30 @@ impl Solution {
     ///
     /// Those of [`Solver::solve_rates`] and [`Solver::solve_forces`].
     pub fn solve(&mut self, solver: &mut Solver) -> Result<(), Error> {
+        self.solve_rates(solver)?;
+        self.solve_forces(solver, ForceParts::ALL)
+    }
+
+    /// Solves the rates at the pose for the rates of the drivers.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::solve_rates`].
+    pub fn solve_rates(&mut self, solver: &mut Solver) -> Result<(), Error> {
         let driver_rates = &self.driver_rates;
-        solver.solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)?;
-        let (motion, Some(forces)) = self.split() else {
-            return Ok(());
-        };
-        solver.solve_forces(motion, ForceParts::ALL, forces)
+        solver.solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
+    }
+
+    /// Solves these parts of the forces, if they are sought, for the rates at the pose.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::solve_forces`].
+    pub fn solve_forces(&mut self, solver: &mut Solver, parts: ForceParts) -> Result<(), Error> {
+        match self.split() {
+            (motion, Some(forces)) => solver.solve_forces(motion, parts, forces),
+            (_, None) => Ok(()),
+        }
     }
 
     /// Returns a force, not a number unless forces are sought.
@@ -137,12 +155,7 @@ impl Solution {
         direction: &Direction,
     ) -> Result<Vec<f64>, Error> {
         let stay = vec![0.0; self.loads.len()];
-        let of_forces = match self.split() {
-            (motion, Some(forces)) => {
-                Some(solver.force_sensitivity(motion, direction, &stay, forces)?)
-            }
-            _ => None,
-        };
+        let of_forces = self.force_changes(solver, direction, &stay)?;
         let mechanism = solver.mechanism().clone();
         let change = solver.sensitivity(&self.rates, &self.driver_rates, direction)?;
         let changes = outputs
@@ -152,6 +165,26 @@ impl Solution {
                 _ => output.change(&mechanism, &change),
             });
         Ok(changes.collect())
+    }
+
+    /// Returns the changes of forces along a direction, along which the loads change by `loads`;
+    /// `None` unless forces are sought.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Solver::force_sensitivity`].
+    pub fn force_changes(
+        &mut self,
+        solver: &mut Solver,
+        direction: &Direction,
+        loads: &[f64],
+    ) -> Result<Option<ForceSensitivity>, Error> {
+        match self.split() {
+            (motion, Some(forces)) => solver
+                .force_sensitivity(motion, direction, loads, forces)
+                .map(Some),
+            (_, None) => Ok(None),
+        }
     }
 
     /// Returns the rounding error of a driver's effort \[N or N m\], zero unless forces are sought.

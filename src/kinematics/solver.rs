@@ -13,13 +13,13 @@ use super::error::Error;
 use super::forces::{self, Along, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff};
 use super::initial_pose::{self, Assembly, Start};
 use super::model::Model;
-use super::path::{Path, Rates};
+use super::path::{Curve, Path, Rates};
 use super::redundancy::{self, Redundancy};
 use super::singular::{self, Approach};
 use super::state::{Carryover, Pose, State};
 use super::structure::Structure;
 use super::system::System;
-use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism, Order};
+use crate::mechanism::{BodyId, DriverId, Jet, MarkerId, Mechanism, Motion, Order, ParameterId};
 
 /// Solves position, velocity and acceleration of one mechanism.
 ///
@@ -120,6 +120,43 @@ impl Solver {
     /// first of these its pose is the nearest one.
     pub fn assemble(&mut self, path: &Path) -> Result<Assembly, Error> {
         initial_pose::assemble(&mut self.model, &mut self.state, path)
+    }
+
+    /// Returns the path from the pose, which is that of the mechanism's own values, to the start of a
+    /// motion at `time` \[s\]: to parameters \[SI\], and to the values of the drivers there.
+    ///
+    /// `driven` is the mechanism with that motion. `value` returns the values there of drivers that
+    /// are its inputs; without one they stay as they are.
+    #[must_use]
+    pub fn path_to_start(
+        &self,
+        driven: &Mechanism,
+        parameters: &[f64],
+        time: f64,
+        value: impl Fn(DriverId) -> Option<f64>,
+    ) -> Path {
+        let (own, home) = (self.mechanism(), self.pose());
+        let mut path = Path::new(own);
+        path.duration = time - home.time;
+        path.to.copy_from_slice(parameters);
+        for (index, curve) in path.curves.iter_mut().enumerate() {
+            let motions = [own, driven].map(|mechanism| mechanism.drivers[index].motion());
+            let given = match motions {
+                // A motion of the file is followed as such.
+                [
+                    Some(Motion::Expression(own)),
+                    Some(Motion::Expression(same)),
+                ] if own == same => None,
+                [_, Some(Motion::Expression(motion))] => {
+                    Some(motion.evaluate(&|p: ParameterId| parameters[p.index()], time))
+                }
+                _ => value(DriverId(index)),
+            };
+            if let Some(position) = given {
+                *curve = Curve::held(position, home.drivers[index]);
+            }
+        }
+        path
     }
 
     /// Finds the pose at the end of `path`: moves there continuously from `home`, which is at its

@@ -4,7 +4,7 @@ use super::id::{BodyId, DriverId, MarkerId};
 use super::number::Jet;
 
 /// A scalar signal of the mechanism, which has a velocity and an acceleration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Signal {
     /// A generalized coordinate of a body: x (component 0), y (1) or phi (2).
     Body(BodyId, usize),

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use biela::fmi::{Causality, Interface, Kind, Quantity, Unknown, describe};
+use biela::fmi::{Causality, Interface, Kind, Quantity, Unknown, Version, describe};
+use biela::kinematics::OutputSource;
 use biela::mechanism::Order;
 
 use crate::common::{Instance, assembled, instance_of, shipped, stems};
@@ -25,7 +26,7 @@ fn references(instance: &Instance, which: impl Fn(Quantity) -> bool) -> Vec<u32>
 
 fn outputs(instance: &Instance) -> Vec<u32> {
     references(instance, |quantity| {
-        matches!(quantity, Quantity::Output(..))
+        matches!(quantity, Quantity::Output(OutputSource::Signal(..)))
     })
 }
 
@@ -116,13 +117,13 @@ fn differing(unknowns: &[u32], one: &[f64], other: &[f64]) -> Vec<u32> {
 /// Asserts that the model description declares a dependency of each of `changed` on `known`.
 fn assert_declared(declared: &[Unknown], changed: &[u32], known: u32, context: &str) {
     for &unknown in changed {
-        let index = unknown as usize + 1;
-        let entry = declared.iter().find(|entry| entry.index == index);
-        let entry = entry.unwrap_or_else(|| panic!("{context}: {index} is not listed"));
+        let entry = declared
+            .iter()
+            .find(|entry| entry.value_reference == unknown);
+        let entry = entry.unwrap_or_else(|| panic!("{context}: {unknown} is not listed"));
         assert!(
-            entry.dependencies.contains_key(&(known as usize + 1)),
-            "{context}: {index} depends on {}",
-            known + 1
+            entry.dependencies.contains_key(&known),
+            "{context}: {unknown} depends on {known}"
         );
     }
 }
@@ -132,7 +133,7 @@ fn assert_declared(declared: &[Unknown], changed: &[u32], known: u32, context: &
 fn outputs_depend_on_declared_inputs_and_time_only() {
     for name in stems("mechanisms", "toml") {
         let (solver, _) = assembled(&shipped(&name));
-        let description = describe(solver.mechanism(), solver.structure());
+        let description = describe(solver.mechanism(), solver.structure(), Version::Fmi2);
         for settings in SETTINGS {
             let mut instance = running(&name, settings);
             let (inputs, outputs) = (inputs(&instance), outputs(&instance));
@@ -168,7 +169,7 @@ fn outputs_depend_on_declared_inputs_and_time_only() {
 fn initial_unknowns_depend_on_declared_knowns_only() {
     for name in stems("mechanisms", "toml") {
         let (solver, _) = assembled(&shipped(&name));
-        let description = describe(solver.mechanism(), solver.structure());
+        let description = describe(solver.mechanism(), solver.structure(), Version::Fmi2);
         for settings in SETTINGS {
             let context = format!("{name} {settings:?}");
             let mut instance = initializing(&name, settings);
@@ -225,7 +226,7 @@ fn initial_unknowns_depend_on_declared_knowns_only() {
 fn each_declared_input_acts_in_some_setting() {
     let name = "four_bar";
     let (solver, _) = assembled(&shipped(name));
-    let description = describe(solver.mechanism(), solver.structure());
+    let description = describe(solver.mechanism(), solver.structure(), Version::Fmi2);
     let mut acting = BTreeSet::new();
     let runs = SETTINGS.map(|settings| {
         [
@@ -249,11 +250,7 @@ fn each_declared_input_acts_in_some_setting() {
         for &known in &inputs {
             let (base, moved) = (after(known, 0.0), after(known, 1e-2));
             let changed = differing(&outputs, &base, &moved);
-            acting.extend(
-                changed
-                    .into_iter()
-                    .map(|unknown| (unknown as usize + 1, known as usize + 1)),
-            );
+            acting.extend(changed.into_iter().map(|unknown| (unknown, known)));
         }
     }
     let declared: BTreeSet<_> = description
@@ -263,7 +260,7 @@ fn each_declared_input_acts_in_some_setting() {
             unknown
                 .dependencies
                 .keys()
-                .map(|&known| (unknown.index, known))
+                .map(|&known| (unknown.value_reference, known))
         })
         .collect();
     assert_eq!(declared, acting);
@@ -300,7 +297,7 @@ fn assert_derivatives(
 
 fn orders(instance: &Instance, outputs: &[u32]) -> Vec<usize> {
     let order = |&vr: &u32| match instance.variables()[vr as usize].quantity {
-        Quantity::Output(_, order) => order as usize,
+        Quantity::Output(OutputSource::Signal(_, order)) => order as usize,
         _ => panic!("no output"),
     };
     outputs.iter().map(order).collect()

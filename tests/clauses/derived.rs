@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use biela::fmi::{Interface, describe};
+use biela::fmi::{Interface, Version, describe};
 use biela::mechanism::Mechanism;
 
 use crate::common::{Instance, assembled, instance_of, parse};
@@ -78,14 +78,15 @@ fn their_directional_derivatives_are_exact() {
 #[test]
 fn they_depend_on_the_inputs_of_what_they_use() {
     let (solver, _) = assembled(&mechanism());
-    let description = describe(solver.mechanism(), solver.structure());
-    let index = |name: &str| {
+    let description = describe(solver.mechanism(), solver.structure(), Version::Fmi2);
+    let reference = |name: &str| {
         let mut variables = description.variables.iter();
-        1 + variables.position(|v| v.name == name).expect("it is there")
+        let found = variables.position(|v| v.name == name);
+        found.expect("it is there") as u32
     };
     let of = |name: &str| {
         let mut unknowns = description.initial_unknowns.iter();
-        let unknown = unknowns.find(|unknown| unknown.index == index(name));
+        let unknown = unknowns.find(|unknown| unknown.value_reference == reference(name));
         &unknown.expect("it is an unknown").dependencies
     };
     let [position, velocity, crank] = [
@@ -93,7 +94,7 @@ fn they_depend_on_the_inputs_of_what_they_use() {
         "crank_angle.velocity",
         "crank_length",
     ]
-    .map(index);
+    .map(reference);
     for (name, needs_velocity) in [("folded", false), ("ratio", true), ("scaled", false)] {
         let dependencies = of(name);
         assert!(dependencies.contains_key(&position) && dependencies.contains_key(&crank));

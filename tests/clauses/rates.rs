@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use biela::fmi::{Category, Interface, describe};
+use biela::fmi::{Category, Interface, Version, describe};
 
 use crate::common::log::Heard;
 use crate::common::{Instance, assembled, instance_of, parse, shipped};
@@ -277,7 +277,7 @@ fn a_driver_beyond_its_limits_is_followed_with_one_warning() {
     let limited = four_bar_text().replace(own, "start = \"60*deg\", min = 1, max = 1.5 }");
     let mechanism = parse(&limited);
     let (solver, _) = assembled(&mechanism);
-    let xml = describe(solver.mechanism(), solver.structure()).write(None);
+    let xml = describe(solver.mechanism(), solver.structure(), Version::Fmi2).write(None);
     let xml = String::from_utf8(xml).expect("XML is text");
     assert!(xml.contains("min=\"1.0\" max=\"1.5\""), "{xml}");
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use biela::fmi::{Call, Category};
 use biela::fmi::{
     CoSimulation, Error, Failure, Interface, MechanismModel, State, Status, StepOutcome,
-    StepProgress, Version,
+    StepProgress, Version, describe,
 };
 use biela::mechanism::Mechanism;
 
@@ -258,7 +258,7 @@ fn a_dead_point_is_an_early_return_at_its_time() {
         let [base, arm] = get(&mut instance, ["base", "arm_length"]);
         let dead_point = base + arm;
         let extrapolation = vr(&instance, "extrapolation");
-        instance.set_int64(&[extrapolation], &[2]).unwrap();
+        instance.set_integer(&[extrapolation], &[2]).unwrap();
         let start = dead_point - 0.05;
         set(&mut instance, [("side_length.position", start)]);
         instance.enter_initialization_mode_at(0.0, None).unwrap();
@@ -556,19 +556,17 @@ fn dependencies_at_run_time_are_those_of_the_model_description() {
     for name in ["four_bar", "slider_crank", "pendulum"] {
         let mechanism = shipped(name);
         let (solver, _) = crate::common::assembled(&mechanism);
-        let description = biela::fmi::describe(&mechanism, solver.structure());
+        let description = describe(&mechanism, solver.structure(), Version::Fmi3);
         let mut instance = instance_of(name, CoSimulation::default(), &Heard::default());
         let call = Call::GetVariableDependencies;
         let expected = |unknown: &biela::fmi::Unknown| -> Vec<_> {
             let mut all = unknown.dependencies.clone();
             all.extend(&unknown.parameters);
-            all.iter()
-                .map(|(&index, &kind)| (index as u32 - 1, kind))
-                .collect()
+            all.into_iter().collect()
         };
         for unknown in &description.initial_unknowns {
             let found = instance
-                .dependencies(call, unknown.index as u32 - 1)
+                .dependencies(call, unknown.value_reference)
                 .unwrap();
             assert_eq!(found, expected(unknown));
         }
@@ -576,7 +574,7 @@ fn dependencies_at_run_time_are_those_of_the_model_description() {
         instance.exit_initialization_mode().unwrap();
         for unknown in &description.outputs {
             let found = instance
-                .dependencies(call, unknown.index as u32 - 1)
+                .dependencies(call, unknown.value_reference)
                 .unwrap();
             assert_eq!(found, expected(unknown));
         }

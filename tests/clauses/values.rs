@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use biela::fmi::{Error, Interface, Status, describe};
+use biela::fmi::{Error, Interface, Status, Version, describe};
 
 use crate::common::{assembled, folder, instance_of, parse, shipped, stems};
 use crate::{get, set, started, vr};
@@ -129,7 +129,7 @@ fn no_variable_has_the_name_of_a_type() {
     mechanisms.push(parse(&text));
     for mechanism in mechanisms {
         let (solver, _) = assembled(&mechanism);
-        let xml = describe(solver.mechanism(), solver.structure()).write(None);
+        let xml = describe(solver.mechanism(), solver.structure(), Version::Fmi2).write(None);
         let xml = String::from_utf8(xml).expect("XML is text");
         let (types, variables) = (names(&xml, "SimpleType"), names(&xml, "ScalarVariable"));
         assert!(!types.is_empty() && !variables.is_empty());

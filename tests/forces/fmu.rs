@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use biela::fmi::{
     Category, Causality, Instance, Interface, Kind, MechanismModel, Quantity, Sink, Status,
 };
-use biela::kinematics::ForceQuantity;
+use biela::kinematics::{ForceQuantity, OutputSource};
 use biela::mechanism::{DriverId, Indeterminate, Mechanism};
 
 use crate::common::{self, instance_of, parse, shipped, stems};
@@ -27,7 +27,9 @@ fn every_derivative_of_a_force_agrees_with_differences() {
         let mut mechanism = loaded(&name);
         mechanism.outputs.indeterminate = Indeterminate::MinimumNorm;
         let mut instance = moving(mechanism);
-        let unknowns = references(&instance, |v| matches!(v.quantity, Quantity::Force(_)));
+        let unknowns = references(&instance, |v| {
+            matches!(v.quantity, Quantity::Output(OutputSource::Force(_)))
+        });
         let knowns = references(&instance, |variable| {
             variable.causality == Causality::Input
                 || variable.causality == Causality::Parameter && variable.kind.is_real()
@@ -170,7 +172,8 @@ fn inputs_of_forces_are_held_saved_and_extrapolated() {
     instance.set_real(&[1, 2], &[0.5, 2.0]).expect("legal");
     instance.enter_initialization_mode().expect("legal");
     instance.exit_initialization_mode().expect("legal");
-    let effort = Quantity::Force(ForceQuantity::Effort(DriverId(0)));
+    let effort = OutputSource::Force(ForceQuantity::Effort(DriverId(0)));
+    let effort = Quantity::Output(effort);
     let base = 4.0 * (2.0 + 9.81) + 3.0 * 0.5;
     let near = |value: f64, expected: f64| (value - expected).abs() < 1e-13 * base;
     assert!(near(value(&mut instance, effort), base));

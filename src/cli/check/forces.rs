@@ -3,9 +3,8 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use crate::fmi::{Kind, Quantity, variables};
-use crate::kinematics::{Error, ForceParts, ForceQuantity, KnownMotion, Rates, Solver};
-use crate::mechanism::{Expression, Indeterminate, Jet, Mechanism, shown};
+use crate::kinematics::{Error, ForceQuantity, Output, OutputSource, Solution, Solver};
+use crate::mechanism::{Expression, Indeterminate, Mechanism, shown};
 
 /// Magnitude below which a force of a few newtons is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -25,19 +24,12 @@ impl Forces {
     ///
     /// # Errors
     ///
-    /// Those of [`Solver::solve_forces`].
+    /// Those of [`Solution::solve`].
     pub(super) fn at_rest(solver: &mut Solver) -> Result<Self, Error> {
         let mechanism = Arc::clone(solver.mechanism());
-        let still = Rates::new(solver.pose().q.len());
-        let rates = vec![Jet::constant(0.0); mechanism.drivers.len()];
-        let mut forces = solver.forces();
-        let inputs = vec![0.0; forces.inputs()];
-        let motion = KnownMotion {
-            rates: &still,
-            driver_rates: &rates,
-            inputs: &inputs,
-        };
-        solver.solve_forces(motion, ForceParts::ALL, &mut forces)?;
+        let mut solution = Solution::new(solver);
+        solution.seek_forces(solver);
+        solution.solve(solver)?;
         let parameters = &solver.pose().parameters;
         let value = |expression: &Expression| expression.value(parameters);
         let masses = mechanism.bodies.iter().filter_map(|body| {
@@ -45,24 +37,22 @@ impl Forces {
             Some((body.name.clone(), value(body.mass.as_ref()?), inertia))
         });
         let masses = masses.collect();
-        let values = variables(&mechanism).into_iter().filter_map(|variable| {
-            let (Quantity::Force(force), Kind::Real { unit, .. }) =
-                (variable.quantity, variable.kind)
-            else {
+        let values = Output::all(&mechanism).into_iter().filter_map(|output| {
+            let OutputSource::Force(force) = output.source else {
                 return None;
             };
             let trivial = matches!(
                 force,
                 ForceQuantity::Power(_) | ForceQuantity::Bias(_) | ForceQuantity::KineticEnergy
             );
-            let value = forces.value(force);
+            let value = solution.force(force);
             let rounding = match force {
-                ForceQuantity::Effort(driver) => solver.effort_rounding(&still, driver, &forces),
+                ForceQuantity::Effort(driver) => solution.effort_rounding(solver, driver),
                 _ => 0.0,
             };
             let is_rounding = value.abs() < ROUNDING || value.abs() <= rounding;
             let value = if is_rounding { 0.0 } else { value };
-            (!trivial).then_some((variable.name, value, unit?.name))
+            (!trivial).then_some((output.name, value, output.unit.name))
         });
         let values = values.collect();
         let indeterminate = solver.indeterminate();

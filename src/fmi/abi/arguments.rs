@@ -4,7 +4,10 @@ use std::ffi::{CStr, c_char};
 use std::mem::MaybeUninit;
 use std::slice;
 
-use super::component::CallError;
+use crate::fmi::Error;
+
+/// Fault of a pointer that is null.
+pub(super) const NULL: &str = "is a null pointer";
 
 /// Returns the array of `length` items at `pointer`.
 ///
@@ -13,10 +16,10 @@ use super::component::CallError;
 /// A pointer that is not null points to `length` items that live and do not change while the
 /// slice is used.
 pub(super) unsafe fn slice<'a, T>(
-    name: &str,
+    name: &'static str,
     pointer: *const T,
     length: usize,
-) -> Result<&'a [T], CallError> {
+) -> Result<&'a [T], Error> {
     check_array(name, pointer, length)?;
     if length == 0 {
         return Ok(&[]);
@@ -25,58 +28,46 @@ pub(super) unsafe fn slice<'a, T>(
     Ok(unsafe { slice::from_raw_parts(pointer, length) })
 }
 
-/// Memory of the host to be written. It may hold nothing yet, so that it is never read.
-pub(super) struct Room<'a, T>(&'a mut [MaybeUninit<T>]);
-
-impl<'a, T: Copy> Room<'a, T> {
-    /// Returns the room for `length` items at `pointer`.
-    ///
-    /// # Safety
-    ///
-    /// A pointer that is not null points to room for `length` items that nobody else touches
-    /// while the room is used.
-    pub(super) unsafe fn new(
-        name: &str,
-        pointer: *mut T,
-        length: usize,
-    ) -> Result<Self, CallError> {
-        check_array(name, pointer, length)?;
-        if length == 0 {
-            return Ok(Self(&mut []));
-        }
-        // SAFETY: checked above as far as possible, promised by the caller beyond; items that
-        // may hold nothing have the layout of items.
-        Ok(Self(unsafe {
-            slice::from_raw_parts_mut(pointer.cast(), length)
-        }))
+/// Returns the memory for `length` items at `pointer`, to be written. It may hold nothing yet, so that
+/// it is never read.
+///
+/// # Safety
+///
+/// A pointer that is not null points to room for `length` items that nobody else touches while the
+/// memory is used.
+pub(super) unsafe fn room<'a, T: Copy>(
+    name: &'static str,
+    pointer: *mut T,
+    length: usize,
+) -> Result<&'a mut [MaybeUninit<T>], Error> {
+    check_array(name, pointer, length)?;
+    if length == 0 {
+        return Ok(&mut []);
     }
+    // SAFETY: checked above as far as possible, promised by the caller beyond; items that may hold
+    // nothing have the layout of items.
+    Ok(unsafe { slice::from_raw_parts_mut(pointer.cast(), length) })
+}
 
-    /// Returns the items to be written.
-    #[inline]
-    pub(super) fn items(self) -> &'a mut [MaybeUninit<T>] {
-        self.0
-    }
-
-    /// Writes values from the first item on, as many as there are and have room.
-    #[inline]
-    pub(super) fn fill(self, values: impl IntoIterator<Item = T>) {
-        for (item, value) in self.0.iter_mut().zip(values) {
-            item.write(value);
-        }
+/// Writes values from the first item on, as many as there are and have room.
+#[inline]
+pub(super) fn fill<T: Copy>(room: &mut [MaybeUninit<T>], values: impl IntoIterator<Item = T>) {
+    for (item, value) in room.iter_mut().zip(values) {
+        item.write(value);
     }
 }
 
 /// Checks that a pointer leads to room for one item.
-pub(super) fn check_room<T>(name: &str, pointer: *mut T) -> Result<(), CallError> {
+pub(super) fn check_room<T>(name: &'static str, pointer: *mut T) -> Result<(), Error> {
     check_array(name, pointer, 1)
 }
 
 #[inline]
-fn check_array<T>(name: &str, pointer: *const T, length: usize) -> Result<(), CallError> {
+fn check_array<T>(name: &'static str, pointer: *const T, length: usize) -> Result<(), Error> {
     let why = if length == 0 {
         return Ok(());
     } else if pointer.is_null() {
-        "is a null pointer"
+        NULL
     } else if !pointer.is_aligned() {
         "is not aligned for its type"
     } else if length > isize::MAX as usize / size_of::<T>() {
@@ -87,9 +78,11 @@ fn check_array<T>(name: &str, pointer: *const T, length: usize) -> Result<(), Ca
     Err(refuse(name, why))
 }
 
+/// Returns the error of an argument that is unusable.
 #[cold]
-fn refuse(name: &str, why: &str) -> CallError {
-    CallError::Argument(format!("`{name}` {why}"))
+pub(super) fn refuse(name: &'static str, why: impl Into<String>) -> Error {
+    let why = why.into();
+    Error::Argument { name, why }
 }
 
 /// Returns the text of a C string.
@@ -98,14 +91,17 @@ fn refuse(name: &str, why: &str) -> CallError {
 ///
 /// A pointer that is not null points to a string that ends in NUL and lives and does not change
 /// while the text is used.
-pub(super) unsafe fn text<'a>(name: &str, pointer: *const c_char) -> Result<&'a str, CallError> {
+pub(super) unsafe fn text<'a>(
+    name: &'static str,
+    pointer: *const c_char,
+) -> Result<&'a str, Error> {
     if pointer.is_null() {
-        return Err(CallError::Argument(format!("`{name}` is a null pointer")));
+        return Err(refuse(name, NULL));
     }
     // SAFETY: promised by the caller.
     unsafe { CStr::from_ptr(pointer) }
         .to_str()
-        .map_err(|_| CallError::Argument(format!("`{name}` is not UTF-8")))
+        .map_err(|_| refuse(name, "is not UTF-8"))
 }
 
 /// Writes one value through a pointer of the host.
@@ -114,11 +110,11 @@ pub(super) unsafe fn text<'a>(name: &str, pointer: *const c_char) -> Result<&'a 
 ///
 /// A pointer that is not null can be written.
 pub(super) unsafe fn write<T: Copy>(
-    name: &str,
+    name: &'static str,
     pointer: *mut T,
     value: T,
-) -> Result<(), CallError> {
+) -> Result<(), Error> {
     // SAFETY: promised by the caller.
-    unsafe { Room::new(name, pointer, 1)? }.fill([value]);
+    fill(unsafe { room(name, pointer, 1)? }, [value]);
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::any::Any;
 use std::cell::UnsafeCell;
-use std::ffi::{c_uint, c_void};
+use std::ffi::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,11 +11,11 @@ use super::floating_point::StandardEnvironment;
 use super::intermediate::IntermediateUpdate;
 use crate::fmi::{Error, Status};
 
-/// An instance as the host sees it: an `fmi2Component`.
+/// An instance as the host sees it, or an FMU state.
 pub(super) type Handle = *mut c_void;
 
 /// A status as the host sees it. The versions of the standard number them alike.
-pub(super) type StatusCode = c_uint;
+pub(super) type StatusCode = u32;
 
 pub(super) type Instance = crate::fmi::Instance<Exported>;
 
@@ -30,20 +30,6 @@ pub(super) struct Component {
     intermediate_update: Option<IntermediateUpdate>,
     /// Whether a step has called back and waits for the host.
     calling_back: AtomicBool,
-}
-
-/// Why a call did not succeed.
-pub(super) enum CallError {
-    /// The instance has refused it.
-    Refused(Error),
-    /// An argument is unusable.
-    Argument(String),
-}
-
-impl From<Error> for CallError {
-    fn from(error: Error) -> Self {
-        Self::Refused(error)
-    }
 }
 
 impl Component {
@@ -130,7 +116,7 @@ impl Component {
 pub(super) unsafe fn with_instance(
     c: Handle,
     call: &str,
-    f: impl FnOnce(&mut Instance) -> Result<(), CallError>,
+    f: impl FnOnce(&mut Instance) -> Result<(), Error>,
 ) -> StatusCode {
     // SAFETY: promised by the caller.
     let Some(component) = (unsafe { c.cast::<Component>().as_ref() }) else {
@@ -164,12 +150,11 @@ pub(super) unsafe fn with_instance(
 fn serve(
     instance: &mut Instance,
     call: &str,
-    f: impl FnOnce(&mut Instance) -> Result<(), CallError>,
+    f: impl FnOnce(&mut Instance) -> Result<(), Error>,
 ) -> Status {
     let outcome = catch_unwind(AssertUnwindSafe(|| match f(instance) {
         Ok(()) => Status::Ok,
-        Err(CallError::Refused(error)) => instance.report(call, &error),
-        Err(CallError::Argument(message)) => instance.report_argument(call, &message),
+        Err(error) => instance.report(call, &error),
     }));
     outcome.unwrap_or_else(|payload| {
         let what = format!("{call}: defect in biela: {}", panic_message(&*payload));

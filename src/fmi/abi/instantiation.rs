@@ -5,15 +5,16 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
 use std::sync::Once;
 
-use super::arguments::text;
-use super::component::{CallError, Component, Handle, Instance, panic_message};
+use super::arguments::{refuse, text};
+use super::component::{Component, Handle, Instance, panic_message};
 use super::floating_point::StandardEnvironment;
 use super::intermediate::IntermediateUpdate;
+use crate::fmi::Error;
 
 /// Hands over to the host the instance that `make` returns; null if there is none, after `complain` has
 /// told the host why.
 pub(super) fn instantiate(
-    make: impl FnOnce() -> Result<(Instance, Option<IntermediateUpdate>), CallError>,
+    make: impl FnOnce() -> Result<(Instance, Option<IntermediateUpdate>), Error>,
     complain: impl FnOnce(&str),
 ) -> Handle {
     silence_panics();
@@ -22,8 +23,7 @@ pub(super) fn instantiate(
         Ok(Ok((instance, intermediate_update))) => {
             return Component::hand_over(instance, intermediate_update);
         }
-        Ok(Err(CallError::Argument(message))) => message,
-        Ok(Err(CallError::Refused(error))) => error.to_string(),
+        Ok(Err(error)) => error.to_string(),
         Err(payload) => format!("defect in biela: {}", panic_message(&*payload)),
     };
     // Should the logging be what panicked, a second panic must not escape either.
@@ -38,14 +38,13 @@ pub(super) fn instantiate(
 ///
 /// The [host's promise](super#safety).
 pub(super) unsafe fn texts<'a>(
-    arguments: [(&str, *const c_char); 3],
-) -> Result<[&'a str; 3], CallError> {
+    arguments: [(&'static str, *const c_char); 3],
+) -> Result<[&'a str; 3], Error> {
     // SAFETY: promised by the caller.
     let [name, guid, resources] = arguments.map(|(name, pointer)| unsafe { text(name, pointer) });
     let texts = [name?, guid?, resources?];
     if texts[0].trim().is_empty() {
-        let message = "`instanceName` is empty or blank".to_owned();
-        return Err(CallError::Argument(message));
+        return Err(refuse("instanceName", "is empty or blank"));
     }
     Ok(texts)
 }

@@ -6,32 +6,24 @@ use std::ffi::c_void;
 /// solver has accepted the point, whether the step may end early; then the host's wish for that
 /// and the time of the end.
 pub(super) type Callback =
-    Option<unsafe extern "C" fn(*mut c_void, f64, bool, bool, bool, bool, *mut bool, *mut f64)>;
+    unsafe extern "C" fn(*mut c_void, f64, bool, bool, bool, bool, *mut bool, *mut f64);
 
 /// The host's intermediate update, with the environment that it wants to be called with.
 #[derive(Clone, Copy)]
 pub(super) struct IntermediateUpdate {
-    callback: Callback,
-    environment: *mut c_void,
+    pub(super) callback: Callback,
+    pub(super) environment: *mut c_void,
 }
 
 impl IntermediateUpdate {
-    pub(super) fn new(callback: Callback, environment: *mut c_void) -> Self {
-        Self {
-            callback,
-            environment,
-        }
-    }
-
     /// Lets the host read outputs and set inputs at `time`. Returns the time at which it wants the
     /// step to end, if it wants that.
     pub(super) fn call(self, time: f64, can_return_early: bool) -> Option<f64> {
-        let callback = self.callback?;
         let (mut requested, mut early_return_time) = (false, time);
         // SAFETY: the host promises a function with the signature of the header; the two results
         // live until it returns.
         unsafe {
-            callback(
+            (self.callback)(
                 self.environment,
                 time,
                 true,

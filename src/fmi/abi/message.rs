@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::ffi::{CString, c_char};
 
 use super::arguments::{slice, text};
-use super::component::{CallError, Instance};
-use crate::fmi::Call;
+use super::component::Instance;
+use crate::fmi::{Call, Error};
 
 /// Longest message \[bytes\]: some hosts have no room for more, which a mechanism of thousands of
 /// bodies may need.
@@ -21,7 +21,7 @@ pub(super) unsafe fn set_debug_logging(
     on: bool,
     categories: *const *const c_char,
     count: usize,
-) -> Result<(), CallError> {
+) -> Result<(), Error> {
     instance.allow(Call::SetDebugLogging)?;
     // SAFETY: promised by the caller.
     let categories = unsafe { slice("categories", categories, count)? };
@@ -30,7 +30,7 @@ pub(super) unsafe fn set_debug_logging(
         unsafe { text("category", category) }
     });
     let names: Vec<_> = names.collect::<Result<_, _>>()?;
-    Ok(instance.set_debug_logging(on, &names)?)
+    instance.set_debug_logging(on, &names)
 }
 
 /// Returns a message as the standard wants it: it reads `#12#` as a reference to a variable, and

@@ -4,8 +4,9 @@
 //! the instance that it was got from.
 
 use super::Exported;
-use super::component::{CallError, Handle};
-use crate::fmi::Model;
+use super::arguments::{NULL, refuse};
+use super::component::Handle;
+use crate::fmi::{Error, Model};
 
 pub(super) type FmuState = crate::fmi::FmuState<<Exported as Model>::State>;
 
@@ -17,10 +18,9 @@ pub(super) const ARGUMENT: &str = "FMUstate";
 /// # Safety
 ///
 /// The [host's promise](super#safety) for an FMU state, while the reference is used.
-pub(super) unsafe fn state<'a>(handle: Handle) -> Result<&'a FmuState, CallError> {
+pub(super) unsafe fn state<'a>(handle: Handle) -> Result<&'a FmuState, Error> {
     // SAFETY: promised by the caller.
-    unsafe { handle.cast::<FmuState>().as_ref() }
-        .ok_or_else(|| CallError::Argument(format!("`{ARGUMENT}` is a null pointer")))
+    unsafe { handle.cast::<FmuState>().as_ref() }.ok_or_else(|| refuse(ARGUMENT, NULL))
 }
 
 /// Returns the handle of a state, which is then the host's to free.
@@ -32,18 +32,17 @@ pub(super) fn hand_over(state: FmuState) -> Handle {
 /// deserialize a state.
 macro_rules! fmu_state_calls {
     (
-        $handle:ty => $status:ty, $byte:ty;
+        $byte:ty;
         $get:ident $set:ident $free:ident $size:ident $serialize:ident $deserialize:ident
     ) => {
         use std::ptr::null_mut;
 
-        use $crate::fmi::abi::arguments::{Room, slice, write};
-        use $crate::fmi::abi::component::{CallError, Handle};
+        use $crate::fmi::abi::arguments::{fill, room, slice, write};
+        use $crate::fmi::abi::component::Handle;
         use $crate::fmi::abi::saved_state::{ARGUMENT, FmuState, hand_over, state};
         use $crate::fmi::{Call, Error, StateError};
 
         $crate::fmi::abi::calls::instance_calls! {
-            $handle => $status;
             #[doc = concat!("`", stringify!($get), "`: makes a copy of the state, or puts it in place of one")]
             /// that the host hands over for that: `*fmu_state` holds a value, other than in functions that
             /// write only.
@@ -57,7 +56,7 @@ macro_rules! fmu_state_calls {
                 Ok(())
             };
             #[doc = concat!("`", stringify!($set), "`.")]
-            $set(fmu_state: Handle) = |instance| Ok(instance.set_fmu_state(state(fmu_state)?)?);
+            $set(fmu_state: Handle) = |instance| instance.set_fmu_state(state(fmu_state)?);
             #[doc = concat!("`", stringify!($free), "`; nothing happens for null, either way.")]
             $free(fmu_state: *mut Handle) = |instance| {
                 instance.allow(Call::FreeFMUstate)?;
@@ -80,14 +79,13 @@ macro_rules! fmu_state_calls {
             #[doc = concat!("`", stringify!($serialize), "`.")]
             $serialize(fmu_state: Handle, serialized_state: *mut $byte, size: usize) = |instance| {
                 let bytes = instance.serialize_fmu_state(state(fmu_state)?)?;
-                let room = Room::new("serializedState", serialized_state.cast(), size)?;
+                let room = room("serializedState", serialized_state.cast(), size)?;
                 // With more room the host would hand back more than was written.
                 if size != bytes.len() {
                     let (needed, given) = (bytes.len(), size);
-                    let refused = StateError::Room { needed, given };
-                    return Err(CallError::Refused(Error::FmuState(refused)));
+                    return Err(Error::FmuState(StateError::Room { needed, given }));
                 }
-                room.fill(bytes);
+                fill(room, bytes);
                 Ok(())
             };
             #[doc = concat!("`", stringify!($deserialize), "`: makes a state, which is then the host's to free.")]
@@ -97,8 +95,8 @@ macro_rules! fmu_state_calls {
                 fmu_state: *mut Handle,
             ) = |instance| {
                 let bytes = slice("serializedState", serialized_state.cast(), size)?;
-                let room = Room::new(ARGUMENT, fmu_state, 1)?;
-                room.fill([hand_over(instance.deserialize_fmu_state(bytes)?)]);
+                let room = room(ARGUMENT, fmu_state, 1)?;
+                fill(room, [hand_over(instance.deserialize_fmu_state(bytes)?)]);
                 Ok(())
             };
         }

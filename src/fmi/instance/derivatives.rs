@@ -4,7 +4,7 @@ use super::{Error, Instance, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::model_description::DependencyKind;
 use crate::fmi::state::{Call, State, Version};
-use crate::fmi::variable::Causality;
+use crate::fmi::variable::{Causality, Variable};
 
 impl<M: Model> Instance<M> {
     /// `fmi2GetDirectionalDerivative`, `fmi3GetDirectionalDerivative`: returns the directional
@@ -41,18 +41,14 @@ impl<M: Model> Instance<M> {
     ) -> Result<Vec<f64>, Error> {
         self.allow(Call::GetAdjointDerivative)?;
         let wanted = self.unknowns(unknowns)?;
-        for (&value_reference, &weight) in unknowns.iter().zip(weights) {
-            check_finite(&self.variable(value_reference)?.name, weight)?;
-        }
-        let ones = vec![1.0; knowns.len()];
-        let directions = self.knowns(knowns, &ones)?;
-        let mut sums = Vec::with_capacity(directions.len());
-        for direction in directions {
+        self.check_all_finite(unknowns, weights)?;
+        let directions = self.knowns(knowns, &vec![1.0; knowns.len()])?;
+        let sum = |direction| {
             let column =
                 self.derivatives_along(Call::GetAdjointDerivative, &wanted, &[direction])?;
-            sums.push(column.iter().zip(weights).map(|(d, w)| d * w).sum());
-        }
-        Ok(sums)
+            Ok(column.iter().zip(weights).map(|(d, w)| d * w).sum())
+        };
+        directions.into_iter().map(sum).collect()
     }
 
     fn derivatives_along(
@@ -83,22 +79,15 @@ impl<M: Model> Instance<M> {
             ),
             Version::Fmi3 => (true, "derivatives are taken by inputs, parameters and time"),
         };
-        let mut knowns = Vec::with_capacity(value_references.len());
-        for (&value_reference, &change) in value_references.iter().zip(changes) {
-            let variable = self.variable(value_reference)?;
-            let known = match variable.causality {
+        let knowns = self.in_role(value_references, role, |variable| {
+            match variable.causality {
                 Causality::Input | Causality::Independent => true,
                 Causality::Parameter => by_parameters && variable.kind.is_real(),
                 _ => false,
-            };
-            if !known {
-                let name = variable.name.clone();
-                return Err(Error::NoDerivative { name, role });
             }
-            check_finite(&variable.name, change)?;
-            knowns.push((variable.quantity, change));
-        }
-        Ok(knowns)
+        })?;
+        self.check_all_finite(value_references, changes)?;
+        Ok(knowns.into_iter().zip(changes.iter().copied()).collect())
     }
 
     /// Returns the unknowns of derivatives.
@@ -117,21 +106,38 @@ impl<M: Model> Instance<M> {
         if self.version == Version::Fmi3 {
             self.check_readable(value_references)?;
         }
-        let mut unknowns = Vec::with_capacity(value_references.len());
-        for &value_reference in value_references {
-            let variable = self.variable(value_reference)?;
-            let unknown = match variable.causality {
+        self.in_role(value_references, role, |variable| {
+            match variable.causality {
                 Causality::Output => true,
                 Causality::CalculatedParameter => initializing,
                 _ => false,
-            };
-            if !unknown {
-                let name = variable.name.clone();
-                return Err(Error::NoDerivative { name, role });
             }
-            unknowns.push(variable.quantity);
-        }
-        Ok(unknowns)
+        })
+    }
+
+    /// Returns the quantities of variables, of which each may have a role in derivatives.
+    fn in_role(
+        &self,
+        value_references: &[u32],
+        role: &'static str,
+        is_permitted: impl Fn(&Variable<M::Quantity>) -> bool,
+    ) -> Result<Vec<M::Quantity>, Error> {
+        let quantity = |&value_reference: &u32| {
+            let variable = self.variable(value_reference)?;
+            if is_permitted(variable) {
+                Ok(variable.quantity)
+            } else {
+                let name = variable.name.clone();
+                Err(Error::NoDerivative { name, role })
+            }
+        };
+        value_references.iter().map(quantity).collect()
+    }
+
+    /// Checks the changes or the weights of variables.
+    fn check_all_finite(&self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
+        let mut values = value_references.iter().zip(values);
+        values.try_for_each(|(vr, value)| check_finite(&self.variable(*vr)?.name, *value))
     }
 
     /// `fmi3GetNumberOfVariableDependencies`, `fmi3GetVariableDependencies`: returns the value
@@ -153,7 +159,6 @@ impl<M: Model> Instance<M> {
             self.course.state,
             State::Instantiated | State::InitializationMode
         );
-        let found = self.model.dependencies(value_reference, initializing);
-        Ok(found.unwrap_or_default())
+        Ok(self.model.dependencies(value_reference, initializing))
     }
 }

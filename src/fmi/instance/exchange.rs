@@ -80,8 +80,7 @@ impl<M: Model> Instance<M> {
                 Ok(())
             }
             Err(Failure::Discarded(reason)) => {
-                let name = call.name(self.version);
-                let message = format!("{name}: the simulation must end: {reason}");
+                let message = format!("t = {time} s: the simulation must end: {reason}");
                 match self.version {
                     Version::Fmi2 => self.logger.write(Status::Error, Category::Error, &message),
                     Version::Fmi3 => self.logger.warn(&message),
@@ -116,8 +115,7 @@ impl<M: Model> Instance<M> {
         if count == 0 {
             Ok(())
         } else {
-            let call = call.name(self.version);
-            Err(Error::Continuous { call, given: count })
+            Err(Error::Continuous { given: count })
         }
     }
 }

@@ -65,12 +65,10 @@ impl Course {
             at_dead_point,
         } = self;
         codec.one_of(state, &State::ALL)?;
-        codec.option(stop_time, 0.0, |codec, time| codec.finite(time))?;
+        codec.option(stop_time, 0.0, Codec::finite)?;
         codec.finite(last_successful_time)?;
-        for flag in [discarded, terminated, set_since_step, at_dead_point] {
-            codec.flag(flag)?;
-        }
-        Ok(())
+        let flags = [discarded, terminated, set_since_step, at_dead_point];
+        codec.each(flags, Codec::flag)
     }
 }
 

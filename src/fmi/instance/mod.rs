@@ -174,7 +174,11 @@ impl<M: Model> Instance<M> {
                 Status::Discard => Category::Discard,
                 _ => Category::Error,
             };
-            self.fail(status, category, &message);
+            self.logger.write(status, category, &message);
+            if status == Status::Error && self.course.state != State::Fatal {
+                self.abandon_step();
+                self.course.state = State::Terminated;
+            }
             return status;
         }
         match error {
@@ -205,30 +209,11 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Logs that an argument is unusable, and returns the call's status.
-    pub fn report_argument(&mut self, call: &str, message: &str) -> Status {
-        let message = format!("{call}: {message}");
-        self.fail(Status::Error, Category::Error, &message);
-        Status::Error
-    }
-
     /// Logs that a call was refused which cannot belong to the sequence of calls: from the logger,
     /// or from another thread.
     pub fn report_disturbance(&self, call: &str, message: &str) {
         let message = format!("{call}: {message}");
         self.logger.write(Status::Error, Category::Error, &message);
-    }
-
-    /// Logs that a call has failed; in FMI 3.0 an error ends the simulation.
-    fn fail(&mut self, status: Status, category: Category, message: &str) {
-        self.logger.write(status, category, message);
-        if self.version == Version::Fmi3
-            && status == Status::Error
-            && self.course.state != State::Fatal
-        {
-            self.abandon_step();
-            self.course.state = State::Terminated;
-        }
     }
 
     /// Marks the instance as unusable after a caught defect, and logs the defect.
@@ -254,21 +239,18 @@ impl<M: Model> Instance<M> {
     #[cold]
     fn not_allowed(&self, call: Call) -> Error {
         let (version, interface, state) = (self.version, self.interface, self.course.state);
-        let other = Interface::ALL.into_iter().find(|other| *other != interface);
-        let in_other = other.is_some_and(|other| !call.allowed_in(version, other).is_empty());
-        if !call.allowed_in(version, interface).is_empty() {
-            Error::State {
-                call,
-                version,
-                interface,
-                state,
-            }
-        } else if in_other || version == Version::Fmi2 {
-            Error::Interface { call, interface }
+        let allowed_in = |interface| call.allowed_in(version, interface);
+        let allowed = allowed_in(interface);
+        let is_known = Interface::ALL
+            .into_iter()
+            .any(|i| !allowed_in(i).is_empty());
+        if !allowed.is_empty() {
+            Error::State { state, allowed }
+        } else if is_known || version == Version::Fmi2 {
+            Error::Interface { interface }
         } else {
-            Error::NotProvided {
-                why: why_never(call),
-            }
+            let why = why_never(call);
+            Error::NotProvided { why }
         }
     }
 

@@ -132,7 +132,7 @@ impl<M: Model> Instance<M> {
         self.allow(Call::DoStep)?;
         self.check_step(communication_point, h)?;
         let end = communication_point + h;
-        if M::INTERMEDIATE_UPDATE && self.co_simulation.intermediate_update {
+        if M::CAPABILITIES.intermediate_update && self.co_simulation.intermediate_update {
             self.model.begin_step(h, end, &self.logger);
             self.pending_step = Some(PendingStep {
                 start: communication_point,
@@ -144,12 +144,8 @@ impl<M: Model> Instance<M> {
             });
             return self.next_part();
         }
-        let stepped = if self.co_simulation.early_return_allowed {
-            self.model.step(h, end, &self.logger)
-        } else {
-            self.model.try_step(h, end, &self.logger)
-        };
-        match stepped {
+        let stays = !self.co_simulation.early_return_allowed;
+        match self.model.step(h, end, stays, &self.logger) {
             Ok(()) => Ok(StepProgress::Done(self.step_ended(false))),
             Err(failure) => self.step_failed(communication_point, h, failure),
         }

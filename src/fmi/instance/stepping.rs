@@ -20,7 +20,7 @@ impl<M: Model> Instance<M> {
         self.allow(Call::DoStep)?;
         self.check_step(communication_point, h)?;
         let end = communication_point + h;
-        let stepped = self.model.step(h, end, &self.logger);
+        let stepped = self.model.step(h, end, false, &self.logger);
         self.course.last_successful_time = self.model.time();
         match stepped {
             Ok(()) => {

@@ -67,32 +67,21 @@ impl<M: Model> Instance<M> {
         check_value(self.settable(value_reference, "Real")?, value)
     }
 
-    /// `fmi2SetInteger`, for Enumerations as well. Sets all values or none.
+    /// `fmi2SetInteger`, `fmi3SetInt64`: sets all values or none, of Enumerations as well.
     ///
     /// # Errors
     ///
     /// A variable is unknown, no Integer or Enumeration, or not settable in this state; a value is
     /// no item of its Enumeration.
-    pub fn set_integer(&mut self, value_references: &[u32], values: &[i32]) -> Result<(), Error> {
-        self.set_items(value_references, values.iter().map(|&value| value.into()))
-    }
-
-    /// `fmi3SetInt64`, for Enumerations. Sets all values or none.
-    ///
-    /// # Errors
-    ///
-    /// As [`set_integer`](Self::set_integer).
-    pub fn set_int64(&mut self, value_references: &[u32], values: &[i64]) -> Result<(), Error> {
-        self.set_items(value_references, values.iter().copied())
-    }
-
-    fn set_items(
+    pub fn set_integer(
         &mut self,
         value_references: &[u32],
-        values: impl Iterator<Item = i64> + Clone,
+        values: &[impl Copy + Into<i64>],
     ) -> Result<(), Error> {
         self.allow(Call::SetInteger)?;
-        for (&value_reference, value) in value_references.iter().zip(values.clone()) {
+        let values = value_references.iter().zip(values);
+        let values = values.map(|(&value_reference, &value)| (value_reference, value.into()));
+        for (value_reference, value) in values.clone() {
             let variable = self.settable(value_reference, "Integer or Enumeration")?;
             if let Kind::Enumeration(enumeration) = variable.kind {
                 let count = enumeration.items.len();
@@ -106,9 +95,8 @@ impl<M: Model> Instance<M> {
             }
         }
         let quantities = &self.quantities;
-        let values = value_references.iter().zip(values);
         self.model
-            .set_integers(values.map(|(&vr, value)| (quantities[vr as usize], value as i32)));
+            .set_integers(values.map(|(vr, value)| (quantities[vr as usize], value as i32)));
         Ok(())
     }
 
@@ -255,8 +243,8 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     ///
-    /// A variable is no output, an order is below 1 or above [`Model::OUTPUT_DERIVATIVES`]; or the
-    /// output has no value for the values set.
+    /// A variable is no output, an order is below 1 or above that of [`Model::CAPABILITIES`]; or
+    /// the output has no value for the values set.
     pub fn output_derivatives<'a>(
         &'a mut self,
         value_references: &'a [u32],
@@ -271,7 +259,7 @@ impl<M: Model> Instance<M> {
             if variable.causality != Causality::Output {
                 return Err(Error::NotOutput { name: name() });
             }
-            let highest = M::OUTPUT_DERIVATIVES;
+            let highest = M::CAPABILITIES.output_derivatives;
             if !(1..=highest).contains(&order) {
                 return Err(Error::OutputDerivativeOrder {
                     name: name(),

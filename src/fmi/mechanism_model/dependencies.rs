@@ -1,98 +1,293 @@
-//! Drivers and parameters that a variable depends on.
+//! Variables on which outputs and calculated parameters depend.
 
+use std::collections::{BTreeMap, HashMap};
+
+use super::MechanismModel;
 use super::variables::Quantity;
-use crate::kinematics::{Dependencies, ForceQuantity, Structure};
-use crate::mechanism::{Load, Mechanism, Signal};
+use crate::fmi::model_description::DependencyKind;
+use crate::fmi::variable::{Causality, Variable};
+use crate::kinematics::{Dependencies, ForceQuantity, OutputSource, Structure};
+use crate::mechanism::{Coordinate, DriverId, Load, Mechanism, Order, Signal, Variable as Of};
 
-impl Quantity {
-    /// Returns the drivers and parameters that an output or a calculated parameter depends on,
-    /// structurally exact; none for other variables.
-    #[must_use]
-    pub(super) fn dependencies(self, mechanism: &Mechanism, structure: &Structure) -> Dependencies {
-        let mut dependencies = Dependencies::default();
-        match self {
-            Self::Output(Signal::Body(body, component), _) => {
-                dependencies.extend(structure.dependencies(3 * body.index() + component));
-            }
-            Self::Output(Signal::Marker(marker, component), _) => {
-                let of_point = structure.point_dependencies(mechanism, marker, component);
-                dependencies.extend(&of_point);
-            }
-            Self::Output(Signal::Measure(index), _) => {
-                let coordinate = &mechanism.measures[index].coordinate;
-                dependencies.extend(&structure.coordinate_dependencies(mechanism, coordinate));
-            }
-            Self::Output(Signal::Motion(driver), _) => {
-                dependencies.drivers.insert(driver);
-                if let Some(motion) = mechanism.drivers[driver.index()].motion() {
-                    dependencies.add_motion(mechanism, motion);
-                }
-            }
-            Self::Parameter(parameter) => dependencies.add_parameter(mechanism, parameter),
-            Self::Derived(index, _) => {
-                let measure = &mechanism.derived[index];
-                dependencies.add_expression(mechanism, &measure.value);
-                for (signal, order) in measure.signals() {
-                    let of_signal = Self::Output(signal, order);
-                    dependencies.extend(&of_signal.dependencies(mechanism, structure));
-                }
-            }
-            Self::Force(quantity) => {
-                add_force_dependencies(mechanism, structure, quantity, &mut dependencies)
-            }
-            Self::Input(..)
-            | Self::ForceInput(_)
-            | Self::RateSource
-            | Self::Extrapolation
-            | Self::Residual
-            | Self::Rcond
-            | Self::Iterations
-            | Self::Substeps
-            | Self::Proved
-            | Self::Time => {}
+/// Kinds of dependency by value reference.
+pub(super) type Kinds = BTreeMap<u32, DependencyKind>;
+
+/// The variables on which an output or a calculated parameter depends.
+#[derive(Default)]
+pub(super) struct KnownVariables {
+    /// All of them in initialization mode.
+    pub(super) initial: Kinds,
+    /// Inputs and time after it, over all settings of `rates` and `extrapolation`.
+    pub(super) inputs: Kinds,
+    /// Parameters after it.
+    pub(super) parameters: Kinds,
+}
+
+/// Dependencies of the variables of a mechanism's FMU, structurally exact.
+pub(super) struct DependencyTable<'a> {
+    mechanism: &'a Mechanism,
+    structure: &'a Structure,
+    /// Value references of all variables but outputs.
+    references: HashMap<Quantity, u32>,
+}
+
+impl<'a> DependencyTable<'a> {
+    pub(super) fn new(
+        mechanism: &'a Mechanism,
+        structure: &'a Structure,
+        variables: &[Variable<Quantity>],
+    ) -> Self {
+        let known = (0..).zip(variables);
+        let known = known.filter(|(_, variable)| variable.causality != Causality::Output);
+        Self {
+            mechanism,
+            structure,
+            references: known
+                .map(|(vr, variable)| (variable.quantity, vr))
+                .collect(),
         }
-        dependencies
+    }
+
+    /// Returns the variables on which an output or a calculated parameter depends; `None` for other
+    /// variables.
+    pub(super) fn of(&self, unknown: Quantity) -> Option<KnownVariables> {
+        let order = self.order(unknown)?;
+        let origins = self.origins(unknown);
+        let has_input = origins.drivers.iter().any(|id| self.is_input(*id));
+        let of_forces: Kinds = self.dependent(self.inputs_of_forces(unknown)).collect();
+        let own: Kinds = self
+            .dependent(self.parameters(unknown, &origins, order))
+            .collect();
+
+        // Nothing is extrapolated in initialization mode.
+        let mut initial: Kinds = self.dependent(self.inputs(&origins, order)).collect();
+        let angle = self.driver_angle(unknown);
+        let angle = angle.and_then(|id| self.references.get(&Quantity::Input(id, Order::Position)));
+        initial.extend(angle.map(|vr| (*vr, DependencyKind::Constant)));
+        initial.extend(of_forces.iter().chain(&own));
+        if has_input && order > Order::Position {
+            initial.extend(self.dependent([Quantity::RateSource]));
+        }
+
+        // Estimated rates depend on positions, extrapolated positions on rates.
+        let mut inputs: Kinds = self
+            .dependent(self.inputs(&origins, Order::Acceleration))
+            .collect();
+        inputs.extend(of_forces);
+        let mut parameters = own;
+        if has_input {
+            let settings = [Quantity::RateSource, Quantity::Extrapolation];
+            parameters.extend(self.dependent(settings));
+        }
+        Some(KnownVariables {
+            initial,
+            inputs,
+            parameters,
+        })
+    }
+
+    /// Returns the order of an output or a calculated parameter, of a force the highest order of the
+    /// motion on which it depends.
+    fn order(&self, unknown: Quantity) -> Option<Order> {
+        match unknown {
+            Quantity::Output(OutputSource::Signal(_, order)) => Some(order),
+            Quantity::Output(OutputSource::Derived(index)) => {
+                Some(self.mechanism.derived[index].order())
+            }
+            Quantity::Output(OutputSource::Force(force)) => Some(match force {
+                ForceQuantity::Inertia(_) | ForceQuantity::PotentialEnergy => Order::Position,
+                ForceQuantity::Bias(_)
+                | ForceQuantity::Applied(..)
+                | ForceQuantity::KineticEnergy => Order::Velocity,
+                ForceQuantity::Effort(_)
+                | ForceQuantity::Power(_)
+                | ForceQuantity::Reaction(..)
+                | ForceQuantity::Held(_) => Order::Acceleration,
+            }),
+            Quantity::Parameter(id) if self.mechanism.parameters[id.index()].derived => {
+                Some(Order::Position)
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns the dependencies on those of the quantities that are variables.
+    fn dependent(
+        &self,
+        known: impl IntoIterator<Item = Quantity>,
+    ) -> impl Iterator<Item = (u32, DependencyKind)> {
+        let known = known.into_iter();
+        let found = known.filter_map(|quantity| self.references.get(&quantity));
+        found.map(|vr| (*vr, DependencyKind::Dependent))
+    }
+
+    /// Returns the inputs of drivers up to an order, and the time for prescribed motions.
+    fn inputs(&self, origins: &Dependencies, highest: Order) -> Vec<Quantity> {
+        let mut inputs = Vec::new();
+        for &id in &origins.drivers {
+            if self.is_input(id) {
+                let orders = Order::ALL.into_iter().filter(|order| *order <= highest);
+                inputs.extend(orders.map(|order| Quantity::Input(id, order)));
+            } else {
+                inputs.push(Quantity::Time);
+            }
+        }
+        inputs
+    }
+
+    fn is_input(&self, driver: DriverId) -> bool {
+        self.mechanism.drivers[driver.index()].motion().is_none()
+    }
+
+    /// Returns the inputs of forces, and the time if forces depend on it, for a force.
+    fn inputs_of_forces(&self, unknown: Quantity) -> Vec<Quantity> {
+        let Quantity::Output(OutputSource::Force(force)) = unknown else {
+            return Vec::new();
+        };
+        let forces = &self.mechanism.forces;
+        let uses_time = |load: &Load| load.expressions().iter().any(|e| e.uses(Of::Time));
+        let (count, depends_on_time) = match force {
+            ForceQuantity::Applied(force, _) => (0, uses_time(&forces[force].load)),
+            ForceQuantity::Inertia(_)
+            | ForceQuantity::KineticEnergy
+            | ForceQuantity::PotentialEnergy => (0, false),
+            _ => (
+                self.mechanism.force_inputs().len(),
+                forces.iter().any(|force| uses_time(&force.load)),
+            ),
+        };
+        let inputs = (0..count).map(Quantity::ForceInput);
+        let time = depends_on_time.then_some(Quantity::Time);
+        inputs.chain(time).collect()
+    }
+
+    /// Returns the mechanism's own parameters. A signal that no driver moves has rates of zero for any
+    /// parameters.
+    fn parameters(&self, unknown: Quantity, origins: &Dependencies, order: Order) -> Vec<Quantity> {
+        let is_signal = matches!(unknown, Quantity::Output(OutputSource::Signal(..)));
+        if order > Order::Position && is_signal && origins.drivers.is_empty() {
+            return Vec::new();
+        }
+        let parameters = origins.parameters.iter();
+        parameters.map(|id| Quantity::Parameter(*id)).collect()
+    }
+
+    /// Returns the driver whose value a quantity differs from by a constant only, up to its sign: the
+    /// angle of a body that the driver turns against ground.
+    fn driver_angle(&self, quantity: Quantity) -> Option<DriverId> {
+        let Quantity::Output(OutputSource::Signal(Signal::Body(body, 2), Order::Position)) =
+            quantity
+        else {
+            return None;
+        };
+        let turns = |coordinate: &Coordinate| {
+            let markers = [coordinate.from, coordinate.to];
+            let bodies = markers.map(|id| self.mechanism.markers[id.index()].body);
+            coordinate.kind.is_angle()
+                && (bodies == [None, Some(body)] || bodies == [Some(body), None])
+        };
+        let drivers = &self.mechanism.drivers;
+        let found = drivers.iter().position(|driver| turns(&driver.coordinate));
+        found.map(DriverId)
+    }
+
+    /// Returns the drivers and parameters on which an output or a calculated parameter depends.
+    fn origins(&self, unknown: Quantity) -> Dependencies {
+        let (mechanism, structure) = (self.mechanism, self.structure);
+        let mut origins = Dependencies::default();
+        match unknown {
+            Quantity::Output(OutputSource::Signal(signal, _)) => match signal {
+                Signal::Body(body, component) => {
+                    origins.extend(structure.dependencies(3 * body.index() + component));
+                }
+                Signal::Marker(marker, component) => {
+                    let of_point = structure.point_dependencies(mechanism, marker, component);
+                    origins.extend(&of_point);
+                }
+                Signal::Measure(index) => {
+                    let coordinate = &mechanism.measures[index].coordinate;
+                    origins.extend(&structure.coordinate_dependencies(mechanism, coordinate));
+                }
+                Signal::Motion(driver) => {
+                    origins.drivers.insert(driver);
+                    if let Some(motion) = mechanism.drivers[driver.index()].motion() {
+                        origins.add_motion(mechanism, motion);
+                    }
+                }
+            },
+            Quantity::Output(OutputSource::Derived(index)) => {
+                let measure = &mechanism.derived[index];
+                origins.add_expression(mechanism, &measure.value);
+                for (signal, order) in measure.signals() {
+                    let signal = Quantity::Output(OutputSource::Signal(signal, order));
+                    origins.extend(&self.origins(signal));
+                }
+            }
+            Quantity::Output(OutputSource::Force(force)) => self.add_origins(force, &mut origins),
+            Quantity::Parameter(parameter) => origins.add_parameter(mechanism, parameter),
+            _ => {}
+        }
+        origins
+    }
+
+    /// Adds the drivers and parameters on which a force depends: a force along a coordinate on that,
+    /// all others on the whole mechanism.
+    fn add_origins(&self, force: ForceQuantity, origins: &mut Dependencies) {
+        let (mechanism, structure) = (self.mechanism, self.structure);
+        if let ForceQuantity::Applied(force, _) = force {
+            let load = &mechanism.forces[force].load;
+            if let Load::Coordinate { coordinate, .. } = load {
+                origins.extend(&structure.coordinate_dependencies(mechanism, coordinate));
+            }
+            for expression in load.expressions() {
+                origins.add_expression(mechanism, expression);
+            }
+            return;
+        }
+        for column in 0..3 * mechanism.bodies.len() {
+            origins.extend(structure.dependencies(column));
+        }
+        for body in &mechanism.bodies {
+            let center = body.center.iter().flatten();
+            for expression in body.mass.iter().chain(&body.inertia).chain(center) {
+                origins.add_expression(mechanism, expression);
+            }
+            // Points of forces and reactions.
+            for marker in &body.markers {
+                let marker = &mechanism.markers[marker.index()];
+                for expression in marker.position.iter().chain([&marker.angle]) {
+                    origins.add_expression(mechanism, expression);
+                }
+            }
+        }
+        let loads = mechanism.forces.iter().flat_map(|f| f.load.expressions());
+        for expression in mechanism.simulation.gravity.iter().chain(loads) {
+            origins.add_expression(mechanism, expression);
+        }
     }
 }
 
-/// Adds the drivers and parameters that a force depends on: a force along a coordinate on that, all
-/// others on the whole mechanism.
-fn add_force_dependencies(
-    mechanism: &Mechanism,
-    structure: &Structure,
-    quantity: ForceQuantity,
-    dependencies: &mut Dependencies,
-) {
-    if let ForceQuantity::Applied(force, _) = quantity {
-        let load = &mechanism.forces[force].load;
-        if let Load::Coordinate { coordinate, .. } = load {
-            dependencies.extend(&structure.coordinate_dependencies(mechanism, coordinate));
+impl MechanismModel {
+    /// Returns the dependencies of an output or a calculated parameter, in initialization mode or
+    /// after it; none of other variables.
+    pub(super) fn dependencies_of(
+        &self,
+        value_reference: u32,
+        initializing: bool,
+    ) -> Vec<(u32, DependencyKind)> {
+        let structure = self.solver.structure();
+        let table = DependencyTable::new(&self.mechanism, structure, &self.variables);
+        let Variable {
+            quantity,
+            causality,
+            ..
+        } = self.variables[value_reference as usize];
+        let mut known = table.of(quantity).unwrap_or_default();
+        if causality == Causality::Output && !initializing {
+            known.inputs.extend(known.parameters);
+            known.inputs.into_iter().collect()
+        } else {
+            known.initial.into_iter().collect()
         }
-        for expression in load.expressions() {
-            dependencies.add_expression(mechanism, expression);
-        }
-        return;
-    }
-    for body in 0..3 * mechanism.bodies.len() {
-        dependencies.extend(structure.dependencies(body));
-    }
-    for body in &mechanism.bodies {
-        let center = body.center.iter().flatten();
-        for expression in body.mass.iter().chain(&body.inertia).chain(center) {
-            dependencies.add_expression(mechanism, expression);
-        }
-        // Points of forces and reactions.
-        for marker in &body.markers {
-            let marker = &mechanism.markers[marker.index()];
-            for expression in marker.position.iter().chain([&marker.angle]) {
-                dependencies.add_expression(mechanism, expression);
-            }
-        }
-    }
-    for expression in &mechanism.simulation.gravity {
-        dependencies.add_expression(mechanism, expression);
-    }
-    for expression in mechanism.forces.iter().flat_map(|f| f.load.expressions()) {
-        dependencies.add_expression(mechanism, expression);
     }
 }

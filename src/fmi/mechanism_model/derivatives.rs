@@ -4,8 +4,8 @@ use super::{MechanismModel, Quantity, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::Phase;
-use crate::kinematics::Direction;
-use crate::mechanism::{DriverId, Jet, Order};
+use crate::kinematics::{Direction, OutputSource, Solution};
+use crate::mechanism::{DriverId, Order};
 
 impl MechanismModel {
     /// Returns the derivatives of outputs and calculated parameters along a direction.
@@ -26,13 +26,10 @@ impl MechanismModel {
         if unknowns.is_empty() {
             return Ok(Vec::new());
         }
-        self.refresh_rates(phase, log)?;
-        let mut direction = Direction {
-            drivers: vec![Jet::constant(0.0); self.course.inputs.len()],
-            parameters: vec![0.0; self.settings.parameters.len()],
-            time: 0.0,
-        };
-        let mut forces = vec![0.0; self.course.force_inputs.len()];
+        self.refresh_pose(phase, log)?;
+        self.refresh_rates()?;
+        let mut direction = Direction::zero(&self.mechanism);
+        let mut loads = vec![0.0; self.course.force_inputs.len()];
         for &(known, change) in knowns {
             match known {
                 Quantity::Input(driver, order) => {
@@ -43,7 +40,7 @@ impl MechanismModel {
                     driver.derivatives[0] += velocity * change;
                     driver.derivatives[1] += acceleration * change;
                 }
-                Quantity::ForceInput(place) => forces[place] += change,
+                Quantity::ForceInput(place) => loads[place] += change,
                 Quantity::Parameter(parameter) => {
                     direction.parameters[parameter.index()] += change;
                 }
@@ -51,22 +48,32 @@ impl MechanismModel {
                 _ => unreachable!("knowns are inputs, parameters and time"),
             }
         }
-        let asks_forces = unknowns.iter().any(|u| matches!(u, Quantity::Force(_)));
-        let of_forces = if asks_forces {
-            let along = self.force_derivatives(&direction, &forces);
-            along.map_err(without_value)?
+        let is_force = |u: &Quantity| matches!(u, Quantity::Output(OutputSource::Force(_)));
+        let of_forces = if unknowns.iter().any(is_force) {
+            self.set_loads();
+            let changes = (self.solution).force_changes(&mut self.solver, &direction, &loads);
+            changes.map_err(without_value)?
         } else {
             None
         };
-        let sensitivity = self
-            .solver
-            .sensitivity(&self.rates, &self.driver_rates, &direction)
-            .map_err(without_value)?;
+        let Solution {
+            rates,
+            driver_rates,
+            ..
+        } = &self.solution;
+        let sensitivity = self.solver.sensitivity(rates, driver_rates, &direction);
+        let sensitivity = sensitivity.map_err(without_value)?;
         let change = |&unknown: &Quantity| match unknown {
-            Quantity::Output(signal, order) => order.of(sensitivity.signal(signal)),
             Quantity::Parameter(parameter) => sensitivity.parameter(parameter),
-            Quantity::Derived(index, _) => sensitivity.derived(&self.mechanism.derived[index]),
-            Quantity::Force(force) => of_forces.as_ref().map_or(0.0, |f| f.change(force)),
+            Quantity::Output(OutputSource::Signal(signal, order)) => {
+                order.of(sensitivity.signal(signal))
+            }
+            Quantity::Output(OutputSource::Derived(index)) => {
+                sensitivity.derived(&self.mechanism.derived[index])
+            }
+            Quantity::Output(OutputSource::Force(force)) => {
+                of_forces.as_ref().map_or(0.0, |f| f.change(force))
+            }
             _ => unreachable!("unknowns are outputs and parameters"),
         };
         Ok(unknowns.iter().map(change).collect())
@@ -79,7 +86,7 @@ impl MechanismModel {
         let rates = self.rule().rates;
         if phase == Phase::Event {
             input.change_at_event(rates, self.course.time, order)
-        } else if self.at_committed && input.has_stepped() {
+        } else if self.course.at_committed && input.has_stepped() {
             input.change_by_step(rates, self.course.monitors[driver.index()].sources, order)
         } else {
             input.change_by_value(rates, self.course.time, order)

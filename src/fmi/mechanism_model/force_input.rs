@@ -47,10 +47,10 @@ impl ForceInput {
             derivatives,
             present,
         } = self;
-        for value in derivatives.iter_mut().chain([value, present]) {
-            codec.finite(value)?;
-        }
-        Ok(())
+        codec.each(
+            derivatives.iter_mut().chain([value, present]),
+            Codec::finite,
+        )
     }
 }
 

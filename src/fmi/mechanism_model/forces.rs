@@ -3,93 +3,27 @@
 use super::{MechanismModel, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::{Category, Logger};
-use crate::fmi::state::Phase;
-use crate::kinematics::{Direction, Error};
-use crate::kinematics::{ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, Solver};
-
-/// Forces with the inputs on which they depend.
-#[derive(Debug)]
-pub(super) struct ModelForces {
-    forces: Forces,
-    inputs: Vec<f64>,
-}
-
-impl ModelForces {
-    /// Makes the storage.
-    pub(super) fn new(solver: &Solver) -> Self {
-        let forces = solver.forces();
-        Self {
-            inputs: vec![0.0; forces.inputs()],
-            forces,
-        }
-    }
-
-    /// Returns the number of inputs.
-    pub(super) fn inputs(&self) -> usize {
-        self.inputs.len()
-    }
-
-    /// Returns the number of contacts.
-    pub(super) fn contacts(&self) -> usize {
-        self.forces.contacts()
-    }
-
-    pub(super) fn value(&self, quantity: ForceQuantity) -> f64 {
-        self.forces.value(quantity)
-    }
-}
+use crate::kinematics::ForceParts;
 
 impl MechanismModel {
-    /// Solves forces for the values set. Allocates nothing, unless other rows have become redundant.
-    ///
-    /// # Errors
-    ///
-    /// The pose, its rates or its forces do not exist.
-    pub(super) fn refresh_forces(
-        &mut self,
-        parts: ForceParts,
-        phase: Phase,
-        log: &Logger,
-    ) -> Result<(), Failure> {
-        self.refresh_rates(phase, log)?;
-        let Some((solver, forces, motion)) = self.forces_to_solve() else {
-            return Ok(());
-        };
-        let solved = solver.solve_forces(motion, parts, forces);
-        solved.map_err(without_value)
-    }
-
-    /// Returns the solver, the forces, and the motion for which they are sought; `None` without
-    /// dynamics. The rates are up to date.
-    fn forces_to_solve(&mut self) -> Option<(&mut Solver, &mut Forces, KnownMotion<'_>)> {
-        let ModelForces { forces, inputs } = self.forces.as_deref_mut()?;
-        for (now, input) in inputs.iter_mut().zip(&self.course.force_inputs) {
-            *now = input.present();
-        }
-        let motion = KnownMotion {
-            rates: &self.rates,
-            driver_rates: &self.driver_rates,
-            inputs,
-        };
-        Some((&mut self.solver, forces, motion))
-    }
-
-    /// Returns the derivatives of forces along a direction, along which the inputs of forces change
-    /// by `changes`; the rates are up to date.
+    /// Solves forces at the pose for its rates, which are up to date. Allocates nothing, unless other
+    /// rows have become redundant.
     ///
     /// # Errors
     ///
     /// The forces do not exist.
-    pub(super) fn force_derivatives(
-        &mut self,
-        direction: &Direction,
-        changes: &[f64],
-    ) -> Result<Option<ForceSensitivity>, Error> {
-        let Some((solver, forces, motion)) = self.forces_to_solve() else {
-            return Ok(None);
-        };
-        let along = solver.force_sensitivity(motion, direction, changes, forces);
-        along.map(Some)
+    pub(super) fn solve_forces(&mut self, parts: ForceParts) -> Result<(), Failure> {
+        self.set_loads();
+        let solved = self.solution.solve_forces(&mut self.solver, parts);
+        solved.map_err(without_value)
+    }
+
+    /// Gives the solution the inputs of forces at the present point.
+    pub(super) fn set_loads(&mut self) {
+        let loads = self.solution.loads.iter_mut();
+        for (load, input) in loads.zip(&self.course.force_inputs) {
+            *load = input.present();
+        }
     }
 
     /// Reports each contact that begins to pull, as it would lift off.
@@ -101,15 +35,15 @@ impl MechanismModel {
             efforts: false,
             reactions: true,
         };
-        // Forces that do not exist are told to a host that reads them.
-        if self.refresh_forces(parts, Phase::Running, log).is_err() {
+        // A host that reads forces learns that they do not exist.
+        let solved = self.refresh_rates().and_then(|()| self.solve_forces(parts));
+        if solved.is_err() {
             return;
         }
-        let Some(ModelForces { forces, .. }) = self.forces.as_deref() else {
-            return;
-        };
-        for lift_off in self.solver.lift_offs(forces, &mut self.course.lifted) {
-            log.advise(|| lift_off.to_string());
+        if let Some(forces) = self.solution.forces() {
+            for lift_off in self.solver.lift_offs(forces, &mut self.course.lifted) {
+                log.advise(|| lift_off.to_string());
+            }
         }
     }
 }

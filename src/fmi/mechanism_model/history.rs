@@ -1,6 +1,6 @@
 //! The last samples of one driver's inputs, and the rates estimated from them.
 
-use super::rule::{DriverRates, RateSource, Source};
+use super::rule::{RateSource, Source};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::mechanism::Order;
 
@@ -60,23 +60,18 @@ impl History {
         *newest = Some(sample);
     }
 
-    /// Returns the derivatives of the polynomial through all samples at the newest one.
-    pub(super) fn estimate(&self) -> DriverRates {
+    /// Returns first and second derivative, at the newest sample, of the polynomial through all.
+    pub(super) fn estimate(&self) -> [f64; 2] {
         let slope = |a: Sample, b: Sample| (a.position - b.position) / (a.time - b.time);
         match self.0 {
             [Some(newest), Some(before), Some(oldest)] => {
                 let last = slope(newest, before);
                 let curvature = (last - slope(before, oldest)) / (newest.time - oldest.time);
-                DriverRates {
-                    velocity: last + curvature * (newest.time - before.time),
-                    acceleration: 2.0 * curvature,
-                }
+                let velocity = last + curvature * (newest.time - before.time);
+                [velocity, 2.0 * curvature]
             }
-            [Some(newest), Some(before), None] => DriverRates {
-                velocity: slope(newest, before),
-                acceleration: 0.0,
-            },
-            _ => DriverRates::default(),
+            [Some(newest), Some(before), None] => [slope(newest, before), 0.0],
+            _ => [0.0; 2],
         }
     }
 
@@ -95,7 +90,7 @@ impl History {
             };
             *sample = sample.map(|sample| Sample { position, ..sample });
         }
-        let estimate = by_newest.estimate();
+        let [first, second] = by_newest.estimate();
         let given = |of: Order, source: Source| match (source, rates) {
             (Source::Input, _) | (Source::Estimate | Source::Difference, RateSource::Auto) => {
                 unit(of)
@@ -105,10 +100,10 @@ impl History {
         let mut velocity = given(Order::Velocity, sources[0]);
         let mut acceleration = given(Order::Acceleration, sources[1]);
         if sources[0] == Source::Estimate {
-            velocity += estimate.velocity;
+            velocity += first;
         }
         match (sources, self.0) {
-            ([_, Source::Estimate], _) => acceleration += estimate.acceleration,
+            ([_, Source::Estimate], _) => acceleration += second,
             ([Source::Input, Source::Difference], [Some(newest), Some(before), _]) => {
                 acceleration += unit(Order::Velocity) / (newest.time - before.time);
             }
@@ -127,14 +122,13 @@ impl History {
 
     /// Visits all fields.
     pub(super) fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
-        self.0.iter_mut().try_for_each(|sample| {
+        codec.each(&mut self.0, |codec, sample| {
             codec.option(sample, Sample::default(), |codec, sample| {
-                codec.finite(&mut sample.time)?;
-                codec.finite(&mut sample.position)?;
-                for rate in [&mut sample.velocity, &mut sample.acceleration] {
-                    codec.option(rate, 0.0, |codec, value| codec.finite(value))?;
-                }
-                Ok(())
+                codec.each([&mut sample.time, &mut sample.position], Codec::finite)?;
+                codec.each(
+                    [&mut sample.velocity, &mut sample.acceleration],
+                    |codec, rate| codec.option(rate, 0.0, Codec::finite),
+                )
             })
         })
     }

@@ -18,7 +18,7 @@
 use std::f64::consts::TAU;
 
 use super::history::{History, Sample};
-use super::rule::{DriverRates, Extrapolation, RateSource, Rule, Source};
+use super::rule::{Extrapolation, RateSource, Rule, Source};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::mechanism::Order;
 
@@ -106,14 +106,11 @@ impl DriverInput {
 
     /// Returns velocity and acceleration of the position's path at the start of a step of size `h`
     /// from `time`.
-    pub(super) fn path(&self, rule: Rule, time: f64, h: f64) -> DriverRates {
+    pub(super) fn path(&self, rule: Rule, time: f64, h: f64) -> [f64; 2] {
         if self.is_extrapolated(rule) {
-            return self.rates(rule.rates, time, h, 0.0).0;
-        }
-        let [velocity, acceleration] = self.derivatives[0].map(Option::unwrap_or_default);
-        DriverRates {
-            velocity,
-            acceleration,
+            self.rates(rule.rates, time, h, 0.0).0
+        } else {
+            self.derivatives[0].map(Option::unwrap_or_default)
         }
     }
 
@@ -122,32 +119,28 @@ impl DriverInput {
         rule.extrapolation == Extrapolation::Taylor && self.derivatives[0] == [None, None]
     }
 
-    /// Returns the rates in force at the end of a step of size `h` from `time`, and their sources;
-    /// with `h = 0` those at `time` itself.
-    pub(super) fn rates_after(&self, rule: Rule, time: f64, h: f64) -> (DriverRates, [Source; 2]) {
+    /// Returns velocity and acceleration in force at the end of a step of size `h` from `time`, and
+    /// their sources; with `h = 0` those at `time` itself.
+    pub(super) fn rates_after(&self, rule: Rule, time: f64, h: f64) -> ([f64; 2], [Source; 2]) {
         let extrapolated = self.is_extrapolated(rule);
         let at = if extrapolated { 0.0 } else { h };
-        let (mut rates, sources) = self.rates(rule.rates, time, h, at);
+        let ([mut velocity, acceleration], sources) = self.rates(rule.rates, time, h, at);
         if extrapolated {
-            rates.velocity += h * rates.acceleration;
+            velocity += h * acceleration;
         }
-        (rates, sources)
+        ([velocity, acceleration], sources)
     }
 
     /// Returns the rates by the table above, at `at` in a step of size `h` from `time`, and their
     /// sources.
     #[inline(always)]
-    fn rates(&self, rates: RateSource, time: f64, h: f64, at: f64) -> (DriverRates, [Source; 2]) {
+    fn rates(&self, rates: RateSource, time: f64, h: f64, at: f64) -> ([f64; 2], [Source; 2]) {
         let velocity = self.given_velocity(rates, at);
         let acceleration = self.given_acceleration(rates, at);
         if let (Some((velocity, of_velocity)), Some((acceleration, of_acceleration))) =
             (velocity, acceleration)
         {
-            let rates = DriverRates {
-                velocity,
-                acceleration,
-            };
-            return (rates, [of_velocity, of_acceleration]);
+            return ([velocity, acceleration], [of_velocity, of_acceleration]);
         }
         self.with_estimates(velocity, acceleration, rates, time, h)
     }
@@ -161,20 +154,14 @@ impl DriverInput {
         rates: RateSource,
         time: f64,
         h: f64,
-    ) -> (DriverRates, [Source; 2]) {
+    ) -> ([f64; 2], [Source; 2]) {
         let mut history = self.history;
         history.push(self.sample(rates, time), h);
-        let estimate = history.estimate();
-        let (velocity, of_velocity) = velocity.unwrap_or((estimate.velocity, Source::Estimate));
+        let [first, second] = history.estimate().map(|rate| (rate, Source::Estimate));
         let difference = || Some((history.difference()?, Source::Difference));
-        let (acceleration, of_acceleration) = acceleration
-            .or_else(difference)
-            .unwrap_or((estimate.acceleration, Source::Estimate));
-        let rates = DriverRates {
-            velocity,
-            acceleration,
-        };
-        (rates, [of_velocity, of_acceleration])
+        let (velocity, of_velocity) = velocity.unwrap_or(first);
+        let (acceleration, of_acceleration) = acceleration.or_else(difference).unwrap_or(second);
+        ([velocity, acceleration], [of_velocity, of_acceleration])
     }
 
     fn given_velocity(&self, rates: RateSource, h: f64) -> Option<(f64, Source)> {
@@ -283,20 +270,20 @@ impl DriverInput {
             history,
             extrapolated_over,
         } = self;
-        for value in values.iter_mut().chain([position, extrapolated_over]) {
-            codec.finite(value)?;
-        }
-        for derivative in derivatives.as_flattened_mut() {
-            codec.option(derivative, 0.0, |codec, value| codec.finite(value))?;
-        }
-        for flag in used {
-            codec.flag(flag)?;
-        }
+        codec.each(
+            values.iter_mut().chain([position, extrapolated_over]),
+            Codec::finite,
+        )?;
+        codec.each(derivatives.as_flattened_mut(), |codec, derivative| {
+            codec.option(derivative, 0.0, Codec::finite)
+        })?;
+        codec.each(used, Codec::flag)?;
         history.visit(codec)
     }
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "numbers exact in binary")]
 mod tests {
     use super::*;
 
@@ -320,13 +307,6 @@ mod tests {
         }
     }
 
-    fn rates(velocity: f64, acceleration: f64) -> DriverRates {
-        DriverRates {
-            velocity,
-            acceleration,
-        }
-    }
-
     /// Returns an input that a host set to `position(t)` before a step at each of these times, the
     /// last of which has not ended yet.
     fn in_steps(times: &[f64], position: impl Fn(f64) -> f64) -> DriverInput {
@@ -341,17 +321,15 @@ mod tests {
         input
     }
 
-    fn rates_after(input: &DriverInput, rule: Rule, time: f64, h: f64) -> DriverRates {
+    fn rates_after(input: &DriverInput, rule: Rule, time: f64, h: f64) -> [f64; 2] {
         input.rates_after(rule, time, h).0
     }
-
-    // Numbers whose sums and quotients are exact in binary throughout.
 
     #[test]
     fn a_parabola_is_estimated_exactly_with_any_steps() {
         let input = in_steps(&[1.0, 1.5, 3.5], |t| 2.0 + 3.0 * t + 4.0 * t * t);
         for rule in [AUTO, ESTIMATED] {
-            let expected = rates(3.0 + 8.0 * 3.5, 8.0);
+            let expected = [3.0 + 8.0 * 3.5, 8.0];
             assert_eq!(rates_after(&input, rule, 3.5, 0.25), expected);
         }
     }
@@ -360,9 +338,9 @@ mod tests {
     fn two_samples_give_a_line_and_one_gives_rest() {
         let position = |t: f64| 5.0 - 2.0 * t;
         let one = in_steps(&[1.0], position);
-        assert_eq!(rates_after(&one, AUTO, 1.0, 1.0), rates(0.0, 0.0));
+        assert_eq!(rates_after(&one, AUTO, 1.0, 1.0), [0.0, 0.0]);
         let two = in_steps(&[1.0, 2.0], position);
-        assert_eq!(rates_after(&two, AUTO, 2.0, 1.0), rates(-2.0, 0.0));
+        assert_eq!(rates_after(&two, AUTO, 2.0, 1.0), [-2.0, 0.0]);
     }
 
     #[test]
@@ -371,7 +349,7 @@ mod tests {
         input.record(AUTO, 1.0, 1.0);
         input.set(Order::Position, 7.0);
         input.record(AUTO, 1.0, 1.0);
-        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(7.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), [7.0, 0.0]);
     }
 
     /// An event at t = 2 s, marked by a step of 1e-12 s, before or after which the value jumps.
@@ -389,7 +367,7 @@ mod tests {
                 let now = times[times.len() - 1];
                 let found = rates_after(&input, AUTO, now, 1.0);
                 // A jump of 1 within a step of 1 s; the parabola through it adds half as much.
-                assert!(found.velocity.abs() < 2.0, "{times:?}: {found:?}");
+                assert!(found[0].abs() < 2.0, "{times:?}: {found:?}");
             }
         }
     }
@@ -403,14 +381,8 @@ mod tests {
             let input = in_steps(&times[..count], |t| t * t);
             let now = times[count - 1];
             let found = rates_after(&input, AUTO, now, 0.001);
-            assert!(
-                (found.velocity - 2.0 * now).abs() < 1e-12,
-                "{count}: {found:?}"
-            );
-            assert!(
-                (found.acceleration - 2.0).abs() < 1e-9,
-                "{count}: {found:?}"
-            );
+            assert!((found[0] - 2.0 * now).abs() < 1e-12, "{count}: {found:?}");
+            assert!((found[1] - 2.0).abs() < 1e-9, "{count}: {found:?}");
         }
     }
 
@@ -419,17 +391,17 @@ mod tests {
         let mut input = in_steps(&[0.0, 1.0, 2.0], |t| t * t);
         input.set(Order::Velocity, 0.0);
         input.set(Order::Acceleration, 0.0);
-        let estimated = rates(4.0, 2.0);
+        let estimated = [4.0, 2.0];
         assert_eq!(rates_after(&input, AUTO, 2.0, 1.0), estimated);
-        assert_eq!(rates_after(&input, INPUTS, 2.0, 1.0), rates(0.0, 0.0));
+        assert_eq!(rates_after(&input, INPUTS, 2.0, 1.0), [0.0, 0.0]);
         // The acceleration alone: the velocity is still estimated.
         input.set(Order::Acceleration, 20.0);
-        assert_eq!(rates_after(&input, AUTO, 2.0, 1.0), rates(4.0, 20.0));
+        assert_eq!(rates_after(&input, AUTO, 2.0, 1.0), [4.0, 20.0]);
         input.set(Order::Velocity, 10.0);
         // Back at zero, where the motion turns: it still counts.
         input.set(Order::Velocity, 0.0);
-        assert_eq!(rates_after(&input, AUTO, 2.0, 1.0), rates(0.0, 20.0));
-        assert_eq!(rates_after(&input, INPUTS, 2.0, 1.0), rates(0.0, 20.0));
+        assert_eq!(rates_after(&input, AUTO, 2.0, 1.0), [0.0, 20.0]);
+        assert_eq!(rates_after(&input, INPUTS, 2.0, 1.0), [0.0, 20.0]);
         assert_eq!(rates_after(&input, ESTIMATED, 2.0, 1.0), estimated);
     }
 
@@ -438,25 +410,25 @@ mod tests {
         let mut input = DriverInput::new(0.0);
         input.set(Order::Velocity, 3.0);
         input.start();
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.0), rates(3.0, 0.0));
-        assert_eq!(rates_after(&input, AUTO, 0.0, 1.0), rates(0.0, 0.0));
-        assert_eq!(rates_after(&input, INPUTS, 0.0, 1.0), rates(3.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.0), [3.0, 0.0]);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 1.0), [0.0, 0.0]);
+        assert_eq!(rates_after(&input, INPUTS, 0.0, 1.0), [3.0, 0.0]);
         input.record(AUTO, 0.0, 1.0);
         input.set(Order::Position, 7.0);
-        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(7.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), [7.0, 0.0]);
         input.set(Order::Velocity, 3.0);
-        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), rates(3.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), [3.0, 0.0]);
     }
 
     #[test]
     fn a_velocity_alone_is_differenced() {
         let mut input = DriverInput::new(0.0);
         input.set(Order::Velocity, 3.0);
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(3.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [3.0, 0.0]);
         input.record(AUTO, 0.0, 1.0);
         input.set(Order::Velocity, 4.0);
-        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(4.0, 2.0));
-        assert_eq!(rates_after(&input, INPUTS, 0.5, 0.5), rates(4.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), [4.0, 2.0]);
+        assert_eq!(rates_after(&input, INPUTS, 0.5, 0.5), [4.0, 0.0]);
     }
 
     /// The velocity of the last step was an estimate: no difference with it.
@@ -464,10 +436,10 @@ mod tests {
     fn a_velocity_that_is_new_is_not_differenced() {
         let mut input = in_steps(&[0.0, 1.0, 2.0, 3.0], |t| t * t);
         input.set(Order::Velocity, 100.0);
-        assert_eq!(rates_after(&input, AUTO, 3.0, 1.0), rates(100.0, 2.0));
+        assert_eq!(rates_after(&input, AUTO, 3.0, 1.0), [100.0, 2.0]);
         input.record(AUTO, 3.0, 1.0);
         input.set(Order::Velocity, 101.0);
-        assert_eq!(rates_after(&input, AUTO, 4.0, 1.0), rates(101.0, 1.0));
+        assert_eq!(rates_after(&input, AUTO, 4.0, 1.0), [101.0, 1.0]);
     }
 
     /// FMI 2.0, 4.2.1: each order by itself; rate inputs in use come first.
@@ -477,18 +449,18 @@ mod tests {
         input.set_derivative(Order::Position, 1, 2.0);
         input.set_derivative(Order::Position, 2, 4.0);
         for rule in RULES {
-            assert_eq!(input.path(rule, 0.0, 0.5), rates(2.0, 4.0), "{rule:?}");
+            assert_eq!(input.path(rule, 0.0, 0.5), [2.0, 4.0], "{rule:?}");
         }
         for rule in [AUTO, ESTIMATED] {
-            assert_eq!(rates_after(&input, rule, 0.0, 0.5), rates(4.0, 4.0));
+            assert_eq!(rates_after(&input, rule, 0.0, 0.5), [4.0, 4.0]);
         }
-        assert_eq!(rates_after(&input, INPUTS, 0.0, 0.5), rates(0.0, 0.0));
+        assert_eq!(rates_after(&input, INPUTS, 0.0, 0.5), [0.0, 0.0]);
 
         input.set(Order::Acceleration, 7.0);
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(4.0, 7.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [4.0, 7.0]);
         input.set(Order::Velocity, 100.0);
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(100.0, 7.0));
-        assert_eq!(input.path(AUTO, 0.0, 0.5), rates(2.0, 4.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [100.0, 7.0]);
+        assert_eq!(input.path(AUTO, 0.0, 0.5), [2.0, 4.0]);
     }
 
     #[test]
@@ -496,8 +468,8 @@ mod tests {
         let mut input = DriverInput::new(1.0);
         input.set_derivative(Order::Position, 1, 2.0);
         input.record(AUTO, 0.0, 1.0);
-        assert_eq!(input.path(AUTO, 0.5, 0.5), rates(0.0, 0.0));
-        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(0.0, 0.0));
+        assert_eq!(input.path(AUTO, 0.5, 0.5), [0.0, 0.0]);
+        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), [0.0, 0.0]);
     }
 
     /// All three inputs wired and order 1 given: the acceleration stays the input.
@@ -507,7 +479,7 @@ mod tests {
         input.set(Order::Velocity, 2.0);
         input.set(Order::Acceleration, 40.0);
         input.set_derivative(Order::Position, 1, 2.0);
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(2.0, 40.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [2.0, 40.0]);
     }
 
     /// Order 1 alone: the acceleration is the difference of two such velocities.
@@ -515,10 +487,10 @@ mod tests {
     fn order_1_alone_is_differenced() {
         let mut input = DriverInput::new(1.0);
         input.set_derivative(Order::Position, 1, 2.0);
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(2.0, 0.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [2.0, 0.0]);
         input.record(AUTO, 0.0, 1.0);
         input.set_derivative(Order::Position, 1, 3.0);
-        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), rates(3.0, 2.0));
+        assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), [3.0, 2.0]);
     }
 
     #[test]
@@ -526,21 +498,21 @@ mod tests {
         let mut input = DriverInput::new(0.0);
         input.set(Order::Velocity, 1.0);
         input.set_derivative(Order::Velocity, 1, 2.0);
-        assert_eq!(input.path(AUTO, 0.0, 0.5), rates(0.0, 0.0));
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(2.0, 2.0));
+        assert_eq!(input.path(AUTO, 0.0, 0.5), [0.0, 0.0]);
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [2.0, 2.0]);
         input.set_derivative(Order::Velocity, 2, 8.0);
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(3.0, 6.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [3.0, 6.0]);
         input.set(Order::Acceleration, 3.0);
         input.set_derivative(Order::Acceleration, 1, 4.0);
-        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), rates(3.0, 5.0));
+        assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [3.0, 5.0]);
     }
 
     #[test]
     fn taylor_extrapolates_by_the_rates_at_the_start_of_the_step() {
         let input = in_steps(&[0.0, 1.0, 2.0], |t| t * t);
-        assert_eq!(input.path(TAYLOR, 2.0, 0.5), rates(4.0, 2.0));
-        assert_eq!(rates_after(&input, TAYLOR, 2.0, 0.5), rates(5.0, 2.0));
-        assert_eq!(input.path(AUTO, 2.0, 0.5), rates(0.0, 0.0));
+        assert_eq!(input.path(TAYLOR, 2.0, 0.5), [4.0, 2.0]);
+        assert_eq!(rates_after(&input, TAYLOR, 2.0, 0.5), [5.0, 2.0]);
+        assert_eq!(input.path(AUTO, 2.0, 0.5), [0.0, 0.0]);
     }
 
     #[test]

@@ -12,9 +12,10 @@ use crate::kinematics::{Blocked, Curve, Progress, Reason};
 use crate::mechanism::{Driver, DriverId, Order, rounded, shown};
 
 impl MechanismModel {
-    /// Describes why a step stopped: the drivers that may be the cause, their limits and the values
-    /// asked for.
-    pub(super) fn describe_dead_point(&mut self, blocked: &Blocked, start: f64, h: f64) -> String {
+    /// Describes why the path was not followed to its end: the drivers that may be the cause, their
+    /// limits and the values asked for.
+    pub(super) fn describe_dead_point(&self, blocked: &Blocked) -> String {
+        let (start, h) = (self.path.start, self.path.duration);
         let (limit, s) = match &blocked.reason {
             Reason::Singular(point) => (point.drivers.clone(), point.s),
             _ => (self.solver.pose().drivers.clone(), blocked.s),
@@ -175,7 +176,7 @@ impl MechanismModel {
             if driver.motion().is_some() {
                 continue;
             }
-            for (order, source) in monitor.changes(self.sources[index]) {
+            for (order, source) in monitor.changes(self.course.sources[index]) {
                 if rates == RateSource::Auto && log.wants(Category::Events) {
                     let message = describe_source(driver, order, source, start);
                     log.write(Status::Ok, Category::Events, &message);

@@ -2,7 +2,8 @@
 //!
 //! | file | subject |
 //! |---|---|
-//! | `variables`, `column` | the table of variables, and those that a run records |
+//! | `variables` | the table of variables |
+//! | `dependencies` | the variables on which another one depends |
 //! | `description`, `guid`, `resource` | the FMU's files |
 //! | `rule` | the parameters `rates` and `extrapolation`, and the sources of rates |
 //! | `history` | the last samples of one driver, and the rates estimated from them |
@@ -14,7 +15,7 @@
 //! | `pose` | initialization, steps, and the pose and rates of the values set |
 //! | `messages` | messages about poses and steps |
 //! | `outputs` | values by value reference |
-//! | `dependencies`, `derivatives` | what a variable depends on, and directional derivatives |
+//! | `derivatives` | directional derivatives |
 //! | `state` | the saved state |
 
 mod dependencies;
@@ -48,13 +49,12 @@ use super::codec::{Codec, Unreadable};
 use super::error::Failure;
 use super::log::Logger;
 use super::model::{Groups, Model};
-use super::model_description::DependencyKind;
+use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
-use crate::kinematics::{self, Carryover, Path, Pose, Progress, Rates, Solver};
+use crate::kinematics::{self, Carryover, Forces, Path, Pose, Progress, Solution, Solver};
 use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism, Order, ParameterId};
 use force_input::ForceInput;
-use forces::ModelForces;
 use input::DriverInput;
 use monitor::Monitor;
 use outputs::Reals;
@@ -69,26 +69,12 @@ pub struct MechanismModel {
     interface: Interface,
     variables: Vec<Variable<Quantity>>,
     solver: Solver,
-    /// Pose of the file's own values.
+    /// Pose of the file's own values, and the solver's choices there.
     file_pose: Arc<Pose>,
-    /// Pose from which initialization starts: `file_pose`, or that of a restored state, which
-    /// another machine may have computed with other rounding.
-    start_pose: Arc<Pose>,
-    settings: Settings,
-    course: Course,
-    /// Forces at the solver's pose, if the mechanism has dynamics.
-    forces: Option<Box<ModelForces>>,
-    /// Sources of the rates per driver at the solver's pose.
-    sources: Vec<[Source; 2]>,
-    /// The solver's choices after it was made.
     file_carryover: Carryover,
-    /// Whether the solver is at the committed pose.
-    at_committed: bool,
-    /// Rates of all drivers at the solver's pose; `value` has no meaning.
-    driver_rates: Vec<Jet>,
-    freshness: Freshness,
-    /// Rates of q at the solver's pose.
-    rates: Rates,
+    course: Course,
+    /// Rates and forces at the solver's pose; the values of the drivers' rates have no meaning.
+    solution: Solution,
     reals: Reals,
     path: Path,
     /// The step that is being taken in parts.
@@ -97,10 +83,17 @@ pub struct MechanismModel {
     dead_point: Option<f64>,
 }
 
-/// Time, pose and histories that a step moves on, and that return where it is given up.
+/// Everything that decides how the model goes on, apart from the solver's pose and the rates of the
+/// drivers there: a saved state has it, and a step that is given up returns to it.
 #[derive(Clone, Debug, PartialEq)]
 struct Course {
     time: f64,
+    /// Pose from which initialization starts: that of the file's own values, or that of a restored
+    /// state, which another machine may have computed with other rounding.
+    start_pose: Arc<Pose>,
+    /// Parameters as set by the host, and those derived from them.
+    parameters: Vec<f64>,
+    rule: Rule,
     /// Pose from which the mechanism goes on; in co-simulation that of the last communication
     /// point.
     committed: Pose,
@@ -108,6 +101,11 @@ struct Course {
     committed_carryover: Carryover,
     /// Rates of all drivers at the committed pose.
     committed_rates: Vec<Jet>,
+    /// Whether the solver is at the committed pose.
+    at_committed: bool,
+    freshness: Freshness,
+    /// Sources of the rates per driver at the solver's pose.
+    sources: Vec<[Source; 2]>,
     /// Inputs per driver; those of prescribed motions have no meaning.
     inputs: Vec<DriverInput>,
     /// Inputs of forces, in the order of their variables.
@@ -125,35 +123,44 @@ struct Course {
 }
 
 impl Course {
-    /// Returns the course that begins at a pose with the solver's choices there.
+    /// Returns the course of a mechanism that begins at a pose with the solver's choices there.
     fn new(
         mechanism: &Mechanism,
-        forces: Option<&ModelForces>,
-        start: &Pose,
+        solution: &Solution,
+        start: &Arc<Pose>,
         carryover: &Carryover,
     ) -> Self {
         let drivers = mechanism.drivers.len();
+        let contacts = solution.forces().map_or(0, Forces::contacts);
+        let start_of = |source: &DriverSource| match source {
+            DriverSource::Input { start } => *start,
+            DriverSource::Motion(_) => 0.0,
+        };
+        let inputs = mechanism.drivers.iter();
+        let inputs = inputs.map(|driver| DriverInput::new(start_of(&driver.source)));
         Self {
             time: start.time,
-            committed: start.clone(),
+            start_pose: Arc::clone(start),
+            parameters: mechanism.default_parameters(),
+            rule: Rule {
+                rates: RateSource::Auto,
+                extrapolation: Extrapolation::Hold,
+            },
+            committed: Pose::clone(start),
             committed_carryover: carryover.clone(),
             committed_rates: vec![Jet::constant(0.0); drivers],
-            inputs: start_inputs(mechanism),
-            force_inputs: vec![ForceInput::default(); forces.map_or(0, ModelForces::inputs)],
-            lifted: vec![false; forces.map_or(0, ModelForces::contacts)],
+            at_committed: true,
+            freshness: Freshness::Stale,
+            sources: vec![[Source::default(); 2]; drivers],
+            inputs: inputs.collect(),
+            force_inputs: vec![ForceInput::default(); solution.loads.len()],
+            lifted: vec![false; contacts],
             monitors: vec![Monitor::default(); drivers],
             near_singular: false,
             path_progress: Progress::default(),
             progress: Progress::default(),
         }
     }
-}
-
-/// Values set by the host, apart from inputs.
-#[derive(Clone, Debug, PartialEq)]
-struct Settings {
-    parameters: Vec<f64>,
-    rule: Rule,
 }
 
 /// Validity of the solver's pose and rates.
@@ -179,27 +186,23 @@ impl MechanismModel {
         let file_pose = Arc::new(solver.pose().clone());
         let mut file_carryover = Carryover::default();
         solver.carry_over(&mut file_carryover);
+        let mut solution = Solution::new(&solver);
+        solution.driver_rates.fill(Jet::constant(0.0));
+        if mechanism.has_dynamics() {
+            solution.seek_forces(&solver);
+        }
         let variables = variables(&mechanism);
-        let forces = (mechanism.has_dynamics()).then(|| Box::new(ModelForces::new(&solver)));
-        let course = Course::new(&mechanism, forces.as_deref(), &file_pose, &file_carryover);
         Ok(Self {
             guid: guid(&mechanism),
             interface,
-            reals: Reals::new(&variables),
+            reals: Reals::new(&mechanism, &variables),
             variables,
-            settings: Settings::new(&mechanism),
-            course,
-            forces,
-            sources: vec![[Source::default(); 2]; mechanism.drivers.len()],
+            course: Course::new(&mechanism, &solution, &file_pose, &file_carryover),
+            solution,
             file_carryover,
-            at_committed: true,
-            driver_rates: vec![Jet::constant(0.0); mechanism.drivers.len()],
-            rates: Rates::new(file_pose.q.len()),
-            freshness: Freshness::Stale,
             path,
             parts: None,
             dead_point: None,
-            start_pose: Arc::clone(&file_pose),
             file_pose,
             solver,
             mechanism,
@@ -216,7 +219,7 @@ impl MechanismModel {
     /// each time.
     fn rule(&self) -> Rule {
         match self.interface {
-            Interface::CoSimulation => self.settings.rule,
+            Interface::CoSimulation => self.course.rule,
             Interface::ModelExchange => Rule {
                 rates: RateSource::Inputs,
                 extrapolation: Extrapolation::Hold,
@@ -245,7 +248,7 @@ impl MechanismModel {
 
     /// Sets a parameter; those derived from it do not follow yet.
     fn set_parameter(&mut self, parameter: ParameterId, value: f64) {
-        self.settings.parameters[parameter.index()] = value;
+        self.course.parameters[parameter.index()] = value;
         self.set_freshness(Freshness::Stale);
     }
 
@@ -253,7 +256,7 @@ impl MechanismModel {
     /// of date.
     #[inline]
     fn set_freshness(&mut self, freshness: Freshness) {
-        self.freshness = freshness;
+        self.course.freshness = freshness;
         self.reals.invalidate();
     }
 }
@@ -262,8 +265,12 @@ impl Model for MechanismModel {
     type Quantity = Quantity;
     type State = MechanismState;
 
-    const OUTPUT_DERIVATIVES: i32 = 2;
-    const INTERMEDIATE_UPDATE: bool = true;
+    const CAPABILITIES: Capabilities = Capabilities {
+        interpolates_inputs: true,
+        output_derivatives: 2,
+        directional_derivatives: true,
+        intermediate_update: true,
+    };
 
     fn load(resources: &FilePath, interface: Interface) -> Result<Self, Failure> {
         let mechanism = Arc::new(resource::read(resources)?);
@@ -292,14 +299,11 @@ impl Model for MechanismModel {
     }
 
     fn reset(&mut self) {
-        self.start_pose = Arc::clone(&self.file_pose);
-        self.settings = Settings::new(&self.mechanism);
-        let (start, carryover) = (&self.start_pose, &self.file_carryover);
-        self.course = Course::new(&self.mechanism, self.forces.as_deref(), start, carryover);
+        let (start, carryover) = (&self.file_pose, &self.file_carryover);
+        self.course = Course::new(&self.mechanism, &self.solution, start, carryover);
         self.return_to_committed();
-        self.driver_rates.fill(Jet::constant(0.0));
-        self.sources.fill([Source::default(); 2]);
-        self.set_freshness(Freshness::Stale);
+        self.solution.driver_rates.fill(Jet::constant(0.0));
+        self.reals.invalidate();
         self.parts = None;
     }
 
@@ -319,7 +323,7 @@ impl Model for MechanismModel {
         }
         if parameters_changed {
             self.mechanism
-                .derive_parameters(&mut self.settings.parameters);
+                .derive_parameters(&mut self.course.parameters);
         }
     }
 
@@ -327,9 +331,9 @@ impl Model for MechanismModel {
         for (quantity, value) in values {
             let item = value as usize - 1;
             match quantity {
-                Quantity::RateSource => self.settings.rule.rates = RateSource::ALL[item],
+                Quantity::RateSource => self.course.rule.rates = RateSource::ALL[item],
                 Quantity::Extrapolation => {
-                    self.settings.rule.extrapolation = Extrapolation::ALL[item];
+                    self.course.rule.extrapolation = Extrapolation::ALL[item];
                 }
                 _ => unreachable!("only the two Enumerations are settable"),
             }
@@ -354,7 +358,7 @@ impl Model for MechanismModel {
     }
 
     fn groups(&self, quantity: Quantity) -> Groups {
-        outputs::group(quantity)
+        outputs::group(&self.mechanism, quantity)
     }
 
     #[inline(always)]
@@ -369,8 +373,8 @@ impl Model for MechanismModel {
 
     fn integer(&self, quantity: Quantity) -> i32 {
         let count = match quantity {
-            Quantity::RateSource => return self.settings.rule.rates as i32,
-            Quantity::Extrapolation => return self.settings.rule.extrapolation as i32,
+            Quantity::RateSource => return self.course.rule.rates as i32,
+            Quantity::Extrapolation => return self.course.rule.extrapolation as i32,
             Quantity::Iterations => self.course.progress.iterations,
             Quantity::Substeps => self.course.progress.substeps,
             Quantity::Proved => u32::from(self.course.progress.checked == 0),
@@ -389,11 +393,7 @@ impl Model for MechanismModel {
         self.derivatives_along(unknowns, knowns, phase, log)
     }
 
-    fn dependencies(
-        &self,
-        value_reference: u32,
-        initializing: bool,
-    ) -> Option<Vec<(u32, DependencyKind)>> {
+    fn dependencies(&self, value_reference: u32, initializing: bool) -> Vec<(u32, DependencyKind)> {
         self.dependencies_of(value_reference, initializing)
     }
 
@@ -406,12 +406,8 @@ impl Model for MechanismModel {
     }
 
     #[inline(always)]
-    fn step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        self.take_step(size, end, log)
-    }
-
-    fn try_step(&mut self, size: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        self.take_step_or_stay(size, end, log)
+    fn step(&mut self, size: f64, end: f64, stays: bool, log: &Logger) -> Result<(), Failure> {
+        self.take_step(size, end, stays, log)
     }
 
     fn begin_step(&mut self, size: f64, end: f64, log: &Logger) {
@@ -455,29 +451,6 @@ impl Model for MechanismModel {
     fn check(&mut self, state: &mut MechanismState) -> Result<(), String> {
         self.check_state(state)
     }
-}
-
-impl Settings {
-    fn new(mechanism: &Mechanism) -> Self {
-        Self {
-            parameters: mechanism.default_parameters(),
-            rule: Rule {
-                rates: RateSource::Auto,
-                extrapolation: Extrapolation::Hold,
-            },
-        }
-    }
-}
-
-fn start_inputs(mechanism: &Mechanism) -> Vec<DriverInput> {
-    let drivers = mechanism.drivers.iter();
-    let start = |source: &DriverSource| match source {
-        DriverSource::Input { start } => *start,
-        DriverSource::Motion(_) => 0.0,
-    };
-    drivers
-        .map(|driver| DriverInput::new(start(&driver.source)))
-        .collect()
 }
 
 /// Converts an error of the kinematics.

@@ -101,14 +101,10 @@ impl Monitor {
             fell,
             beyond,
         } = self;
-        for source in sources {
-            codec.one_of(source, &Source::ALL)?;
-        }
-        for count in contradictions {
-            codec.one_of(count, &[0, 1, 2, 3, 4, STEPS])?;
-        }
-        codec.flag(fell)?;
-        codec.flag(beyond)
+        codec.each(sources, |codec, source| codec.one_of(source, &Source::ALL))?;
+        let counts = [0, 1, 2, 3, 4, STEPS];
+        codec.each(contradictions, |codec, count| codec.one_of(count, &counts))?;
+        codec.each([fell, beyond], Codec::flag)
     }
 }
 

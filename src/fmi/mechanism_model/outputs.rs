@@ -7,8 +7,8 @@ use crate::fmi::log::Logger;
 use crate::fmi::model::Groups;
 use crate::fmi::state::Phase;
 use crate::fmi::variable::{Variable, derivatives};
-use crate::kinematics::{ForceParts, ForceQuantity};
-use crate::mechanism::{Order, Signal};
+use crate::kinematics::{ForceParts, OutputSource};
+use crate::mechanism::{Mechanism, Order, Signal};
 
 /// Inputs, parameters, time, and counts of the last step.
 const SETTINGS: Groups = 1;
@@ -16,6 +16,7 @@ const SETTINGS: Groups = 1;
 const SOLVER: Groups = 1 << 1;
 /// Coordinates of bodies. Here and below, the group of the rates is one bit higher.
 const BODIES: Groups = 1 << 2;
+const BODIES_AND_RATES: Groups = BODIES | BODIES << 1;
 /// Points of markers.
 const MARKERS: Groups = 1 << 4;
 /// Measures and prescribed motions.
@@ -44,12 +45,8 @@ pub(super) struct Reals {
     bodies: Box<[BodyPlace]>,
     /// All signals but those of bodies.
     signals: Box<[SignalPlace]>,
-    /// Value references of all other Reals.
-    others: Box<[(u32, Quantity)]>,
-    /// Value references and groups of measures computed from others.
-    derived: Box<[(u32, Groups)]>,
-    /// Value references of forces.
-    forces: Box<[(u32, ForceQuantity)]>,
+    /// Value references, groups and quantities of all other Reals.
+    others: Box<[(u32, Groups, Quantity)]>,
 }
 
 /// A body among the outputs. Its nine values have consecutive references: x, y, phi, then their
@@ -69,67 +66,68 @@ struct SignalPlace {
     references: [u32; 3],
 }
 
-impl Signal {
-    /// Returns the group of the signal's value.
-    fn group(self) -> Groups {
-        match self {
-            Self::Body(..) => BODIES,
-            Self::Marker(..) => MARKERS,
-            Self::Measure(_) | Self::Motion(_) => COORDINATES,
-        }
-    }
-}
-
 /// Returns the group of a quantity; 0 for a choice among items.
-pub(super) fn group(quantity: Quantity) -> Groups {
-    match quantity {
+pub(super) fn group(mechanism: &Mechanism, quantity: Quantity) -> Groups {
+    let (group, order) = match quantity {
+        Quantity::RateSource | Quantity::Extrapolation => return 0,
         Quantity::Input(..)
         | Quantity::ForceInput(_)
         | Quantity::Parameter(_)
         | Quantity::Time
         | Quantity::Iterations
         | Quantity::Substeps
-        | Quantity::Proved => SETTINGS,
-        Quantity::Force(force) if force.needs_efforts() => EFFORTS,
-        Quantity::Force(force) if force.needs_reactions() => REACTIONS,
-        Quantity::Force(_) => LOADS,
-        Quantity::Residual | Quantity::Rcond => SOLVER,
-        Quantity::Derived(_, Order::Position) => DERIVED,
-        Quantity::Derived(..) => DERIVED << 1,
-        Quantity::Output(signal, Order::Position) => signal.group(),
-        Quantity::Output(signal, _) => signal.group() << 1,
-        Quantity::RateSource | Quantity::Extrapolation => 0,
+        | Quantity::Proved => return SETTINGS,
+        Quantity::Residual | Quantity::Rcond => return SOLVER,
+        Quantity::Output(OutputSource::Force(force)) => {
+            return match force {
+                _ if force.needs_efforts() => EFFORTS,
+                _ if force.needs_reactions() => REACTIONS,
+                _ => LOADS,
+            };
+        }
+        Quantity::Output(OutputSource::Derived(index)) => {
+            (DERIVED, mechanism.derived[index].order())
+        }
+        Quantity::Output(OutputSource::Signal(signal, order)) => (group_of(signal), order),
+    };
+    if order == Order::Position {
+        group
+    } else {
+        group << 1
+    }
+}
+
+/// Returns the group of a signal's value.
+fn group_of(signal: Signal) -> Groups {
+    match signal {
+        Signal::Body(..) => BODIES,
+        Signal::Marker(..) => MARKERS,
+        Signal::Measure(_) | Signal::Motion(_) => COORDINATES,
     }
 }
 
 impl Reals {
-    pub(super) fn new(variables: &[Variable<Quantity>]) -> Self {
+    pub(super) fn new(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Self {
         let derivatives = derivatives(variables);
         let mut bodies = Vec::new();
         let mut signals = Vec::new();
         let mut others = Vec::new();
-        let mut derived = Vec::new();
-        let mut forces = Vec::new();
         for (vr, variable) in (0_u32..).zip(variables) {
             match variable.quantity {
-                Quantity::Output(Signal::Body(body, 0), Order::Position) => {
-                    bodies.push(BodyPlace {
+                Quantity::Output(OutputSource::Signal(signal, Order::Position)) => match signal {
+                    Signal::Body(body, 0) => bodies.push(BodyPlace {
                         body: body.index(),
                         reference: vr as usize,
-                    });
-                }
-                Quantity::Output(Signal::Body(..), _) => {}
-                Quantity::Output(signal, Order::Position) => {
-                    let derivative = |of: u32| derivatives[of as usize].expect("signals have two");
-                    let references = [vr, derivative(vr), derivative(derivative(vr))];
-                    signals.push(SignalPlace { signal, references });
-                }
-                Quantity::Derived(..) => derived.push((vr, group(variable.quantity))),
-                Quantity::Force(force) => forces.push((vr, force)),
-                quantity if group(quantity) & (SETTINGS | SOLVER) != 0 => {
-                    others.push((vr, quantity));
-                }
-                _ => {}
+                    }),
+                    Signal::Body(..) => {}
+                    _ => {
+                        let next = |of: u32| derivatives[of as usize].expect("signals have two");
+                        let references = [vr, next(vr), next(next(vr))];
+                        signals.push(SignalPlace { signal, references });
+                    }
+                },
+                Quantity::Output(OutputSource::Signal(..)) => {}
+                quantity => others.push((vr, group(mechanism, quantity), quantity)),
             }
         }
         Self {
@@ -138,8 +136,6 @@ impl Reals {
             bodies: bodies.into(),
             signals: signals.into(),
             others: others.into(),
-            derived: derived.into(),
-            forces: forces.into(),
         }
     }
 
@@ -173,39 +169,25 @@ impl MechanismModel {
         if missing == 0 {
             return Ok(());
         }
-        if missing & FORCES != 0 {
-            self.fill_forces(missing, phase, log)?;
-        }
-        if missing & RATES != 0 {
-            self.refresh_rates(phase, log)?;
-        } else if missing & (POSES | SOLVER) != 0 {
+        if missing & (POSES | RATES | SOLVER | FORCES) != 0 {
             self.refresh_pose(phase, log)?;
         }
-        if missing & (BODIES | BODIES << 1) != 0 {
+        if missing & (RATES | FORCES) != 0 {
+            self.refresh_rates()?;
+        }
+        if missing & FORCES != 0 {
+            self.solve_forces(ForceParts {
+                efforts: missing & EFFORTS != 0,
+                reactions: missing & REACTIONS != 0,
+            })?;
+        }
+        if missing & BODIES_AND_RATES != 0 {
             self.fill_bodies(missing);
         }
-        if missing & !(BODIES | BODIES << 1 | FORCES) != 0 {
+        if missing & !BODIES_AND_RATES != 0 {
             self.fill_others(missing);
         }
         self.reals.current |= missing;
-        Ok(())
-    }
-
-    /// Fills in the values of forces.
-    #[inline(never)]
-    fn fill_forces(&mut self, groups: Groups, phase: Phase, log: &Logger) -> Result<(), Failure> {
-        let parts = ForceParts {
-            efforts: groups & EFFORTS != 0,
-            reactions: groups & REACTIONS != 0,
-        };
-        self.refresh_forces(parts, phase, log)?;
-        let Reals { values, forces, .. } = &mut self.reals;
-        if let Some(solved) = self.forces.as_deref() {
-            let is_asked = |force: ForceQuantity| groups & group(Quantity::Force(force)) != 0;
-            for &(vr, force) in forces.iter().filter(|(_, force)| is_asked(*force)) {
-                values[vr as usize] = solved.value(force);
-            }
-        }
         Ok(())
     }
 
@@ -213,8 +195,8 @@ impl MechanismModel {
     fn fill_bodies(&mut self, groups: Groups) {
         let Reals { values, bodies, .. } = &mut self.reals;
         let (q, _) = self.solver.pose().q.as_chunks();
-        let (velocities, _) = self.rates.velocity().as_chunks();
-        let (accelerations, _) = self.rates.acceleration().as_chunks();
+        let (velocities, _) = self.solution.rates.velocity().as_chunks();
+        let (accelerations, _) = self.solution.rates.acceleration().as_chunks();
         for &BodyPlace { body, reference } in bodies.iter() {
             let (to, _) = values[reference..reference + 9].as_chunks_mut::<3>();
             if groups & BODIES != 0 {
@@ -230,43 +212,46 @@ impl MechanismModel {
     /// Fills in all values but those of bodies.
     #[inline(never)]
     fn fill_others(&mut self, groups: Groups) {
-        let reals = &mut self.reals;
-        let values = &mut reals.values;
-        for SignalPlace { signal, references } in &reals.signals {
-            let [pose, rates] = [signal.group(), signal.group() << 1].map(|g| groups & g != 0);
-            if pose || rates {
-                let jet = self.solver.signal(*signal, &self.rates, &self.driver_rates);
+        let Reals {
+            values,
+            signals,
+            others,
+            ..
+        } = &mut self.reals;
+        let (solver, solution) = (&mut self.solver, &self.solution);
+        let (rates, driver_rates) = (&solution.rates, &solution.driver_rates);
+        for SignalPlace { signal, references } in signals.iter() {
+            let group = group_of(*signal);
+            let [pose, derivatives] = [group, group << 1].map(|group| groups & group != 0);
+            if pose || derivatives {
+                let jet = solver.signal(*signal, rates, driver_rates);
                 if pose {
                     values[references[0] as usize] = jet.value;
                 }
-                if rates {
+                if derivatives {
                     values[references[1] as usize] = jet.first();
                     values[references[2] as usize] = jet.second();
                 }
             }
         }
-        if groups & (DERIVED | DERIVED << 1) != 0 {
-            for (index, &(vr, group)) in reals.derived.iter().enumerate() {
-                if groups & group != 0 {
-                    values[vr as usize] =
-                        self.solver.derived(index, &self.rates, &self.driver_rates);
-                }
+        for &(vr, group, quantity) in others.iter() {
+            if groups & group == 0 {
+                continue;
             }
-        }
-        if groups & (SETTINGS | SOLVER) == 0 {
-            return;
-        }
-        for &(vr, quantity) in reals.others.iter().filter(|(_, q)| groups & group(*q) != 0) {
             values[vr as usize] = match quantity {
                 Quantity::Input(driver, order) => self.course.inputs[driver.index()].get(order),
                 Quantity::ForceInput(place) => self.course.force_inputs[place].get(),
-                Quantity::Parameter(parameter) => self.settings.parameters[parameter.index()],
+                Quantity::Parameter(parameter) => self.course.parameters[parameter.index()],
                 Quantity::Time => self.course.time,
-                Quantity::Residual => self.solver.residual(),
-                Quantity::Rcond => self.solver.rcond(),
+                Quantity::Residual => solver.residual(),
+                Quantity::Rcond => solver.rcond(),
                 Quantity::Iterations => f64::from(self.course.progress.iterations),
                 Quantity::Substeps => f64::from(self.course.progress.substeps),
                 Quantity::Proved => f64::from(u8::from(self.course.progress.checked == 0)),
+                Quantity::Output(OutputSource::Derived(index)) => {
+                    solver.derived(index, rates, driver_rates)
+                }
+                Quantity::Output(OutputSource::Force(force)) => solution.force(force),
                 _ => unreachable!("the list has no other quantities"),
             };
         }

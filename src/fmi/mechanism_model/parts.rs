@@ -5,7 +5,6 @@
 //! of a whole step does. Values that the host sets on the way hold from there on: the mechanism
 //! goes to them at that time, and the path starts anew.
 
-use super::rule::Source;
 use super::{Course, MechanismModel};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
@@ -20,10 +19,8 @@ pub(super) struct Parts {
     path: Path,
     /// Whether values were set at the present time, which the mechanism has not reached yet.
     split: bool,
-    /// The model's course before the step, the sources of its rates, and whether the pose belonged
-    /// to the values set.
+    /// The model's course before the step, and whether the pose belonged to the values set.
     before: Course,
-    sources: Vec<[Source; 2]>,
     was_current: bool,
 }
 
@@ -32,7 +29,7 @@ impl MechanismModel {
     pub(super) fn begin_parts(&mut self, h: f64, end: f64, log: &Logger) {
         let was_current = self.note_committed();
         let before = self.course.clone();
-        if !self.at_committed {
+        if !self.course.at_committed {
             self.return_to_committed();
         }
         self.set_path(self.course.time, h);
@@ -43,7 +40,6 @@ impl MechanismModel {
             path: self.path.clone(),
             split: false,
             before,
-            sources: self.sources.clone(),
             was_current,
         }));
     }
@@ -106,7 +102,6 @@ impl MechanismModel {
             return;
         };
         self.course = parts.before;
-        self.sources = parts.sources;
         self.stay_at_committed(parts.was_current);
     }
 
@@ -240,10 +235,7 @@ impl MechanismModel {
                 total.checked += progress.checked;
                 Ok(())
             }
-            Err(blocked) => {
-                let (start, h) = (self.path.start, self.path.duration);
-                Err(self.fail_step(blocked, start, h, log))
-            }
+            Err(blocked) => Err(self.fail_step(&blocked, log)),
         }
     }
 }

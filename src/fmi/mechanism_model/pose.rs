@@ -1,5 +1,7 @@
 //! Initialization, steps, and the pose and rates of the values set.
 
+use std::sync::Arc;
+
 use super::rule::Source;
 use super::{Freshness, MechanismModel, RateSource, failed, without_value};
 use crate::fmi::error::Failure;
@@ -18,70 +20,44 @@ impl MechanismModel {
     ///
     /// # Errors
     ///
-    /// [`Failure::Discarded`] if no continuous motion leads to the end. The mechanism is then at
-    /// the last time whose driver values it reached.
+    /// [`Failure::Discarded`] if no continuous motion leads to the end. With `stays` the mechanism is
+    /// then as before, otherwise at the last time whose driver values it reached.
     #[inline(always)]
-    pub(super) fn take_step(&mut self, h: f64, end: f64, log: &Logger) -> Result<(), Failure> {
-        let start = self.course.time;
-        match self.follow_step(h) {
-            Ok(progress) => {
-                self.reach_end(progress, start, h, end, log);
-                Ok(())
-            }
-            Err(blocked) => {
-                self.report_falls(log);
-                Err(self.fail_step(blocked, start, h, log))
-            }
-        }
-    }
-
-    /// Takes a step as [`take_step`](Self::take_step) does, but stays at the last communication
-    /// point if it fails.
-    ///
-    /// # Errors
-    ///
-    /// [`Failure::Discarded`] if no continuous motion leads to the end.
-    pub(super) fn take_step_or_stay(
+    pub(super) fn take_step(
         &mut self,
         h: f64,
         end: f64,
+        stays: bool,
         log: &Logger,
     ) -> Result<(), Failure> {
+        let was_current = stays && self.note_committed();
+        if !self.course.at_committed {
+            self.return_to_committed();
+        }
         let start = self.course.time;
-        let was_current = self.note_committed();
-        match self.follow_step(h) {
+        self.set_path(start, h);
+        match self.solver.track(&self.path) {
             Ok(progress) => {
-                self.reach_end(progress, start, h, end, log);
+                self.report_falls(log);
+                self.course.path_progress = progress;
+                self.course.progress = progress;
+                self.set_driver_rates(start, h, 1.0);
+                self.advance_forces(h);
+                self.course.time = end;
+                self.commit_pose();
+                self.complete_step(start, h, log);
                 Ok(())
             }
-            Err(blocked) => {
-                let message = self.describe_dead_point(&blocked, start, h);
+            Err(blocked) if stays => {
+                let message = self.describe_dead_point(&blocked);
                 self.stay_at_committed(was_current);
                 Err(Failure::Discarded(message))
             }
+            Err(blocked) => {
+                self.report_falls(log);
+                Err(self.fail_step(&blocked, log))
+            }
         }
-    }
-
-    /// Follows the path of a step of size `h` from the committed pose.
-    fn follow_step(&mut self, h: f64) -> Result<Progress, Blocked> {
-        if !self.at_committed {
-            self.return_to_committed();
-        }
-        self.set_path(self.course.time, h);
-        self.solver.track(&self.path)
-    }
-
-    /// Ends a step of size `h` from `start` that the solver has followed.
-    #[inline(always)]
-    fn reach_end(&mut self, progress: Progress, start: f64, h: f64, end: f64, log: &Logger) {
-        self.report_falls(log);
-        self.course.path_progress = progress;
-        self.course.progress = progress;
-        self.set_driver_rates(start, h, 1.0);
-        self.advance_forces(h);
-        self.course.time = end;
-        self.commit_pose();
-        self.complete_step(start, h, log);
     }
 
     /// Ends a step of size `h` from `start`, or in model exchange an accepted step of the host:
@@ -93,7 +69,7 @@ impl MechanismModel {
         }
         let rule = self.rule();
         let course = &mut self.course;
-        let observed = course.monitors.iter_mut().zip(&self.sources);
+        let observed = course.monitors.iter_mut().zip(&course.sources);
         let inputs = self.mechanism.drivers.iter().zip(&mut course.inputs);
         for ((driver, input), (monitor, sources)) in inputs.zip(observed) {
             monitor.sources = *sources;
@@ -106,16 +82,16 @@ impl MechanismModel {
     /// Notes the solver's choices at the committed pose, to which a step may have to return. Returns
     /// whether that pose belongs to the values set.
     pub(super) fn note_committed(&mut self) -> bool {
-        if self.at_committed {
+        if self.course.at_committed {
             self.solver.carry_over(&mut self.course.committed_carryover);
         }
-        self.at_committed && self.freshness != Freshness::Stale
+        self.course.at_committed && self.course.freshness != Freshness::Stale
     }
 
     /// Returns to the committed pose as [`note_committed`](Self::note_committed) found it.
     pub(super) fn stay_at_committed(&mut self, was_current: bool) {
         self.return_to_committed();
-        (self.driver_rates).copy_from_slice(&self.course.committed_rates);
+        (self.solution.driver_rates).copy_from_slice(&self.course.committed_rates);
         self.set_freshness(if was_current {
             Freshness::Pose
         } else {
@@ -131,7 +107,7 @@ impl MechanismModel {
         path.start = start;
         path.duration = h;
         path.from.copy_from_slice(&committed.parameters);
-        path.to.copy_from_slice(&self.settings.parameters);
+        path.to.copy_from_slice(&self.course.parameters);
         let drivers = path.curves.iter_mut().zip(&mut self.course.inputs);
         let drivers = drivers.zip(&committed.drivers);
         for ((curve, input), committed) in drivers {
@@ -144,8 +120,7 @@ impl MechanismModel {
             {
                 let rates = input.path(rule, start, h);
                 *position = input.position();
-                *velocity = rates.velocity;
-                *acceleration = rates.acceleration;
+                [*velocity, *acceleration] = rates;
                 *jump = committed - *position;
             }
         }
@@ -159,12 +134,13 @@ impl MechanismModel {
                 DriverSource::Input { .. } => {
                     let (rates, sources) =
                         self.course.inputs[index].rates_after(rule, start, s * h);
-                    self.sources[index] = sources;
+                    self.course.sources[index] = sources;
                     // A whole number would be copied, which waits for its parts.
-                    self.driver_rates[index].derivatives = [rates.velocity, rates.acceleration];
+                    self.solution.driver_rates[index].derivatives = rates;
                 }
                 DriverSource::Motion(_) => {
-                    self.driver_rates[index] = self.solver.motion(DriverId(index), start + s * h);
+                    self.solution.driver_rates[index] =
+                        self.solver.motion(DriverId(index), start + s * h);
                 }
             }
         }
@@ -179,9 +155,9 @@ impl MechanismModel {
             if driver.motion().is_some() {
                 continue;
             }
-            let rates = self.driver_rates[index].derivatives.iter_mut();
+            let rates = self.solution.driver_rates[index].derivatives.iter_mut();
             let last = self.course.committed_rates[index].derivatives;
-            for ((rate, last), source) in rates.zip(last).zip(self.sources[index]) {
+            for ((rate, last), source) in rates.zip(last).zip(self.course.sources[index]) {
                 if matches!(source, Source::Estimate | Source::Difference) {
                     *rate = last;
                 }
@@ -196,7 +172,7 @@ impl MechanismModel {
     /// The pose does not exist; the committed one stays.
     pub(super) fn commit_values(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
         let starting = phase == Phase::Initialization;
-        let estimated = self.settings.rule.rates == RateSource::Estimated;
+        let estimated = self.course.rule.rates == RateSource::Estimated;
         if starting && estimated && self.interface == Interface::ModelExchange {
             let why = "`rates` is `estimated`, which needs communication points; in model exchange \
                        the velocity and acceleration inputs have to be given";
@@ -224,7 +200,7 @@ impl MechanismModel {
     /// Commits the pose of the values set at an event. An input that has jumped starts its history
     /// anew.
     fn commit_event(&mut self, log: &Logger) -> Result<(), Failure> {
-        if self.freshness != Freshness::Stale && self.at_committed {
+        if self.course.freshness != Freshness::Stale && self.course.at_committed {
             return Ok(());
         }
         self.refresh_pose(Phase::Event, log)?;
@@ -244,8 +220,8 @@ impl MechanismModel {
     pub(super) fn commit_pose(&mut self) {
         let course = &mut self.course;
         self.solver.save(&mut course.committed);
-        course.committed_rates.copy_from_slice(&self.driver_rates);
-        self.at_committed = true;
+        (course.committed_rates).copy_from_slice(&self.solution.driver_rates);
+        self.course.at_committed = true;
         self.set_freshness(Freshness::Pose);
     }
 
@@ -254,34 +230,29 @@ impl MechanismModel {
         let course = &self.course;
         let resumed = (self.solver).resume(&course.committed, &course.committed_carryover);
         debug_assert!(resumed, "the choices are the solver's own");
-        self.at_committed = true;
+        self.course.at_committed = true;
     }
 
     /// Lets the solver leave the committed pose: notes its choices, and begins with them.
     fn leave_committed(&mut self) {
-        if self.at_committed {
+        if self.course.at_committed {
             self.solver.carry_over(&mut self.course.committed_carryover);
         }
         self.return_to_committed();
-        self.at_committed = false;
+        self.course.at_committed = false;
     }
 
     /// Restores the committed pose and its rates.
     pub(super) fn restore_committed(&mut self) {
         self.leave_committed();
-        (self.driver_rates).copy_from_slice(&self.course.committed_rates);
-        self.at_committed = true;
+        (self.solution.driver_rates).copy_from_slice(&self.course.committed_rates);
+        self.course.at_committed = true;
     }
 
-    /// Commits the last pose before a dead point at the part `blocked.s` of a step.
-    pub(super) fn fail_step(
-        &mut self,
-        blocked: Blocked,
-        start: f64,
-        h: f64,
-        log: &Logger,
-    ) -> Failure {
-        let message = self.describe_dead_point(&blocked, start, h);
+    /// Commits the last pose before a dead point on the path.
+    pub(super) fn fail_step(&mut self, blocked: &Blocked, log: &Logger) -> Failure {
+        let message = self.describe_dead_point(blocked);
+        let (start, h) = (self.path.start, self.path.duration);
         self.course.path_progress = blocked.progress;
         self.course.progress = blocked.progress;
         self.log_crossings(log);
@@ -325,7 +296,7 @@ impl MechanismModel {
     /// The pose does not exist.
     #[inline]
     pub(super) fn refresh_pose(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
-        if self.freshness == Freshness::Stale {
+        if self.course.freshness == Freshness::Stale {
             self.find_pose(phase, log)?;
         }
         Ok(())
@@ -346,19 +317,16 @@ impl MechanismModel {
         Ok(())
     }
 
-    /// Computes the rates of q for the values set.
+    /// Solves the rates at the pose, which is up to date.
     ///
     /// # Errors
     ///
-    /// The pose or its rates do not exist.
-    pub(super) fn refresh_rates(&mut self, phase: Phase, log: &Logger) -> Result<(), Failure> {
-        self.refresh_pose(phase, log)?;
-        if self.freshness == Freshness::Pose {
-            let driver_rates = &self.driver_rates;
-            self.solver
-                .solve_rates(|driver| driver_rates[driver.index()], &mut self.rates)
-                .map_err(without_value)?;
-            self.freshness = Freshness::Rates;
+    /// The rates do not exist.
+    pub(super) fn refresh_rates(&mut self) -> Result<(), Failure> {
+        if self.course.freshness == Freshness::Pose {
+            let solved = self.solution.solve_rates(&mut self.solver);
+            solved.map_err(without_value)?;
+            self.course.freshness = Freshness::Rates;
         }
         Ok(())
     }
@@ -370,8 +338,9 @@ impl MechanismModel {
     ///
     /// The mechanism does not assemble.
     fn initialize(&mut self, log: &Logger) -> Result<(), Failure> {
-        self.course.committed.clone_from(&self.start_pose);
-        let start = self.start_pose.time;
+        let start_pose = Arc::clone(&self.course.start_pose);
+        self.course.committed.clone_from(&start_pose);
+        let start = start_pose.time;
         self.set_path(start, self.course.time - start);
         for curve in &mut self.path.curves {
             if let Curve::Input {
@@ -385,8 +354,8 @@ impl MechanismModel {
         }
         (self.course.committed_carryover).clone_from(&self.file_carryover);
         self.return_to_committed();
-        self.at_committed = false;
-        let start = self.solver.start(&self.start_pose, &self.path);
+        self.course.at_committed = false;
+        let start = self.solver.start(&start_pose, &self.path);
         match start.map_err(failed)? {
             Start::Continuous(progress) => {
                 self.course.path_progress = progress;
@@ -433,7 +402,7 @@ impl MechanismModel {
                 Ok(())
             }
             Err(blocked) => {
-                let message = self.describe_dead_point(&blocked, start, h);
+                let message = self.describe_dead_point(&blocked);
                 Err(Failure::Discarded(message))
             }
         }

@@ -1,15 +1,15 @@
 //! The mechanism inside an FMU.
 
-use std::io::{Seek, Write};
+use std::io::{self, Seek, Write};
 use std::path::Path;
 
 use super::describe;
 use crate::fmi::error::Failure;
 use crate::fmi::model_description::Document;
-use crate::fmi::package::{self, PackageError, RuntimeLibrary};
+use crate::fmi::package::{self, RuntimeLibrary};
 use crate::fmi::state::Version;
 use crate::kinematics::Structure;
-use crate::mechanism::{Diagnostic, Mechanism, Severity, Source};
+use crate::mechanism::{Mechanism, Severity, Source};
 
 /// Name of the mechanism's file in `resources/`.
 pub const RESOURCE: &str = "mechanism.toml";
@@ -21,21 +21,18 @@ pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
         let path = path.display();
         Failure::Failed(format!("cannot read the mechanism `{path}`: {error}"))
     })?;
-    let parsed = Mechanism::parse(&source);
-    parsed
-        .map(|(mechanism, _)| mechanism)
-        .map_err(|diagnostics| {
-            let errors: Vec<_> = diagnostics
-                .iter()
-                .filter(|diagnostic| diagnostic.severity == Severity::Error)
-                .map(|diagnostic: &Diagnostic| diagnostic.one_line(&source))
-                .collect();
-            Failure::Failed(errors.join("; "))
-        })
+    match Mechanism::parse(&source) {
+        Ok((mechanism, _)) => Ok(mechanism),
+        Err(diagnostics) => {
+            let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error);
+            let errors: Vec<_> = errors.map(|d| d.one_line(&source)).collect();
+            Err(Failure::Failed(errors.join("; ")))
+        }
+    }
 }
 
-/// Writes the FMU of a mechanism for a version of the standard: its file, its model description, runtime libraries and
-/// documents. The same input gives the same bytes.
+/// Writes the FMU of a mechanism for a version of the standard: its file, its model description,
+/// runtime libraries and documents. The same input gives the same bytes.
 ///
 /// # Errors
 ///
@@ -53,16 +50,14 @@ pub fn write_fmu(
     libraries: &[RuntimeLibrary],
     documents: &[Document],
     generated: Option<&str>,
-) -> Result<(), PackageError> {
+) -> io::Result<()> {
     let mut resources = vec![(RESOURCE, source.text().as_bytes())];
     for file in &mechanism.table_files {
         resources.push((file.name.as_str(), file.text.as_bytes()));
     }
-    let mut description = describe(mechanism, structure);
-    description.standard = version;
     package::write(
         out,
-        &description,
+        &describe(mechanism, structure, version),
         libraries,
         &resources,
         documents,

@@ -1,5 +1,7 @@
 //! The FMU's parameters `rates` and `extrapolation`, and the sources of rates.
 
+use crate::fmi::variable::Enumeration;
+
 /// Use of the rate inputs: the FMU's parameter `rates`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RateSource {
@@ -10,6 +12,21 @@ pub(super) enum RateSource {
 
 impl RateSource {
     pub(super) const ALL: [Self; 3] = [Self::Auto, Self::Inputs, Self::Estimated];
+    pub(super) const CHOICES: &Enumeration = &Enumeration {
+        name: "biela.Rates",
+        items: &[
+            (
+                "auto",
+                "each rate input once it was set to other than zero after initialization, \
+                 otherwise input derivatives, otherwise an estimate",
+            ),
+            ("inputs", "the rate inputs, always"),
+            (
+                "estimated",
+                "input derivatives, otherwise an estimate from the last three positions",
+            ),
+        ],
+    };
 }
 
 /// Path of positions without input derivatives: the FMU's parameter `extrapolation`.
@@ -21,6 +38,16 @@ pub(super) enum Extrapolation {
 
 impl Extrapolation {
     pub(super) const ALL: [Self; 2] = [Self::Hold, Self::Taylor];
+    pub(super) const CHOICES: &Enumeration = &Enumeration {
+        name: "biela.Extrapolation",
+        items: &[
+            (
+                "hold",
+                "held over a step: outputs lag the inputs by one step",
+            ),
+            ("taylor", "extrapolated by velocity and acceleration"),
+        ],
+    };
 }
 
 /// The FMU's parameters that decide about paths and rates.
@@ -51,11 +78,4 @@ impl Source {
         Self::Difference,
         Self::Estimate,
     ];
-}
-
-/// Velocity and acceleration of a driver.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct DriverRates {
-    pub(super) velocity: f64,
-    pub(super) acceleration: f64,
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::rule::{Extrapolation, RateSource, Source};
-use super::{Course, Freshness, MechanismModel, Quantity, Settings};
+use super::{Course, Freshness, MechanismModel, Quantity};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
@@ -19,99 +19,44 @@ const CLOSED: f64 = 1e-9;
 /// The state of a [`MechanismModel`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismState {
-    start_pose: Arc<Pose>,
-    settings: Settings,
+    /// Its freshness is [`Freshness::Stale`] or [`Freshness::Pose`]: rates follow from the pose.
     course: Course,
+    driver_rates: Vec<Jet>,
     /// The solver's pose, the committed one or that of values set since, and its choices there.
     present: Pose,
     present_carryover: Carryover,
-    at_committed: bool,
-    driver_rates: Vec<Jet>,
-    sources: Vec<[Source; 2]>,
-    /// [`Freshness::Stale`] or [`Freshness::Pose`]: rates follow from the pose.
-    freshness: Freshness,
 }
 
 impl MechanismModel {
     pub(super) fn save_state(&mut self) -> MechanismState {
         // The next evaluation starts from the committed pose anyway.
-        if self.freshness == Freshness::Stale && !self.at_committed {
+        if self.course.freshness == Freshness::Stale && !self.course.at_committed {
             self.return_to_committed();
         }
-        self.set_freshness(self.freshness.min(Freshness::Pose));
-        // Destructured, so that the compiler reports a new field.
-        let Self {
-            mechanism: _,
-            guid: _,
-            interface: _,
-            variables: _,
-            // Equal in all instances of a mechanism, up to rounding.
-            file_pose: _,
-            file_carryover: _,
-            // Set for each step.
-            path: _,
-            // No state is saved during a step.
-            parts: _,
-            // Used within the call that sets it.
-            dead_point: _,
-            // Computed from the pose.
-            rates: _,
-            reals: _,
-            forces: _,
-            start_pose,
-            settings,
-            course,
-            solver,
-            at_committed,
-            driver_rates,
-            sources,
-            freshness,
-        } = self;
+        self.set_freshness(self.course.freshness.min(Freshness::Pose));
         let mut present_carryover = Carryover::default();
-        solver.carry_over(&mut present_carryover);
-        if *at_committed {
+        self.solver.carry_over(&mut present_carryover);
+        let course = &mut self.course;
+        let present = if course.at_committed {
             course.committed_carryover.clone_from(&present_carryover);
-        }
-        let present = if *at_committed {
             course.committed.clone()
         } else {
-            solver.pose().clone()
+            self.solver.pose().clone()
         };
         MechanismState {
-            start_pose: Arc::clone(start_pose),
-            settings: settings.clone(),
             course: course.clone(),
-            present_carryover,
+            driver_rates: self.solution.driver_rates.clone(),
             present,
-            at_committed: *at_committed,
-            driver_rates: driver_rates.clone(),
-            sources: sources.clone(),
-            freshness: *freshness,
+            present_carryover,
         }
     }
 
     pub(super) fn restore_state(&mut self, state: &MechanismState) {
-        self.start_pose = Arc::clone(&state.start_pose);
-        self.settings.clone_from(&state.settings);
-        // Without new memory.
-        let (own, saved) = (&mut self.course, &state.course);
-        own.inputs.clone_from(&saved.inputs);
-        own.force_inputs.clone_from(&saved.force_inputs);
-        own.lifted.clone_from(&saved.lifted);
-        own.monitors.clone_from(&saved.monitors);
-        own.committed.clone_from(&saved.committed);
-        (own.committed_carryover).clone_from(&saved.committed_carryover);
-        own.committed_rates.clone_from(&saved.committed_rates);
-        own.path_progress = saved.path_progress;
-        own.progress = saved.progress;
-        own.time = saved.time;
-        own.near_singular = saved.near_singular;
+        self.course.clone_from(&state.course);
+        (self.solution.driver_rates).copy_from_slice(&state.driver_rates);
         let resumed = (self.solver).resume(&state.present, &state.present_carryover);
         debug_assert!(resumed, "the choices were checked when the state was read");
-        self.at_committed = state.at_committed;
-        self.driver_rates.clone_from(&state.driver_rates);
-        self.sources.clone_from(&state.sources);
-        self.set_freshness(state.freshness);
+        self.reals.invalidate();
         self.parts = None;
     }
 
@@ -123,16 +68,16 @@ impl MechanismModel {
     pub(super) fn check_state(&mut self, state: &mut MechanismState) -> Result<(), String> {
         // Derived parameters follow from the others.
         self.mechanism
-            .derive_parameters(&mut state.settings.parameters);
+            .derive_parameters(&mut state.course.parameters);
         for variable in &self.variables {
             if variable.causality == Causality::Parameter
                 && let Quantity::Parameter(parameter) = variable.quantity
             {
-                let value = state.settings.parameters[parameter.index()];
+                let value = state.course.parameters[parameter.index()];
                 check_value(variable, value).map_err(|error| error.to_string())?;
             }
         }
-        self.check_pose(&state.start_pose)?;
+        self.check_pose(&state.course.start_pose)?;
         for (pose, carryover) in [
             (&state.course.committed, &state.course.committed_carryover),
             (&state.present, &state.present_carryover),
@@ -143,8 +88,8 @@ impl MechanismModel {
             }
         }
         // The usual case, in which instances share one copy.
-        if state.start_pose == self.file_pose {
-            state.start_pose = Arc::clone(&self.file_pose);
+        if state.course.start_pose == self.file_pose {
+            state.course.start_pose = Arc::clone(&self.file_pose);
         }
         Ok(())
     }
@@ -177,21 +122,22 @@ impl MechanismModel {
 impl MechanismState {
     pub(super) fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
         let Self {
-            start_pose,
-            settings,
             course,
+            driver_rates,
             present,
             present_carryover,
-            at_committed,
-            driver_rates,
-            sources,
-            freshness,
         } = self;
         let Course {
             time,
+            start_pose,
+            parameters,
+            rule,
             committed,
             committed_carryover,
             committed_rates,
+            at_committed,
+            freshness,
+            sources,
             inputs,
             force_inputs,
             lifted,
@@ -211,36 +157,25 @@ impl MechanismState {
             checked,
         } in [path_progress, progress]
         {
-            for count in [iterations, substeps, crossings, checked] {
-                codec.count(count)?;
-            }
+            codec.each([iterations, substeps, crossings, checked], Codec::count)?;
         }
         // Derived parameters may have any value: `check_state` derives them again.
-        for value in &mut settings.parameters {
-            codec.real(value)?;
-        }
-        codec.one_of(&mut settings.rule.rates, &RateSource::ALL)?;
-        codec.one_of(&mut settings.rule.extrapolation, &Extrapolation::ALL)?;
+        codec.each(parameters, Codec::real)?;
+        codec.one_of(&mut rule.rates, &RateSource::ALL)?;
+        codec.one_of(&mut rule.extrapolation, &Extrapolation::ALL)?;
         for (input, monitor) in inputs.iter_mut().zip(monitors) {
             input.visit(codec)?;
             monitor.visit(codec)?;
         }
-        for input in force_inputs {
-            input.visit(codec)?;
-        }
-        for lifted in lifted {
-            codec.flag(lifted)?;
-        }
+        codec.each(force_inputs, |codec, input| input.visit(codec))?;
+        codec.each(lifted, Codec::flag)?;
         // A prescribed motion may have infinite rates, which the getters refuse.
         for rates in driver_rates.iter_mut().chain(committed_rates) {
             codec.real(&mut rates.value)?;
-            for rate in &mut rates.derivatives {
-                codec.real(rate)?;
-            }
+            codec.each(&mut rates.derivatives, Codec::real)?;
         }
-        for source in sources.iter_mut().flatten() {
-            codec.one_of(source, &Source::ALL)?;
-        }
+        let sources = sources.iter_mut().flatten();
+        codec.each(sources, |codec, source| codec.one_of(source, &Source::ALL))?;
         let (rows, unknowns) = (committed.turns.len(), committed.q.len());
         for carryover in [committed_carryover, present_carryover] {
             visit_carryover(carryover, rows, unknowns, codec)?;
@@ -282,9 +217,7 @@ fn visit_carryover(
             codec.resize(list, unknowns, || 0.0)?;
         }
         let numbers = [radius, off, off_single, driver_deviation];
-        for number in start.iter_mut().chain(way).chain(numbers) {
-            codec.real(number)?;
-        }
+        codec.each(start.iter_mut().chain(way).chain(numbers), Codec::real)?;
     }
     Ok(())
 }
@@ -296,7 +229,7 @@ fn visit_indices(
     codec: &mut impl Codec,
 ) -> Result<(), Unreadable> {
     codec.resize(list, most, || 0)?;
-    list.iter_mut().try_for_each(|index| codec.index(index))
+    codec.each(list, Codec::index)
 }
 
 fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable> {
@@ -309,10 +242,11 @@ fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable>
         crossings,
     } = pose;
     codec.finite(time)?;
-    for value in parameters.iter_mut().chain(drivers).chain(&mut *q) {
-        codec.finite(value)?;
-    }
-    turns.iter_mut().try_for_each(|turn| codec.signed(turn))?;
+    codec.each(
+        parameters.iter_mut().chain(drivers).chain(&mut *q),
+        Codec::finite,
+    )?;
+    codec.each(turns, Codec::signed)?;
     let unknowns = q.len();
     codec.resize(crossings, unknowns, || {
         Arc::new(Crossing {
@@ -324,9 +258,9 @@ fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable>
             free: Vec::new(),
         })
     })?;
-    crossings
-        .iter_mut()
-        .try_for_each(|crossing| visit_crossing(Arc::make_mut(crossing), unknowns, codec))
+    codec.each(crossings, |codec, crossing| {
+        visit_crossing(Arc::make_mut(crossing), unknowns, codec)
+    })
 }
 
 fn visit_crossing(
@@ -347,9 +281,7 @@ fn visit_crossing(
     codec.finite(center)?;
     codec.finite(half_width)?;
     codec.resize(coefficients, unknowns, Polynomial::default)?;
-    for value in coefficients.iter_mut().flatten().flatten() {
-        codec.finite(value)?;
-    }
+    codec.each(coefficients.iter_mut().flatten().flatten(), Codec::finite)?;
     codec.resize(free, unknowns, || 0.0)?;
-    free.iter_mut().try_for_each(|value| codec.finite(value))
+    codec.each(free, Codec::finite)
 }

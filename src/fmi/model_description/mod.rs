@@ -1,17 +1,13 @@
-//! `modelDescription.xml`: its content, and one writer per version of the standard.
+//! `modelDescription.xml`: its content, and its writer for both versions of the standard.
 //!
 //! | file | subject |
 //! |---|---|
 //! | `xml` | helpers of the writers |
-//! | `elements` | elements that the versions have alike |
-//! | `fmi2` | FMI 2.0: 2.2, 3.3.1 and 4.3.1 |
+//! | `writer` | the elements of the file |
 //! | `terminals` | terminals and icon |
-//! | `fmi3` | FMI 3.0: 2.4, 3.4 and 4.4 |
 
-mod elements;
-mod fmi2;
-mod fmi3;
 pub(super) mod terminals;
+mod writer;
 mod xml;
 
 use std::collections::BTreeMap;
@@ -82,23 +78,23 @@ pub struct Capabilities {
     /// Whether input derivatives have an effect.
     pub interpolates_inputs: bool,
     /// Highest order of output derivatives.
-    pub output_derivatives: u32,
+    pub output_derivatives: i32,
     /// Whether the model provides directional derivatives.
     pub directional_derivatives: bool,
     /// Whether the model takes steps in parts.
     pub intermediate_update: bool,
 }
 
-/// A computed variable and its dependencies, as indices counted from 1.
+/// A computed variable and its dependencies, by value reference.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unknown {
-    /// Index of the variable.
-    pub index: usize,
-    /// Indices of the variables that it depends on, and the kind of each dependency.
-    pub dependencies: BTreeMap<usize, DependencyKind>,
-    /// Indices of the parameters that it depends on after initialization, which FMI 3.0 counts
-    /// among the dependencies of an output (2.4.8).
-    pub parameters: BTreeMap<usize, DependencyKind>,
+    /// Value reference of the variable.
+    pub value_reference: u32,
+    /// Kinds of dependency on other variables.
+    pub dependencies: BTreeMap<u32, DependencyKind>,
+    /// Kinds of dependency on parameters after initialization, which FMI 3.0 counts among the
+    /// dependencies of an output (2.4.8).
+    pub parameters: BTreeMap<u32, DependencyKind>,
 }
 
 /// Kind of a dependency (FMI 2.0, 2.2.8).
@@ -127,9 +123,6 @@ impl<Q> ModelDescription<'_, Q> {
     /// same bytes.
     #[must_use]
     pub fn write(&self, generated: Option<&str>) -> Vec<u8> {
-        xml::document(|xml| match self.standard {
-            Version::Fmi2 => fmi2::write(xml, self, generated),
-            Version::Fmi3 => fmi3::write(xml, self, generated),
-        })
+        xml::document(|xml| writer::write(xml, self, generated))
     }
 }

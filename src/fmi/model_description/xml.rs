@@ -3,10 +3,13 @@
 use std::io;
 
 use quick_xml::events::{BytesDecl, Event};
-use quick_xml::writer::{ElementWriter, Writer};
+use quick_xml::writer::Writer;
 
 /// A writer to memory.
 pub(super) type Xml = Writer<Vec<u8>>;
+
+/// A writer of one element to memory.
+pub(super) type ElementWriter<'a> = quick_xml::writer::ElementWriter<'a, Vec<u8>>;
 
 /// Returns the bytes of a document whose root element `root` writes.
 pub(super) fn document(root: impl FnOnce(&mut Xml) -> io::Result<()>) -> Vec<u8> {
@@ -31,7 +34,7 @@ pub(super) trait Element: Sized {
     fn empty(self) -> io::Result<()>;
 }
 
-impl Element for ElementWriter<'_, Vec<u8>> {
+impl Element for ElementWriter<'_> {
     fn with_optional(mut self, attributes: &[(&str, Option<&str>)]) -> Self {
         for &(name, value) in attributes {
             if let Some(value) = value {

@@ -118,110 +118,44 @@ pub enum Phase {
     Halted,
 }
 
-/// Declares the calls with the names of their C functions.
+/// Declares the calls.
 macro_rules! calls {
-    ($($call:ident = $first:ident $(| $second:ident)?;)*) => {
-        /// A function of the C interfaces that is allowed in some states only.
+    ($($call:ident)*) => {
+        /// A function of the C interfaces that is allowed in some states only, by the end of its name
+        /// in FMI 2.0.
+        ///
+        /// Functions of FMI 3.0 under another name: `fmi3GetFloat64` and `fmi3SetFloat64` are
+        /// `GetReal` and `SetReal`, those of Int64 `GetInteger` and `SetInteger`,
+        /// `fmi3UpdateDiscreteStates` is `NewDiscreteStates`, `fmi3GetContinuousStateDerivatives`
+        /// is `GetDerivatives`, and `fmi3GetOutputDerivatives` `GetRealOutputDerivatives`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Call {
-            $(#[doc = concat!("`", stringify!($first), "`" $(, ", `", stringify!($second), "`")?)]
-            $call,)*
+            $(#[doc = concat!("`", stringify!($call), "`.")] $call,)*
         }
 
         impl Call {
             /// All calls.
             pub const ALL: &'static [Self] = &[$(Self::$call),*];
-
-            /// Returns the names of the C functions, at most one of each version.
-            const fn functions(self) -> &'static [&'static str] {
-                match self {
-                    $(Self::$call => &[stringify!($first) $(, stringify!($second))?],)*
-                }
-            }
         }
     };
 }
 
 calls! {
-    SetDebugLogging = fmi2SetDebugLogging | fmi3SetDebugLogging;
-    SetupExperiment = fmi2SetupExperiment;
-    EnterInitializationMode = fmi2EnterInitializationMode | fmi3EnterInitializationMode;
-    ExitInitializationMode = fmi2ExitInitializationMode | fmi3ExitInitializationMode;
-    Terminate = fmi2Terminate | fmi3Terminate;
-    Reset = fmi2Reset | fmi3Reset;
-    GetReal = fmi2GetReal | fmi3GetFloat64;
-    GetInteger = fmi2GetInteger | fmi3GetInt64;
-    GetBoolean = fmi2GetBoolean | fmi3GetBoolean;
-    GetString = fmi2GetString | fmi3GetString;
-    SetReal = fmi2SetReal | fmi3SetFloat64;
-    SetInteger = fmi2SetInteger | fmi3SetInt64;
-    SetBoolean = fmi2SetBoolean | fmi3SetBoolean;
-    SetString = fmi2SetString | fmi3SetString;
-    GetFMUstate = fmi2GetFMUstate | fmi3GetFMUState;
-    SetFMUstate = fmi2SetFMUstate | fmi3SetFMUState;
-    FreeFMUstate = fmi2FreeFMUstate | fmi3FreeFMUState;
-    SerializedFMUstateSize = fmi2SerializedFMUstateSize | fmi3SerializedFMUStateSize;
-    SerializeFMUstate = fmi2SerializeFMUstate | fmi3SerializeFMUState;
-    DeSerializeFMUstate = fmi2DeSerializeFMUstate | fmi3DeserializeFMUState;
-    GetDirectionalDerivative = fmi2GetDirectionalDerivative | fmi3GetDirectionalDerivative;
-    EnterEventMode = fmi2EnterEventMode | fmi3EnterEventMode;
-    NewDiscreteStates = fmi2NewDiscreteStates | fmi3UpdateDiscreteStates;
-    EnterContinuousTimeMode = fmi2EnterContinuousTimeMode | fmi3EnterContinuousTimeMode;
-    CompletedIntegratorStep = fmi2CompletedIntegratorStep | fmi3CompletedIntegratorStep;
-    SetTime = fmi2SetTime | fmi3SetTime;
-    SetContinuousStates = fmi2SetContinuousStates | fmi3SetContinuousStates;
-    GetDerivatives = fmi2GetDerivatives | fmi3GetContinuousStateDerivatives;
-    GetEventIndicators = fmi2GetEventIndicators | fmi3GetEventIndicators;
-    GetContinuousStates = fmi2GetContinuousStates | fmi3GetContinuousStates;
-    GetNominalsOfContinuousStates =
-        fmi2GetNominalsOfContinuousStates | fmi3GetNominalsOfContinuousStates;
-    SetRealInputDerivatives = fmi2SetRealInputDerivatives;
-    GetRealOutputDerivatives = fmi2GetRealOutputDerivatives | fmi3GetOutputDerivatives;
-    DoStep = fmi2DoStep | fmi3DoStep;
-    CancelStep = fmi2CancelStep;
-    GetStatus = fmi2GetStatus;
-    GetRealStatus = fmi2GetRealStatus;
-    GetIntegerStatus = fmi2GetIntegerStatus;
-    GetBooleanStatus = fmi2GetBooleanStatus;
-    GetStringStatus = fmi2GetStringStatus;
-    GetFloat32 = fmi3GetFloat32;
-    SetFloat32 = fmi3SetFloat32;
-    GetInt8 = fmi3GetInt8;
-    SetInt8 = fmi3SetInt8;
-    GetUInt8 = fmi3GetUInt8;
-    SetUInt8 = fmi3SetUInt8;
-    GetInt16 = fmi3GetInt16;
-    SetInt16 = fmi3SetInt16;
-    GetUInt16 = fmi3GetUInt16;
-    SetUInt16 = fmi3SetUInt16;
-    GetInt32 = fmi3GetInt32;
-    SetInt32 = fmi3SetInt32;
-    GetUInt32 = fmi3GetUInt32;
-    SetUInt32 = fmi3SetUInt32;
-    GetUInt64 = fmi3GetUInt64;
-    SetUInt64 = fmi3SetUInt64;
-    GetBinary = fmi3GetBinary;
-    SetBinary = fmi3SetBinary;
-    GetClock = fmi3GetClock;
-    SetClock = fmi3SetClock;
-    GetNumberOfVariableDependencies = fmi3GetNumberOfVariableDependencies;
-    GetVariableDependencies = fmi3GetVariableDependencies;
-    GetAdjointDerivative = fmi3GetAdjointDerivative;
-    EnterConfigurationMode = fmi3EnterConfigurationMode;
-    ExitConfigurationMode = fmi3ExitConfigurationMode;
-    GetIntervalDecimal = fmi3GetIntervalDecimal;
-    GetIntervalFraction = fmi3GetIntervalFraction;
-    GetShiftDecimal = fmi3GetShiftDecimal;
-    GetShiftFraction = fmi3GetShiftFraction;
-    SetIntervalDecimal = fmi3SetIntervalDecimal;
-    SetIntervalFraction = fmi3SetIntervalFraction;
-    SetShiftDecimal = fmi3SetShiftDecimal;
-    SetShiftFraction = fmi3SetShiftFraction;
-    EvaluateDiscreteStates = fmi3EvaluateDiscreteStates;
-    GetNumberOfEventIndicators = fmi3GetNumberOfEventIndicators;
-    GetNumberOfContinuousStates = fmi3GetNumberOfContinuousStates;
-    EnterStepMode = fmi3EnterStepMode;
-    ActivateModelPartition = fmi3ActivateModelPartition;
+    SetDebugLogging SetupExperiment EnterInitializationMode ExitInitializationMode Terminate
+    Reset GetReal GetInteger GetBoolean GetString SetReal SetInteger SetBoolean SetString
+    GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate
+    DeSerializeFMUstate GetDirectionalDerivative EnterEventMode NewDiscreteStates
+    EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates
+    GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
+    SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus
+    GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus GetFloat32 SetFloat32
+    GetInt8 SetInt8 GetUInt8 SetUInt8 GetInt16 SetInt16 GetUInt16 SetUInt16 GetInt32
+    SetInt32 GetUInt32 SetUInt32 GetUInt64 SetUInt64 GetBinary SetBinary GetClock SetClock
+    GetNumberOfVariableDependencies GetVariableDependencies GetAdjointDerivative
+    EnterConfigurationMode ExitConfigurationMode GetIntervalDecimal GetIntervalFraction
+    GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal
+    SetShiftFraction EvaluateDiscreteStates GetNumberOfEventIndicators
+    GetNumberOfContinuousStates EnterStepMode ActivateModelPartition
 }
 
 /// Sets of states that allow each call, one bit per state: every call looks here, and a bit is
@@ -238,30 +172,12 @@ pub(super) fn allowed(version: Version, interface: Interface) -> &'static Allowe
 }
 
 impl Call {
-    /// Returns the name of the C function; that of the other version if this one has none.
-    #[must_use]
-    pub fn name(self, version: Version) -> &'static str {
-        self.function(version).unwrap_or(self.functions()[0])
-    }
-
-    /// Returns the name of the C function of one version.
-    fn function(self, version: Version) -> Option<&'static str> {
-        let prefix = match version {
-            Version::Fmi2 => "fmi2",
-            Version::Fmi3 => "fmi3",
-        };
-        let mut functions = self.functions().iter().copied();
-        functions.find(|function| function.starts_with(prefix))
-    }
-
     /// Returns the states that allow the call; none if it belongs to the other interface or to
     /// another version.
     #[must_use]
-    pub fn allowed_in(self, version: Version, interface: Interface) -> &'static [State] {
-        match version {
-            Version::Fmi2 => fmi2::allowed_in(self, interface),
-            Version::Fmi3 => fmi3::allowed_in(self, interface),
-        }
+    pub fn allowed_in(self, version: Version, interface: Interface) -> Vec<State> {
+        let is_allowed = |state: &State| self.is_allowed_in(version, interface, *state);
+        State::ALL.into_iter().filter(is_allowed).collect()
     }
 
     /// Returns whether a state allows the call.
@@ -302,53 +218,6 @@ macro_rules! table {
             )*
             allowed
         };
-
-        /// Returns the states that allow a call.
-        pub(super) fn allowed_in(call: Call, interface: Interface) -> &'static [State] {
-            match (call, interface) {
-                $(
-                    ($(Call::$call)|+, Interface::ModelExchange) => &[$(State::$me),*],
-                    ($(Call::$call)|+, Interface::CoSimulation) => &[$(State::$cs),*],
-                )*
-                _ => &[],
-            }
-        }
     };
 }
 use table;
-
-#[cfg(test)]
-mod tests {
-    use super::{Call, Interface, State, Version};
-
-    #[test]
-    fn bits_and_lists_agree() {
-        for version in Version::ALL {
-            for &call in Call::ALL {
-                for interface in Interface::ALL {
-                    for state in State::ALL {
-                        assert_eq!(
-                            call.is_allowed_in(version, interface, state),
-                            call.allowed_in(version, interface).contains(&state),
-                            "{version}, {call:?}, {interface}, {state}"
-                        );
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn every_call_that_a_version_allows_has_a_function_of_it() {
-        for version in Version::ALL {
-            for &call in Call::ALL {
-                let is_allowed = |interface| !call.allowed_in(version, interface).is_empty();
-                let is_known = Interface::ALL.into_iter().any(is_allowed);
-                assert!(
-                    !is_known || call.function(version).is_some(),
-                    "{version}, {call:?}"
-                );
-            }
-        }
-    }
-}

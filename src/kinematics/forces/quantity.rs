@@ -3,7 +3,7 @@
 use crate::mechanism::{DriverId, Load, Mechanism};
 
 /// A force, an energy or an inertia of a mechanism.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ForceQuantity {
     /// Generalized force that a driver exerts, conjugate to its coordinate \[N or N m\].
     Effort(DriverId),

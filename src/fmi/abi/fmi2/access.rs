@@ -1,76 +1,66 @@
 //! Setting and getting variables.
 
-use super::types::{
-    fmi2Boolean, fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2ValueReference,
-};
+use std::ffi::c_char;
 
 use crate::fmi::Call;
-use crate::fmi::abi::arguments::{Room, slice};
+use crate::fmi::abi::arguments::{fill, room, slice};
 use crate::fmi::abi::calls::instance_calls;
 
 instance_calls! {
-    fmi2Component => fmi2Status;
     /// `fmi2GetReal`.
-    fmi2GetReal(vr: *const fmi2ValueReference, nvr: usize, value: *mut fmi2Real) = |instance| {
+    fmi2GetReal(vr: *const u32, nvr: usize, value: *mut f64) = |instance| {
         let vr = slice("vr", vr, nvr)?;
-        let room = Room::new("value", value, nvr)?;
-        instance.reals(vr)?.write_to(room.items());
+        let room = room("value", value, nvr)?;
+        instance.reals(vr)?.write_to(room);
         Ok(())
     };
     /// `fmi2SetReal`.
-    fmi2SetReal(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2Real) = |instance| {
+    fmi2SetReal(vr: *const u32, nvr: usize, value: *const f64) = |instance| {
         let vr = slice("vr", vr, nvr)?;
-        Ok(instance.set_real(vr, slice("value", value, nvr)?)?)
+        instance.set_real(vr, slice("value", value, nvr)?)
     };
     /// `fmi2GetInteger`: counts of the solver, and the choices.
-    fmi2GetInteger(vr: *const fmi2ValueReference, nvr: usize, value: *mut fmi2Integer) = |instance| {
+    fmi2GetInteger(vr: *const u32, nvr: usize, value: *mut i32) = |instance| {
         let vr = slice("vr", vr, nvr)?;
-        let room = Room::new("value", value, nvr)?;
-        room.fill(instance.integers(vr)?);
+        let room = room("value", value, nvr)?;
+        fill(room, instance.integers(vr)?);
         Ok(())
     };
     /// `fmi2SetInteger`.
-    fmi2SetInteger(vr: *const fmi2ValueReference, nvr: usize, value: *const fmi2Integer) = |instance| {
+    fmi2SetInteger(vr: *const u32, nvr: usize, value: *const i32) = |instance| {
         let vr = slice("vr", vr, nvr)?;
-        Ok(instance.set_integer(vr, slice("value", value, nvr)?)?)
+        instance.set_integer(vr, slice("value", value, nvr)?)
+    };
+    /// `fmi2GetBoolean`: there are no Boolean variables.
+    fmi2GetBoolean(vr: *const u32, nvr: usize, _: *mut i32) = |instance| {
+        instance.no_variables(Call::GetBoolean, "Boolean", slice("vr", vr, nvr)?)
+    };
+    /// `fmi2SetBoolean`: there are no Boolean variables.
+    fmi2SetBoolean(vr: *const u32, nvr: usize, _: *const i32) = |instance| {
+        instance.no_variables(Call::SetBoolean, "Boolean", slice("vr", vr, nvr)?)
+    };
+    /// `fmi2GetString`: there are no String variables.
+    fmi2GetString(vr: *const u32, nvr: usize, _: *mut *const c_char) = |instance| {
+        instance.no_variables(Call::GetString, "String", slice("vr", vr, nvr)?)
+    };
+    /// `fmi2SetString`: there are no String variables.
+    fmi2SetString(vr: *const u32, nvr: usize, _: *const *const c_char) = |instance| {
+        instance.no_variables(Call::SetString, "String", slice("vr", vr, nvr)?)
     };
     /// `fmi2GetDirectionalDerivative`.
     fmi2GetDirectionalDerivative(
-        vr_unknown: *const fmi2ValueReference,
+        vr_unknown: *const u32,
         n_unknown: usize,
-        vr_known: *const fmi2ValueReference,
+        vr_known: *const u32,
         n_known: usize,
-        dv_known: *const fmi2Real,
-        dv_unknown: *mut fmi2Real,
+        dv_known: *const f64,
+        dv_unknown: *mut f64,
     ) = |instance| {
         let unknowns = slice("vUnknown_ref", vr_unknown, n_unknown)?;
         let knowns = slice("vKnown_ref", vr_known, n_known)?;
         let changes = slice("dvKnown", dv_known, n_known)?;
-        let room = Room::new("dvUnknown", dv_unknown, n_unknown)?;
-        room.fill(instance.directional_derivative(unknowns, knowns, changes)?);
+        let room = room("dvUnknown", dv_unknown, n_unknown)?;
+        fill(room, instance.directional_derivative(unknowns, knowns, changes)?);
         Ok(())
     };
-}
-
-/// Defines the access functions of types that no variable has, which touch no values: right for an empty
-/// list only.
-macro_rules! without_variables {
-    ($($function:ident($call:ident, $value:ty, $type:literal);)*) => {
-        instance_calls! {
-            fmi2Component => fmi2Status;
-            $(
-                #[doc = concat!("`", stringify!($function), "`: there are no ", $type, " variables.")]
-                $function(vr: *const fmi2ValueReference, nvr: usize, _: $value) = |instance| {
-                    Ok(instance.no_variables(Call::$call, $type, slice("vr", vr, nvr)?)?)
-                };
-            )*
-        }
-    };
-}
-
-without_variables! {
-    fmi2GetBoolean(GetBoolean, *mut fmi2Boolean, "Boolean");
-    fmi2SetBoolean(SetBoolean, *const fmi2Boolean, "Boolean");
-    fmi2GetString(GetString, *mut fmi2String, "String");
-    fmi2SetString(SetString, *const fmi2String, "String");
 }

@@ -1,10 +1,11 @@
 //! Getting, setting and serializing the FMU state.
 
-use super::types::{fmi2Byte, fmi2Component, fmi2Status};
+use std::ffi::c_char;
+
 use crate::fmi::abi::saved_state::fmu_state_calls;
 
 fmu_state_calls! {
-    fmi2Component => fmi2Status, fmi2Byte;
+    c_char;
     fmi2GetFMUstate fmi2SetFMUstate fmi2FreeFMUstate
     fmi2SerializedFMUstateSize fmi2SerializeFMUstate fmi2DeSerializeFMUstate
 }

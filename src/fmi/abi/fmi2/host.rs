@@ -2,14 +2,14 @@
 
 use std::ffi::{CString, c_void};
 
-use super::types::{fmi2CallbackFunctions, fmi2CallbackLogger};
+use super::types::{Logger, fmi2CallbackFunctions};
 use crate::fmi::abi::component::status_code;
 use crate::fmi::abi::message::{c_string, message_text};
 use crate::fmi::{Category, Sink, Status};
 
 /// The host's logger, with what it wants to be called with.
 pub(super) struct HostLogger {
-    callback: fmi2CallbackLogger,
+    callback: Logger,
     environment: *mut c_void,
     instance_name: CString,
 }

@@ -3,15 +3,11 @@
 use std::ffi::c_char;
 use std::ptr::null_mut;
 
-use super::types::{
-    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
-    fmi2Real, fmi2Status, fmi2String, fmi2Type,
-};
-
 use super::host::HostLogger;
-use crate::fmi::abi::arguments::text;
+use super::types::{fmi2CallbackFunctions, fmi2CoSimulation, fmi2ModelExchange};
+use crate::fmi::abi::arguments::{refuse, text};
 use crate::fmi::abi::calls::instance_calls;
-use crate::fmi::abi::component::{CallError, Component};
+use crate::fmi::abi::component::{Component, Handle};
 use crate::fmi::abi::instantiation::{instantiate, texts};
 use crate::fmi::abi::message::set_debug_logging;
 use crate::fmi::{Category, Error, Instance, Interface, Sink, Status, Version, resource_path};
@@ -37,14 +33,14 @@ pub extern "C" fn fmi2GetVersion() -> *const c_char {
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
-    instance_name: fmi2String,
-    fmu_type: fmi2Type,
-    fmu_guid: fmi2String,
-    fmu_resource_location: fmi2String,
+    instance_name: *const c_char,
+    fmu_type: u32,
+    fmu_guid: *const c_char,
+    fmu_resource_location: *const c_char,
     functions: *const fmi2CallbackFunctions,
-    _visible: fmi2Boolean,
-    logging_on: fmi2Boolean,
-) -> fmi2Component {
+    _visible: i32,
+    logging_on: i32,
+) -> Handle {
     if functions.is_null() || !functions.is_aligned() {
         return null_mut();
     }
@@ -62,8 +58,8 @@ pub unsafe extern "C" fn fmi2Instantiate(
             fmi2ModelExchange => Interface::ModelExchange,
             fmi2CoSimulation => Interface::CoSimulation,
             other => {
-                let message = format!("`fmuType` {other} is neither of the two interfaces");
-                return Err(CallError::Argument(message));
+                let why = format!("{other} is neither of the two interfaces");
+                return Err(refuse("fmuType", why));
             }
         };
         let folder = resource_path(resources).map_err(Error::from)?;
@@ -89,38 +85,37 @@ pub unsafe extern "C" fn fmi2Instantiate(
 ///
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
+pub unsafe extern "C" fn fmi2FreeInstance(c: Handle) {
     // SAFETY: the host's promise.
     unsafe { Component::take_back(c) };
 }
 
 instance_calls! {
-    fmi2Component => fmi2Status;
     /// `fmi2SetDebugLogging`.
     fmi2SetDebugLogging(
-        logging_on: fmi2Boolean,
+        logging_on: i32,
         n_categories: usize,
-        categories: *const fmi2String,
+        categories: *const *const c_char,
     ) = |instance| {
         set_debug_logging(instance, logging_on != 0, categories, n_categories)
     };
     /// `fmi2SetupExperiment`.
     fmi2SetupExperiment(
-        _tolerance_defined: fmi2Boolean,
-        _tolerance: fmi2Real,
-        start_time: fmi2Real,
-        stop_time_defined: fmi2Boolean,
-        stop_time: fmi2Real,
+        _tolerance_defined: i32,
+        _tolerance: f64,
+        start_time: f64,
+        stop_time_defined: i32,
+        stop_time: f64,
     ) = |instance| {
         let stop_time = (stop_time_defined != 0).then_some(stop_time);
-        Ok(instance.setup_experiment(start_time, stop_time)?)
+        instance.setup_experiment(start_time, stop_time)
     };
     /// `fmi2EnterInitializationMode`.
-    fmi2EnterInitializationMode() = |instance| Ok(instance.enter_initialization_mode()?);
+    fmi2EnterInitializationMode() = |instance| instance.enter_initialization_mode();
     /// `fmi2ExitInitializationMode`.
-    fmi2ExitInitializationMode() = |instance| Ok(instance.exit_initialization_mode()?);
+    fmi2ExitInitializationMode() = |instance| instance.exit_initialization_mode();
     /// `fmi2Terminate`.
-    fmi2Terminate() = |instance| Ok(instance.terminate()?);
+    fmi2Terminate() = |instance| instance.terminate();
     /// `fmi2Reset`.
-    fmi2Reset() = |instance| Ok(instance.reset()?);
+    fmi2Reset() = |instance| instance.reset();
 }

@@ -1,5 +1,6 @@
 //! Cases that no host can bring about, or see, by itself. `tests/c_host` has the rest.
 
+use std::ffi::c_char;
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use super::fmu_state::*;
 use super::lifecycle::*;
 use super::stepping::*;
 use super::types::*;
-use crate::fmi::abi::component::{Component, status_code};
+use crate::fmi::abi::component::{Component, Handle, StatusCode, status_code};
 use crate::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status};
 use crate::mechanism::{Mechanism, Source};
 
@@ -37,7 +38,7 @@ impl Sink for Breaking {
     }
 }
 
-fn component(sink: impl Sink + Send + 'static) -> fmi2Component {
+fn component(sink: impl Sink + Send + 'static) -> Handle {
     let text = include_str!("../../../../mechanisms/pendulum.toml");
     let (mechanism, _) = Mechanism::parse(&Source::new("pendulum.toml", text)).unwrap();
     let model = MechanismModel::new(mechanism.into(), Interface::CoSimulation).unwrap();
@@ -49,7 +50,7 @@ fn component(sink: impl Sink + Send + 'static) -> fmi2Component {
 /// # Safety
 ///
 /// As for the functions.
-unsafe fn answers(c: fmi2Component) -> [fmi2Status; 40] {
+unsafe fn answers(c: Handle) -> [StatusCode; 40] {
     // SAFETY: promised by the caller; null pointers are legal arguments or refused.
     unsafe {
         [
@@ -238,18 +239,18 @@ check_layouts! {
 }
 
 type Instantiate<Functions> = unsafe extern "C" fn(
-    fmi2String,
-    fmi2Type,
-    fmi2String,
-    fmi2String,
+    *const c_char,
+    u32,
+    *const c_char,
+    *const c_char,
     *const Functions,
-    fmi2Boolean,
-    fmi2Boolean,
-) -> fmi2Component;
+    i32,
+    i32,
+) -> Handle;
 const _: Instantiate<fmi2CallbackFunctions> = fmi2Instantiate;
 const _: header::fmi2InstantiateTYPE = None::<Instantiate<header::fmi2CallbackFunctions>>;
 
-type NewDiscreteStates<Info> = unsafe extern "C" fn(fmi2Component, *mut Info) -> fmi2Status;
+type NewDiscreteStates<Info> = unsafe extern "C" fn(Handle, *mut Info) -> StatusCode;
 const _: NewDiscreteStates<fmi2EventInfo> = fmi2NewDiscreteStates;
 const _: header::fmi2NewDiscreteStatesTYPE = None::<NewDiscreteStates<header::fmi2EventInfo>>;
 

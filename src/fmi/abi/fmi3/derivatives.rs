@@ -1,30 +1,30 @@
 //! Partial derivatives, output derivatives and dependencies.
 
 use super::access::check_count;
-use super::types::{
-    fmi3Constant, fmi3DependencyKind, fmi3Dependent, fmi3Float64, fmi3Instance, fmi3Int32,
-    fmi3Status, fmi3ValueReference,
-};
-use crate::fmi::abi::arguments::{Room, slice, write};
+use crate::fmi::abi::arguments::{fill, room, slice, write};
 use crate::fmi::abi::calls::instance_calls;
 use crate::fmi::{Call, DependencyKind};
+
+/// Dependency with a constant factor, an `fmi3DependencyKind`.
+pub(super) const fmi3Constant: u32 = 1;
+/// Dependency without a particular structure, an `fmi3DependencyKind`.
+pub(super) const fmi3Dependent: u32 = 5;
 
 /// Defines the functions of partial derivatives, each with the lengths of its seed and of its
 /// sensitivity for some unknowns and knowns.
 macro_rules! partial_derivatives {
     ($($(#[$doc:meta])* $function:ident = $method:ident, $lengths:expr;)*) => {
         instance_calls! {
-            fmi3Instance => fmi3Status;
-            $(
+                    $(
                 $(#[$doc])*
                 $function(
-                    unknowns: *const fmi3ValueReference,
+                    unknowns: *const u32,
                     n_unknowns: usize,
-                    knowns: *const fmi3ValueReference,
+                    knowns: *const u32,
                     n_knowns: usize,
-                    seed: *const fmi3Float64,
+                    seed: *const f64,
                     n_seed: usize,
-                    sensitivity: *mut fmi3Float64,
+                    sensitivity: *mut f64,
                     n_sensitivity: usize,
                 ) = |instance| {
                     let [of_seed, of_sensitivity] = ($lengths)(n_unknowns, n_knowns);
@@ -33,8 +33,8 @@ macro_rules! partial_derivatives {
                     let unknowns = slice("unknowns", unknowns, n_unknowns)?;
                     let knowns = slice("knowns", knowns, n_knowns)?;
                     let seed = slice("seed", seed, n_seed)?;
-                    let room = Room::new("sensitivity", sensitivity, n_sensitivity)?;
-                    room.fill(instance.$method(unknowns, knowns, seed)?);
+                    let room = room("sensitivity", sensitivity, n_sensitivity)?;
+                    fill(room, instance.$method(unknowns, knowns, seed)?);
                     Ok(())
                 };
             )*
@@ -50,25 +50,24 @@ partial_derivatives! {
 }
 
 instance_calls! {
-    fmi3Instance => fmi3Status;
     /// `fmi3GetOutputDerivatives`.
     fmi3GetOutputDerivatives(
-        value_references: *const fmi3ValueReference,
+        value_references: *const u32,
         n_value_references: usize,
-        orders: *const fmi3Int32,
-        values: *mut fmi3Float64,
+        orders: *const i32,
+        values: *mut f64,
         n_values: usize,
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
         let orders = slice("orders", orders, n_value_references)?;
-        let room = Room::new("values", values, n_values)?;
-        room.fill(instance.output_derivatives(references, orders)?);
+        let room = room("values", values, n_values)?;
+        fill(room, instance.output_derivatives(references, orders)?);
         Ok(())
     };
     /// `fmi3GetNumberOfVariableDependencies`.
     fmi3GetNumberOfVariableDependencies(
-        value_reference: fmi3ValueReference,
+        value_reference: u32,
         n_dependencies: *mut usize,
     ) = |instance| {
         let call = Call::GetNumberOfVariableDependencies;
@@ -77,25 +76,25 @@ instance_calls! {
     };
     /// `fmi3GetVariableDependencies`. Each variable has one element, for which the index 1 stands.
     fmi3GetVariableDependencies(
-        dependent: fmi3ValueReference,
+        dependent: u32,
         element_indices_of_dependent: *mut usize,
-        independents: *mut fmi3ValueReference,
+        independents: *mut u32,
         element_indices_of_independents: *mut usize,
-        dependency_kinds: *mut fmi3DependencyKind,
+        dependency_kinds: *mut u32,
         n_dependencies: usize,
     ) = |instance| {
         let found = instance.dependencies(Call::GetVariableDependencies, dependent)?;
         check_count("nDependencies", n_dependencies, found.len())?;
         let n = n_dependencies;
-        let of_dependent = Room::new("elementIndicesOfDependent", element_indices_of_dependent, n)?;
-        let variables = Room::new("independents", independents, n)?;
+        let of_dependent = room("elementIndicesOfDependent", element_indices_of_dependent, n)?;
+        let variables = room("independents", independents, n)?;
         let name = "elementIndicesOfIndependents";
-        let of_independents = Room::new(name, element_indices_of_independents, n)?;
-        let kinds = Room::new("dependencyKinds", dependency_kinds, n)?;
-        of_dependent.fill(found.iter().map(|_| 1));
-        variables.fill(found.iter().map(|(vr, _)| *vr));
-        of_independents.fill(found.iter().map(|_| 1));
-        kinds.fill(found.iter().map(|(_, kind)| match kind {
+        let of_independents = room(name, element_indices_of_independents, n)?;
+        let kinds = room("dependencyKinds", dependency_kinds, n)?;
+        fill(of_dependent, found.iter().map(|_| 1));
+        fill(variables, found.iter().map(|(vr, _)| *vr));
+        fill(of_independents, found.iter().map(|_| 1));
+        fill(kinds, found.iter().map(|(_, kind)| match kind {
             DependencyKind::Dependent => fmi3Dependent,
             DependencyKind::Constant => fmi3Constant,
         }));

@@ -1,10 +1,9 @@
 //! Getting, setting and serializing the FMU state.
 
-use super::types::{fmi3Byte, fmi3Instance, fmi3Status};
 use crate::fmi::abi::saved_state::fmu_state_calls;
 
 fmu_state_calls! {
-    fmi3Instance => fmi3Status, fmi3Byte;
+    u8;
     fmi3GetFMUState fmi3SetFMUState fmi3FreeFMUState
     fmi3SerializedFMUStateSize fmi3SerializeFMUState fmi3DeserializeFMUState
 }

@@ -1,21 +1,16 @@
 //! From instantiation to freeing: what changes the state without moving the mechanism.
 
-use std::ffi::c_char;
+use std::ffi::{c_char, c_void};
 use std::path::Path;
 
-use super::host::HostLogger;
-use super::types::{
-    fmi3Boolean, fmi3ClockUpdateCallback, fmi3Float64, fmi3Instance, fmi3InstanceEnvironment,
-    fmi3IntermediateUpdateCallback, fmi3LockPreemptionCallback, fmi3LogMessageCallback, fmi3Status,
-    fmi3String, fmi3UnlockPreemptionCallback, fmi3ValueReference,
-};
-use crate::fmi::abi::arguments::slice;
+use super::host::{HostLogger, LogMessage};
+use crate::fmi::abi::arguments::{refuse, slice};
 use crate::fmi::abi::calls::instance_calls;
-use crate::fmi::abi::component::{CallError, Component, Instance};
+use crate::fmi::abi::component::{Component, Handle, Instance};
 use crate::fmi::abi::instantiation::{instantiate, texts};
-use crate::fmi::abi::intermediate::IntermediateUpdate;
+use crate::fmi::abi::intermediate::{Callback, IntermediateUpdate};
 use crate::fmi::abi::message::set_debug_logging;
-use crate::fmi::{Call, Category, CoSimulation, Interface, Sink, Status, Version};
+use crate::fmi::{Call, Category, CoSimulation, Error, Interface, Sink, Status, Version};
 
 /// `fmi3GetVersion`: always `"3.0"`.
 #[unsafe(no_mangle)]
@@ -27,7 +22,7 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
 struct Arguments {
     call: &'static str,
     /// Name of the instance, instantiation token and path of the resources.
-    texts: [fmi3String; 3],
+    texts: [*const c_char; 3],
     logging_on: bool,
     logger: HostLogger,
 }
@@ -43,8 +38,8 @@ impl Arguments {
         self,
         interface: Interface,
         intermediate_update: Option<IntermediateUpdate>,
-        agree: impl FnOnce(&mut Instance) -> Result<(), CallError>,
-    ) -> fmi3Instance {
+        agree: impl FnOnce(&mut Instance) -> Result<(), Error>,
+    ) -> Handle {
         let make = || {
             let [name, token, path] = self.texts;
             let arguments = [
@@ -82,14 +77,14 @@ impl Arguments {
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateModelExchange(
-    instance_name: fmi3String,
-    instantiation_token: fmi3String,
-    resource_path: fmi3String,
-    _visible: fmi3Boolean,
-    logging_on: fmi3Boolean,
-    instance_environment: fmi3InstanceEnvironment,
-    log_message: fmi3LogMessageCallback,
-) -> fmi3Instance {
+    instance_name: *const c_char,
+    instantiation_token: *const c_char,
+    resource_path: *const c_char,
+    _visible: bool,
+    logging_on: bool,
+    instance_environment: *mut c_void,
+    log_message: LogMessage,
+) -> Handle {
     let arguments = Arguments {
         call: "fmi3InstantiateModelExchange",
         texts: [instance_name, instantiation_token, resource_path],
@@ -109,26 +104,29 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
-    instance_name: fmi3String,
-    instantiation_token: fmi3String,
-    resource_path: fmi3String,
-    _visible: fmi3Boolean,
-    logging_on: fmi3Boolean,
-    event_mode_used: fmi3Boolean,
-    early_return_allowed: fmi3Boolean,
-    required_intermediate_variables: *const fmi3ValueReference,
+    instance_name: *const c_char,
+    instantiation_token: *const c_char,
+    resource_path: *const c_char,
+    _visible: bool,
+    logging_on: bool,
+    event_mode_used: bool,
+    early_return_allowed: bool,
+    required_intermediate_variables: *const u32,
     n_required_intermediate_variables: usize,
-    instance_environment: fmi3InstanceEnvironment,
-    log_message: fmi3LogMessageCallback,
-    intermediate_update: fmi3IntermediateUpdateCallback,
-) -> fmi3Instance {
+    instance_environment: *mut c_void,
+    log_message: LogMessage,
+    intermediate_update: Option<Callback>,
+) -> Handle {
     let arguments = Arguments {
         call: "fmi3InstantiateCoSimulation",
         texts: [instance_name, instantiation_token, resource_path],
         logging_on,
         logger: HostLogger::new(log_message, instance_environment),
     };
-    let callback = IntermediateUpdate::new(intermediate_update, instance_environment);
+    let intermediate_update = intermediate_update.map(|callback| IntermediateUpdate {
+        callback,
+        environment: instance_environment,
+    });
     let agree = |instance: &mut Instance| {
         // SAFETY: the host's promise.
         let required = unsafe {
@@ -139,19 +137,18 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
             )?
         };
         if !required.is_empty() && intermediate_update.is_none() {
-            let message = "`requiredIntermediateVariables` needs the callback \
-                           `intermediateUpdate`, which is a null pointer";
-            return Err(CallError::Argument(message.to_owned()));
+            let why = "needs the callback `intermediateUpdate`, which is a null pointer";
+            return Err(refuse("requiredIntermediateVariables", why));
         }
-        Ok(instance.agree(CoSimulation {
+        instance.agree(CoSimulation {
             event_mode_used,
             early_return_allowed,
             intermediate_update: intermediate_update.is_some(),
             required_intermediate_variables: required.to_vec(),
-        })?)
+        })
     };
     // SAFETY: the host's promise.
-    unsafe { arguments.instantiate(Interface::CoSimulation, Some(callback), agree) }
+    unsafe { arguments.instantiate(Interface::CoSimulation, intermediate_update, agree) }
 }
 
 /// `fmi3InstantiateScheduledExecution`: always null, since there are no clocks.
@@ -161,17 +158,17 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
-    instance_name: fmi3String,
-    instantiation_token: fmi3String,
-    resource_path: fmi3String,
-    _visible: fmi3Boolean,
-    logging_on: fmi3Boolean,
-    instance_environment: fmi3InstanceEnvironment,
-    log_message: fmi3LogMessageCallback,
-    _clock_update: fmi3ClockUpdateCallback,
-    _lock_preemption: fmi3LockPreemptionCallback,
-    _unlock_preemption: fmi3UnlockPreemptionCallback,
-) -> fmi3Instance {
+    instance_name: *const c_char,
+    instantiation_token: *const c_char,
+    resource_path: *const c_char,
+    _visible: bool,
+    logging_on: bool,
+    instance_environment: *mut c_void,
+    log_message: LogMessage,
+    _clock_update: Option<unsafe extern "C" fn(*mut c_void)>,
+    _lock_preemption: Option<unsafe extern "C" fn()>,
+    _unlock_preemption: Option<unsafe extern "C" fn()>,
+) -> Handle {
     let arguments = Arguments {
         call: "fmi3InstantiateScheduledExecution",
         texts: [instance_name, instantiation_token, resource_path],
@@ -179,7 +176,7 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
         logger: HostLogger::new(log_message, instance_environment),
     };
     let why = "the FMU is for co-simulation and model exchange, and has no clocks to be scheduled";
-    let make = || Err(CallError::Argument(why.to_owned()));
+    let make = || Err(Error::NotProvided { why });
     instantiate(make, |message| arguments.complain(message))
 }
 
@@ -189,42 +186,41 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
 ///
 /// The [host's promise](crate::fmi::abi#safety).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeInstance(instance: fmi3Instance) {
+pub unsafe extern "C" fn fmi3FreeInstance(instance: Handle) {
     // SAFETY: the host's promise.
     unsafe { Component::take_back(instance) };
 }
 
 instance_calls! {
-    fmi3Instance => fmi3Status;
     /// `fmi3SetDebugLogging`.
     fmi3SetDebugLogging(
-        logging_on: fmi3Boolean,
+        logging_on: bool,
         n_categories: usize,
-        categories: *const fmi3String,
+        categories: *const *const c_char,
     ) = |instance| {
         set_debug_logging(instance, logging_on, categories, n_categories)
     };
     /// `fmi3EnterInitializationMode`.
     fmi3EnterInitializationMode(
-        _tolerance_defined: fmi3Boolean,
-        _tolerance: fmi3Float64,
-        start_time: fmi3Float64,
-        stop_time_defined: fmi3Boolean,
-        stop_time: fmi3Float64,
+        _tolerance_defined: bool,
+        _tolerance: f64,
+        start_time: f64,
+        stop_time_defined: bool,
+        stop_time: f64,
     ) = |instance| {
         let stop_time = stop_time_defined.then_some(stop_time);
-        Ok(instance.enter_initialization_mode_at(start_time, stop_time)?)
+        instance.enter_initialization_mode_at(start_time, stop_time)
     };
     /// `fmi3ExitInitializationMode`.
-    fmi3ExitInitializationMode() = |instance| Ok(instance.exit_initialization_mode()?);
+    fmi3ExitInitializationMode() = |instance| instance.exit_initialization_mode();
     /// `fmi3EnterConfigurationMode`: always refused, since there are no structural parameters.
-    fmi3EnterConfigurationMode() = |instance| Ok(instance.allow(Call::EnterConfigurationMode)?);
+    fmi3EnterConfigurationMode() = |instance| instance.allow(Call::EnterConfigurationMode);
     /// `fmi3ExitConfigurationMode`: always refused, since there are no structural parameters.
-    fmi3ExitConfigurationMode() = |instance| Ok(instance.allow(Call::ExitConfigurationMode)?);
+    fmi3ExitConfigurationMode() = |instance| instance.allow(Call::ExitConfigurationMode);
     /// `fmi3EnterStepMode`.
-    fmi3EnterStepMode() = |instance| Ok(instance.enter_step_mode()?);
+    fmi3EnterStepMode() = |instance| instance.enter_step_mode();
     /// `fmi3Terminate`.
-    fmi3Terminate() = |instance| Ok(instance.terminate()?);
+    fmi3Terminate() = |instance| instance.terminate();
     /// `fmi3Reset`.
-    fmi3Reset() = |instance| Ok(instance.reset()?);
+    fmi3Reset() = |instance| instance.reset();
 }

@@ -9,4 +9,3 @@ mod lifecycle;
 mod stepping;
 #[cfg(test)]
 mod tests;
-mod types;

@@ -8,7 +8,6 @@ use super::exchange::*;
 use super::fmu_state::*;
 use super::lifecycle::*;
 use super::stepping::*;
-use super::types::*;
 use crate::fmi::Status;
 use crate::fmi::abi::component::status_code;
 
