@@ -76,8 +76,8 @@ impl Mechanism {
     pub fn parse(source: &Source) -> Result<(Self, Vec<Diagnostic>), Vec<Diagnostic>> {
         let (document, duplicates) = syntax::parse(source).map_err(|error| vec![error])?;
         let mut context = Context::new(source);
-        for duplicate in duplicates {
-            context.report(duplicate);
+        for second in duplicates {
+            context.duplicate_key(second);
         }
         let mechanism = context.mechanism(&document);
         let failed = context.failed;
