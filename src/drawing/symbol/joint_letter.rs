@@ -152,7 +152,8 @@ pub(super) fn are_one(a: &Anchor, b: &Anchor) -> bool {
 impl Shape for JointLetter {
     fn draw(&self, pen: &mut Pen) {
         let (center, ..) = pen.on(self.at);
-        pen.name_point(&self.name, Candidate::around(center, PIN + 1.0).collect());
+        let places = Candidate::around(center, PIN + 1.0);
+        pen.label(Named::Point, &self.name, Colour::INK, places);
     }
 
     fn extent(&self) -> Vec<Disc> {
