@@ -253,8 +253,9 @@ impl<'a> Pen<'a> {
     ) {
         let frame = self.attachment.placement(self.q, self.scale);
         let elastic = Elastic { measure, points };
-        let outline = elastic.outline(measure.value(self.q, self.scale));
-        let outline = outline.map(|point| frame.outside(point));
+        let outline = elastic
+            .outline(self.q, self.scale)
+            .map(|point| frame.outside(point));
         self.marks.push(Mark {
             attachment: self.attachment,
             elastic: Some(elastic),
