@@ -111,7 +111,7 @@ impl Sheet {
     }
 }
 
-/// The range of what is plotted.
+/// Returns the range of the x-axis.
 fn x_range(at: &[f64]) -> [f64; 2] {
     let [low, high] = finite_extremes(at);
     if high > low {
@@ -154,7 +154,7 @@ impl Scale {
         }
     }
 
-    /// The width of its widest number.
+    /// Returns the width of its widest number.
     fn width(&self) -> f64 {
         let ticks = &self.ticks;
         let texts = ticks.values.iter().map(|value| ticks.text(*value));

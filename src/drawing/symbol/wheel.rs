@@ -35,8 +35,8 @@ pub(super) fn compose(
     }
 }
 
-/// Returns the radii of two wheels \[m\]. For wheels given by teeth, `length` is what `sum` makes of
-/// them.
+/// Returns the radii of two wheels \[m\]. Those of wheels given by teeth have `length` \[m\] as their
+/// `sum`.
 pub(super) fn radii(
     composer: &Composer,
     sizes: &WheelSizes,
