@@ -187,7 +187,7 @@ impl Unit {
         self.display.map_or(1.0, |display| display.factor)
     }
 
-    /// The same unit, its values shown in `display`, which must be of the same dimension.
+    /// Returns the unit with its values shown in `display`, which must be of the same dimension.
     #[must_use]
     pub const fn shown_in(self, display: DisplayUnit) -> Self {
         Self {
@@ -196,13 +196,13 @@ impl Unit {
         }
     }
 
-    /// The unit with this symbol.
+    /// Returns the unit with this symbol.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| unit.name == name)
     }
 
-    /// The display units of the same dimension.
+    /// Returns the display units of the same dimension.
     pub fn display_units(self) -> impl Iterator<Item = DisplayUnit> {
         DisplayUnit::ALL
             .into_iter()
@@ -247,7 +247,7 @@ impl DisplayUnit {
         }
     }
 
-    /// The display unit with this symbol.
+    /// Returns the display unit with this symbol.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| unit.name == name)

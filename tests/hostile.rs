@@ -76,6 +76,13 @@ fn lengths_that_overflow_are_refused() {
     assert!(reason.contains("no finite value"), "{reason}");
 }
 
+#[test]
+fn thousands_of_repeated_keys_are_refused() {
+    let text = format!("{HEAD}[bodies.a]\n{}", "mass = 1\n".repeat(30_000));
+    let reason = refusal(&text);
+    assert!(reason.contains("`mass` is given twice"), "{reason:.200}");
+}
+
 fn bodies(count: usize) -> String {
     let bodies = (0..count).map(|k| format!("b{k} = {{ markers = {{ O = [0, 0] }} }}\n"));
     format!("{HEAD}[bodies]\n{}", bodies.collect::<String>())

@@ -60,6 +60,6 @@ fn snippet<'a>(
 
 /// Returns a span moved to boundaries of characters, which a span from elsewhere may miss.
 fn within(source: &Source, span: &Span) -> Span {
-    let start = source.boundary(span.start);
-    start..source.boundary(span.end).max(start)
+    let start = source.text().floor_char_boundary(span.start);
+    start..source.text().floor_char_boundary(span.end).max(start)
 }

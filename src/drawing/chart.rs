@@ -91,7 +91,7 @@ impl Sheet {
             texts: Vec::new(),
         };
         let corner = Point::new(MARGIN, MARGIN + CAPITALS);
-        plot.text(&chart.title, corner, Align::Start);
+        plot.text(&chart.title, corner, START);
         let height = HEIGHTS[chart.panels.len().clamp(1, HEIGHTS.len()) - 1];
         let mut y = MARGIN + CAPITALS;
         for (panel, scale) in chart.panels.iter().zip(&scales) {
@@ -111,7 +111,7 @@ impl Sheet {
     }
 }
 
-/// The range of what is plotted.
+/// Returns the range of the x-axis.
 fn x_range(at: &[f64]) -> [f64; 2] {
     let [low, high] = finite_extremes(at);
     if high > low {
@@ -154,7 +154,7 @@ impl Scale {
         }
     }
 
-    /// The width of its widest number.
+    /// Returns the width of its widest number.
     fn width(&self) -> f64 {
         let ticks = &self.ticks;
         let texts = ticks.values.iter().map(|value| ticks.text(*value));
@@ -162,12 +162,10 @@ impl Scale {
     }
 }
 
-#[derive(Clone, Copy)]
-enum Align {
-    Start,
-    Middle,
-    End,
-}
+/// Part of a text to the left of its place.
+const START: f64 = 0.0;
+const MIDDLE: f64 = 0.5;
+const END: f64 = 1.0;
 
 /// A chart while it is drawn.
 struct Plot<'a> {
@@ -189,12 +187,7 @@ impl Plot<'_> {
         self.left + (value - low) / (high - low) * (self.right() - self.left)
     }
 
-    fn text(&mut self, content: &str, at: Point, align: Align) {
-        let part = match align {
-            Align::Start => 0.0,
-            Align::Middle => 0.5,
-            Align::End => 1.0,
-        };
+    fn text(&mut self, content: &str, at: Point, part: f64) {
         self.texts.push(Text {
             content: content.to_owned(),
             start: at - Point::new(part * width(content), 0.0),
@@ -209,7 +202,7 @@ impl Plot<'_> {
     /// Writes the panel's quantity and its lines' names, wrapped; returns the top of the panel.
     fn legend(&mut self, panel: &Panel, scale: &Scale, top: f64) -> f64 {
         let mut at = Point::new(MARGIN, top + CAPITALS);
-        self.text(&scale.header, at, Align::Start);
+        self.text(&scale.header, at, START);
         at.x += width(&scale.header) + APART;
         for line in &panel.lines {
             let needed = SAMPLE + 5.0 + width(&line.name);
@@ -219,7 +212,7 @@ impl Plot<'_> {
             let middle = at - Point::new(0.0, 0.5 * CAPITALS);
             let sample = Outline::line(&[middle, middle + Point::new(SAMPLE, 0.0)]);
             self.line(Layer::Scale, sample, look(line.look));
-            self.text(&line.name, at + Point::new(SAMPLE + 5.0, 0.0), Align::Start);
+            self.text(&line.name, at + Point::new(SAMPLE + 5.0, 0.0), START);
             at.x += needed + APART;
         }
         at.y + 12.0
@@ -234,7 +227,7 @@ impl Plot<'_> {
             let y = on_y(value);
             grid.add_line(&[Point::new(left, y), Point::new(right, y)]);
             let at = Point::new(left - 6.0, y + 0.5 * CAPITALS);
-            self.text(&scale.ticks.text(value), at, Align::End);
+            self.text(&scale.ticks.text(value), at, END);
         }
         for value in self.x_ticks().values {
             let x = self.on_x(value);
@@ -299,7 +292,7 @@ impl Plot<'_> {
             beside || (other.start.y - y).abs() > CAPITALS + 2.0
         });
         if is_free {
-            self.text(text, Point::new(x, y), Align::Middle);
+            self.text(text, Point::new(x, y), MIDDLE);
         }
     }
 
@@ -314,12 +307,12 @@ impl Plot<'_> {
             // The outermost numbers stay on the sheet.
             let half = 0.5 * width(&text);
             let x = self.on_x(value).min(WIDTH - 2.0 - half);
-            self.text(&text, Point::new(x, y + LINE_HEIGHT), Align::Middle);
+            self.text(&text, Point::new(x, y + LINE_HEIGHT), MIDDLE);
         }
         let Axis { label, unit } = &self.chart.x;
         let middle = 0.5 * (self.left + self.right());
         let at = Point::new(middle, y + 2.2 * LINE_HEIGHT);
-        self.text(&format!("{label} [{unit}]"), at, Align::Middle);
+        self.text(&format!("{label} [{unit}]"), at, MIDDLE);
     }
 }
 

@@ -4,7 +4,7 @@ use super::force_place::{ForcePlace, force_arrows};
 use super::scene::Scene;
 use super::sheet::Sheet;
 use super::sweep::{follow, spread, sweep, usual_driver};
-use super::symbol::Symbol;
+use super::symbol::{Symbol, compose_dimensions, instant_centre};
 use crate::kinematics::{Error, InstantCentre, Rates, Solver};
 use crate::mechanism::{BodyId, DriverId, Jet};
 
@@ -83,11 +83,13 @@ impl Diagram {
         let (q, parameters) = (&pose.q, &pose.parameters);
         let mut scene = Scene::along(mechanism, parameters, q, &motion, self.traces);
         if self.dimensions {
-            scene.add_dimensions(mechanism, parameters, q);
+            scene.add(compose_dimensions(mechanism, parameters, q));
         }
         if let Some((centres, note)) = centres {
             scene.notes.extend(note);
-            scene.add_instant_centres(&centres, q, mechanism.length_display());
+            let unit = mechanism.length_display();
+            let marks = instant_centre::compose(&scene.symbols, &scene.bodies, &centres, q, unit);
+            scene.add(marks);
         }
         if !self.forces.is_empty() {
             // Arrows of the forces' sizes take the place of their symbols.

@@ -55,6 +55,13 @@ const BETTER: f64 = 1e-6;
 /// Difference in cost of places among which the order of the candidates may decide.
 const AS_GOOD: f64 = 3.0 * BETTER;
 
+impl Placed {
+    /// Returns its middle after its frame has moved from one placement to another.
+    pub(super) fn center(&self, frames: [Placement; 2]) -> Point {
+        self.place.moved(frames).center(self.text.size())
+    }
+}
+
 impl Candidate {
     /// Returns places beside a line: at parts of its length, on sides, at gaps.
     pub(super) fn beside(
@@ -135,27 +142,24 @@ pub(super) fn place(
     motion: &[&[f64]],
     scale: f64,
 ) -> Vec<Placed> {
-    let mut views = vec![View::new(marks.iter().map(Obstacle::new), None)];
-    views.extend(motion.iter().map(|q| {
-        let moved = marks.iter().map(|mark| mark.moved(home, q, scale));
-        View::new(moved.map(|mark| Obstacle::new(&mark)), Some(q))
-    }));
+    let poses = std::iter::once(home).chain(motion.iter().copied());
+    let mut views: Vec<View> = poses
+        .map(|q| View {
+            q,
+            obstacles: marks
+                .iter()
+                .map(|mark| Obstacle::new(&mark.moved(home, q, scale)))
+                .collect(),
+            taken: Vec::new(),
+        })
+        .collect();
     let share = 1.0 / views.len() as f64;
     let mut placed = Vec::new();
     for label in labels {
         let size = Point::new(lettering::width(&label.content, CAPITALS), CAPITALS);
         let padded = size + Point::repeat(2.0 * PAD);
-        let mut best: Option<(f64, Candidate)> = None;
-        let frames: Vec<[Placement; 2]> = (views.iter())
-            .map(|view| {
-                [home, view.q.unwrap_or(home)].map(|q| label.attachment.placement(q, scale))
-            })
-            .collect();
-        // At home the place is the candidate itself, without rounding.
-        let center_in = |candidate: &Candidate, view: usize| match views[view].q {
-            None => candidate.center(size),
-            Some(_) => candidate.moved(frames[view]).center(size),
-        };
+        let at = |q: &[f64]| label.attachment.placement(q, scale);
+        let frames: Vec<[Placement; 2]> = views.iter().map(|v| [at(home), at(v.q)]).collect();
         let clear = |candidate: &&Candidate| {
             let bounds = Bounds::about(candidate.center(size), size);
             let taken = &views[0].taken;
@@ -171,11 +175,11 @@ pub(super) fn place(
         for (number, candidate) in cheapest {
             let most = least + AS_GOOD;
             let mut cost = candidate.cost;
-            for (index, view) in views.iter().enumerate() {
+            for (view, frames) in views.iter().zip(&frames) {
                 if cost > most {
                     break;
                 }
-                let center = center_in(candidate, index);
+                let center = candidate.moved(*frames).center(size);
                 let bounds = Bounds::about(center, padded);
                 cost += share * view.cost(&bounds, center, (most - cost) / share);
             }
@@ -185,49 +189,43 @@ pub(super) fn place(
             }
         }
         good.sort_by_key(|(number, _)| *number);
-        for (number, cost) in good {
-            if best.is_none_or(|(least, _)| cost < least - BETTER) {
-                best = Some((cost, label.candidates[number]));
+        let better = |best: (usize, f64), other: (usize, f64)| {
+            if other.1 < best.1 - BETTER {
+                other
+            } else {
+                best
             }
+        };
+        let Some((best, _)) = good.into_iter().reduce(better) else {
+            continue;
+        };
+        let place = label.candidates[best];
+        for (view, frames) in views.iter_mut().zip(frames) {
+            let center = place.moved(frames).center(size);
+            view.taken.push(Bounds::about(center, padded));
         }
-        if let Some((_, place)) = best {
-            let center = place.center(size);
-            let centers: Vec<Point> = (0..views.len()).map(|k| center_in(&place, k)).collect();
-            for (view, center) in views.iter_mut().zip(centers) {
-                view.taken.push(Bounds::about(center, padded));
-            }
-            placed.push(Placed {
-                text: Text {
-                    content: label.content,
-                    start: center + Point::new(-0.5 * size.x, 0.5 * size.y),
-                    colour: label.colour,
-                },
-                attachment: label.attachment,
-                place,
-            });
-        }
+        placed.push(Placed {
+            text: Text {
+                content: label.content,
+                start: place.center(size) + Point::new(-0.5 * size.x, 0.5 * size.y),
+                colour: label.colour,
+            },
+            attachment: label.attachment,
+            place,
+        });
     }
     placed
 }
 
 /// A pose as labels see it.
 struct View<'a> {
-    /// The pose, `None` for the one at which the marks are drawn.
-    q: Option<&'a [f64]>,
+    q: &'a [f64],
     obstacles: Vec<Obstacle>,
     /// The labels placed so far.
     taken: Vec<Bounds>,
 }
 
-impl<'a> View<'a> {
-    fn new(obstacles: impl Iterator<Item = Obstacle>, q: Option<&'a [f64]>) -> Self {
-        Self {
-            q,
-            obstacles: obstacles.collect(),
-            taken: Vec::new(),
-        }
-    }
-
+impl View<'_> {
     /// Returns the cost of a label with its middle at `center`, or a part of it above `most`.
     fn cost(&self, label: &Bounds, center: Point, most: f64) -> f64 {
         let on_labels: f64 = self.taken.iter().map(|other| label.overlap(other)).sum();

@@ -98,14 +98,14 @@ const GLYPHS: [(char, &str); 75] = [
     ('²', "0C ~0D 1D ~3D 3B ~3A 08 38"),
 ];
 
-/// The width of a text whose capitals are `height` high.
+/// Returns the width of a text whose capitals are `height` high.
 pub(super) fn width(text: &str, height: f64) -> f64 {
     let units: f64 = text.chars().map(advance).sum();
     (units - GAP).max(0.0) * height / CAPITALS
 }
 
-/// The strokes of a text whose baseline starts at a point of a sheet, where y points down, and
-/// whose capitals are `height` high.
+/// Returns the strokes of a text whose baseline starts at a point of a sheet, where y points down,
+/// and whose capitals are `height` high.
 #[cfg(feature = "png")]
 pub(super) fn strokes(text: &str, start: Point, height: f64) -> Outline {
     let unit = height / CAPITALS;
@@ -134,7 +134,7 @@ fn advance(character: char) -> f64 {
     widest.unwrap_or(BLANK) + GAP
 }
 
-/// The points of a stroke, and whether each is a control point.
+/// Returns the points of a stroke, and whether each is a control point.
 fn points(stroke: &str) -> impl Iterator<Item = (Point, bool)> {
     stroke.split(' ').map(|point| {
         let digits = point.trim_start_matches('~');

@@ -233,52 +233,40 @@ pub(super) fn convex_hull(points: &[Point]) -> Vec<Point> {
     let Some(&start) = sorted.first() else {
         return Vec::new();
     };
-    let extent = sorted
-        .iter()
-        .fold(0.0, |far: f64, p| far.max((p - start).norm()));
-    let near = 1e-9 * extent;
     let turn = |a: Point, b: Point, c: Point| (b - a).perp(&(c - a));
     let chain = |sorted: &mut dyn Iterator<Item = &Point>| {
         let mut chain: Vec<Point> = Vec::new();
         for &point in sorted {
-            loop {
-                match chain[..] {
-                    [only] if (point - only).norm() <= near => break,
-                    [] | [_] => {}
-                    [.., a, b] => {
-                        let turned = turn(a, b, point);
-                        if turned <= near * extent {
-                            let on_edge = turned >= -near * extent;
-                            if on_edge && (point - a).norm() < (b - a).norm() {
-                                break;
-                            }
-                            chain.pop();
-                            continue;
-                        }
-                    }
-                }
-                chain.push(point);
-                break;
+            while let [.., a, b] = chain[..]
+                && turn(a, b, point) <= 0.0
+            {
+                chain.pop();
             }
+            chain.push(point);
         }
         chain
     };
     let mut hull = chain(&mut sorted.iter());
     hull.extend(chain(&mut sorted.iter().rev()).into_iter().skip(1));
-    while hull.len() > 1 && (hull[hull.len() - 1] - hull[0]).norm() <= near {
-        hull.pop();
-    }
-    if hull.len() > 2 {
-        // The ends of the chains may lie on edges.
-        let count = hull.len();
-        let is_corner = |&k: &usize| {
-            turn(
-                hull[(k + count - 1) % count],
-                hull[k],
-                hull[(k + 1) % count],
-            ) > near * extent
-        };
-        hull = (0..count).filter(is_corner).map(|k| hull[k]).collect();
+    // Rounding leaves corners next to each other and on edges; the start comes twice.
+    let extent = sorted
+        .iter()
+        .map(|p| (p - start).norm())
+        .fold(0.0, f64::max);
+    let near = 1e-9 * extent;
+    let is_corner = |hull: &[Point], k: usize| {
+        let (last, next) = (
+            hull[(k + hull.len() - 1) % hull.len()],
+            hull[(k + 1) % hull.len()],
+        );
+        let is_between = (hull[k] - last).dot(&(hull[k] - next)) <= 0.0;
+        let is_on_edge = is_between && turn(last, hull[k], next).abs() <= near * extent;
+        (hull[k] - last).norm() > near && !is_on_edge
+    };
+    while hull.len() > 1
+        && let Some(k) = (0..hull.len()).rev().find(|&k| !is_corner(&hull, k))
+    {
+        hull.remove(k);
     }
     let first = (0..hull.len()).min_by(|&i, &j| before(&hull[i], &hull[j]));
     hull.rotate_left(first.unwrap_or(0));
@@ -305,6 +293,8 @@ mod tests {
         let upright =
             [(0.0, 0.0), (e, 0.5), (-e, 1.0), (2.0 * e, 0.0)].map(|(x, y)| Point::new(x, y));
         assert_eq!(convex_hull(&upright).len(), 2);
+        let twice = [(e, 0.0), (0.0, 0.0), (0.0, 0.25)].map(|(x, y)| Point::new(x, y));
+        assert_eq!(convex_hull(&twice).len(), 2);
         let with_corner = [&upright[..], &[Point::new(1.0, 0.0)]].concat();
         let hull = convex_hull(&with_corner);
         assert_eq!(hull.len(), 3);

@@ -5,7 +5,7 @@ use std::io::Write;
 use flate2::write::ZlibEncoder;
 use flate2::{Compression, Crc};
 use tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, StrokeDash, Transform,
+    FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,
 };
 
 use super::lettering;
@@ -53,45 +53,20 @@ pub fn write(
         }
         if let Some(stroke) = mark.stroke {
             let dashes = stroke.dashes.iter().map(|length| *length as f32).collect();
-            let dash = (!stroke.dashes.is_empty())
-                .then(|| StrokeDash::new(dashes, 0.0))
-                .flatten();
-            let cap = if dash.is_some() {
-                LineCap::Butt
-            } else {
-                LineCap::Round
-            };
-            let stroke_style = tiny_skia::Stroke {
-                width: stroke.width as f32,
-                line_cap: cap,
-                line_join: LineJoin::Round,
-                dash,
-                ..tiny_skia::Stroke::default()
-            };
             let paint = paint(stroke.colour, 1.0);
-            pixels.stroke_path(&path, &paint, &stroke_style, transform, None);
+            let style = style(stroke.width, StrokeDash::new(dashes, 0.0));
+            pixels.stroke_path(&path, &paint, &style, transform, None);
         }
     }
     let face = typeface.and_then(Typeface::face);
-    let stroke = tiny_skia::Stroke {
-        width: LETTER_STROKE as f32,
-        line_cap: LineCap::Round,
-        line_join: LineJoin::Round,
-        ..tiny_skia::Stroke::default()
-    };
     for text in &sheet.texts {
         let paint = paint(text.colour, 1.0);
-        let outline = match &face {
-            Some(face) => letters(face, text),
-            None => lettering::strokes(&text.content, text.start, CAPITALS),
-        };
-        let Some(path) = path(&outline) else {
-            continue;
-        };
-        if face.is_some() {
-            pixels.fill_path(&path, &paint, FillRule::Winding, transform, None);
-        } else {
-            pixels.stroke_path(&path, &paint, &stroke, transform, None);
+        if let Some(face) = &face {
+            if let Some(path) = path(&letters(face, text)) {
+                pixels.fill_path(&path, &paint, FillRule::Winding, transform, None);
+            }
+        } else if let Some(path) = path(&lettering::strokes(&text.content, text.start, CAPITALS)) {
+            pixels.stroke_path(&path, &paint, &style(LETTER_STROKE, None), transform, None);
         }
     }
     Some(encode(&pixels))
@@ -137,6 +112,21 @@ fn encode(pixels: &Pixmap) -> Vec<u8> {
         file.extend(sum.sum().to_be_bytes());
     }
     file
+}
+
+/// Returns a stroke with round corners, and with round ends unless it has dashes.
+fn style(width: f64, dash: Option<StrokeDash>) -> Stroke {
+    let line_cap = match dash {
+        Some(_) => LineCap::Butt,
+        None => LineCap::Round,
+    };
+    Stroke {
+        width: width as f32,
+        line_cap,
+        line_join: LineJoin::Round,
+        dash,
+        ..Stroke::default()
+    }
 }
 
 fn paint(colour: Colour, opacity: f64) -> Paint<'static> {

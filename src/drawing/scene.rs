@@ -1,9 +1,9 @@
 //! Mechanisms as symbols, in the frames of their bodies.
 
 use super::sweep::sweep;
-use super::symbol::{Symbol, compose, compose_dimensions, instant_centre};
-use crate::kinematics::{InstantCentre, Pose, Solver};
-use crate::mechanism::{DisplayUnit, Mechanism};
+use super::symbol::{Symbol, compose};
+use crate::kinematics::{Pose, Solver};
+use crate::mechanism::Mechanism;
 
 /// A mechanism as symbols that are fixed on its bodies or on ground, or that reach from one to
 /// another. The same scene is drawn at any pose of the motion that it was made for.
@@ -55,23 +55,8 @@ impl Scene {
         }
     }
 
-    /// Adds letters of joints, and the lengths between the joints of each body, at the pose q.
-    pub(super) fn add_dimensions(&mut self, mechanism: &Mechanism, parameters: &[f64], q: &[f64]) {
-        let (symbols, notes) = compose_dimensions(mechanism, parameters, q);
-        self.symbols.extend(symbols);
-        self.notes.extend(notes);
-    }
-
-    /// Adds the instant centres of all bodies at the pose q, in their order; `unit` is the one in
-    /// which lengths are shown.
-    pub(super) fn add_instant_centres(
-        &mut self,
-        centres: &[InstantCentre],
-        q: &[f64],
-        unit: Option<DisplayUnit>,
-    ) {
-        let (symbols, notes) =
-            instant_centre::compose(&self.symbols, &self.bodies, centres, q, unit);
+    /// Adds symbols, with sentences about them.
+    pub(super) fn add(&mut self, (symbols, notes): (Vec<Symbol>, Vec<String>)) {
         self.symbols.extend(symbols);
         self.notes.extend(notes);
     }

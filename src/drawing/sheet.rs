@@ -142,7 +142,7 @@ impl Mark {
         let [from, to] = [home, q].map(|q| self.attachment.placement(q, scale));
         let outline = match &self.elastic {
             Some(elastic) => {
-                let outline = elastic.outline(elastic.measure.value(q, scale));
+                let outline = elastic.outline(q, scale);
                 outline.map(|point| to.outside(point))
             }
             None => (self.outline.clone()).map(|point| to.outside(from.inside(point))),
@@ -155,8 +155,9 @@ impl Mark {
 }
 
 impl Elastic {
-    /// Returns the line at a length, in the frame of its attachment.
-    pub(super) fn outline(&self, length: f64) -> Outline {
+    /// Returns the line on a sheet of `scale` units per metre at q, in the frame of its attachment.
+    pub(super) fn outline(&self, q: &[f64], scale: f64) -> Outline {
+        let length = self.measure.value(q, scale);
         let points = self.points.iter();
         let points = points.map(|[origin, change]| origin + length * change);
         Outline::line(&points.collect::<Vec<_>>())
@@ -177,6 +178,11 @@ impl Stroke {
 impl Text {
     pub(super) fn width(&self) -> f64 {
         lettering::width(&self.content, CAPITALS)
+    }
+
+    /// Returns the size of its capitals.
+    pub(super) fn size(&self) -> Point {
+        Point::new(self.width(), CAPITALS)
     }
 
     pub(super) fn bounds(&self) -> Bounds {

@@ -49,11 +49,7 @@ pub fn write(sheet: &Sheet, width: u32, transparent: bool) -> String {
     let size = number(CAPITALS * FONT_SIZE);
     svg += &format!(" <g class=\"labels\" font-family=\"{FONTS}\" font-size=\"{size}\">\n");
     for text in &sheet.texts {
-        let place = format!(
-            "textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"",
-            number(text.width())
-        );
-        svg += &format!("  {}\n", text_element(text, text.start.x, &place));
+        svg += &format!("  {}\n", fitted_text(text));
     }
     svg + " </g>\n</svg>\n"
 }
@@ -80,6 +76,13 @@ pub(super) fn path(mark: &Mark, attributes: &str) -> String {
         }
     }
     path + "/>"
+}
+
+/// Returns the element of a text that is as wide as the space left for it, whatever the font is.
+pub(super) fn fitted_text(text: &Text) -> String {
+    let width = number(text.width());
+    let width = format!("textLength=\"{width}\" lengthAdjust=\"spacingAndGlyphs\"");
+    text_element(text, text.start.x, &width)
 }
 
 /// Returns the element of a text at a place along x, with further attributes.

@@ -56,8 +56,8 @@ pub fn is_identifier(name: &str) -> bool {
     is_c_identifier(name) && !is_device(name) && name.len() <= MOST_CHARACTERS
 }
 
-/// Returns an identifier like a name that is none, because it is a word of C, a device of Windows or
-/// too long.
+/// Returns an identifier similar to a name that is none: a word of C, a device of Windows, or one that
+/// is too long.
 #[must_use]
 pub fn similar_identifier(name: &str) -> Option<String> {
     /// Length of a name that stays legible.

@@ -140,7 +140,7 @@ impl Source {
     /// Returns the line and column of a byte offset; one past the end counts as the end.
     #[must_use]
     pub fn position(&self, offset: usize) -> Position {
-        let offset = self.boundary(offset);
+        let offset = self.text.floor_char_boundary(offset);
         // The first line starts at 0, so at least one starts at or before the offset.
         let line = self.line_starts.partition_point(|start| *start <= offset);
         let start = self.line_starts[line - 1];
@@ -148,14 +148,6 @@ impl Source {
             line,
             column: self.text[start..offset].chars().count() + 1,
         }
-    }
-
-    /// Returns the start of the character at `offset`, or the end of the text.
-    pub(crate) fn boundary(&self, offset: usize) -> usize {
-        (0..=offset.min(self.text.len()))
-            .rev()
-            .find(|offset| self.text.is_char_boundary(*offset))
-            .unwrap_or(0)
     }
 
     /// Returns line `number`, from 1, without its line break; empty if there is none.

@@ -71,85 +71,28 @@ impl<N: Number> Spline<N> {
             && (self.knots.iter().chain(&self.values)).all(|number| number.real().is_finite())
     }
 
-    /// Finds the second derivatives for which the first is continuous.
+    /// Finds the second derivatives M for which the first is continuous.
     ///
-    /// With h the widths and d the slopes of the chords, each inner knot gives
-    /// `h₋ M₋ + 2 (h₋ + h) M + h M₊ = 6 (d − d₋)`. The matrix is diagonally dominant, so that
-    /// elimination needs no pivots.
+    /// The matrix of their equations, one per knot, is diagonally dominant, so that elimination
+    /// needs no pivots. That of a periodic spline has two more entries, in its corners: elimination
+    /// carries the column of the last unknown along and reduces the last row step by step.
     pub fn fit(&mut self) {
-        match self.ends {
-            Ends::Clamped | Ends::Natural => self.fit_between_ends(),
-            Ends::Periodic => self.fit_periodic(),
-        }
-    }
-
-    fn width(&self, segment: usize) -> N {
-        self.knots[segment + 1] - self.knots[segment]
-    }
-
-    fn slope(&self, segment: usize) -> N {
-        (self.values[segment + 1] - self.values[segment]) / self.width(segment)
-    }
-
-    fn fit_between_ends(&mut self) {
-        let (zero, two, six) = (N::constant(0.0), N::constant(2.0), N::constant(6.0));
-        let last = self.knots.len() - 1;
-        for row in 0..=last {
-            let inner = (row > 0, row < last);
-            let left = if inner.0 { self.width(row - 1) } else { zero };
-            let right = if inner.1 { self.width(row) } else { zero };
-            let (lower, diagonal, upper, side) =
-                if self.ends == Ends::Natural && inner != (true, true) {
-                    (zero, N::constant(1.0), zero, zero)
-                } else {
-                    // The slope beyond a clamped end is zero.
-                    let after = if inner.1 { self.slope(row) } else { zero };
-                    let before = if inner.0 { self.slope(row - 1) } else { zero };
-                    (left, two * (left + right), right, six * (after - before))
-                };
-            let (pivot, side) = if row == 0 {
-                (diagonal, side)
-            } else {
-                (
-                    diagonal - lower * self.upper[row - 1],
-                    side - lower * self.moments[row - 1],
-                )
-            };
-            self.upper[row] = upper / pivot;
-            self.moments[row] = side / pivot;
-        }
-        for row in (0..last).rev() {
-            self.moments[row] = self.moments[row] - self.upper[row] * self.moments[row + 1];
-        }
-    }
-
-    /// Fits a periodic spline. The matrix has two more entries, in its corners: elimination carries
-    /// the column of the last unknown along and reduces the last row step by step.
-    fn fit_periodic(&mut self) {
-        let (zero, two, six) = (N::constant(0.0), N::constant(2.0), N::constant(6.0));
-        let count = self.knots.len() - 1;
-        let last = count - 1;
-        let left = |spline: &Self, row: usize| spline.width(if row > 0 { row - 1 } else { last });
-        let side = |spline: &Self, row: usize| {
-            let before = spline.slope(if row > 0 { row - 1 } else { last });
-            six * (spline.slope(row) - before)
-        };
-        let diagonal = |spline: &Self, row: usize| two * (left(spline, row) + spline.width(row));
-        let mut last_diagonal = diagonal(self, last);
-        let mut last_side = side(self, last);
+        let zero = N::constant(0.0);
+        let is_periodic = self.ends == Ends::Periodic;
+        // The last knot of a period is the first one of the next.
+        let last = self.knots.len() - if is_periodic { 2 } else { 1 };
+        let corner_entry = if is_periodic { self.width(last) } else { zero };
+        let [last_lower, mut last_diagonal, _, mut last_side] = self.equation(last);
         // The last row's entry in the column under elimination.
-        let mut last_entry = self.width(last);
+        let mut last_entry = corner_entry;
         for row in 0..last {
-            let lower = if row > 0 { left(self, row) } else { zero };
-            let mut corner = if row == 0 { self.width(last) } else { zero };
-            let mut upper = self.width(row);
+            let [lower, mut pivot, mut upper, mut side] = self.equation(row);
+            let mut corner = if row == 0 { corner_entry } else { zero };
             if row + 1 == last {
                 corner += upper;
                 upper = zero;
-                last_entry += left(self, last);
+                last_entry += last_lower;
             }
-            let mut pivot = diagonal(self, row);
-            let mut side = side(self, row);
             if row > 0 {
                 pivot -= lower * self.upper[row - 1];
                 corner -= lower * self.corner[row - 1];
@@ -173,7 +116,38 @@ impl<N: Number> Spline<N> {
                 - self.upper[row] * self.moments[row + 1]
                 - self.corner[row] * self.moments[last];
         }
-        self.moments[count] = self.moments[0];
+        if is_periodic {
+            self.moments[last + 1] = self.moments[0];
+        }
+    }
+
+    /// Returns the equation of a knot: the factors of M before, at and after it, and the right-hand
+    /// side.
+    ///
+    /// With h the widths and d the slopes of the chords beside the knot it is
+    /// `h₋ M₋ + 2 (h₋ + h) M + h M₊ = 6 (d − d₋)`. Beyond a clamped end h and d are zero.
+    fn equation(&self, knot: usize) -> [N; 4] {
+        let zero = N::constant(0.0);
+        let segments = self.knots.len() - 1;
+        let beside = match self.ends {
+            Ends::Periodic => [Some((knot + segments - 1) % segments), Some(knot)],
+            _ => [knot.checked_sub(1), Some(knot).filter(|k| *k < segments)],
+        };
+        if self.ends == Ends::Natural && beside.contains(&None) {
+            return [zero, N::constant(1.0), zero, zero];
+        }
+        let [left, right] = beside.map(|k| k.map_or(zero, |k| self.width(k)));
+        let [before, after] = beside.map(|k| k.map_or(zero, |k| self.slope(k)));
+        let diagonal = N::constant(2.0) * (left + right);
+        [left, diagonal, right, N::constant(6.0) * (after - before)]
+    }
+
+    fn width(&self, segment: usize) -> N {
+        self.knots[segment + 1] - self.knots[segment]
+    }
+
+    fn slope(&self, segment: usize) -> N {
+        (self.values[segment + 1] - self.values[segment]) / self.width(segment)
     }
 
     /// Returns the segment that contains `x`, the nearest one if `x` is beyond the ends.

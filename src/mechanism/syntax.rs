@@ -5,7 +5,6 @@ use toml::de::{DeString, DeTable, DeValue};
 
 use super::diagnostic::code;
 use super::toml_error::syntax_error;
-use super::wording::quoted;
 use super::{Diagnostic, Source, Span};
 
 /// Key with its place.
@@ -20,13 +19,12 @@ pub(super) type Table<'a> = DeTable<'a>;
 /// The TOML parser's message about a key that a table already has.
 const DUPLICATE_KEY: &str = "duplicate key";
 
-/// Parses the text. Returns with the document the errors about repeated keys, whose first value
-/// counts.
+/// Parses the text. Returns with the document the places of repeated keys, whose first value counts.
 ///
 /// # Errors
 ///
 /// The file is not UTF-8, or has a syntax error: only the first, as one slip causes others.
-pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Diagnostic>), Diagnostic> {
+pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Span>), Diagnostic> {
     if let Some(fault) = source.fault() {
         return Err(
             Diagnostic::error(code::NOT_UTF_8, format!("the file {fault}"))
@@ -44,77 +42,38 @@ pub(super) fn parse(source: &Source) -> Result<(Table<'_>, Vec<Diagnostic>), Dia
             return Err(syntax_error(source.text(), span, error.message()));
         }
     }
-    let document = document.into_inner();
-    let duplicates = duplicates.into_iter().map(|span| {
-        let key = quoted(source.text().get(span.clone()).unwrap_or_default());
-        let first = first_place(&document, source.text(), &span);
-        let problem =
-            Diagnostic::error(code::DUPLICATE_KEY, format!("the key {key} is given twice"))
-                .label(span, "");
-        match first {
-            Some(first) => problem.label(first, "the first one"),
-            None => problem,
-        }
-    });
-    let duplicates = duplicates.collect();
-    Ok((document, duplicates))
+    Ok((document.into_inner(), duplicates))
 }
 
 /// Returns the place of the first of two equal keys, of which the second is at `second`; `None` if
-/// it cannot be told.
-fn first_place(document: &Table<'_>, text: &str, second: &Span) -> Option<Span> {
-    let line_start = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
+/// they are in no common table.
+///
+/// The parser names only the second. Under another name it becomes a key beside the first. The lines
+/// after it may have a third.
+pub(super) fn first_place(text: &str, second: &Span) -> Option<Span> {
     let name = text.get(second.clone())?;
-    let start = line_start(second.start);
-    let before = text[start..second.start].trim_start();
-    let table = if let Some(table) = inline_table(document, text, second) {
-        table
-    } else if before.starts_with('[') {
-        if let Some(first) = same_header(&text[..start], &format!("{before}{name}")) {
-            return Some(first.end - name.len()..first.end);
-        }
-        descend(document, before.trim_start_matches('['))?
-    } else {
-        let is_header = |line: &&str| line.starts_with('[') && !line.contains(',');
-        let header = text[..start].lines().map(str::trim).rfind(is_header);
-        let header = header.map_or("", |header| header.split(['[', ']']).nth(1).unwrap_or(""));
-        descend(descend(document, header)?, before)?
-    };
-    let (key, _) = table.get_key_value(name.trim_matches(['"', '\'']))?;
-    Some(key.span()).filter(|first| first.end <= second.start)
+    let line = text[second.end..]
+        .split_inclusive('\n')
+        .next()
+        .unwrap_or_default();
+    let other_name = "_".repeat(name.len());
+    let renamed = [&text[..second.start], &other_name, line].concat();
+    let (document, _) = DeTable::parse_recoverable(&renamed);
+    let table = table_with_key(document.get_ref(), second)?;
+    let (first, _) = table.get_key_value(name.trim_matches(['"', '\'']))?;
+    Some(first.span())
 }
 
-/// Returns the place of a line's beginning such as `[bodies.crank`, which a bracket closes.
-fn same_header(text: &str, header: &str) -> Option<Span> {
-    let mut end = 0;
-    text.split_inclusive('\n').find_map(|line| {
-        let start = end + line.len() - line.trim_start().len();
-        end += line.len();
-        let rest = line.trim_start().strip_prefix(header)?;
-        rest.trim_start()
-            .starts_with(']')
-            .then(|| start..start + header.len())
-    })
-}
-
-/// Returns the innermost table in braces around a place.
-fn inline_table<'t, 'a>(table: &'t Table<'a>, text: &str, place: &Span) -> Option<&'t Table<'a>> {
-    table.iter().find_map(|(_, value)| {
-        let inner = value.get_ref().as_table()?;
-        let span = value.span();
-        let is_inline = text.get(span.clone())?.starts_with('{');
-        let is_around = is_inline && span.start < place.start && place.end <= span.end;
-        inline_table(inner, text, place).or(is_around.then_some(inner))
-    })
-}
-
-/// Returns the table under a path of keys such as `bodies.crank`.
-fn descend<'t, 'a>(table: &'t Table<'a>, path: &str) -> Option<&'t Table<'a>> {
-    let keys = path
-        .split('.')
-        .map(|key| key.trim().trim_matches(['"', '\'']));
-    keys.filter(|key| !key.is_empty())
-        .try_fold(table, |table, key| table.get(key)?.get_ref().as_table())
+/// Returns the table whose key is at a place.
+fn table_with_key<'t, 'a>(table: &'t Table<'a>, place: &Span) -> Option<&'t Table<'a>> {
+    if table.keys().any(|key| key.span() == *place) {
+        return Some(table);
+    }
+    let mut inner = table.values().flat_map(|value| match value.get_ref() {
+        DeValue::Array(items) => items.iter().collect(),
+        _ => vec![value],
+    });
+    inner.find_map(|value| table_with_key(value.get_ref().as_table()?, place))
 }
 
 /// Returns the type of a value for messages.
@@ -281,6 +240,24 @@ mod tests {
         let (document, _) = parse(&source).expect("good syntax");
         for (_, value) in &document {
             assert_eq!(number(value.get_ref()), Some(f64::INFINITY));
+        }
+    }
+
+    #[test]
+    fn the_first_of_two_equal_keys_is_in_the_same_table() {
+        // The last `k` of each text is the second, the one in angle brackets the first.
+        for text in [
+            "[a] # one, two\nk = 1\n[b] # one, two\n<k> = 1\nk = 2\n",
+            "[a]\nk = 1\n[b]\n<k> = 1\n[b.c]\nd = 1\n[b.k]\n",
+            "[<k>]\nx = 1\n[a]\n[k]\n",
+            "x = { k = 1, y = [{ <k> = 1,\n  k = 2,\n  z = 3 }] }\n",
+            "[a]\nb.<k> = 1\nb.k = 2\n",
+        ] {
+            let first = text.find('<').expect("it is marked");
+            let text = text.replace(['<', '>'], "");
+            let second = text.rfind('k').expect("it is the last one");
+            let found = first_place(&text, &(second..second + 1));
+            assert_eq!(found, Some(first..first + 1), "{text}");
         }
     }
 

@@ -1,6 +1,6 @@
 // A chart of variables over time or over a driver, with a cursor at the present pose.
 
-import { shown } from "./controls.js";
+import { offerMoves, shown } from "./controls.js";
 
 const [WIDTH, HEIGHT] = [560, 150];
 const [LEFT, RIGHT, TOP, BOTTOM] = [64, 10, 20, 22];
@@ -17,19 +17,11 @@ export class Chart {
     this.over.addEventListener("change", () => this.draw());
   }
 
-  /** Offers the variables of a page; those chosen before stay. */
+  /** Offers the variables of a page; what was chosen before stays. */
   offer(page) {
     const before = this.chosen.map((index) => this.names?.[index]);
     this.names = page.variables.map((variable) => variable.name);
-    this.over.replaceChildren();
-    if (page.uses_time) {
-      this.over.add(new Option("time", "time"));
-    }
-    page.drivers.forEach((driver, index) => {
-      if (driver.is_input) {
-        this.over.add(new Option(driver.name, index));
-      }
-    });
+    offerMoves(this.over, page);
     this.choice.replaceChildren();
     const told = page.variables.findIndex((variable, index) => variable.is_told && index >= 3 * page.drivers.length);
     const first = told < 0 ? page.variables.length - 3 : told;
@@ -45,16 +37,21 @@ export class Chart {
 
   /** Asks for values, of these variables or of those chosen. */
   values(variables = this.chosen, samples = SAMPLES) {
-    const driver = this.over.value === "time" || this.over.value === "" ? {} : { driver: Number(this.over.value) };
-    return this.live.ask({ do: "chart", variables, samples, ...driver });
+    const over = this.driver === null ? {} : { driver: this.driver };
+    return this.live.ask({ do: "chart", variables, samples, ...over });
+  }
+
+  /** Returns the driver along the horizontal axis, null for time. */
+  get driver() {
+    return ["time", ""].includes(this.over.value) ? null : Number(this.over.value);
   }
 
   /** Returns the variable along the horizontal axis, with the place of its value in a frame. */
   get axis() {
-    if (this.over.value === "time" || this.over.value === "") {
+    const { driver } = this;
+    if (driver === null) {
       return { name: "time", unit: "s", factor: 1, at: 0 };
     }
-    const driver = Number(this.over.value);
     const { name, unit, factor } = this.live.page.drivers[driver];
     return { name, unit, factor, at: this.live.places.drivers + 3 * driver };
   }
@@ -86,7 +83,7 @@ export class Chart {
     for (const { cursor, low, high } of this.panels) {
       // A crank that has turned further is shown in the turn of the chart.
       const turn = high - low;
-      const turns = this.over.value !== "time" && this.live.page.ranges[Number(this.over.value)]?.turns;
+      const turns = this.live.page.ranges[this.driver]?.turns;
       const x = turns ? now - turn * Math.floor((now - low) / turn) : now;
       const at = LEFT + ((x - low) / turn) * (WIDTH - LEFT - RIGHT);
       cursor.setAttribute("x1", at);

@@ -13,6 +13,23 @@ export function add(parent, name, properties = {}, ...children) {
   return parent.appendChild(element);
 }
 
+/** Offers in a list what can move: time, and the drivers that are inputs. A choice made before stays. */
+export function offerMoves(list, page) {
+  const before = list.value;
+  list.replaceChildren();
+  if (page.uses_time) {
+    list.add(new Option("time", "time"));
+  }
+  page.drivers.forEach((driver, index) => {
+    if (driver.is_input) {
+      list.add(new Option(driver.name, index));
+    }
+  });
+  if ([...list.options].some((option) => option.value === before)) {
+    list.value = before;
+  }
+}
+
 /**
  * A row with a slider and a field for one value. `item` has name, description, unit and factor;
  * `low` and `high` bound the slider [SI]; `turns` lets it go round. `change(value, done)` is called

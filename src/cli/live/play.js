@@ -1,5 +1,7 @@
 // Motion by itself: time where motions are prescribed, otherwise a driver.
 
+import { offerMoves } from "./controls.js";
+
 export class Play {
   /** `live` solves and draws; `find` returns an element of the page. */
   constructor(live, find) {
@@ -15,19 +17,7 @@ export class Play {
 
   /** Offers what can move: time, and the drivers that are inputs. */
   offer(page) {
-    const before = this.what.value;
-    this.what.replaceChildren();
-    if (page.uses_time) {
-      this.what.add(new Option("time", "time"));
-    }
-    page.drivers.forEach((driver, index) => {
-      if (driver.is_input) {
-        this.what.add(new Option(driver.name, index));
-      }
-    });
-    if ([...this.what.options].some((option) => option.value === before)) {
-      this.what.value = before;
-    }
+    offerMoves(this.what, page);
     this.button.disabled = this.what.options.length === 0;
   }
 

@@ -27,7 +27,7 @@ const INVISIBLE: f64 = 1e-2;
 /// well, which `most` gives next \[N, N m\]. Each reading has one.
 pub(super) fn film(animation: &Animation, stage: &mut Stage) -> Value {
     let moments = &animation.moments;
-    let acting = Acting::new(animation, stage);
+    let forces = Acting::new(animation, stage);
     let mut channels: Vec<Channel> = Vec::new();
     let placements: Vec<Vec<Placement>> = moments.iter().map(|m| stage.placements(&m.q)).collect();
     for attachment in 0..stage.attachments.len() {
@@ -50,13 +50,13 @@ pub(super) fn film(animation: &Animation, stage: &mut Stage) -> Value {
     let points = if has_rates { &stage.points[..] } else { &[] };
     let (of_arrows, most) = arrows(points, moments);
     channels.extend(of_arrows);
-    channels.extend(acting.channels(moments));
+    channels.extend(forces.channels(moments));
     for reading in 0..animation.readings.len() {
         let values = moments.iter().map(|moment| moment.readings[reading]);
         channels.push(Channel::new(values.collect()));
     }
 
-    let most = [most, acting.most]
+    let most = [most, forces.most]
         .map(|most| most.map(significant))
         .concat();
     let home = placements.first().map_or(&[][..], Vec::as_slice);
@@ -73,8 +73,8 @@ pub(super) fn film(animation: &Animation, stage: &mut Stage) -> Value {
         "labels": labels(stage, home),
         "lengths": stage.lengths.len(),
         "points": tracked(stage, points),
-        "forces": acting.forces,
-        "torques": acting.torques,
+        "forces": forces.places[0],
+        "torques": forces.places[1],
         "most": most,
         "readings": animation.readings.iter().map(|r| json!({
             "name": r.name,
@@ -118,75 +118,65 @@ pub(super) fn tracked(stage: &Stage, points: &[(usize, Anchor)]) -> Vec<Value> {
 /// Returns velocity and acceleration of points on the sheet, each as a part of the greatest of its
 /// kind, and these two \[m/s, m/s²\].
 fn arrows(points: &[(usize, Anchor)], moments: &[Moment]) -> (Vec<Channel>, [f64; 2]) {
-    let mut all: [Vec<Vec<Vector2<f64>>>; 2] = Default::default();
-    let mut most = [0.0_f64; 2];
-    for (_, anchor) in points {
+    let of_point = |(_, anchor): &(usize, Anchor)| -> Vec<[Vector2<f64>; 2]> {
         let rates = moments
             .iter()
             .map(|moment| rates(*anchor, &moment.q, [&moment.rates[0], &moment.rates[1]]));
-        let (velocity, acceleration): (Vec<_>, Vec<_>) = rates.map(|[v, a]| (v, a)).unzip();
-        for ((all, most), values) in all.iter_mut().zip(&mut most).zip([velocity, acceleration]) {
-            let norms = values
-                .iter()
-                .map(|v| v.norm())
-                .filter(|norm| norm.is_finite());
-            *most = norms.fold(*most, f64::max);
-            all.push(values);
+        rates.collect()
+    };
+    let all: Vec<Vec<[Vector2<f64>; 2]>> = points.iter().map(of_point).collect();
+    let most = [0, 1].map(|kind| {
+        let norms = all.iter().flatten().map(|rates| rates[kind].norm());
+        norms.filter(|norm| norm.is_finite()).fold(0.0, f64::max)
+    });
+    // Without motion there are no arrows.
+    let factors = most.map(|most| if most > 0.0 { 1.0 / most } else { 0.0 });
+    let channel = |rates: &[[Vector2<f64>; 2]], kind: usize, component: usize, sign: f64| {
+        let values = rates
+            .iter()
+            .map(|r| sign * factors[kind] * r[kind][component]);
+        Channel {
+            range: [-1.0, 1.0],
+            ..Channel::new(values.collect())
         }
-    }
-    let mut channels = Vec::new();
-    for point in 0..points.len() {
-        for (all, most) in all.iter().zip(most) {
-            // Without motion there are no arrows.
-            let factor = if most > 0.0 { 1.0 / most } else { 0.0 };
-            for (component, sign) in [(0, 1.0), (1, -1.0)] {
-                let values = all[point].iter().map(|v| sign * factor * v[component]);
-                channels.push(Channel {
-                    range: [-1.0, 1.0],
-                    ..Channel::new(values.collect())
-                });
-            }
-        }
-    }
-    (channels, most)
+    };
+    let channels = all.iter().flat_map(|rates| {
+        [(0, 0, 1.0), (0, 1, -1.0), (1, 0, 1.0), (1, 1, -1.0)]
+            .map(|(kind, component, sign)| channel(rates, kind, component, sign))
+    });
+    (channels.collect(), most)
 }
 
-/// The forces and torques that an animation shows.
+/// The forces and torques that an animation shows: those that are seen at some moment.
 struct Acting {
-    /// Each with its kind, its attachment, its place there, and its index in the animation.
-    forces: Vec<Value>,
-    torques: Vec<Value>,
+    /// Their indices in the animation.
     indices: [Vec<usize>; 2],
+    /// Their kinds, attachments and places there.
+    places: [Vec<Value>; 2],
     /// The largest force \[N\] and the largest torque \[N m\], zero if there is none.
     most: [f64; 2],
 }
 
 impl Acting {
-    /// Finds the forces and torques that are more than rounding at some moment.
     fn new(animation: &Animation, stage: &mut Stage) -> Self {
         let moments = &animation.moments;
         let limits = largest(moments.iter().flat_map(|moment| &moment.forces));
         let mut acting = Self {
-            forces: Vec::new(),
-            torques: Vec::new(),
             indices: Default::default(),
-            most: limits.map(|most| if most.is_finite() { most } else { 0.0 }),
+            places: Default::default(),
+            most: limits.map(or_zero),
         };
         for (index, force) in animation.forces.iter().enumerate() {
-            let values = moments.iter().map(|moment| &moment.forces[index]);
-            let own = largest(values).map(|most| if most.is_finite() { most } else { 0.0 });
-            for (component, places) in [&mut acting.forces, &mut acting.torques]
-                .into_iter()
-                .enumerate()
-            {
-                if own[component] > INVISIBLE * limits[component] {
+            let own = largest(moments.iter().map(|moment| &moment.forces[index])).map(or_zero);
+            for kind in [0, 1] {
+                if own[kind] > INVISIBLE * limits[kind] {
                     let [x, y] = force.at.position;
-                    places.push(json!({
+                    acting.indices[kind].push(index);
+                    acting.places[kind].push(json!({
                         "kind": force.kind.word(),
                         "attachment": stage.attach(force.at),
                         "at": [short(stage.scale * x), short(-stage.scale * y)],
                     }));
-                    acting.indices[component].push(index);
                 }
             }
         }
@@ -208,6 +198,11 @@ impl Acting {
             .chain(torques.iter().map(|&index| of(index, 2, torque)))
             .collect()
     }
+}
+
+/// Returns a largest value, zero in place of the infinity that stands for none.
+fn or_zero(largest: f64) -> f64 {
+    if largest.is_finite() { largest } else { 0.0 }
 }
 
 /// Returns velocity and acceleration of a point of a rigid body.

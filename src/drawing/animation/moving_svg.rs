@@ -9,7 +9,7 @@ use crate::drawing::label::Placed;
 use crate::drawing::outline::Point;
 use crate::drawing::palette::Colour;
 use crate::drawing::sheet::{Bounds, CAPITALS, Mark};
-use crate::drawing::svg::{FONT_SIZE, FONTS, escape, number, path_data, text_element};
+use crate::drawing::svg::{FONT_SIZE, FONTS, escape, fitted_text, number, path_data};
 
 /// Most moments: of more, every second, third and so on is shown.
 const MOST_MOMENTS: usize = 240;
@@ -57,19 +57,11 @@ pub fn moving_svg(animation: &Animation) -> String {
     let font = number(CAPITALS * FONT_SIZE);
     svg += &format!("<g font-family=\"{FONTS}\" font-size=\"{font}\">\n");
     for ((attachment, label), covered) in stage.labels.iter().zip(&covered) {
-        let width = fixed_width(label.text.width());
-        let text = text_element(&label.text, label.text.start.x, &width);
         let moves = film.label(*attachment, label) + &film.hiding(covered);
-        svg += &text.replace("</text>", &format!("{moves}</text>\n"));
+        svg += &fitted_text(&label.text).replace("</text>", &format!("{moves}</text>\n"));
     }
-    let scale = &stage.scale_text;
-    svg += &text_element(scale, scale.start.x, &fixed_width(scale.width()));
+    svg += &fitted_text(&stage.scale_text);
     svg + "\n</g>\n</svg>\n"
-}
-
-fn fixed_width(width: f64) -> String {
-    let width = number(width);
-    format!("textLength=\"{width}\" lengthAdjust=\"spacingAndGlyphs\"")
 }
 
 /// The motion of all frames.
@@ -136,11 +128,11 @@ impl<'a> Film<'a> {
         let Some(elastic) = &mark.elastic else {
             return String::new();
         };
-        let lengths = self
+        let outlines = self
             .poses
             .iter()
-            .map(|q| elastic.measure.value(q, self.stage.scale));
-        let values = lengths.map(|length| path_data(&elastic.outline(length)));
+            .map(|q| elastic.outline(q, self.stage.scale));
+        let values = outlines.map(|outline| path_data(&outline));
         let values = values.collect::<Vec<_>>().join(";");
         format!(
             "<animate attributeName=\"d\" values=\"{values}\" {}/>",
@@ -150,9 +142,7 @@ impl<'a> Film<'a> {
 
     /// Returns the middle of a label at a moment.
     fn center(&self, attachment: usize, label: &Placed, places: &[Placement]) -> Point {
-        let moved = [&self.placements[0], places].map(|places| places[attachment]);
-        let size = Point::new(label.text.width(), CAPITALS);
-        label.place.moved(moved).center(size)
+        label.center([&self.placements[0], places].map(|places| places[attachment]))
     }
 
     /// Returns for each label whether it would be over an earlier one at each moment.

@@ -6,7 +6,7 @@ use crate::drawing::label::Placed;
 use crate::drawing::layout::{extent, fitting, scale_bar, size};
 use crate::drawing::outline::{Point, convex_hull};
 use crate::drawing::scene::Scene;
-use crate::drawing::sheet::{Bounds, CAPITALS, MARGIN, Mark, Text, WIDTH};
+use crate::drawing::sheet::{Bounds, MARGIN, Mark, Text, WIDTH};
 use crate::drawing::symbol::{OtherPoses, Pen, Symbol};
 
 /// Poses that decide how much room the motion needs.
@@ -115,15 +115,18 @@ impl Stage {
                 let Some(elastic) = &mark.elastic else {
                     continue;
                 };
-                let outline = elastic.outline(elastic.measure.value(q, self.scale));
-                for point in outline.flattened().into_iter().flatten() {
+                for point in elastic
+                    .outline(q, self.scale)
+                    .flattened()
+                    .into_iter()
+                    .flatten()
+                {
                     bounds.add(placements[*attachment].outside(point));
                 }
             }
             for (attachment, label) in &self.labels {
-                let place = (label.place).moved([homes[*attachment], placements[*attachment]]);
-                let size = Point::new(label.text.width(), CAPITALS);
-                bounds.join(&Bounds::about(place.center(size), size));
+                let center = label.center([homes[*attachment], placements[*attachment]]);
+                bounds.join(&Bounds::about(center, label.text.size()));
             }
         }
         let corner = Point::new(bounds.low.x, bounds.high.y + 16.0);
@@ -217,9 +220,8 @@ mod tests {
     fn boxes(stage: &Stage, home: &[Placement], q: &[f64]) -> Vec<Bounds> {
         let placements = stage.placements(q);
         let labels = stage.labels.iter().map(|(attachment, label)| {
-            let place = (label.place).moved([home[*attachment], placements[*attachment]]);
-            let size = Point::new(label.text.width(), CAPITALS);
-            Bounds::about(place.center(size), size)
+            let center = label.center([home[*attachment], placements[*attachment]]);
+            Bounds::about(center, label.text.size())
         });
         labels.collect()
     }

@@ -66,7 +66,7 @@ impl Shape for AngleDriver {
             place.costlier(2.0 + 4.0 * off)
         }));
         pen.attach(Attachment::Point(self.to));
-        pen.name_driver(&self.name, candidates);
+        pen.label(Named::Driver, &self.name, Colour::DRIVER.shade(0.8), candidates);
     }
 
     fn extent(&self) -> Vec<Disc> {

@@ -23,14 +23,8 @@ pub(super) fn compose(
     sizes: &WheelSizes,
     crossed: bool,
 ) {
-    let values = sizes.expressions().each_ref().map(|s| composer.value(s));
-    let radii = match sizes {
-        WheelSizes::Radii(_) => values,
-        WheelSizes::Teeth(_) => {
-            let sum = values[0] + values[1];
-            values.map(|teeth| WHEELS * composer.distance(centers) * teeth / sum)
-        }
-    };
+    let length = WHEELS * composer.distance(centers);
+    let radii = wheel::radii(composer, sizes, length, |[a, b]| a + b);
     for (at, radius) in centers.into_iter().zip(radii) {
         wheel::add(composer, at, radius, false);
     }

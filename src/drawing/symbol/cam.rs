@@ -32,10 +32,9 @@ pub(super) fn compose(
 
 /// Returns a cam's contour in the frame of its body \[m\].
 fn contour(composer: &Composer, cam: Anchor, profile: &Profile) -> Vec<[f64; 2]> {
-    let parameters = composer.parameters();
-    let mut in_force = ProfileInForce::new(profile, parameters.len());
+    let mut in_force = ProfileInForce::new(profile, composer.mechanism.parameters.len());
     in_force
-        .set_parameters(|p| parameters[p.index()])
+        .set_parameters(|p| composer.parameter(p))
         .expect("the mechanism was assembled with these parameters");
     let center = Point::from(cam.position);
     let point = |theta: f64| {

@@ -121,8 +121,9 @@ impl<'a> Composer<'a> {
         expression.value(self.parameters)
     }
 
-    pub(super) fn parameters(&self) -> &[f64] {
-        self.parameters
+    /// Returns the value of a parameter.
+    pub(super) fn parameter(&self, id: ParameterId) -> f64 {
+        self.parameters[id.index()]
     }
 
     pub(super) fn anchor(&self, marker: MarkerId) -> Anchor {
@@ -194,28 +195,18 @@ impl<'a> Composer<'a> {
 
     /// Composes the symbol of a force: a spring, a damper, a cylinder, or an arrow.
     fn force(&mut self, force: &Force) {
-        let parameters = self.parameters;
-        let parameter = |p: ParameterId| parameters[p.index()];
         let (coordinate, law) = match &force.load {
             Load::Coordinate { coordinate, law } => (coordinate, law.as_ref()),
             Load::Marker { marker, axes, law } => {
                 let at = self.anchor(*marker);
                 let axes = axes.map_or(Anchor::origin(None), |axes| self.anchor(axes));
-                let sizes = law.as_ref().map(|law| {
-                    let law = law.each_ref();
-                    move |time| law.map(|size| size.evaluate(&parameter, time))
-                });
-                let sizes = sizes
-                    .as_ref()
-                    .map(|sizes| sizes as &dyn Fn(f64) -> [f64; 3]);
-                return load::compose_at(self, &force.name, [at, axes], sizes);
+                return load::compose_at(self, &force.name, [at, axes], law.as_ref());
             }
         };
         let ends = [coordinate.from, coordinate.to].map(|marker| self.anchor(marker));
         let axis = self.axis(coordinate);
         let is_elastic = law.is_some_and(|law| law.spring.is_some());
         let is_damped = law.is_some_and(|law| law.damping.is_some());
-        let start = self.mechanism.simulation.start;
         match coordinate.kind {
             CoordinateKind::Angle if is_elastic || is_damped => self.add(Torsion {
                 at: ends[1],
@@ -228,9 +219,7 @@ impl<'a> Composer<'a> {
                 spring::compose(self, ends, axis, [is_elastic, is_damped]);
             }
             CoordinateKind::Angle | CoordinateKind::X | CoordinateKind::Y => {
-                let size = law.map(|law| move |c| law.evaluate(&parameter, start, c));
-                let size = size.as_ref().map(|size| size as &dyn Fn([f64; 2]) -> f64);
-                load::compose_along(self, &force.name, ends, axis, size);
+                load::compose_along(self, &force.name, ends, axis, law);
             }
         }
     }

@@ -161,7 +161,8 @@ impl Shape for Dimension {
         ];
         let places = Candidate::beside(ends, &parts, &sides, &gaps);
         if !self.text.is_empty() {
-            pen.name_length(&self.text, self.body, places);
+            let colour = colour_of(self.body).shade(NAME);
+            pen.label(Named::Length, &self.text, colour, places);
         }
     }
 

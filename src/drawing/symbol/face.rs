@@ -123,14 +123,14 @@ impl Shape for Face {
         self.along.has_on_axis(self.range, point)
     }
 
-    fn is_fitted(&self) -> bool {
-        true
+    fn fitted(&self) -> Option<BodyId> {
+        self.along.body
     }
 
     /// Moves the corners of the body that are on the face to the back of the face. A body that is
     /// only a pivot there stays around it.
-    fn fit(&self, body: BodyId, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {
-        if self.along.body == Some(body) && corners.len() > 1 {
+    fn fit(&self, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {
+        if corners.len() > 1 {
             let (origin, _) = pen.place(self.along);
             let back = self.back(pen);
             for corner in corners {

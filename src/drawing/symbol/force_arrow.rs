@@ -64,7 +64,7 @@ impl Shape for ForceArrow {
         let gaps = [(4.0, 0.0), (12.0, 4.0), (24.0, 10.0)];
         let parts = [(1.0, 0.0), (0.6, 3.0)];
         let places = Candidate::beside([from, tip], &parts, &sides, &gaps);
-        pen.name_force(&self.size, colour, places);
+        pen.label(Named::Point, &self.size, colour.shade(0.8), places);
     }
 
     fn extent(&self) -> Vec<Disc> {

@@ -87,7 +87,8 @@ impl Shape for InstantCentreMark {
         }
         pen.line(Layer::Point, cross, Colour::INK, LINE);
         let name = format!("I {}", self.bodies.join(", "));
-        pen.name_point(&name, Candidate::around(center, HALF).collect());
+        let places = Candidate::around(center, HALF);
+        pen.label(Named::Point, &name, Colour::INK, places);
     }
 
     fn extent(&self) -> Vec<Disc> {

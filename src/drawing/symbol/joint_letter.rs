@@ -25,8 +25,9 @@ pub(super) struct Place {
 /// Greatest length of a name that stands as a letter.
 const SHORT: usize = 3;
 
-/// Returns the places of the joints in the order of the file, then of the ends of cylinders. They have the joints' own names if
-/// each place has a short one, otherwise letters, which points of interest do not have.
+/// Returns the places of the joints in the order of the file, then of the ends of cylinders. They
+/// have the joints' own names if each place has a short one, otherwise letters that no point of
+/// interest has.
 pub(super) fn places(composer: &Composer) -> Vec<Place> {
     let mut places: Vec<Place> = Vec::new();
     let anchors = |ends: [MarkerId; 2]| ends.map(|marker| composer.anchor(marker));
@@ -152,7 +153,8 @@ pub(super) fn are_one(a: &Anchor, b: &Anchor) -> bool {
 impl Shape for JointLetter {
     fn draw(&self, pen: &mut Pen) {
         let (center, ..) = pen.on(self.at);
-        pen.name_point(&self.name, Candidate::around(center, PIN + 1.0).collect());
+        let places = Candidate::around(center, PIN + 1.0);
+        pen.label(Named::Point, &self.name, Colour::INK, places);
     }
 
     fn extent(&self) -> Vec<Disc> {

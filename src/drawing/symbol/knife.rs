@@ -53,17 +53,15 @@ impl Shape for Knife {
         vec![self.at.into()]
     }
 
-    fn is_fitted(&self) -> bool {
-        true
+    fn fitted(&self) -> Option<BodyId> {
+        self.at.body
     }
 
     /// Moves the corner of the body at the edge to where the knife begins.
-    fn fit(&self, body: BodyId, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {
-        if self.at.body == Some(body) {
-            let (edge, inwards) = pen.place(self.at);
-            for corner in corners.iter_mut().filter(|corner| **corner == edge) {
-                *corner += LENGTH * inwards;
-            }
+    fn fit(&self, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {
+        let (edge, inwards) = pen.place(self.at);
+        for corner in corners.iter_mut().filter(|corner| **corner == edge) {
+            *corner += LENGTH * inwards;
         }
         None
     }

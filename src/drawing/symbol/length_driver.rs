@@ -77,7 +77,7 @@ impl Shape for LengthDriver {
         let mut candidates = Candidate::beside(ends, &parts, &sides, &gaps);
         candidates.extend(ends.into_iter().flat_map(|tip| Candidate::around(tip, 5.0)));
         pen.attach(Attachment::Point(self.to));
-        pen.name_driver(&self.name, candidates);
+        pen.label(Named::Driver, &self.name, Colour::DRIVER.shade(0.8), candidates);
     }
 
     fn extent(&self) -> Vec<Disc> {
@@ -106,9 +106,9 @@ fn draw_dimension(pen: &mut Pen, line: Line, has_extensions: bool) {
         LINE,
     );
     pen.attach(second);
-    pen.arrow(end, forth);
+    pen.tip(Layer::Driver, end, forth, Colour::DRIVER);
     pen.attach(first);
-    pen.arrow(start, -forth);
+    pen.tip(Layer::Driver, start, -forth, Colour::DRIVER);
 }
 
 /// Draws the lines from both points to the dimension line and a little beyond.

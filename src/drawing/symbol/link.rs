@@ -61,9 +61,9 @@ impl Shape for Link {
             .map(|&position| pen.place(Anchor::on_body(self.body, position)).0)
             .collect();
         let mut half = BAR;
-        for symbol in &pen.fitting {
-            let width = symbol.shape().fit(self.body, pen, &mut corners);
-            half = width.unwrap_or(half);
+        let is_fitted = |shape: &&&dyn Shape| shape.fitted() == Some(self.body);
+        for shape in pen.fitting.iter().filter(is_fitted) {
+            half = shape.fit(pen, &mut corners).unwrap_or(half);
         }
         let hull = convex_hull(&corners);
         let (layer, opacity) = if hull.len() > 2 {

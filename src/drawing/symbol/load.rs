@@ -1,6 +1,7 @@
 //! Loads: arrows of forces at a point, arcs of torques. Their length has no meaning.
 
 use super::*;
+use crate::mechanism::{ForceLaw, Simulation};
 
 /// A force or a torque, or both, on a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,43 +28,42 @@ const RADIUS: f64 = 17.0;
 const ARC: f64 = 4.0;
 const QUARTER: f64 = 1.3;
 
-/// Composes a force and torque at a marker, along the axes of an anchor, with the sizes that `law`
-/// gives at a time \[N, N, N m\]; inputs without it.
+/// Composes a force and torque at a marker, along the axes of an anchor; inputs without a law.
 pub(super) fn compose_at(
     composer: &mut Composer,
     name: &str,
     [at, axes]: [Anchor; 2],
-    law: Option<&dyn Fn(f64) -> [f64; 3]>,
+    law: Option<&[Expression; 3]>,
 ) {
-    let (arrows, turn) = match law {
-        None => (vec![[1.0, 0.0], [0.0, 1.0]], 1.0),
-        Some(law) => {
-            let simulation = &composer.mechanism.simulation;
-            let [start, stop] = [simulation.start, simulation.stop];
-            // One that rises from zero has its direction later.
-            let sizes = [start, 0.5 * (start + stop), stop].map(law);
-            let is_seen = |sizes: &&[f64; 3]| sizes.iter().any(|size| *size != 0.0);
-            let [x, y, torque] = sizes.iter().find(is_seen).copied().unwrap_or_default();
-            let size = x.hypot(y);
-            let arrows = if size > 0.0 {
-                vec![[x / size, y / size]]
-            } else {
-                Vec::new()
-            };
-            (arrows, if torque == 0.0 { 0.0 } else { torque.signum() })
-        }
+    let Some(law) = law else {
+        return add(composer, name, [at, axes], vec![[1.0, 0.0], [0.0, 1.0]], 1.0);
     };
+    let Simulation { start, stop, .. } = composer.mechanism.simulation;
+    // One that rises from zero has its direction later.
+    let sizes = [start, 0.5 * (start + stop), stop].map(|time| {
+        let value = |size: &Expression| size.evaluate(&|p| composer.parameter(p), time);
+        law.each_ref().map(value)
+    });
+    let is_seen = |sizes: &&[f64; 3]| sizes.iter().any(|size| *size != 0.0);
+    let [x, y, torque] = sizes.iter().find(is_seen).copied().unwrap_or_default();
+    let size = x.hypot(y);
+    let arrows = if size > 0.0 {
+        vec![[x / size, y / size]]
+    } else {
+        Vec::new()
+    };
+    let turn = if torque == 0.0 { 0.0 } else { torque.signum() };
     add(composer, name, [at, axes], arrows, turn);
 }
 
-/// Composes a force along an axis, or a torque, that acts on the second of two bodies. `size` is
-/// its law, a function of the coordinate and its rate; an input without it.
+/// Composes a force along an axis, or a torque, that acts on the second of two bodies; an input
+/// without a law.
 pub(super) fn compose_along(
     composer: &mut Composer,
     name: &str,
     [from, to]: [Anchor; 2],
     axis: Option<Anchor>,
-    size: Option<&dyn Fn([f64; 2]) -> f64>,
+    law: Option<&ForceLaw>,
 ) {
     let coordinate = |q: &[f64]| match axis {
         None => to.placed(q).angle - from.placed(q).angle,
@@ -72,18 +72,17 @@ pub(super) fn compose_along(
             along.dot(&(to.placed(q).point - from.placed(q).point))
         }
     };
-    let sign = match size {
-        None => 1.0,
+    let start = composer.mechanism.simulation.start;
+    let sign = law.map_or(1.0, |law| {
+        let size = |c| law.evaluate(&|p| composer.parameter(p), start, c);
         // One that is zero here has its direction elsewhere, or in motion.
-        Some(size) => [0.0, 1.0]
+        let poses = || std::iter::once(composer.q).chain(composer.poses());
+        let sizes = [0.0, 1.0]
             .into_iter()
-            .flat_map(|velocity| {
-                let poses = std::iter::once(composer.q).chain(composer.poses());
-                poses.map(move |q| size([coordinate(q), velocity]))
-            })
-            .find(|size| *size != 0.0 && size.is_finite())
-            .map_or(0.0, f64::signum),
-    };
+            .flat_map(|velocity| poses().map(move |q| [coordinate(q), velocity]));
+        let mut seen = sizes.map(size).filter(|size| *size != 0.0 && size.is_finite());
+        seen.next().map_or(0.0, f64::signum)
+    });
     let (arrows, turn) = match axis {
         None => (Vec::new(), sign),
         Some(_) if sign == 0.0 => (Vec::new(), 0.0),
@@ -157,7 +156,7 @@ impl Shape for LoadArrow {
             );
             places.extend(Candidate::around(point, RADIUS + 2.0));
         }
-        pen.name_load(&self.name, places);
+        pen.label(Named::Load, &self.name, Colour::INK, places);
     }
 
     fn extent(&self) -> Vec<Disc> {

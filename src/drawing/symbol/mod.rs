@@ -25,7 +25,8 @@ use crate::mechanism::{
 };
 use composer::Composer;
 use pen::{
-    BAR, BLOCK, DASH_DOTS, DASHES, HATCH, IN_ARROW, LINE, PIN, THIN, colour_of, on_sheet_direction,
+    BAR, BLOCK, DASH_DOTS, DASHES, HATCH, IN_ARROW, LINE, NAME, Named, PIN, THIN, colour_of,
+    on_sheet_direction,
 };
 
 pub(super) use composer::{compose, compose_dimensions};
@@ -51,14 +52,14 @@ pub(super) trait Shape {
         self.extent().iter().any(|disc| disc.covers(point))
     }
 
-    /// Returns whether the body that carries the symbol is fitted to it.
-    fn is_fitted(&self) -> bool {
-        false
+    /// Returns the body that is [fitted](Self::fit) to the symbol.
+    fn fitted(&self) -> Option<BodyId> {
+        None
     }
 
-    /// Fits the corners of the body that carries the symbol to it, and returns half the width of
-    /// the body's bar where the symbol needs another one.
-    fn fit(&self, _body: BodyId, _pen: &Pen, _corners: &mut Vec<Point>) -> Option<f64> {
+    /// Fits the corners of a body to the symbol, and returns half the width of the body's bar where
+    /// the symbol needs another one.
+    fn fit(&self, _pen: &Pen, _corners: &mut Vec<Point>) -> Option<f64> {
         None
     }
 

@@ -30,7 +30,7 @@ pub(super) const DASHES: &[f64] = &[4.0, 3.0];
 pub(super) const DASH_DOTS: &[f64] = &[10.0, 3.0, 2.0, 3.0];
 
 /// Part of a body's colour in its texts: half its light can be read.
-const NAME: f64 = 0.55;
+pub(super) const NAME: f64 = 0.55;
 /// Least distance on the sheet that can be seen.
 const SEEN: f64 = 0.1;
 
@@ -40,7 +40,7 @@ const MOST_NAMES: usize = 60;
 /// Draws symbols on a sheet whose origin is the origin of the mechanism.
 pub(in crate::drawing) struct Pen<'a> {
     /// The symbols to which bodies are fitted.
-    pub(super) fitting: Vec<&'a Symbol>,
+    pub(super) fitting: Vec<&'a dyn Shape>,
     pub(super) q: &'a [f64],
     /// Units of the sheet per metre.
     pub(super) scale: f64,
@@ -52,11 +52,20 @@ pub(in crate::drawing) struct Pen<'a> {
     /// The frame that the next marks and labels move with.
     attachment: Attachment,
     marks: Vec<Mark>,
-    driver_labels: Vec<Label>,
-    point_labels: Vec<Label>,
-    length_labels: Vec<Label>,
+    labels: Vec<(Named, Label)>,
     /// Places for the name of each body, from everything drawn of it.
     body_places: Vec<Vec<Candidate>>,
+}
+
+/// Things that labels name, in the order in which the labels choose their places; bodies come last.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Named {
+    Driver,
+    /// A load has a name if there is room.
+    Load,
+    /// A point, or the size of a force there.
+    Point,
+    Length,
 }
 
 /// Poses besides the one that is drawn.
@@ -77,16 +86,15 @@ impl<'a> Pen<'a> {
         scale: f64,
         others: OtherPoses<'a>,
     ) -> (Vec<Mark>, Vec<Placed>) {
-        let shown = symbols.iter().map(Symbol::shape);
-        let points: Vec<Point> = shown
+        let shapes = || symbols.iter().map(Symbol::shape);
+        let points: Vec<Point> = shapes()
             .filter(|shape| shape.shows().is_some())
             .flat_map(Shape::extent)
             .map(|disc| disc.center.placed(q).point)
             .collect();
         let middle = points.iter().sum::<Point>() / points.len().max(1) as f64;
-        let fitting = symbols.iter().filter(|symbol| symbol.shape().is_fitted());
         let mut pen = Self {
-            fitting: fitting.collect(),
+            fitting: shapes().filter(|shape| shape.fitted().is_some()).collect(),
             q,
             scale,
             middle: on_sheet(middle, scale),
@@ -94,13 +102,11 @@ impl<'a> Pen<'a> {
             others,
             attachment: Attachment::Ground,
             marks: Vec::new(),
-            driver_labels: Vec::new(),
-            point_labels: Vec::new(),
-            length_labels: Vec::new(),
+            labels: Vec::new(),
             body_places: bodies.iter().map(|_| Vec::new()).collect(),
         };
-        for symbol in symbols {
-            symbol.shape().draw(&mut pen);
+        for shape in shapes() {
+            shape.draw(&mut pen);
         }
         pen.finish(bodies)
     }
@@ -117,10 +123,8 @@ impl<'a> Pen<'a> {
                 &[]
             }
         };
-        // Labels choose their places in this order.
-        let mut labels = self.driver_labels;
-        labels.extend(self.point_labels);
-        labels.extend(self.length_labels);
+        self.labels.sort_by_key(|(kind, _)| *kind);
+        let mut labels: Vec<Label> = self.labels.into_iter().map(|(_, label)| label).collect();
         if bodies.len() <= MOST_NAMES {
             let bodies = bodies.iter().zip(self.body_places).enumerate();
             labels.extend(bodies.map(|(index, (name, candidates))| Label {
@@ -249,8 +253,9 @@ impl<'a> Pen<'a> {
     ) {
         let frame = self.attachment.placement(self.q, self.scale);
         let elastic = Elastic { measure, points };
-        let outline = elastic.outline(measure.value(self.q, self.scale));
-        let outline = outline.map(|point| frame.outside(point));
+        let outline = elastic
+            .outline(self.q, self.scale)
+            .map(|point| frame.outside(point));
         self.marks.push(Mark {
             attachment: self.attachment,
             elastic: Some(elastic),
@@ -271,11 +276,6 @@ impl<'a> Pen<'a> {
             hatching.add_line(&[foot, foot + HATCH * (outwards - along)]);
         }
         self.line(Layer::Ground, hatching, Colour::GROUND, THIN);
-    }
-
-    /// Draws the tip of a driver's arrow.
-    pub(super) fn arrow(&mut self, tip: Point, along: Point) {
-        self.tip(Layer::Driver, tip, along, Colour::DRIVER);
     }
 
     /// Draws a line from a point to another one, with an arrow there.
@@ -318,7 +318,8 @@ impl<'a> Pen<'a> {
         );
     }
 
-    fn tip(&mut self, layer: Layer, tip: Point, along: Point, colour: Colour) {
+    /// Draws the tip of an arrow.
+    pub(super) fn tip(&mut self, layer: Layer, tip: Point, along: Point, colour: Colour) {
         let [length, half] = ARROW;
         let base = tip - length * along;
         let aside = half * across(along);
@@ -328,52 +329,22 @@ impl<'a> Pen<'a> {
 
     // -- names -------------------------------------------------------------------------------
 
-    /// Names a driver at the best of these places.
-    pub(super) fn name_driver(&mut self, name: &str, candidates: Vec<Candidate>) {
-        let label = self.label(name, Colour::DRIVER.shade(0.8), candidates);
-        self.driver_labels.push(label);
-    }
-
-    /// Gives the size of a force at the best of these places.
-    pub(super) fn name_force(&mut self, size: &str, colour: Colour, candidates: Vec<Candidate>) {
-        let label = self.label(size, colour.shade(0.8), candidates);
-        self.point_labels.push(label);
-    }
-
-    /// Names a load at the best of these places, if there is room.
-    pub(super) fn name_load(&mut self, name: &str, candidates: Vec<Candidate>) {
-        let label = self.label(name, Colour::INK, candidates);
-        self.point_labels.push(Label {
-            optional: true,
-            ..label
-        });
-    }
-
-    /// Names a point at the best of these places.
-    pub(super) fn name_point(&mut self, name: &str, candidates: Vec<Candidate>) {
-        let label = self.label(name, Colour::INK, candidates);
-        self.point_labels.push(label);
-    }
-
-    /// Tells a length of a body, or of ground, at the best of these places.
-    pub(super) fn name_length(
+    /// Writes a text at the best of these places.
+    pub(super) fn label(
         &mut self,
+        kind: Named,
         text: &str,
-        body: Option<BodyId>,
-        candidates: Vec<Candidate>,
+        colour: Colour,
+        candidates: impl IntoIterator<Item = Candidate>,
     ) {
-        let label = self.label(text, colour_of(body).shade(NAME), candidates);
-        self.length_labels.push(label);
-    }
-
-    fn label(&self, name: &str, colour: Colour, candidates: Vec<Candidate>) -> Label {
-        Label {
-            content: name.to_owned(),
+        let label = Label {
+            content: text.to_owned(),
             colour,
             attachment: self.attachment,
-            optional: false,
-            candidates,
-        }
+            optional: kind == Named::Load,
+            candidates: candidates.into_iter().collect(),
+        };
+        self.labels.push((kind, label));
     }
 
     /// Offers places for the name of a body; ground has none.

@@ -19,7 +19,8 @@ impl Shape for InterestPoint {
         let (center, ..) = pen.on(self.at);
         let dot = Outline::circle(center, DOT);
         pen.area(Layer::Point, dot, (Colour::INK, 1.0), None);
-        pen.name_point(&self.name, Candidate::around(center, PIN).collect());
+        let places = Candidate::around(center, PIN);
+        pen.label(Named::Point, &self.name, Colour::INK, places);
     }
 
     fn extent(&self) -> Vec<Disc> {

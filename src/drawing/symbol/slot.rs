@@ -75,14 +75,12 @@ impl Shape for Slot {
         [start, end, self.at].map(Disc::from).to_vec()
     }
 
-    fn is_fitted(&self) -> bool {
-        true
+    fn fitted(&self) -> Option<BodyId> {
+        self.along.body
     }
 
-    fn fit(&self, body: BodyId, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {
-        (self.along.body == Some(body)).then(|| {
-            corners.extend(self.ends(pen));
-            SLOTTED_BAR
-        })
+    fn fit(&self, pen: &Pen, corners: &mut Vec<Point>) -> Option<f64> {
+        corners.extend(self.ends(pen));
+        Some(SLOTTED_BAR)
     }
 }

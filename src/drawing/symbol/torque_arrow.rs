@@ -32,8 +32,8 @@ impl Shape for TorqueArrow {
         // From below.
         let arc = [-FRAC_PI_2, WIDEST * self.part];
         pen.arc_arrow(Layer::Force, (center, ARC), arc, colour, WIDTH);
-        let places = Candidate::around(center, ARC + 2.0).collect();
-        pen.name_force(&self.size, colour, places);
+        let places = Candidate::around(center, ARC + 2.0);
+        pen.label(Named::Point, &self.size, colour.shade(0.8), places);
     }
 
     fn extent(&self) -> Vec<Disc> {

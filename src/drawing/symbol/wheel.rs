@@ -25,22 +25,28 @@ pub(super) fn compose(
     sizes: &WheelSizes,
     internal: bool,
 ) {
-    let values = sizes.expressions().each_ref().map(|s| composer.value(s));
-    let radii = match sizes {
-        WheelSizes::Radii(_) => values,
-        // The distance of the centres decides the pitch circles.
-        WheelSizes::Teeth(_) => {
-            let sum = if internal {
-                (values[0] - values[1]).abs()
-            } else {
-                values[0] + values[1]
-            };
-            values.map(|teeth| composer.distance(centers) * teeth / sum)
-        }
-    };
+    // The pitch circles touch.
+    let distance = composer.distance(centers);
+    let sum = |[a, b]: [f64; 2]| if internal { (a - b).abs() } else { a + b };
+    let radii = radii(composer, sizes, distance, sum);
     let larger = usize::from(radii[1] > radii[0]);
     for (index, (at, radius)) in centers.into_iter().zip(radii).enumerate() {
         add(composer, at, radius, internal && index == larger);
+    }
+}
+
+/// Returns the radii of two wheels \[m\]. Those of wheels given by teeth have `length` \[m\] as their
+/// `sum`.
+pub(super) fn radii(
+    composer: &Composer,
+    sizes: &WheelSizes,
+    length: f64,
+    sum: impl Fn([f64; 2]) -> f64,
+) -> [f64; 2] {
+    let values = sizes.expressions().each_ref().map(|s| composer.value(s));
+    match sizes {
+        WheelSizes::Radii(_) => values,
+        WheelSizes::Teeth(_) => values.map(|teeth| length * teeth / sum(values)),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::Operation;
 use crate::mechanism::number::{Number, Unary};
 
 /// Constants of the language. All but `pi` convert a number to SI units.
@@ -35,37 +36,30 @@ pub(super) enum Binary {
     Max,
 }
 
-/// A function of the language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Function {
-    Unary(Unary),
-    Binary(Binary),
-}
-
 /// All functions with their names.
-pub(super) const FUNCTIONS: [(&str, Function); 22] = [
-    ("sin", Function::Unary(Unary::Sin)),
-    ("cos", Function::Unary(Unary::Cos)),
-    ("tan", Function::Unary(Unary::Tan)),
-    ("asin", Function::Unary(Unary::Asin)),
-    ("acos", Function::Unary(Unary::Acos)),
-    ("atan", Function::Unary(Unary::Atan)),
-    ("atan2", Function::Binary(Binary::Atan2)),
-    ("sinh", Function::Unary(Unary::Sinh)),
-    ("cosh", Function::Unary(Unary::Cosh)),
-    ("tanh", Function::Unary(Unary::Tanh)),
-    ("sqrt", Function::Unary(Unary::Sqrt)),
-    ("hypot", Function::Binary(Binary::Hypot)),
-    ("exp", Function::Unary(Unary::Exp)),
-    ("ln", Function::Unary(Unary::Ln)),
-    ("log10", Function::Unary(Unary::Log10)),
-    ("abs", Function::Unary(Unary::Abs)),
-    ("sign", Function::Unary(Unary::Sign)),
-    ("floor", Function::Unary(Unary::Floor)),
-    ("ceil", Function::Unary(Unary::Ceil)),
-    ("mod", Function::Binary(Binary::Mod)),
-    ("min", Function::Binary(Binary::Min)),
-    ("max", Function::Binary(Binary::Max)),
+pub(super) const FUNCTIONS: [(&str, Operation); 22] = [
+    ("sin", Operation::Unary(Unary::Sin)),
+    ("cos", Operation::Unary(Unary::Cos)),
+    ("tan", Operation::Unary(Unary::Tan)),
+    ("asin", Operation::Unary(Unary::Asin)),
+    ("acos", Operation::Unary(Unary::Acos)),
+    ("atan", Operation::Unary(Unary::Atan)),
+    ("atan2", Operation::Binary(Binary::Atan2)),
+    ("sinh", Operation::Unary(Unary::Sinh)),
+    ("cosh", Operation::Unary(Unary::Cosh)),
+    ("tanh", Operation::Unary(Unary::Tanh)),
+    ("sqrt", Operation::Unary(Unary::Sqrt)),
+    ("hypot", Operation::Binary(Binary::Hypot)),
+    ("exp", Operation::Unary(Unary::Exp)),
+    ("ln", Operation::Unary(Unary::Ln)),
+    ("log10", Operation::Unary(Unary::Log10)),
+    ("abs", Operation::Unary(Unary::Abs)),
+    ("sign", Operation::Unary(Unary::Sign)),
+    ("floor", Operation::Unary(Unary::Floor)),
+    ("ceil", Operation::Unary(Unary::Ceil)),
+    ("mod", Operation::Binary(Binary::Mod)),
+    ("min", Operation::Binary(Binary::Min)),
+    ("max", Operation::Binary(Binary::Max)),
 ];
 
 /// Returns the names of all functions.
@@ -73,27 +67,13 @@ pub(in crate::mechanism) fn function_names() -> impl Iterator<Item = &'static st
     FUNCTIONS.iter().map(|(name, _)| *name)
 }
 
-impl Function {
-    pub(super) fn by_name(name: &str) -> Option<Self> {
-        FUNCTIONS
-            .iter()
-            .find_map(|(known, function)| (*known == name).then_some(*function))
-    }
-
-    pub(super) fn name(self) -> &'static str {
-        FUNCTIONS
-            .iter()
-            .find_map(|(name, function)| (*function == self).then_some(*name))
-            .expect("the table lists every function")
-    }
+/// Returns the function called `name`.
+pub(super) fn function(name: &str) -> Option<Operation> {
+    let known = FUNCTIONS.iter().find(|(function, _)| *function == name);
+    known.map(|(_, function)| *function)
 }
 
 impl Binary {
-    /// Whether it takes more than two arguments too.
-    pub(super) fn is_variadic(self) -> bool {
-        matches!(self, Self::Min | Self::Max)
-    }
-
     /// Returns the function of x and y. `min`, `max` and `mod` have the derivatives of the piece
     /// in force; at a tie of `min` and `max` that is the first argument.
     pub(super) fn apply<N: Number>(self, x: N, y: N) -> N {

@@ -8,7 +8,6 @@
 //! associate to the right: `-x^2` is `-(x^2)` and `2^3^2` is `2^9`.
 
 mod dimension;
-mod display;
 mod error;
 mod function;
 mod in_force;
@@ -26,7 +25,7 @@ use function::Binary;
 pub(crate) use function::constant;
 pub(super) use function::{CONSTANTS, function_names};
 pub(super) use in_force::ExpressionInForce;
-pub(super) use parse::{Parsed, Scope, SignalNames};
+pub(super) use parse::{Scope, SignalNames};
 
 use super::number::{self, Interval, Jet3, Number, Unary};
 use super::{Order, ParameterId, Signal};

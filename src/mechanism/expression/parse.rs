@@ -2,7 +2,7 @@
 
 use super::dimension::{Clash, Dimensions};
 use super::error::ExpressionError;
-use super::function::{CONSTANTS, FUNCTIONS, Function, constant};
+use super::function::{Binary, CONSTANTS, FUNCTIONS, constant, function};
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::{self, NameTable};
@@ -87,34 +87,23 @@ impl Expression {
     }
 }
 
-/// Binding of an infix operator: its left operand binds at least as tightly as `left`, its right
-/// one as `right`.
-struct Infix {
-    left: u8,
-    right: u8,
-    operation: Operation,
-}
-
 /// Binding of a sign: tighter than a product, looser than a power.
 const SIGN: u8 = 5;
 
-fn infix(kind: TokenKind<'_>) -> Option<Infix> {
+/// Returns how tightly the operands to the left and to the right of an infix operator have to bind
+/// at least, and its operation.
+fn infix(kind: TokenKind<'_>) -> Option<(u8, u8, Operation)> {
     let TokenKind::Symbol(symbol) = kind else {
         return None;
     };
-    let (left, right, operation) = match symbol {
-        b'+' => (1, 2, Operation::Add),
-        b'-' => (1, 2, Operation::Subtract),
-        b'*' => (3, 4, Operation::Multiply),
-        b'/' => (3, 4, Operation::Divide),
-        b'^' => (8, 7, Operation::Power),
-        _ => return None,
-    };
-    Some(Infix {
-        left,
-        right,
-        operation,
-    })
+    match symbol {
+        b'+' => Some((1, 2, Operation::Add)),
+        b'-' => Some((1, 2, Operation::Subtract)),
+        b'*' => Some((3, 4, Operation::Multiply)),
+        b'/' => Some((3, 4, Operation::Divide)),
+        b'^' => Some((8, 7, Operation::Power)),
+        _ => None,
+    }
 }
 
 struct Parser<'a> {
@@ -165,10 +154,12 @@ impl<'a> Parser<'a> {
             return Err(self.nested_too_deeply());
         }
         let mut span = self.parse_operand()?;
-        while let Some(infix) = infix(self.token.kind).filter(|infix| infix.left >= least) {
+        while let Some((left, right, operation)) = infix(self.token.kind)
+            && left >= least
+        {
             self.advance()?;
-            span.end = self.parse_operators(infix.right)?.end;
-            self.emit(infix.operation, &span)?;
+            span.end = self.parse_operators(right)?.end;
+            self.emit(operation, &span)?;
         }
         self.depth -= 1;
         Ok(span)
@@ -208,9 +199,9 @@ impl<'a> Parser<'a> {
     fn parse_name(&mut self, name: &str, span: Span) -> Result<Span, ExpressionError> {
         let called = self.token.kind == TokenKind::Symbol(b'(');
         let constant = constant(name);
-        let operation = if let Some(function) = Function::by_name(name) {
+        let operation = if let Some(function) = function(name) {
             if called {
-                return self.parse_call(function, span);
+                return self.parse_call(function, name, span);
             }
             return Err(
                 ExpressionError::new(span, format!("`{name}` is a function"))
@@ -248,19 +239,23 @@ impl<'a> Parser<'a> {
         variable.or_else(|| self.scope.signals?.known.get(name))
     }
 
-    fn parse_call(&mut self, function: Function, name: Span) -> Result<Span, ExpressionError> {
+    /// Parses the arguments of a function called `name`, which stands at `place`.
+    fn parse_call(
+        &mut self,
+        function: Operation,
+        name: &str,
+        place: Span,
+    ) -> Result<Span, ExpressionError> {
         let open = self.advance()?;
-        let (operation, least, variadic) = match function {
-            Function::Unary(function) => (Operation::Unary(function), 1, false),
-            Function::Binary(function) => (Operation::Binary(function), 2, function.is_variadic()),
-        };
+        let least = function.arity();
+        let variadic = matches!(function, Operation::Binary(Binary::Min | Binary::Max));
         let mut count = 0;
         if self.token.kind != TokenKind::Symbol(b')') {
             loop {
                 self.parse_operators(0)?;
                 count += 1;
                 if variadic && count >= 2 {
-                    self.emit(operation, &(name.start..self.token.start))?;
+                    self.emit(function, &(place.start..self.token.start))?;
                 }
                 if self.token.kind != TokenKind::Symbol(b',') {
                     break;
@@ -268,7 +263,7 @@ impl<'a> Parser<'a> {
                 self.advance()?;
             }
         }
-        let span = name.start..self.expect_close(&open)?.end;
+        let span = place.start..self.expect_close(&open)?.end;
         if count < least || (count > least && !variadic) {
             let wanted = match (least, variadic) {
                 (1, _) => "1 argument",
@@ -277,11 +272,11 @@ impl<'a> Parser<'a> {
             };
             return Err(ExpressionError::new(
                 span,
-                format!("`{}` takes {wanted}, found {count}", function.name()),
+                format!("`{name}` takes {wanted}, found {count}"),
             ));
         }
         if !variadic {
-            self.emit(operation, &span)?;
+            self.emit(function, &span)?;
         }
         Ok(span)
     }

@@ -10,49 +10,9 @@ use crate::mechanism::ParameterId;
 use crate::mechanism::number::{Interval, Jet3, Number, Unary};
 
 /// Most switches of an expression in one range.
-const MOST_SWITCHES: usize = 6;
+const MOST_SWITCHES: u32 = 6;
 /// Number of parts of a range: the excess of the bounds is proportional to their width.
 const PARTS: u32 = 8;
-
-/// The pieces chosen at the switches of one evaluation, in their order.
-#[derive(Debug, Default)]
-struct Choices {
-    /// Whether the second piece is taken.
-    second: [bool; MOST_SWITCHES],
-    /// Number of switches whose piece is chosen.
-    known: usize,
-    /// Number of switches met so far.
-    met: usize,
-}
-
-impl Choices {
-    /// Returns whether to take the second piece at the next switch; `None` if there are too many.
-    fn next(&mut self) -> Option<bool> {
-        let index = self.met;
-        if index == MOST_SWITCHES {
-            return None;
-        }
-        if index == self.known {
-            self.second[index] = false;
-            self.known += 1;
-        }
-        self.met += 1;
-        Some(self.second[index])
-    }
-
-    /// Goes on to the next choice of pieces. Returns false after the last one.
-    fn advance(&mut self) -> bool {
-        self.met = 0;
-        while self.known > 0 {
-            let last = &mut self.second[self.known - 1];
-            if !std::mem::replace(last, true) {
-                return true;
-            }
-            self.known -= 1;
-        }
-        false
-    }
-}
 
 impl Expression {
     /// Encloses the value and its first three derivatives on each piece over a range of the
@@ -74,57 +34,48 @@ impl Expression {
                 (variable.low + f64::from(part) * width).min(variable.high)
             }
         };
-        let mut parts = (0..PARTS)
-            .map(|part| self.enclose_choices(&parameter, Interval::new(end(part), end(part + 1))));
+        let mut parts = (0..PARTS).map(|part| {
+            let variable = Jet3::variable(Interval::new(end(part), end(part + 1)));
+            let stack = [Jet3::constant(0.0); MAX_STACK];
+            run_pieces(
+                &self.program,
+                (stack, 0),
+                &parameter,
+                variable,
+                MOST_SWITCHES,
+            )
+        });
         let first = parts.next().flatten();
         parts.fold(first, |hull, part| Some(hull?.hull(part?)))
     }
+}
 
-    /// Encloses one part by the hull of all choices of pieces.
-    fn enclose_choices(
-        &self,
-        parameter: &impl Fn(ParameterId) -> Jet3<Interval>,
-        range: Interval,
-    ) -> Option<Jet3<Interval>> {
-        let mut choices = Choices::default();
-        let mut hull: Option<Jet3<Interval>> = None;
-        loop {
-            let bounds = self.run_pieces(parameter, range, &mut choices)?;
-            let [first, second, _] = bounds.derivatives;
-            let needed = [bounds.value, first, second];
-            if !needed.iter().all(|bound| bound.is_finite()) {
-                return None;
-            }
-            hull = Some(hull.map_or(bounds, |hull| hull.hull(bounds)));
-            if !choices.advance() {
-                return hull;
-            }
+/// Runs the rest of a program on a stack of some height, of which at most `switches` operations may
+/// switch: the hull of the results for both pieces of each.
+fn run_pieces(
+    program: &[Operation],
+    (mut stack, mut height): ([Jet3<Interval>; MAX_STACK], usize),
+    parameter: &impl Fn(ParameterId) -> Jet3<Interval>,
+    variable: Jet3<Interval>,
+    switches: u32,
+) -> Option<Jet3<Interval>> {
+    for (index, operation) in program.iter().enumerate() {
+        let first = height - operation.arity();
+        if let Some(pieces) = operation.switch(&stack[first..height]) {
+            let switches = switches.checked_sub(1)?;
+            let [one, other] = pieces.map(|piece| {
+                stack[first] = piece;
+                let rest = &program[index + 1..];
+                run_pieces(rest, (stack, first + 1), parameter, variable, switches)
+            });
+            return Some(one?.hull(other?));
         }
+        operation.apply(&mut stack, &mut height, parameter, &|_| variable);
     }
-
-    /// Runs the program with one choice of pieces.
-    fn run_pieces(
-        &self,
-        parameter: &impl Fn(ParameterId) -> Jet3<Interval>,
-        range: Interval,
-        choices: &mut Choices,
-    ) -> Option<Jet3<Interval>> {
-        let variable = Jet3::variable(range);
-        let mut stack = [Jet3::constant(0.0); MAX_STACK];
-        let mut height = 0;
-        for operation in &self.program {
-            let first = height - operation.arity();
-            match operation.switch(&stack[first..height]) {
-                Some(pieces) => {
-                    let second = choices.next()?;
-                    stack[first] = pieces[usize::from(second)];
-                    height = first + 1;
-                }
-                None => operation.apply(&mut stack, &mut height, parameter, &|_| variable),
-            }
-        }
-        Some(stack[0])
-    }
+    let [first, second, _] = stack[0].derivatives;
+    let needed = [stack[0].value, first, second];
+    let is_finite = needed.iter().all(|bound| bound.is_finite());
+    is_finite.then_some(stack[0])
 }
 
 impl Operation {

@@ -20,7 +20,7 @@ impl Expression {
             return Some([r.scaled(cos), r.scaled(sin)]);
         }
         // The radius waits while the angle is computed.
-        if angle.height() >= MAX_STACK {
+        if angle.height >= MAX_STACK {
             return None;
         }
         let times = |function| {
@@ -42,16 +42,6 @@ impl Expression {
                 Self::new([&*self.program, &factor].concat())
             }
         }
-    }
-
-    /// Returns the most operands that wait at one time.
-    fn height(&self) -> usize {
-        let mut height = 0;
-        let heights = self.program.iter().map(|operation| {
-            height = height + 1 - operation.arity();
-            height
-        });
-        heights.max().unwrap_or(0)
     }
 }
 

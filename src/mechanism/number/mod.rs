@@ -18,7 +18,7 @@ mod real;
 mod taylor;
 
 use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 pub(super) use enclosure::{enclose, expand};
 pub(super) use function::Unary;
@@ -64,7 +64,6 @@ pub trait Number:
     + Div<Output = Self>
     + AddAssign
     + SubAssign
-    + MulAssign
     + 'static
 {
     /// Returns exactly `value`, which does not vary.

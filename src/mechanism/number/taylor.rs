@@ -1,7 +1,7 @@
 //! Numbers with derivatives.
 
 use std::array;
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{Number, Unary};
 
@@ -362,11 +362,5 @@ impl<S: Number, const N: usize> AddAssign for Taylor<S, N> {
 impl<S: Number, const N: usize> SubAssign for Taylor<S, N> {
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
-    }
-}
-
-impl<S: Number, const N: usize> MulAssign for Taylor<S, N> {
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
     }
 }

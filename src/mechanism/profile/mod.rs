@@ -388,38 +388,26 @@ impl ProfileInForce {
     /// The result has no meaning if the parameters make no contour.
     #[must_use]
     pub fn radius(&self, theta: f64) -> Jet3 {
-        match self.last.radius.get() {
-            Some((last, radius)) if last == theta.to_bits() => radius,
-            _ => {
-                let radius = match &self.curve {
-                    Curve::Expression {
-                        expression,
-                        in_force,
-                        ..
-                    } => {
-                        let turned = theta.rem_euclid(TAU);
-                        let radius = in_force.evaluate(turned);
-                        radius.unwrap_or_else(|| self.evaluate(expression, turned))
-                    }
-                    Curve::Points { points, .. } => points.radius(theta),
-                };
-                self.last.radius.set(Some((theta.to_bits(), radius)));
-                radius
+        last_or_new(&self.last.radius, theta.to_bits(), || match &self.curve {
+            Curve::Expression {
+                expression,
+                in_force,
+                ..
+            } => {
+                let turned = theta.rem_euclid(TAU);
+                let radius = in_force.evaluate(turned);
+                radius.unwrap_or_else(|| self.evaluate(expression, turned))
             }
-        }
+            Curve::Points { points, .. } => points.radius(theta),
+        })
     }
 
     /// Returns the contour at a polar angle, of any number of turns. Allocates nothing.
     #[must_use]
     pub fn point(&self, theta: f64) -> ContourPoint {
-        match self.last.point.get() {
-            Some((last, point)) if last == theta.to_bits() => point,
-            _ => {
-                let point = ContourPoint::new(theta, self.radius(theta));
-                self.last.point.set(Some((theta.to_bits(), point)));
-                point
-            }
-        }
+        last_or_new(&self.last.point, theta.to_bits(), || {
+            ContourPoint::new(theta, self.radius(theta))
+        })
     }
 
     fn evaluate(&self, expression: &Expression, theta: f64) -> Jet3 {
@@ -432,18 +420,7 @@ impl ProfileInForce {
     #[must_use]
     pub fn bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
         let range = [theta, reach].map(f64::to_bits);
-        match self.last.bounds.get() {
-            Some((last, bounds)) if last == range => bounds,
-            _ => {
-                let bounds = self.new_bounds(theta, reach);
-                self.last.bounds.set(Some((range, bounds)));
-                bounds
-            }
-        }
-    }
-
-    fn new_bounds(&self, theta: f64, reach: f64) -> Option<ProfileBounds> {
-        match &self.curve {
+        last_or_new(&self.last.bounds, range, || match &self.curve {
             Curve::Expression {
                 expression,
                 sectors,
@@ -460,7 +437,7 @@ impl ProfileInForce {
                 radius: points.bounds(theta, reach),
                 jumps: points.jumps(),
             }),
-        }
+        })
     }
 
     /// Returns the polar angles of the samples of a whole contour, evenly spread over a turn.
@@ -477,6 +454,23 @@ impl ProfileInForce {
         costs
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
             .map_or(0.0, |(theta, _)| theta)
+    }
+}
+
+/// Returns the last result if it is that of `key`, otherwise a new one, which becomes the last.
+#[inline]
+fn last_or_new<K: Copy + PartialEq, V: Copy>(
+    last: &Cell<Option<(K, V)>>,
+    key: K,
+    new: impl FnOnce() -> V,
+) -> V {
+    match last.get() {
+        Some((known, result)) if known == key => result,
+        _ => {
+            let result = new();
+            last.set(Some((key, result)));
+            result
+        }
     }
 }
 

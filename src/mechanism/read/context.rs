@@ -7,6 +7,7 @@ use toml::de::DeValue;
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::NameTable;
 use crate::mechanism::syntax::{self, Value};
+use crate::mechanism::wording::quoted;
 use crate::mechanism::{
     BodyId, Diagnostic, Dimension, MarkerId, ParameterId, Severity, Source, Span, TableFile,
 };
@@ -112,6 +113,21 @@ impl<'a> Context<'a> {
         message: impl Into<String>,
     ) -> &mut Diagnostic {
         self.report(Diagnostic::warning(code, message).label(span, ""))
+    }
+
+    /// Reports a key that a table already has.
+    pub(super) fn duplicate_key(&mut self, second: Span) {
+        let text = self.source.text();
+        let key = quoted(text.get(second.clone()).unwrap_or_default());
+        let message = format!("the key {key} is given twice");
+        let mut problem = Diagnostic::error(code::DUPLICATE_KEY, message).label(second.clone(), "");
+        // The search reads the whole file, which a problem that is not shown is not worth.
+        if self.problems.len() < MAX_PROBLEMS
+            && let Some(first) = syntax::first_place(text, &second)
+        {
+            problem = problem.label(first, "the first one");
+        }
+        self.report(problem);
     }
 
     /// Returns the problems in the order of the file, those without a place first; the last one

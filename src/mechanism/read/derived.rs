@@ -5,9 +5,8 @@ use crate::mechanism::syntax::Value;
 use crate::mechanism::{DerivedMeasure, Mechanism, Unit, Variable};
 
 use super::context::Context;
-#[cfg(feature = "cli")]
 use super::coordinate::{CoordinateKeys, MeasureKeys};
-use super::kind::{Described, Entry, Item, Kind, Text, schema};
+use super::kind::{AnyOf, Entry, Item, Kind, Text, schema};
 #[cfg(feature = "cli")]
 use super::number::NUMBER;
 use super::parameter::SiUnit;
@@ -41,17 +40,8 @@ impl<'a> Kind<'a> for Unread {
 }
 
 /// A measure: a coordinate, or computed from others.
-pub(super) struct AnyMeasure;
-
-impl Described for AnyMeasure {
-    #[cfg(feature = "cli")]
-    fn schema() -> serde_json::Value {
-        serde_json::json!({ "anyOf": [
-            <(CoordinateKeys<'_>, MeasureKeys<'_>)>::schema(),
-            DerivedKeys::schema(),
-        ] })
-    }
-}
+pub(super) type AnyMeasure =
+    AnyOf<(CoordinateKeys<'static>, MeasureKeys<'static>), DerivedKeys<'static>>;
 
 /// Returns whether a measure is computed from others.
 pub(super) fn is_derived(entry: &Entry<'_>) -> bool {
@@ -87,7 +77,7 @@ impl<'a> Context<'a> {
             Some(DerivedMeasure {
                 name: entry.name().to_owned(),
                 description: keys.description.value.unwrap_or_default(),
-                value: self.expression_of(value, &[], Some(&signals))?,
+                value: self.formula(value, &[], Some(&signals))?.expression,
                 unit: keys.unit.optional()?,
             })
         };

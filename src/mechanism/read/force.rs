@@ -5,7 +5,7 @@ use crate::mechanism::{Expression, Force, ForceLaw, Load, MarkerId, Spring, Vari
 
 use super::context::Context;
 use super::coordinate::CoordinateKeys;
-use super::kind::{Array, Described, Entry, Text};
+use super::kind::{AnyOf, Array, Entry, Text};
 use super::number::{Formula, NUMBER, Quantity};
 use super::reference::MarkerName;
 use super::table::table;
@@ -43,17 +43,8 @@ table! {
 }
 
 /// A force of either shape.
-pub(super) struct AnyForce;
-
-impl Described for AnyForce {
-    #[cfg(feature = "cli")]
-    fn schema() -> serde_json::Value {
-        serde_json::json!({ "anyOf": [
-            <(CoordinateKeys<'_>, CoordinateForceKeys<'_>)>::schema(),
-            MarkerForceKeys::schema(),
-        ] })
-    }
-}
+pub(super) type AnyForce =
+    AnyOf<(CoordinateKeys<'static>, CoordinateForceKeys<'static>), MarkerForceKeys<'static>>;
 
 impl<'a> Context<'a> {
     /// Reads a force; its value is checked at `start_time` [s] where that suffices.

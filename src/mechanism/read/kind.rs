@@ -293,6 +293,16 @@ pub(super) trait Described {
     fn schema() -> serde_json::Value;
 }
 
+/// Part of the file described as `A` or as `B` says.
+pub(super) struct AnyOf<A, B>(PhantomData<(A, B)>);
+
+impl<A: Described, B: Described> Described for AnyOf<A, B> {
+    #[cfg(feature = "cli")]
+    fn schema() -> serde_json::Value {
+        serde_json::json!({ "anyOf": [A::schema(), B::schema()] })
+    }
+}
+
 /// Table described as `T` says.
 pub(super) struct Section<T>(pub(super) PhantomData<T>);
 

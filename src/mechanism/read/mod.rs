@@ -76,8 +76,8 @@ impl Mechanism {
     pub fn parse(source: &Source) -> Result<(Self, Vec<Diagnostic>), Vec<Diagnostic>> {
         let (document, duplicates) = syntax::parse(source).map_err(|error| vec![error])?;
         let mut context = Context::new(source);
-        for duplicate in duplicates {
-            context.report(duplicate);
+        for second in duplicates {
+            context.duplicate_key(second);
         }
         let mechanism = context.mechanism(&document);
         let failed = context.failed;
@@ -114,7 +114,7 @@ impl<'a> Context<'a> {
         }
         self.declare(&root);
         let (parameters, derivation_order) = self.parameters(root.parameters.items());
-        let simulation = self.simulation(root.simulation.value.as_ref());
+        let simulation = self.simulation(&root.simulation.or_empty());
         let (bodies, markers) = self.bodies(&root.ground, &root.bodies);
         let driver = |context: &mut Self, entry| context.driver(entry, simulation.start);
         let force = |context: &mut Self, entry| context.force(entry, simulation.start);
@@ -139,7 +139,7 @@ impl<'a> Context<'a> {
             measures: self.each(&root.measures, measure),
             derived: Vec::new(),
             forces: self.each(&root.forces, force),
-            outputs: self.outputs(root.outputs.value.as_ref()),
+            outputs: self.outputs(&root.outputs.or_empty()),
             simulation,
             canonical: syntax::canonical(document) + &self.file_tables,
             table_files: std::mem::take(&mut self.table_files),

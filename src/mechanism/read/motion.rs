@@ -92,7 +92,11 @@ impl<'a> Kind<'a> for PrescribedMotion {
             let keys = context.table::<(PointKeys<'a>, MotionKeys<'a>)>(&fields);
             context.motion_table(keys)?
         } else {
-            Course::Expression(context.expression(item.value, &[Variable::Time])?)
+            Course::Expression(
+                context
+                    .formula(item.value, &[Variable::Time], None)?
+                    .expression,
+            )
         };
         Some(ReadMotion {
             course,

@@ -3,7 +3,7 @@
 use toml::de::DeValue;
 
 use crate::mechanism::diagnostic::code;
-use crate::mechanism::expression::{Parsed, Scope, SignalNames};
+use crate::mechanism::expression::{Scope, SignalNames};
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::{quoted, shown};
 use crate::mechanism::{Dimension, Expression, Jet, Span, Unit, Variable};
@@ -75,7 +75,7 @@ impl<'a> Kind<'a> for Number {
     type Value = Quantity;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Quantity> {
-        let mut quantity = context.formula(item.value)?;
+        let mut quantity = context.formula(item.value, &[], None)?;
         context.evaluate(&mut quantity)?;
         if let Some(unit) = self.unit {
             context.warn_of_unit(&quantity, unit);
@@ -107,35 +107,62 @@ impl<'a> Kind<'a> for Formula {
     type Value = Quantity;
 
     fn read(&self, context: &mut Context<'a>, item: &Item<'_, 'a>) -> Option<Quantity> {
-        context.formula_over(item.value, self.0)
+        context.formula(item.value, self.0, None)
     }
 
     schema! { NUMBER.schema() }
 }
 
 impl<'a> Context<'a> {
-    /// Reads a number or an expression over the parameters.
-    pub(super) fn formula(&mut self, value: &'a Value<'a>) -> Option<Quantity> {
-        self.formula_over(value, &[])
-    }
-
-    /// Reads a number or an expression over the parameters and `variables`.
-    pub(super) fn formula_over(
+    /// Reads a number or an expression over the parameters, `variables` and `signals`; warns if it
+    /// adds quantities of different dimensions.
+    pub(super) fn formula(
         &mut self,
         value: &'a Value<'a>,
         variables: &[Variable],
+        signals: Option<&SignalNames<'_>>,
     ) -> Option<Quantity> {
-        let Parsed {
-            expression,
-            dimension,
-            ..
-        } = self.parsed(value, variables, None)?;
-        Some(Quantity {
+        let quantity = |expression, dimension| Quantity {
             expression,
             value: None,
             dimension,
             span: value.span(),
-        })
+        };
+        if let Some(number) = syntax::number(value.get_ref()) {
+            if number.is_finite() {
+                return Some(quantity(Expression::constant(number), Some(Dimension::ONE)));
+            }
+            self.error(code::NOT_FINITE, value.span(), "the number is not finite");
+            return None;
+        }
+        let DeValue::String(text) = value.get_ref() else {
+            self.wrong_type(value, "a number or an expression string");
+            return None;
+        };
+        let scope = Scope {
+            parameters: &self.parameters,
+            variables,
+            signals,
+        };
+        match Expression::parse_with_dimension(text, scope, &self.parameter_dimensions) {
+            Ok(parsed) => {
+                for id in parsed.expression.parameters() {
+                    self.parameters_used[id.index()] = true;
+                }
+                if let Some(clash) = parsed.clash {
+                    let part = text.get(clash.span.clone());
+                    let part = part.map_or_else(|| quoted(text), quoted);
+                    let span = syntax::part_span(self.source, value.span(), text, clash.span);
+                    self.warn_of_clash(span, &part, clash.dimensions);
+                }
+                Some(quantity(parsed.expression, parsed.dimension))
+            }
+            Err(error) => {
+                let span = syntax::part_span(self.source, value.span(), text, error.span);
+                self.error(code::BAD_EXPRESSION, span, error.message).help = error.help;
+                None
+            }
+        }
     }
 
     /// Computes a quantity's value for the file's parameters; `None` if it is not finite, which
@@ -162,74 +189,6 @@ impl<'a> Context<'a> {
         let text = quoted(text.trim_matches(['"', '\'']));
         let message = format!("{what} of {text} is not finite with the file's parameters");
         self.error(code::NOT_FINITE, span, message);
-    }
-
-    /// Reads a number or an expression over the parameters and `variables`.
-    pub(super) fn expression(
-        &mut self,
-        value: &'a Value<'a>,
-        variables: &[Variable],
-    ) -> Option<Expression> {
-        self.expression_of(value, variables, None)
-    }
-
-    /// Reads a number or an expression over the parameters, variables and signals.
-    pub(super) fn expression_of(
-        &mut self,
-        value: &'a Value<'a>,
-        variables: &[Variable],
-        signals: Option<&SignalNames<'_>>,
-    ) -> Option<Expression> {
-        let parsed = self.parsed(value, variables, signals)?;
-        Some(parsed.expression)
-    }
-
-    /// Reads a number or an expression; warns if it adds quantities of different dimensions.
-    fn parsed(
-        &mut self,
-        value: &'a Value<'a>,
-        variables: &[Variable],
-        signals: Option<&SignalNames<'_>>,
-    ) -> Option<Parsed> {
-        if let Some(number) = syntax::number(value.get_ref()) {
-            if number.is_finite() {
-                return Some(Parsed {
-                    expression: Expression::constant(number),
-                    dimension: Some(Dimension::ONE),
-                    clash: None,
-                });
-            }
-            self.error(code::NOT_FINITE, value.span(), "the number is not finite");
-            return None;
-        }
-        let DeValue::String(text) = value.get_ref() else {
-            self.wrong_type(value, "a number or an expression string");
-            return None;
-        };
-        let scope = Scope {
-            parameters: &self.parameters,
-            variables,
-            signals,
-        };
-        match Expression::parse_with_dimension(text, scope, &self.parameter_dimensions) {
-            Ok(parsed) => {
-                for id in parsed.expression.parameters() {
-                    self.parameters_used[id.index()] = true;
-                }
-                if let Some(clash) = &parsed.clash {
-                    let span = clash.span.clone();
-                    let part = text.get(span.clone()).map_or_else(|| quoted(text), quoted);
-                    let span = syntax::part_span(self.source, value.span(), text, span);
-                    self.warn_of_clash(span, &part, clash.dimensions);
-                }
-                Some(parsed)
-            }
-            Err(error) => {
-                let span = syntax::part_span(self.source, value.span(), text, error.span);
-                self.error(code::BAD_EXPRESSION, span, error.message).help = error.help;
-                None
-            }
-        }
     }
 
     /// Returns `None` if a value is beyond a limit, which is reported.

@@ -210,7 +210,7 @@ impl<'a> Context<'a> {
             keys = self.entry::<ParameterKeys<'a>>(entry, "parameter");
             keys.as_mut().and_then(|keys| keys.value.value.take())
         } else {
-            self.formula(entry.value)
+            self.formula(entry.value, &[], None)
         };
         Draft { entry, value, keys }
     }

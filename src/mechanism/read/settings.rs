@@ -52,71 +52,58 @@ const GRAVITY: [f64; 2] = [0.0, -9.81];
 const DEFAULT_STEPS: f64 = 500.0;
 
 impl<'a> Context<'a> {
-    pub(super) fn outputs(&mut self, fields: Option<&Fields<'a>>) -> Outputs {
-        let keys = fields.map(|fields| self.table::<OutputKeys<'a>>(fields));
-        let (bodies, markers, reactions, indeterminate) = keys
-            .map(|keys| {
-                let markers = keys.markers.value;
-                let (reactions, indeterminate) = (keys.reactions.value, keys.indeterminate.value);
-                (keys.bodies.value, markers, reactions, indeterminate)
-            })
-            .unwrap_or_default();
-        let all = || (0..self.body_names.len()).map(BodyId).collect();
-        let mut bodies: Vec<BodyId> = bodies.unwrap_or_else(all);
+    pub(super) fn outputs(&mut self, fields: &Fields<'a>) -> Outputs {
+        let keys = self.table::<OutputKeys<'a>>(fields);
+        let all_bodies = || (0..self.body_names.len()).map(BodyId).collect();
+        let mut bodies: Vec<BodyId> = keys.bodies.value.unwrap_or_else(all_bodies);
         bodies.sort_unstable();
-        let mut reactions =
-            reactions.unwrap_or_else(|| (0..self.holder_counts.iter().sum()).collect());
+        let [joint_count, constraint_count] = self.holder_counts;
+        let all_reactions = || (0..joint_count + constraint_count).collect();
+        let mut reactions: Vec<usize> = keys.reactions.value.unwrap_or_else(all_reactions);
         reactions.sort_unstable();
-        let [joint_count, _] = self.holder_counts;
-        let (joints, constraints): (Vec<_>, Vec<_>) = reactions
-            .into_iter()
-            .partition(|&place| place < joint_count);
-        let constraints = constraints.into_iter();
+        let constraints = reactions.split_off(reactions.partition_point(|&p| p < joint_count));
         Outputs {
             bodies,
-            markers: markers.unwrap_or_default(),
-            constraints: constraints.map(|place| place - joint_count).collect(),
-            joints,
-            indeterminate: indeterminate.unwrap_or_default(),
+            markers: keys.markers.value.unwrap_or_default(),
+            constraints: constraints
+                .iter()
+                .map(|place| place - joint_count)
+                .collect(),
+            joints: reactions,
+            indeterminate: keys.indeterminate.value.unwrap_or_default(),
         }
     }
 
-    pub(super) fn simulation(&mut self, fields: Option<&Fields<'a>>) -> Simulation {
-        let mut simulation = Simulation {
-            start: 0.0,
-            stop: 1.0,
-            step: 1.0 / DEFAULT_STEPS,
-            tolerance: 1e-6,
-            gravity: GRAVITY.map(Expression::constant),
-        };
-        let Some(fields) = fields else {
-            return simulation;
-        };
+    pub(super) fn simulation(&mut self, fields: &Fields<'a>) -> Simulation {
         let keys = self.table::<SimulationKeys<'a>>(fields);
+        let [start, stop] = [(&keys.start, 0.0), (&keys.stop, 1.0)]
+            .map(|(field, default)| field.number().unwrap_or(default));
+        let duration = stop - start;
         // An unreadable time says nothing about the order of the two.
         let is_known = |field: &Field<Quantity>| field.key.is_none() || field.number().is_some();
-        simulation.start = keys.start.number().unwrap_or(simulation.start);
-        simulation.stop = keys.stop.number().unwrap_or(simulation.stop);
-        let duration = simulation.stop - simulation.start;
         if duration <= 0.0 && is_known(&keys.start) && is_known(&keys.stop) {
             let later = if keys.stop.key.is_some() {
                 &keys.stop
             } else {
                 &keys.start
             };
-            let [stop, start] = shown_apart(simulation.stop, simulation.start);
+            let [stop, start] = shown_apart(stop, start);
             let message = format!("`stop` = {stop} is not after `start` = {start}");
             self.error(code::ILLEGAL_VALUE, later.span.clone(), message);
         }
-        simulation.step = keys.step.number().unwrap_or(duration / DEFAULT_STEPS);
-        if duration > 0.0 && (simulation.step.is_infinite() || duration / DEFAULT_STEPS == 0.0) {
+        let default_step = duration / DEFAULT_STEPS;
+        let step = keys.step.number().unwrap_or(default_step);
+        if duration > 0.0 && (step.is_infinite() || default_step == 0.0) {
             let message = "from `start` to `stop` is too far or too near to be divided into steps";
             self.error(code::ILLEGAL_VALUE, fields.place.clone(), message);
         }
-        simulation.tolerance = keys.tolerance.number().unwrap_or(simulation.tolerance);
-        if let Some(gravity) = keys.gravity.expressions() {
-            simulation.gravity = gravity;
+        let gravity = keys.gravity.expressions();
+        Simulation {
+            start,
+            stop,
+            step,
+            tolerance: keys.tolerance.number().unwrap_or(1e-6),
+            gravity: gravity.unwrap_or_else(|| GRAVITY.map(Expression::constant)),
         }
-        simulation
     }
 }

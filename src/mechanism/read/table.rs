@@ -3,8 +3,11 @@
 //! [`table!`] declares a table as a structure with a field per key. Reading, the messages about
 //! unknown and missing keys and the JSON Schema all follow from the declaration.
 
+use std::sync::LazyLock;
+
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names;
+use crate::mechanism::syntax::Table;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Expression, Span};
 
@@ -85,6 +88,18 @@ impl<T> Field<T> {
 impl<T> Field<Vec<T>> {
     pub(super) fn items(&self) -> &[T] {
         self.value.as_deref().unwrap_or_default()
+    }
+}
+
+impl<'a> Field<Fields<'a>> {
+    /// Returns the keys and values, none if the section is left out or wrong.
+    pub(super) fn or_empty(self) -> Fields<'a> {
+        static EMPTY: LazyLock<Table<'static>> = LazyLock::new(Table::new);
+        self.value.unwrap_or_else(|| Fields {
+            table: &EMPTY,
+            place: self.span,
+            subject: String::new(),
+        })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Values against closed forms, derivatives against differences and against other expressions.
 
+mod display;
 mod enclosures;
 mod text;
 mod third_derivatives;
@@ -296,13 +297,13 @@ fn any_text() -> impl Strategy<Value = String> {
     ];
     leaf.prop_recursive(5, 40, 3, |inner| {
         let infix = proptest::sample::select(vec!["+", "-", "*", "/", "^"]);
-        let function = proptest::sample::select(function_names().collect::<Vec<_>>());
+        let function = proptest::sample::select(function::FUNCTIONS.to_vec());
         prop_oneof![
             (inner.clone(), infix, inner.clone()).prop_map(|(x, op, y)| format!("({x}){op}({y})")),
             inner.clone().prop_map(|x| format!("-({x})")),
-            (function, inner.clone(), inner).prop_map(|(name, x, y)| {
-                match function::Function::by_name(name) {
-                    Some(function::Function::Unary(_)) => format!("{name}({x})"),
+            (function, inner.clone(), inner).prop_map(|((name, function), x, y)| {
+                match function {
+                    Operation::Unary(_) => format!("{name}({x})"),
                     _ => format!("{name}({x}, {y})"),
                 }
             }),

@@ -2,7 +2,7 @@
 
 mod functions;
 
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::Number;
 
@@ -86,7 +86,7 @@ impl Interval {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }
 
-    /// The smallest interval that contains all of `bounds`, undefined if one of them is.
+    /// Returns the smallest interval that contains all of `bounds`, undefined if one of them is.
     pub(super) fn hull<const N: usize>(bounds: [Self; N]) -> Self {
         let mut hull = bounds[0];
         for bound in bounds {
@@ -242,11 +242,5 @@ impl AddAssign for Interval {
 impl SubAssign for Interval {
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
-    }
-}
-
-impl MulAssign for Interval {
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
     }
 }

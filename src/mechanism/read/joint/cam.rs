@@ -24,7 +24,7 @@ joint_type! {
     struct Cam<'a> {
         /// Part of the follower that touches the cam.
         #[required("\"roller\"")]
-        follower: Follower = FOLLOWER,
+        follower: Option<CamFollower> = FOLLOWER,
         /// Radius of the roller.
         radius: Quantity = LENGTH.positive(),
         /// Polar radius of the contour [m]: an expression in theta, or points.
@@ -33,18 +33,12 @@ joint_type! {
     }
 }
 
-#[derive(Clone, Copy)]
-pub(super) enum Follower {
-    Knife,
-    Roller,
-    Flat,
-}
-
-const FOLLOWER: Word<Follower> = Word::new("follower", code::ILLEGAL_VALUE, || {
+/// Followers; `None` is a roller, whose radius has a key of its own.
+const FOLLOWER: Word<Option<CamFollower>> = Word::new("follower", code::ILLEGAL_VALUE, || {
     vec![
-        ("knife", Follower::Knife),
-        ("roller", Follower::Roller),
-        ("flat", Follower::Flat),
+        ("knife", Some(CamFollower::Knife)),
+        ("roller", None),
+        ("flat", Some(CamFollower::Flat)),
     ]
 });
 
@@ -68,7 +62,11 @@ impl<'a> Kind<'a> for Contour {
             let keys = context.table::<(PointKeys<'a>, ContourKeys<'a>)>(&fields);
             context.contour_table(keys)?
         } else {
-            Profile::Expression(context.expression(item.value, &[Variable::PolarAngle])?)
+            Profile::Expression(
+                context
+                    .formula(item.value, &[Variable::PolarAngle], None)?
+                    .expression,
+            )
         };
         context.check_contour(&profile, item.span())?;
         Some(profile)
@@ -79,22 +77,22 @@ impl<'a> Kind<'a> for Contour {
 
 impl<'a> Context<'a> {
     fn cam(&mut self, keys: Cam<'a>) -> Option<JointKind> {
-        let follower = keys.follower.value?;
-        match (follower, keys.radius.key.clone()) {
-            (Follower::Roller, None) => self.missing_key(&keys.owner, "radius", "0.01"),
-            (Follower::Knife | Follower::Flat, Some(span)) => {
-                let message = format!("{} has `radius`, but no roller", keys.owner.subject);
-                self.error(code::UNKNOWN_KEY, span, message)
-                    .suggest("only `follower = \"roller\"` has a radius");
+        let follower = match (keys.follower.value?, keys.radius.key.clone()) {
+            (None, None) => {
+                self.missing_key(&keys.owner, "radius", "0.01");
+                return None;
             }
-            _ => {}
-        }
-        let follower = match follower {
-            Follower::Knife => CamFollower::Knife,
-            Follower::Flat => CamFollower::Flat,
-            Follower::Roller => CamFollower::Roller {
+            (None, Some(_)) => CamFollower::Roller {
                 radius: keys.radius.expression()?,
             },
+            (Some(follower), radius) => {
+                if let Some(span) = radius {
+                    let message = format!("{} has `radius`, but no roller", keys.owner.subject);
+                    self.error(code::UNKNOWN_KEY, span, message)
+                        .suggest("only `follower = \"roller\"` has a radius");
+                }
+                follower
+            }
         };
         Some(JointKind::Cam {
             follower,

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::function::Function;
-use super::{Expression, Operation};
 use crate::mechanism::ParameterId;
+use crate::mechanism::expression::function::FUNCTIONS;
+use crate::mechanism::expression::{Expression, Operation};
 
 /// Binding strength of the outermost operator of a text. An operand that binds more loosely than
 /// its place demands goes into parentheses.
@@ -21,7 +21,7 @@ impl Expression {
     /// Returns the expression as text in its own language, with the fewest parentheses.
     ///
     /// Parsing the text gives an equal expression.
-    pub fn display<'a>(
+    pub(in crate::mechanism) fn display<'a>(
         &'a self,
         parameter_name: impl Fn(ParameterId) -> &'a str,
     ) -> impl fmt::Display {
@@ -72,14 +72,20 @@ fn join<'a>(
         Operation::Number(value) => (format!("{value:?}"), Atom),
         Operation::Parameter(id) => (parameter_name(id).to_owned(), Atom),
         Operation::Variable(variable) => (variable.name().to_owned(), Atom),
-        Operation::Unary(function) => {
-            let name = Function::Unary(function).name();
+        Operation::Unary(_) => {
+            let name = name(operation);
             (format!("{name}({})", operand(Sum)), Atom)
         }
-        Operation::Binary(function) => {
-            let name = Function::Binary(function).name();
+        Operation::Binary(_) => {
+            let name = name(operation);
             let first = operand(Sum);
             (format!("{name}({first}, {})", operand(Sum)), Atom)
         }
     }
+}
+
+/// Returns the name of a function.
+fn name(function: Operation) -> &'static str {
+    let known = FUNCTIONS.iter().find(|(_, known)| *known == function);
+    known.expect("the table lists every function").0
 }
