@@ -18,7 +18,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Whether no option is given.
+    /// Returns whether no option is given.
     pub(super) fn is_empty(&self) -> bool {
         self.from.is_none() && self.to.is_none()
     }

@@ -41,7 +41,7 @@ pub(super) struct Scenario {
 }
 
 impl Conditions {
-    /// Whether no option is given.
+    /// Returns whether no option is given.
     pub(super) fn is_empty(&self) -> bool {
         self.drive.is_empty() && self.set.is_empty()
     }

@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use serde_json::{Value, json};
 
-use super::ranges::driver_speeds;
+use super::ranges::{DriverRange, driver_speeds};
 use super::session::Session;
 use super::values::{is_told, shown_in};
-use crate::mechanism::{Driver, Mechanism, Parameter, Unit};
+use crate::mechanism::{Mechanism, Parameter, Unit};
 
 impl Session {
     /// Returns what a page shows once: names, units, limits.
@@ -15,7 +15,6 @@ impl Session {
     pub fn description(&self) -> Value {
         let mechanism = self.mechanism();
         let pose = self.pose();
-        let inputs_move = |driver: &Driver| driver.motion().is_none();
         let drivers = mechanism
             .drivers
             .iter()
@@ -31,7 +30,7 @@ impl Session {
                     "name": driver.name,
                     "description": driver.description,
                     "is_angle": kind.is_angle(),
-                    "is_input": inputs_move(driver),
+                    "is_input": driver.motion().is_none(),
                     "value": value,
                     "velocity": rates.first(),
                     "acceleration": rates.second(),
@@ -86,6 +85,12 @@ impl Session {
                 })
             })
             .collect();
+        // Prescribed motions have none.
+        let range = |range: &Option<DriverRange>| {
+            let DriverRange { ends, turns } = range.as_ref()?;
+            Some(json!({ "low": ends[0], "high": ends[1], "turns": turns }))
+        };
+        let ranges: Vec<Option<Value>> = self.ranges.iter().map(range).collect();
         json!({
             "name": mechanism.name,
             "description": mechanism.description,
@@ -99,20 +104,8 @@ impl Session {
             "stop": mechanism.simulation.stop,
             "has_forces": self.solution.forces().is_some(),
             "places": self.layout(),
-            "ranges": self.ranges(),
+            "ranges": ranges,
         })
-    }
-
-    /// Returns the ranges of the drivers: ends and whether the driver turns fully, `null` for
-    /// prescribed motions.
-    #[must_use]
-    pub fn ranges(&self) -> Value {
-        let ranges = self.ranges.iter().map(|range| {
-            range.as_ref().map(|range| {
-                json!({ "low": range.ends[0], "high": range.ends[1], "turns": range.turns })
-            })
-        });
-        json!(ranges.collect::<Vec<_>>())
     }
 }
 

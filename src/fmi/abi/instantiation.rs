@@ -49,8 +49,8 @@ pub(super) unsafe fn texts<'a>(
     Ok(texts)
 }
 
-/// A caught panic reaches the host as a message; std would print it to stderr as well. The
-/// library has a copy of std of its own, so that no other panic in the process is silenced.
+/// Keeps std from printing panics to stderr: a caught one reaches the host as a message. The library
+/// has a copy of std of its own, so that no other panic in the process is silenced.
 fn silence_panics() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| std::panic::set_hook(Box::new(|_| {})));

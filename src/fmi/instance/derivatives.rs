@@ -103,9 +103,7 @@ impl<M: Model> Instance<M> {
                  parameters as well"
             }
         };
-        if self.version == Version::Fmi3 {
-            self.check_readable(value_references)?;
-        }
+        self.check_readable(value_references)?;
         self.in_role(value_references, role, |variable| {
             match variable.causality {
                 Causality::Output => true,

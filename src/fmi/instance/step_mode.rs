@@ -281,16 +281,8 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Checks that the host may set these variables at the present point of intermediate update.
-    pub(super) fn check_intermediate_inputs(&self, value_references: &[u32]) -> Result<(), Error> {
-        if self.course.state != State::IntermediateUpdateMode {
-            return Ok(());
-        }
-        self.check_intermediate(value_references)
-    }
-
     /// Checks that variables are among the required intermediate ones.
-    fn check_intermediate(&self, value_references: &[u32]) -> Result<(), Error> {
+    pub(super) fn check_intermediate(&self, value_references: &[u32]) -> Result<(), Error> {
         for &value_reference in value_references {
             if self.intermediate.get(value_reference as usize) != Some(&true) {
                 let name = self.variable(value_reference)?.name.clone();
@@ -320,14 +312,18 @@ impl<M: Model> Instance<M> {
     /// in intermediate update the required ones, before any is set.
     pub(super) fn check_readable(&self, value_references: &[u32]) -> Result<(), Error> {
         match self.course.state {
-            State::Instantiated => self.refuse_any(value_references, |causality| match causality {
-                Causality::Parameter | Causality::Input => None,
-                _ => Some(|name| Error::NoStart { name }),
-            }),
+            State::Instantiated => {
+                let has_start = |c| matches!(c, Causality::Parameter | Causality::Input);
+                self.refuse(
+                    value_references,
+                    |c| !has_start(c),
+                    |name| Error::NoStart { name },
+                )
+            }
             State::StepMode if self.course.set_since_step => {
-                self.refuse_any(value_references, |causality| match causality {
-                    Causality::Output | Causality::Local => Some(|name| Error::NotStepped { name }),
-                    _ => None,
+                let is_computed = |c| matches!(c, Causality::Output | Causality::Local);
+                self.refuse(value_references, is_computed, |name| Error::NotStepped {
+                    name,
                 })
             }
             State::IntermediateUpdateMode
@@ -340,15 +336,16 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Returns the error for the first variable whose causality is refused.
-    fn refuse_any(
+    /// Refuses variables of some causalities.
+    fn refuse(
         &self,
         value_references: &[u32],
-        refuse: impl Fn(Causality) -> Option<fn(String) -> Error>,
+        is_refused: impl Fn(Causality) -> bool,
+        error: fn(String) -> Error,
     ) -> Result<(), Error> {
         for &value_reference in value_references {
             let variable = self.variable(value_reference)?;
-            if let Some(error) = refuse(variable.causality) {
+            if is_refused(variable.causality) {
                 return Err(error(variable.name.clone()));
             }
         }

@@ -42,8 +42,8 @@ impl<M: Model> Instance<M> {
     #[inline(always)]
     pub fn set_real(&mut self, value_references: &[u32], values: &[f64]) -> Result<(), Error> {
         self.allow(Call::SetReal)?;
-        if self.version == Version::Fmi3 {
-            self.check_intermediate_inputs(value_references)?;
+        if self.course.state == State::IntermediateUpdateMode {
+            self.check_intermediate(value_references)?;
         }
         for (&value_reference, &value) in value_references.iter().zip(values) {
             let is_input = self.continuous_inputs.get(value_reference as usize);
@@ -271,9 +271,7 @@ impl<M: Model> Instance<M> {
                 groups |= self.groups[derivative as usize];
             }
         }
-        if self.version == Version::Fmi3 {
-            self.check_readable(value_references)?;
-        }
+        self.check_readable(value_references)?;
         self.refresh(Call::GetRealOutputDerivatives, groups)?;
         Ok(entries.map(|(&value_reference, &order)| {
             let derivative = self.derivative(value_reference, order);

@@ -42,7 +42,7 @@ impl MechanismModel {
             }
         }
         if self.path.moves_parameters() {
-            parts.push("no mechanism exists for parameters on the way to those set".to_owned());
+            parts.push("the mechanism does not exist for parameters between the last and those set".to_owned());
         }
         let what = match &blocked.reason {
             Reason::Value(error) => {
@@ -79,8 +79,8 @@ impl MechanismModel {
         )
     }
 
-    /// Returns whether a driver may be the cause of a stop: at a singular position one that moves
-    /// what lines up there.
+    /// Returns whether a driver may be the cause of a stop. At a singular position it has to move an
+    /// unknown that is free there.
     fn may_stop(&self, driver: usize, reason: &Reason) -> bool {
         match reason {
             Reason::Singular(point) => {
