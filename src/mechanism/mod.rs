@@ -12,7 +12,7 @@
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
-//! | `names`, `reserved`, `lookup`, `id` | names, and what they stand for |
+//! | `names`, `lookup`, `id` | names, and what they stand for |
 //! | `wording` | names and numbers in messages |
 //!
 //! Nothing here computes a pose.
@@ -31,7 +31,6 @@ mod number;
 mod parameter;
 mod profile;
 mod read;
-mod reserved;
 mod signal;
 mod source;
 mod spline;

@@ -42,7 +42,10 @@ impl MechanismModel {
             }
         }
         if self.path.moves_parameters() {
-            parts.push("the mechanism does not exist for parameters between the last and those set".to_owned());
+            parts.push(
+                "the mechanism does not exist for parameters between the last and those set"
+                    .to_owned(),
+            );
         }
         let what = match &blocked.reason {
             Reason::Value(error) => {

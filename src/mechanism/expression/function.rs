@@ -63,7 +63,7 @@ pub(super) const FUNCTIONS: [(&str, Operation); 22] = [
 ];
 
 /// Returns the names of all functions.
-pub(in crate::mechanism) fn function_names() -> impl Iterator<Item = &'static str> {
+pub(super) fn function_names() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|(name, _)| *name)
 }
 

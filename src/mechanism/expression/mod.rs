@@ -14,6 +14,7 @@ mod in_force;
 mod parse;
 mod pieces;
 mod polar;
+mod reserved;
 mod token;
 
 #[cfg(test)]
@@ -21,11 +22,14 @@ mod tests;
 
 pub use error::ExpressionError;
 use function::Binary;
+pub(super) use function::CONSTANTS;
 #[cfg(feature = "page")]
 pub(crate) use function::constant;
-pub(super) use function::{CONSTANTS, function_names};
 pub(super) use in_force::ExpressionInForce;
 pub(super) use parse::{Scope, SignalNames};
+pub(super) use reserved::is_taken;
+#[cfg(feature = "cli")]
+pub(super) use reserved::taken;
 
 use super::number::{self, Interval, Jet3, Number, Unary};
 use super::{Order, ParameterId, Signal};

@@ -3,10 +3,10 @@
 use super::dimension::{Clash, Dimensions};
 use super::error::ExpressionError;
 use super::function::{Binary, CONSTANTS, FUNCTIONS, constant, function};
+use super::reserved::is_taken;
 use super::token::{Token, TokenKind, scan};
 use super::{Expression, MAX_STACK, Operation, Variable, run};
 use crate::mechanism::names::{self, NameTable};
-use crate::mechanism::reserved::is_taken;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Dimension, ParameterId, Span};
 

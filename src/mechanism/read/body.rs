@@ -2,7 +2,6 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::names::NameTable;
-use crate::mechanism::reserved::BODY_QUANTITIES;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{Body, BodyId, Expression, Marker, MarkerId, Unit};
 
@@ -12,6 +11,9 @@ use super::kind::{Array, Entry, Fields, Item, Kind, Text, schema};
 use super::kind::{Described, NAME};
 use super::number::{ANGLE, LENGTH, NUMBER, Number, POINT, Quantity};
 use super::table::{Field, Keys, table};
+
+/// Names of a body's own quantities, which no marker may have.
+const BODY_QUANTITIES: [&str; 9] = ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
 
 table! {
     /// The body that never moves; its frame is the global one.

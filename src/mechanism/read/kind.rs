@@ -333,7 +333,7 @@ impl<'a, T: Described> Kind<'a> for Named<T> {
     schema! {
         {
             "type": "object",
-            "propertyNames": { "pattern": NAME, "not": { "enum": crate::mechanism::reserved::taken().collect::<Vec<_>>() } },
+            "propertyNames": { "pattern": NAME, "not": { "enum": crate::mechanism::expression::taken().collect::<Vec<_>>() } },
             "additionalProperties": T::schema(),
         }
     }

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::mechanism::diagnostic::code;
+use crate::mechanism::expression::is_taken;
 use crate::mechanism::names::is_legal;
-use crate::mechanism::reserved::is_taken;
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{BodyId, Diagnostic, Dimension, ParameterId, Span, Unit};
 

@@ -1,6 +1,6 @@
 //! Names that are reserved.
 
-use super::expression::{CONSTANTS, function_names};
+use super::function::{CONSTANTS, function_names};
 
 /// Names that the FMU or the language of the file uses, besides constants and functions.
 const TAKEN: [&str; 9] = [
@@ -15,18 +15,14 @@ const TAKEN: [&str; 9] = [
     "velocity",
 ];
 
-/// Names of a body's own quantities, which no marker may have.
-pub(super) const BODY_QUANTITIES: [&str; 9] =
-    ["x", "y", "phi", "vx", "vy", "omega", "ax", "ay", "alpha"];
-
 /// Returns the names that parameters, bodies, joints and the like cannot have.
-pub(super) fn taken() -> impl Iterator<Item = &'static str> {
+pub(in crate::mechanism) fn taken() -> impl Iterator<Item = &'static str> {
     let constants = CONSTANTS.iter().map(|(constant, _)| *constant);
     TAKEN.into_iter().chain(constants).chain(function_names())
 }
 
-/// Whether parameters, bodies, joints and the like cannot be called `name`.
-pub(super) fn is_taken(name: &str) -> bool {
+/// Returns whether parameters, bodies, joints and the like cannot be called `name`.
+pub(in crate::mechanism) fn is_taken(name: &str) -> bool {
     taken().any(|taken| taken == name)
 }
 
