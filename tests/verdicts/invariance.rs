@@ -8,6 +8,8 @@ use biela::kinematics::{Curve, Path, Solver};
 use biela::mechanism::{JointKind, Mechanism, Source};
 
 use crate::common::{assembled, moved, stems};
+use crate::mechanisms::{four_bar, slider_crank};
+use crate::solve;
 
 /// A mechanism file as shipped.
 fn text(name: &str) -> String {
@@ -155,11 +157,38 @@ fn an_unrelated_mechanism_beside_it_changes_nothing() {
     }
 }
 
-/// Compares a run with that of the mechanism beside an arm of this length, be it a million times
-/// larger or smaller.
-fn beside_an_arm(name: &str, here: &Run, bodies: usize, length: &str) {
-    // Declared last, so that the unknowns before keep their places.
-    let beside = text(name).replacen(
+#[test]
+fn an_arm_of_any_size_beside_it_leaves_the_nearest_mode_the_same() {
+    // Estimates all around: lengths speak for one mode and angles for the other in many of them.
+    let spread = |k: usize| 4.0 * (0.618_033_988_749_894_9 * k as f64).fract() - 2.0;
+    for k in 0..100 {
+        let estimate = |body: usize| {
+            let [x, y, phi] = [0, 1, 2].map(|i| spread(9 * k + 3 * body + i));
+            format!("{x}, {y}, {phi}")
+        };
+        let estimates = [estimate(0), estimate(1), estimate(2)];
+        let estimates = estimates.each_ref().map(String::as_str);
+        // Origins far from the joints, so that both modes have places of their own.
+        let four_bar = four_bar([1.0, 3.0, 2.5, 3.0], 70.0, estimates)
+            .replace("A = [0, 0], B = [3, 0]", "A = [-1.5, 0], B = [1.5, 0]")
+            .replace("O = [0, 0], B = [2.5, 0]", "O = [-2.5, 0], B = [0, 0]");
+        for text in [four_bar, slider_crank(2.0, 0.3, 70.0, estimates)] {
+            let alone = solve(&text).expect("it closes");
+            let bodies = alone.pose().q.len();
+            for length in ["1e6", "1e3", "1e-3", "1e-7"] {
+                let beside = solve(&with_arm(&text, length)).expect("it closes");
+                for (a, b) in alone.pose().q.iter().zip(&beside.pose().q[..bodies]) {
+                    assert!((a - b).abs() < 1e-13, "{estimates:?} beside {length} m");
+                }
+            }
+        }
+    }
+}
+
+/// Returns the file of a mechanism with an unrelated arm of this length beside it, declared last, so
+/// that the unknowns before keep their places.
+pub(crate) fn with_arm(text: &str, length: &str) -> String {
+    text.replacen(
         "[ground.markers]",
         "[ground.markers]\nunrelated = [0.1, 0.2]",
         1,
@@ -169,7 +198,13 @@ fn beside_an_arm(name: &str, here: &Run, bodies: usize, length: &str) {
          markers = [\"ground.unrelated\", \"unrelated_arm.O\"]\n\
          [drivers.unrelated_turn]\ncoordinate = \"angle\"\n\
          markers = [\"ground.unrelated\", \"unrelated_arm.O\"]\nstart = 0.5\n"
-    );
+    )
+}
+
+/// Compares a run with that of the mechanism beside an arm of this length, be it a million times
+/// larger or smaller.
+fn beside_an_arm(name: &str, here: &Run, bodies: usize, length: &str) {
+    let beside = with_arm(&text(name), length);
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/mechanisms");
     let source = Source::new(format!("{folder}/{name}.toml"), beside);
     let Ok((beside, _)) = Mechanism::parse(&source) else {

@@ -172,8 +172,7 @@ fn judge(case: &Case) {
     }
 }
 
-#[test]
-fn every_mechanism_of_the_bank_gets_its_verdict() {
+fn bank() -> Vec<Case> {
     let bank: Vec<_> = [
         closing::cases(),
         impossible::cases(),
@@ -186,6 +185,10 @@ fn every_mechanism_of_the_bank_gets_its_verdict() {
     .flatten()
     .collect();
     assert!(bank.len() >= 30);
+    bank
+}
+
+fn judge_all(bank: &[Case]) {
     let failed: Vec<_> = bank
         .iter()
         .filter(|case| {
@@ -194,4 +197,23 @@ fn every_mechanism_of_the_bank_gets_its_verdict() {
         .map(|case| case.name)
         .collect();
     assert!(failed.is_empty(), "{failed:#?}");
+}
+
+#[test]
+fn every_mechanism_of_the_bank_gets_its_verdict() {
+    judge_all(&bank());
+}
+
+#[test]
+fn an_arm_of_any_size_beside_it_leaves_the_verdict_the_same() {
+    for length in ["1e6", "1e3", "1e-3", "1e-7"] {
+        println!("beside an arm of {length} m");
+        let mut bank = bank();
+        // The condition is that of the whole mechanism.
+        bank.retain(|case| !matches!(case.expected, Refused(_) | NearlySingular(_)));
+        for case in &mut bank {
+            case.text = invariance::with_arm(&case.text, length);
+        }
+        judge_all(&bank);
+    }
 }

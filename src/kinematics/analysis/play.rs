@@ -61,7 +61,7 @@ impl Play {
         let extent = if is_angle(&driver) {
             TAU
         } else {
-            2.0 * state.at.size()
+            2.0 * model.system.driver_row(DriverId(driver)).size(&state.at)
         };
         let start = state.pose.drivers[driver];
         let mut sweep = Sweep {

@@ -99,7 +99,7 @@ pub struct RangeSettings {
     pub samples: u32,
     /// Most turns of an angle after which the mechanism may be at its start again.
     pub turns: u32,
-    /// Largest change of a length, in characteristic lengths of the mechanism.
+    /// Largest change of a length, in characteristic lengths of its part of the mechanism.
     pub lengths: f64,
     /// Values of the driver between which the range is sought \[m or rad\]; in place of one left
     /// out the driver's own `min` or `max` bounds it, if it has one.
@@ -200,7 +200,11 @@ impl Explorer<'_> {
         let from = self.start.drivers[index];
         let driver = &self.model.system.mechanism().drivers[index];
         let is_angle = driver.coordinate.kind.is_angle();
-        let size = self.state.at.size();
+        let size = self
+            .model
+            .system
+            .driver_row(self.driver)
+            .size(&self.state.at);
         let per_turn = self.settings.samples.max(1);
         let [behind, end] = if sign > 0.0 {
             self.bounds

@@ -86,6 +86,9 @@ pub(in crate::kinematics) fn moves<'a>(
 pub(in crate::kinematics) fn distance(system: &System, state: &State, estimate: &[f64]) -> f64 {
     let size = state.at.size();
     let moves = moves(system, &state.pose.q, estimate);
-    let scaled = moves.map(|moved| (moved.length / size).max(moved.angle));
+    let scaled = moves.enumerate().map(|(body, moved)| {
+        let scale = system.column_scale(3 * body, size);
+        (moved.length / scale).max(moved.angle)
+    });
     scaled.fold(0.0, f64::max)
 }

@@ -17,7 +17,8 @@ pub(in crate::kinematics) fn open_joints(
 ) -> Vec<(Element, OpenJoint)> {
     let system = &model.system;
     let least = 0.01 * largest;
-    let mut open: Vec<(Element, OpenJoint)> = Vec::new();
+    // With the size of each joint's part.
+    let mut open: Vec<(f64, Element, OpenJoint)> = Vec::new();
     for &row in rows {
         let equation = &system.equations()[row];
         let target = system.target(row, &state.targets, &state.pose.drivers);
@@ -28,11 +29,12 @@ pub(in crate::kinematics) fn open_joints(
             Dimension::Angle => continue,
         };
         match open.last_mut() {
-            Some((element, joint)) if *element == equation.element => {
+            Some((_, element, joint)) if *element == equation.element => {
                 joint.gap = joint.gap.hypot(gap);
                 joint.angle = joint.angle.max(angle);
             }
             _ => open.push((
+                equation.size(&state.at),
                 equation.element,
                 OpenJoint {
                     element: String::new(),
@@ -42,17 +44,16 @@ pub(in crate::kinematics) fn open_joints(
             )),
         }
     }
-    open.retain_mut(|(element, joint)| {
-        if joint.gap <= least * state.at.size() {
+    let noticeable = open.into_iter().filter_map(|(size, element, mut joint)| {
+        if joint.gap <= least * size {
             joint.gap = 0.0;
         }
-        let kept = joint.gap.max(joint.angle) > 0.0;
-        if kept {
+        (joint.gap.max(joint.angle) > 0.0).then(|| {
             joint.element = element.describe(system.mechanism());
-        }
-        kept
+            (element, joint)
+        })
     });
-    open
+    noticeable.collect()
 }
 
 /// Most minimisation steps towards the nearest pose of a mechanism that does not close.

@@ -275,7 +275,8 @@ fn gather_in_one(
         let largest = gather(model, state, problem, *element);
         if let [joint] = &open_joints(model, state, &problem.rows, largest)[..]
             && joint.0 == *element
-            && let gap = (joint.1.gap / state.at.size()).max(joint.1.angle)
+            && let gap =
+                (joint.1.gap / model.system.size_of(*element, &state.at)).max(joint.1.angle)
             && best
                 .as_ref()
                 .is_none_or(|(smallest, ..)| gap <= smallest * (1.0 + 1e-3))

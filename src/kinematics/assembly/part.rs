@@ -21,7 +21,7 @@ pub(in crate::kinematics) const STARTS: usize = 8;
 pub(in crate::kinematics) const ATTEMPTS: usize = 1 + STARTS;
 /// Minimisation steps from anywhere; a start that needs more is one of many.
 const STEPS_FROM_ANYWHERE: usize = 40;
-/// Points nearer than this part of the mechanism's size coincide.
+/// Points nearer than this part of the size of their part of the mechanism coincide.
 const TOUCHING: f64 = 1e-6;
 /// Unknowns that differ by less than this, scaled, are the same.
 const SAME: f64 = 1e-6;
@@ -72,9 +72,10 @@ impl LeastSquares {
     fn leave_zero_distances(&self, state: &mut BlockState<'_>) {
         let size = state.at.size();
         for &row in &self.rows {
-            let constraint = &state.system.equations()[row].constraint;
+            let equation = &state.system.equations()[row];
+            let constraint = &equation.constraint;
             if !matches!(Relation::of(&**constraint), Relation::Distance(_))
-                || constraint.value(state.at) > TOUCHING * size
+                || constraint.value(state.at) > TOUCHING * equation.size(state.at)
             {
                 continue;
             }

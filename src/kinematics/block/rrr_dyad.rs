@@ -413,12 +413,13 @@ impl SolveBlock for RrrDyad {
             for (k, side) in self.sides.iter().enumerate() {
                 let column = 3 * side.body as usize;
                 let guess = &estimate[column..column + 3];
+                let scale = state.system.column_scale(column, size);
                 let phi = side.turned_along(links[k], guess[2]);
                 let point = side.anchor.point(state.at.frames());
                 let (sin, cos) = phi.sin_cos();
                 let origin = point - rotate(cos, sin, side.s);
-                branch.0 += ((origin.x - guess[0]) / size).powi(2)
-                    + ((origin.y - guess[1]) / size).powi(2)
+                branch.0 += ((origin.x - guess[0]) / scale).powi(2)
+                    + ((origin.y - guess[1]) / scale).powi(2)
                     + (phi - guess[2]).powi(2);
                 branch.1[k] = phi;
             }

@@ -51,11 +51,13 @@ pub(super) fn bound_drivers(
                 Some(0.125 * (end - start).powi(2) * second.abs())
             }
             Curve::Motion => {
+                let driver = DriverId(index);
                 let motion = Motion {
-                    driver: DriverId(index),
+                    driver,
                     ends,
                     second: [drivers.here[index].second(), drivers.ahead[index].second()],
                     moves: drivers.parameters_move,
+                    unit: 1.0 / system.driver_row(driver).row_scale(&state.at),
                 };
                 motion.deviation(state, path, part, bounds)
             }
@@ -75,6 +77,8 @@ struct Motion {
     second: [f64; 2],
     /// Whether parameters move.
     moves: bool,
+    /// A radian, or the characteristic length.
+    unit: f64,
 }
 
 impl Motion {
@@ -122,6 +126,6 @@ impl Motion {
         let [from, to] = self.ends;
         let Interval { low, high } = range.value;
         let deviation = (high - from.min(to)).max(from.max(to) - low);
-        (deviation <= LARGEST_JUMP * state.at.size().min(1.0)).then_some(deviation)
+        (deviation <= LARGEST_JUMP * self.unit).then_some(deviation)
     }
 }

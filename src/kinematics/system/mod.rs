@@ -185,6 +185,13 @@ impl System {
         theirs.map(|(row, _)| row).collect()
     }
 
+    /// Returns the size of the part of the mechanism that an element belongs to \[m\].
+    pub(in crate::kinematics) fn size_of(&self, element: Element, at: &Configuration) -> f64 {
+        let mut equations = self.equations.iter();
+        let own = equations.find(|equation| equation.element == element);
+        own.map_or(at.size(), |equation| equation.size(at))
+    }
+
     /// Returns the unknowns and parameters in a row, each unknown once, ascending.
     pub(in crate::kinematics) fn incidence(&self, row: usize) -> Incidence {
         let mut incidence = Incidence::default();
@@ -210,8 +217,14 @@ impl System {
     /// angles: its unknowns are spread evenly by the golden ratio.
     pub(in crate::kinematics) fn anywhere(&self, at: &Configuration) -> Configuration {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let q: Vec<_> = (1..=self.unknowns())
-            .map(|k| at.size() * (GOLDEN * k as f64).fract() + (k % 3) as f64)
+        let q: Vec<_> = (0..self.unknowns())
+            .map(|column| {
+                let scale = self
+                    .column_part(column)
+                    .map_or(at.size(), |part| at.size() * part);
+                let k = column + 1;
+                scale * (GOLDEN * k as f64).fract() + (k % 3) as f64
+            })
             .collect();
         let mut anywhere = at.clone();
         anywhere.set_pose(&self.mechanism, &q);

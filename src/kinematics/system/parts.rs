@@ -11,8 +11,7 @@ use crate::mechanism::{JointKind, Mechanism, ProfileInForce};
 /// Least part of the mechanism's size that counts: a body of some eps of it is a point.
 const LEAST: f64 = 1e-15;
 
-/// Returns the size of the part that each body belongs to, as a part of the mechanism's size:
-/// powers of two, so that scaling rounds nothing.
+/// Returns the size of the part that each body belongs to, as a part of the mechanism's size.
 ///
 /// The bodies in one row belong together, those joined by ground alone do not: a platform of 1 mm
 /// is no singular mechanism because a pendulum of 1 km hangs beside it. A size is that of
@@ -73,7 +72,7 @@ pub(super) fn part_sizes(mechanism: &Mechanism, equations: &[Equation]) -> Vec<f
         let size = sizes[parts.find(body)];
         let part = size / largest;
         if size > ROUNDING && part > LEAST && part < 1.0 {
-            part.log2().round().exp2()
+            part
         } else {
             1.0
         }

@@ -23,6 +23,8 @@ pub(super) struct Builder<'a> {
     /// Unknowns x and y of the block that are found.
     places: BTreeMap<usize, Form>,
     torn: usize,
+    /// Bound of the rounding of a row \[m\].
+    margin: f64,
     /// Torn angles that were eliminated.
     links: Vec<Link>,
 }
@@ -40,8 +42,13 @@ struct Link {
 impl<'a> Builder<'a> {
     /// Begins the elimination.
     pub(super) fn new(rows: &[usize], columns: &[usize], state: &'a BlockState<'a>) -> Self {
+        // Rows that share unknowns belong to one part.
+        let size = rows
+            .first()
+            .map_or(0.0, |&row| state.system.equations()[row].size(state.at));
         Self {
             state,
+            margin: MARGIN * size,
             columns: columns.iter().copied().collect(),
             rows: rows.to_vec(),
             angles: BTreeMap::new(),
@@ -69,7 +76,7 @@ impl<'a> Builder<'a> {
         Some(Loops {
             kept,
             closures,
-            margin: MARGIN * self.state.at.size(),
+            margin: self.margin,
         })
     }
 
