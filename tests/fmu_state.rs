@@ -481,8 +481,8 @@ fn what_is_wrong_with_bytes_is_told() {
         matches!(
             version,
             StateError::Version {
-                given: 22,
-                expected: 6
+                given: 23,
+                expected: 7
             }
         ),
         "{version}"

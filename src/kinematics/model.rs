@@ -24,7 +24,7 @@ pub(super) struct Model {
 pub(super) struct RedundantRows {
     /// Rows that follow from the others, of equals the ones declared last; ascending.
     pub(super) all: Vec<usize>,
-    /// The rows set aside at the first pose, as many; ascending.
+    /// The rows set aside at the first pose, as many; ascending. Assembly returns to them.
     pub(super) first: Vec<usize>,
     /// The rows set aside at present, as many; ascending.
     pub(super) now: Vec<usize>,
@@ -44,15 +44,6 @@ impl RedundantRows {
     /// Returns whether no row is set aside.
     pub(super) fn is_empty(&self) -> bool {
         self.now.is_empty()
-    }
-
-    /// Sets the rows of the first pose aside again. Returns whether others were.
-    pub(super) fn return_to_first(&mut self) -> bool {
-        let changes = self.now != self.first;
-        if changes {
-            self.now.clone_from(&self.first);
-        }
-        changes
     }
 }
 

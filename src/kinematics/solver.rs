@@ -333,10 +333,10 @@ impl Solver {
     }
 
     /// Returns whether the crossings of a pose that was read from outside are possible for this
-    /// mechanism and contain q.
+    /// mechanism and contain q. The pose is then any until the next [`restore`](Self::restore).
     #[must_use]
-    pub fn admits_crossings(&self, pose: &Pose) -> bool {
-        singular::admits_crossings(&self.model, pose)
+    pub fn admits_crossings(&mut self, pose: &Pose) -> bool {
+        singular::admits_crossings(&mut self.model, &mut self.state, pose)
     }
 
     /// Returns the derivative of the motion at the present pose along a direction, for these rates

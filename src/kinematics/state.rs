@@ -284,15 +284,17 @@ impl State {
         self.factorised = false;
     }
 
-    /// Goes to a pose that this mechanism was at. Crossings belong to the rows of the first pose,
-    /// which are then in use again.
+    /// Goes to a pose that this mechanism was at. The rows in use there come back with its crossings.
     pub(super) fn restore(&mut self, model: &mut Model, pose: &Pose) {
         self.has_parameters &= self.pose.parameters == pose.parameters;
         self.release_crossings(model);
         self.pose.copy_place(pose);
         self.targets.turns.copy_from_slice(&self.pose.turns);
         self.return_to_pose(model);
-        if !pose.crossings.is_empty() && model.redundant.return_to_first() {
+        if let Some(crossing) = pose.crossings.first()
+            && model.redundant.now != crossing.set_aside
+        {
+            model.redundant.now.clone_from(&crossing.set_aside);
             self.compile(model);
         }
         for crossing in &pose.crossings {

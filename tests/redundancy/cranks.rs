@@ -1,9 +1,10 @@
 //! Three cranks and more on one coupler, turned through the poses where they are flat.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use biela::kinematics::{End, RangeSettings, SingularKind};
-use biela::mechanism::DriverId;
+use biela::mechanism::{DriverId, Mechanism};
 
 use crate::common::{assembled, moved, parse, straight_to};
 use crate::mechanisms::{angle_driver, body, double, file, joint, parallelogram};
@@ -100,35 +101,49 @@ fn cranks_in_line_cross_their_change_points() {
         &[[0.8, 0.0]],
         &[[0.1, 0.0], [0.3, 0.0]],
     ] {
-        for tilt in [0.0, 0.3, 1.1, -2.0] {
-            cross_change_points(more, tilt);
+        let text = parallelogram(more, 60.0, true);
+        // Driven at each crank in turn.
+        let cranks = (5..5 + more.len()).map(|k| (format!("O{k}"), format!("crank_{k}")));
+        let cranks = [("O2", "crank"), ("O4", "rocker")]
+            .map(|(pivot, crank)| (pivot.to_owned(), crank.to_owned()))
+            .into_iter()
+            .chain(cranks);
+        for (pivot, crank) in cranks {
+            let text = text.replace(
+                "[\"ground.O2\", \"crank.O\"], start",
+                &format!("[\"ground.{pivot}\", \"{crank}.O\"], start"),
+            );
+            let mechanism = parse(&text);
+            for tilt in [0.0, 0.3, 1.1, -2.0] {
+                cross_change_points(
+                    &format!("{more:?}, {crank} driven, at {tilt}"),
+                    &moved(&mechanism, tilt, [0.0; 2]),
+                    tilt,
+                );
+            }
         }
     }
 }
 
 /// Turns cranks in line, on ground that is tilted, through their change points.
-fn cross_change_points(more: &[[f64; 2]], tilt: f64) {
-    let mechanism = moved(&parse(&parallelogram(more, 60.0, true)), tilt, [0.0; 2]);
+fn cross_change_points(name: &str, mechanism: &Arc<Mechanism>, tilt: f64) {
     let turning = mechanism.bodies.iter().enumerate();
     let turning: Vec<_> = turning
         .filter(|(_, body)| body.name != "coupler")
         .map(|(place, _)| 3 * place + 2)
         .collect();
     for steps in [7, 30] {
-        let (mut solver, mut path) = assembled(&mechanism);
+        let (mut solver, mut path) = assembled(mechanism);
         for step in 1..=2 * steps {
             let angle = TAU / 6.0 + TAU * f64::from(step) / f64::from(steps);
             straight_to(&solver, &mut path, angle);
-            solver.track(&path).unwrap_or_else(|blocked| {
-                panic!("{more:?} at {tilt}, {step} of {steps}: {blocked:?}")
-            });
+            solver
+                .track(&path)
+                .unwrap_or_else(|blocked| panic!("{name}, {step} of {steps}: {blocked:?}"));
             for &phi in &turning {
                 // As what is interpolated next to a change point.
                 let off = solver.pose().q[phi] - tilt - angle;
-                assert!(
-                    off.abs() < 1e-9,
-                    "{more:?} at {tilt}, {step} of {steps}: {off:e}"
-                );
+                assert!(off.abs() < 1e-9, "{name}, {step} of {steps}: {off:e}");
             }
         }
     }

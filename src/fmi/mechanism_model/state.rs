@@ -246,10 +246,11 @@ fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable>
         parameters.iter_mut().chain(drivers).chain(&mut *q),
         Codec::finite,
     )?;
-    codec.each(turns, Codec::signed)?;
-    let unknowns = q.len();
+    codec.each(&mut *turns, Codec::signed)?;
+    let (rows, unknowns) = (turns.len(), q.len());
     codec.resize(crossings, unknowns, || {
         Arc::new(Crossing {
+            set_aside: Vec::new(),
             block: 0,
             driver: DriverId(0),
             center: 0.0,
@@ -259,16 +260,18 @@ fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable>
         })
     })?;
     codec.each(crossings, |codec, crossing| {
-        visit_crossing(Arc::make_mut(crossing), unknowns, codec)
+        visit_crossing(Arc::make_mut(crossing), rows, unknowns, codec)
     })
 }
 
 fn visit_crossing(
     crossing: &mut Crossing,
+    rows: usize,
     unknowns: usize,
     codec: &mut impl Codec,
 ) -> Result<(), Unreadable> {
     let Crossing {
+        set_aside,
         block,
         driver,
         center,
@@ -276,6 +279,7 @@ fn visit_crossing(
         coefficients,
         free,
     } = crossing;
+    visit_indices(set_aside, rows, codec)?;
     codec.index(block)?;
     codec.index(&mut driver.0)?;
     codec.finite(center)?;

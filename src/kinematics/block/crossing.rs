@@ -28,6 +28,8 @@ pub(in crate::kinematics) const SEAM: f64 = 1.0 + 1e-9;
 /// as eps/δ² and the acceleration as eps/δ³.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
+    /// The redundant rows set aside, ascending: the blocks are those of the others.
+    pub set_aside: Vec<usize>,
     /// Index of the block in the order of solution.
     pub block: usize,
     /// The driver that moves the block.

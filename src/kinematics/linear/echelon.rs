@@ -63,6 +63,13 @@ impl Echelon {
         &self.kept
     }
 
+    /// Returns the logarithm of the magnitude of the determinant of the rows kept, in the columns of
+    /// their pivots.
+    pub(in crate::kinematics) fn log_determinant(&self) -> f64 {
+        let pivots = self.kept.iter().map(|row| value_at(&row.upper, row.pivot));
+        pivots.map(|pivot| pivot.abs().ln()).sum()
+    }
+
     /// Keeps a row if more than `at_least` is left of it, otherwise returns it reduced.
     pub(in crate::kinematics) fn offer(
         &mut self,
@@ -249,7 +256,12 @@ mod tests {
                 }
                 prop_assert!(sum.amax() < 1e-9, "{}", sum);
             }
-            for column in echelon.free() {
+            let free = echelon.free();
+            if free.is_empty() {
+                let determinant = matrix.select_rows(&kept).determinant().abs();
+                prop_assert!((echelon.log_determinant() - determinant.ln()).abs() < 1e-9);
+            }
+            for column in free {
                 let vector = echelon.null_vector(&[(column, 1.0)]);
                 let vector = nalgebra::DVector::from_vec(vector);
                 prop_assert!((vector.amax() - 1.0).abs() < 1e-12);

@@ -25,14 +25,13 @@ use crate::kinematics::structure::Structure;
 /// be.
 const FIT: f64 = 1e-2;
 /// Factor on that limit where too few rows are fit.
-const LESS_FIT: f64 = 0.1;
+const LESS_FIT: f64 = 0.2;
 /// The limit when rows are chosen again: nearly independent rows only.
-const FITTER: f64 = 0.1;
-/// Rows are changed for others if this much more is left of the weakest one.
+const FITTER: f64 = 0.5;
+/// Assembly returns to the rows of the first pose if more than this is left of the weakest one.
+const KEPT: f64 = 1e-3;
+/// Rows are changed for others whose determinant is this many times as large.
 const WORTH: f64 = 2.0;
-/// Next to a change point the rows of the first pose are used if their weakest one is no smaller
-/// part of that of the best choice: there all choices lose rank alike.
-const COMPARABLE: f64 = 0.05;
 
 /// A joint or constraint with equations that follow from the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,6 +69,14 @@ struct Choice {
     set_aside: Vec<usize>,
     /// The least that is left of a row that is solved.
     weakest: f64,
+}
+
+/// The distance of rows from dependence.
+struct Fitness {
+    /// The least that is left of a row by those before it.
+    weakest: f64,
+    /// The logarithm of their determinant, which depends on no order.
+    log_determinant: f64,
 }
 
 /// Returns the joints and constraints with redundant equations.
@@ -137,7 +144,7 @@ fn choose_rows_near(model: &mut Model, state: &mut State, estimate: &[f64]) -> R
         return Err(singular_position(model, state));
     }
     let first = match std::mem::take(&mut model.redundant.first) {
-        // Crossings of change points belong to these rows.
+        // The same rows whatever was chosen in between.
         first if first.len() == choice.set_aside.len() => first,
         _ => choice.set_aside.clone(),
     };
@@ -195,7 +202,7 @@ fn return_to_fit_rows(model: &mut Model, state: &mut State) -> Result<(), Error>
         return Ok(());
     }
     let first = model.redundant.first.clone();
-    let set_aside = if weakest_without(model, state, &first) > FIT * FITTER {
+    let set_aside = if fitness_without(model, state, &first).weakest > KEPT {
         first
     } else {
         let choice = choose_here(model, state, FITTER);
@@ -223,10 +230,10 @@ pub(in crate::kinematics) fn change_rows(model: &mut Model, state: &mut State) -
     true
 }
 
-/// Returns whether a change point of the rows in use may be one of the mechanism: they are those
-/// of the first pose, and no others are better here.
-pub(in crate::kinematics) fn may_cross(model: &Model, state: &State) -> bool {
-    model.redundant.now == model.redundant.first && fitter_rows(model, state).is_none()
+/// Returns whether no other rows are much farther from dependence here than those in use: a change
+/// point of theirs may then be one of the mechanism.
+pub(in crate::kinematics) fn are_rows_fit(model: &Model, state: &State) -> bool {
+    fitter_rows(model, state).is_none()
 }
 
 /// Returns whether the rows all together are nearly dependent at the pose.
@@ -242,27 +249,17 @@ fn fitter_rows(model: &Model, state: &State) -> Option<Choice> {
         return None;
     }
     let now = &model.redundant.now;
-    let weakest = weakest_without(model, state, now);
-    if weakest > FITTER {
+    let here = fitness_without(model, state, now);
+    if here.weakest > FITTER {
         return None;
     }
     let choice = choose_here(model, state, FITTER);
-    if choice.weakest < FIT {
-        let first = &model.redundant.first;
-        if weakest_without(model, state, first) > COMPARABLE * choice.weakest {
-            // A change point is crossed on the rows of the first pose.
-            return (now != first).then(|| Choice {
-                set_aside: first.clone(),
-                ..choice
-            });
-        }
-    }
     if choice.set_aside.len() != now.len() || choice.set_aside == *now {
         return None;
     }
-    // Taken in one order, as what is left of a row depends on those before it.
-    let better = weakest_without(model, state, &choice.set_aside) > WORTH * weakest;
-    better.then_some(choice)
+    // At a change point all rows lose rank, but some lose more of it than others.
+    let there = fitness_without(model, state, &choice.set_aside);
+    (there.log_determinant > here.log_determinant + WORTH.ln()).then_some(choice)
 }
 
 /// Returns the joint or constraint that a row set aside finds open by more than rounding.
@@ -301,17 +298,22 @@ fn choose_here(model: &Model, state: &State, mut fit: f64) -> Choice {
     }
 }
 
-/// Returns the least that is left of a row at the present places of the bodies, if all rows but
-/// these are solved.
-fn weakest_without(model: &Model, state: &State, set_aside: &[usize]) -> f64 {
+/// Returns how far all rows but these are from dependence at the present places of the bodies.
+fn fitness_without(model: &Model, state: &State, set_aside: &[usize]) -> Fitness {
     let rows = jacobian_rows(model, state);
     let mut echelon = Echelon::new(model.system.unknowns(), &rows);
     for row in drivers_first(&model.system) {
         if set_aside.binary_search(&row).is_err()
             && echelon.offer(row, &rows[row], DEPENDENT).is_some()
         {
-            return 0.0;
+            return Fitness {
+                weakest: 0.0,
+                log_determinant: f64::NEG_INFINITY,
+            };
         }
     }
-    weakest(&echelon)
+    Fitness {
+        weakest: weakest(&echelon),
+        log_determinant: echelon.log_determinant(),
+    }
 }

@@ -30,7 +30,8 @@ mod watch;
 
 pub use choice::Redundancy;
 pub(super) use choice::{
-    assemble_on_all, change_rows, choose_rows, is_nearly_singular, may_cross, opened, redundancies,
+    are_rows_fit, assemble_on_all, change_rows, choose_rows, is_nearly_singular, opened,
+    redundancies,
 };
 pub(super) use rank::{DEPENDENT, drivers_first, jacobian_rows};
 pub(super) use watch::watch_between;

@@ -37,8 +37,22 @@ pub(in crate::kinematics) fn describe_crossing(model: &Model, crossing: &Crossin
 }
 
 /// Returns whether this mechanism could have come to the crossings of a pose that was read from
-/// outside, and q lies on them.
-pub(in crate::kinematics) fn admits_crossings(model: &Model, pose: &Pose) -> bool {
+/// outside, and q lies on them. Compiles the plan for the rows of the crossings.
+pub(in crate::kinematics) fn admits_crossings(
+    model: &mut Model,
+    state: &mut State,
+    pose: &Pose,
+) -> bool {
+    let Some(Crossing { set_aside, .. }) = pose.crossings.first().map(|first| &**first) else {
+        return true;
+    };
+    if model.redundant.now != *set_aside {
+        state.release_crossings(model);
+        if !model.set_aside(set_aside) {
+            return false;
+        }
+        state.compile(model);
+    }
     let mut blocks: Vec<_> = pose.crossings.iter().map(|c| c.block).collect();
     blocks.sort_unstable();
     blocks.dedup();
@@ -52,7 +66,8 @@ pub(in crate::kinematics) fn admits_crossings(model: &Model, pose: &Pose) -> boo
                 return false;
             };
             let value = pose.drivers[driver.index()];
-            crossing.driver == driver
+            crossing.set_aside == *set_aside
+                && crossing.driver == driver
                 && crossing.half_width > 0.0
                 && crossing.place(value).abs() <= SEAM
                 && crossing.coefficients.len() == columns.len()

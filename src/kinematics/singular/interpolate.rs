@@ -58,6 +58,7 @@ pub(super) fn crossing_of(
         let interpolated = interpolate(equation, &center, half_width);
         if let Some((coefficients, between)) = interpolated {
             let crossing = Crossing {
+                set_aside: equation.set_aside.to_vec(),
                 block,
                 driver,
                 center: center.place.tau,

@@ -7,9 +7,9 @@
 //! links stay parallel.
 //!
 //! A crossing belongs to the pose: while the driver's value is within its ends, the block's
-//! unknowns and their rates come from it. Blocks that several drivers move, and those with more
-//! than [`LARGEST_BLOCK`] unknowns, have no crossings; nor has any block while parameters move, or
-//! while other rows than at the first pose are in use.
+//! unknowns and their rates come from it. It belongs to the redundant rows set aside as well: as long
+//! as a pose has crossings, these stay. Blocks that several drivers move, and those with more
+//! than [`LARGEST_BLOCK`] unknowns, have no crossings; nor has any block while parameters move.
 //!
 //! | file | subject |
 //! |---|---|

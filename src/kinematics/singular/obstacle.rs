@@ -12,7 +12,7 @@ use super::reduced::{Line, ReducedEquation, ReducedPoint, Workspace};
 use crate::kinematics::error::in_line;
 use crate::kinematics::model::Model;
 use crate::kinematics::path::Path;
-use crate::kinematics::redundancy::{change_rows, may_cross};
+use crate::kinematics::redundancy::{are_rows_fit, change_rows};
 use crate::kinematics::state::State;
 use crate::mechanism::{DriverId, Jet};
 
@@ -166,7 +166,7 @@ fn enter_near_crossings(
         return_to_regular_pose(model, state);
         return enter_near_crossings(model, state, drivers, fruitless);
     }
-    if !may_cross(model, state) {
+    if !are_rows_fit(model, state) {
         for &block in &near {
             fruitless.note(block, model.plan.blocks[block].regularity());
         }

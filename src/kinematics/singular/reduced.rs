@@ -102,6 +102,8 @@ impl Workspace {
 /// The reduced equation of a block.
 pub(super) struct ReducedEquation<'a> {
     system: &'a System,
+    /// The redundant rows set aside.
+    pub(super) set_aside: &'a [usize],
     targets: &'a Targets,
     motions: &'a Motions,
     line: Line<'a>,
@@ -186,7 +188,12 @@ impl<'a> ReducedEquation<'a> {
             motions,
             ..
         } = state;
-        let Model { system, plan, .. } = model;
+        let Model {
+            system,
+            plan,
+            redundant,
+            ..
+        } = model;
         let system = &*system;
         let BlockPlan { blocks, reads, .. } = plan;
         let (own, before) = blocks[..=block].split_last_mut()?;
@@ -215,6 +222,7 @@ impl<'a> ReducedEquation<'a> {
         };
         let mut reduced = Self {
             system,
+            set_aside: &redundant.now,
             targets,
             motions,
             line,
