@@ -68,6 +68,8 @@ const MOST_UNKNOWNS: usize = 2048;
 pub(super) struct CertifiedTubes {
     /// In the order in which they were made, from `next` on.
     kept: Box<[CertifiedTube]>,
+    /// Number of places in which a tube was made, from the first one on.
+    used: usize,
     /// The tube that served last.
     last: usize,
     /// The place of the next one.
@@ -118,6 +120,7 @@ impl CertifiedTubes {
         let count = (MOST_UNKNOWNS / unknowns.max(1)).clamp(1, MOST_KEPT);
         Self {
             kept: vec![tube; count].into(),
+            used: 0,
             last: 0,
             next: 0,
         }
@@ -125,9 +128,10 @@ impl CertifiedTubes {
 
     /// Forgets all tubes.
     pub(super) fn forget(&mut self) {
-        for tube in &mut self.kept {
+        for tube in &mut self.kept[..self.used] {
             tube.holds = false;
         }
+        (self.used, self.last, self.next) = (0, 0, 0);
     }
 
     /// Returns the number of tubes.
@@ -151,16 +155,18 @@ impl CertifiedTubes {
     fn keep_next(&mut self) {
         self.kept[self.next].holds = true;
         self.last = self.next;
+        self.used = self.used.max(self.next + 1);
         self.next = (self.next + 1) % self.kept.len();
     }
 
     /// Returns the places of the other tubes, those made shortly after or before the last one first.
     fn others(&self) -> impl Iterator<Item = usize> + use<> {
-        let (last, count) = (self.last, self.kept.len());
+        let (last, count) = (self.last, self.used);
         (1..count).map(move |k| {
             let apart = k.div_ceil(2);
             let apart = if k % 2 == 1 { apart } else { count - apart };
-            (last + apart) % count
+            let place = last + apart;
+            if place < count { place } else { place - count }
         })
     }
 }
