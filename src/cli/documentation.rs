@@ -252,7 +252,7 @@ const LAG: [&str; 2] = [
 ];
 
 fn page(
-    mechanism: &Mechanism,
+    mechanism: &Arc<Mechanism>,
     values: &[f64],
     shown: &Shown,
     version: Version,

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 
@@ -81,7 +82,7 @@ impl Tolerance {
     }
 
     /// Returns the columns of the table; drivers are given and do not deviate.
-    fn columns(&self, mechanism: &Mechanism) -> Result<Vec<Output>, Error> {
+    fn columns(&self, mechanism: &Arc<Mechanism>) -> Result<Vec<Output>, Error> {
         let mut columns = Output::all(mechanism);
         columns.retain(|column| !matches!(column.source, Source::Signal(Signal::Motion(_), _)));
         if !self.variables.is_empty() {

@@ -53,7 +53,7 @@ impl OutputSource {
 impl Output {
     /// Returns value, velocity and acceleration of every driver, then all others.
     #[must_use]
-    pub fn all(mechanism: &Mechanism) -> Vec<Self> {
+    pub fn all(mechanism: &Arc<Mechanism>) -> Vec<Self> {
         let mut list = List::default();
         for index in 0..mechanism.drivers.len() {
             list.add_driver(mechanism, DriverId(index));
@@ -75,7 +75,7 @@ impl Output {
     /// measures, prescribed motions, measures computed from others, forces; in the file's order
     /// within each group.
     #[must_use]
-    pub fn of_host(mechanism: &Mechanism) -> Vec<Self> {
+    pub fn of_host(mechanism: &Arc<Mechanism>) -> Vec<Self> {
         let mut list = List::default();
         list.add_places(mechanism);
         for (index, driver) in mechanism.drivers.iter().enumerate() {
@@ -210,7 +210,7 @@ impl List {
         }
     }
 
-    fn add_derived_and_forces(&mut self, mechanism: &Mechanism) {
+    fn add_derived_and_forces(&mut self, mechanism: &Arc<Mechanism>) {
         let derived = mechanism.derived.iter().enumerate();
         self.0.extend(derived.map(|(index, measure)| Output {
             name: measure.name.clone(),
@@ -271,7 +271,7 @@ impl List {
     }
 
     /// Adds the reactions of joints and constraints.
-    fn add_reactions(&mut self, mechanism: &Mechanism) {
+    fn add_reactions(&mut self, mechanism: &Arc<Mechanism>) {
         let omitted = match mechanism.outputs.indeterminate {
             Indeterminate::Omit => indeterminate(mechanism),
             Indeterminate::MinimumNorm => Vec::new(),
@@ -323,8 +323,8 @@ impl List {
 
 /// Returns the joints and constraints whose reactions redundant constraints leave indeterminate,
 /// at the file's own values; none if the mechanism does not assemble there.
-fn indeterminate(mechanism: &Mechanism) -> Vec<Element> {
-    let system = System::new(Arc::new(mechanism.clone()));
+fn indeterminate(mechanism: &Arc<Mechanism>) -> Vec<Element> {
+    let system = System::new(Arc::clone(mechanism));
     if system.equations().len() <= system.unknowns() {
         return Vec::new();
     }

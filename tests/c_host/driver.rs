@@ -40,6 +40,7 @@ impl Fmu {
         let text = std::fs::read_to_string(file).expect("shipped mechanisms can be read");
         let (mechanism, _) =
             Mechanism::parse(&Source::new(RESOURCE, text.as_str())).expect("they have no errors");
+        let mechanism = Arc::new(mechanism);
         let unpacked = tempfile::tempdir().expect("there is room for temporary files");
         let resources = unpacked.path().join(folder);
         std::fs::create_dir(&resources)
@@ -48,7 +49,7 @@ impl Fmu {
         Self {
             guid: biela::fmi::guid(&mechanism),
             variables: biela::fmi::variables(&mechanism),
-            mechanism: Arc::new(mechanism),
+            mechanism,
             resources,
             _folder: unpacked,
         }

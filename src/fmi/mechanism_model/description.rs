@@ -15,7 +15,7 @@ use crate::mechanism::{Mechanism, Order, Unit, rounded};
 /// Returns the model description of a mechanism's FMU for a version of the standard.
 #[must_use]
 pub fn describe<'a>(
-    mechanism: &'a Mechanism,
+    mechanism: &'a Arc<Mechanism>,
     structure: &Structure,
     standard: Version,
 ) -> ModelDescription<'a, Quantity> {
@@ -103,8 +103,8 @@ fn terminals(mechanism: &Mechanism, variables: &[Variable<Quantity>]) -> Vec<Ter
 
 /// Gives lengths among inputs and outputs the mechanism's size as their usual magnitude, rounded to
 /// one digit. Angles have the order of 1, which is the default.
-fn set_nominal(mechanism: &Mechanism, variables: &mut [Variable<Quantity>]) {
-    let system = System::new(Arc::new(mechanism.clone()));
+fn set_nominal(mechanism: &Arc<Mechanism>, variables: &mut [Variable<Quantity>]) {
+    let system = System::new(Arc::clone(mechanism));
     let (mut at, mut targets) = (system.configuration(), system.targets());
     let parameters = mechanism.default_parameters();
     if system

@@ -2,6 +2,7 @@
 
 use std::io::{self, Seek, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 use super::describe;
 use crate::fmi::error::Failure;
@@ -44,7 +45,7 @@ pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
 pub fn write_fmu(
     out: impl Write + Seek,
     source: &Source,
-    mechanism: &Mechanism,
+    mechanism: &Arc<Mechanism>,
     structure: &Structure,
     version: Version,
     libraries: &[RuntimeLibrary],

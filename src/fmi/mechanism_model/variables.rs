@@ -1,6 +1,8 @@
 //! The table of variables of a mechanism's FMU. Getters, setters and `modelDescription.xml` read
 //! it.
 
+use std::sync::Arc;
+
 use super::rule::{Extrapolation, RateSource};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 use crate::kinematics::{Dependencies, Output, OutputSource};
@@ -44,7 +46,7 @@ pub enum Quantity {
 /// inputs of forces, parameters, settings, bodies, markers, measures, motions, measures computed
 /// from others, forces, solver, time; in the file's order within each group.
 #[must_use]
-pub fn variables(mechanism: &Mechanism) -> Vec<Variable<Quantity>> {
+pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
     let mut table = Table::default();
     table.add_inputs(mechanism);
     table.add_force_inputs(mechanism);
@@ -188,7 +190,7 @@ impl Table {
         );
     }
 
-    fn add_outputs(&mut self, mechanism: &Mechanism) {
+    fn add_outputs(&mut self, mechanism: &Arc<Mechanism>) {
         for output in Output::of_host(mechanism) {
             let quantity = Quantity::Output(output.source);
             let unit = match output.source {
