@@ -81,8 +81,8 @@ impl Dimension {
         }))
     }
 
-    /// Whether quantities of two dimensions can be added. An arc, radius times angle, is a length:
-    /// radians count only where nothing else does.
+    /// Returns whether quantities of two dimensions can be added. An arc, radius times angle, is a
+    /// length: radians count only where nothing else does.
     #[must_use]
     pub fn agrees_with(self, other: Self) -> bool {
         let is_same = [self.kg, self.m, self.s] == [other.kg, other.m, other.s];

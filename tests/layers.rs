@@ -320,7 +320,7 @@ fn graph(library: &Library) -> Uses {
     graph
 }
 
-/// Whether `child` is a file of a module that the file `parent` declares.
+/// Returns whether `child` is a file of a module that the file `parent` declares.
 fn is_child(child: &Path, parent: &Path) -> bool {
     let folder = folder_of(parent);
     let own = child.parent() == Some(&folder) && child.file_stem().is_some_and(|s| s != "mod");

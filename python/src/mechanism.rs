@@ -149,7 +149,7 @@ impl Mechanism {
         py.detach(|| cli::check(&self.source, modes).to_string())
     }
 
-    /// Whether the file names tables, which are beside it.
+    /// Returns whether the file names tables, which are beside it.
     #[getter]
     fn has_tables(&self) -> bool {
         !self.model.table_files.is_empty()

@@ -45,7 +45,7 @@ impl Run {
         self.gradient.clone().into_pyarray(py)
     }
 
-    /// Whether the run has forces that arrows can show.
+    /// Returns whether the run has forces that arrows can show.
     #[getter]
     fn has_forces(&self) -> bool {
         self.film.has_forces()

@@ -38,8 +38,8 @@ impl Disc {
         Self { center, radius }
     }
 
-    /// Whether a point of the body's frame lies in a disc that is more than a point, to within
-    /// what cannot be seen.
+    /// Returns whether a point of the body's frame lies in a disc that is more than a point, to
+    /// within what cannot be seen.
     pub(super) fn covers(&self, point: Point) -> bool {
         let distance = (point - Point::from(self.center.position)).norm();
         self.radius > 0.0 && distance <= self.radius * 1.001
@@ -98,8 +98,8 @@ impl Anchor {
         range.map(|s| self.moved_to(self.on_axis(s).into()))
     }
 
-    /// Whether a point of the body's frame lies on a part of the x-axis, to within what cannot be
-    /// seen.
+    /// Returns whether a point of the body's frame lies on a part of the x-axis, to within what
+    /// cannot be seen.
     pub(super) fn has_on_axis(&self, range: [f64; 2], point: Point) -> bool {
         let near = 1e-3 * (range[1] - range[0]);
         let [s, aside] = self.coordinates(point);
@@ -111,7 +111,7 @@ impl Anchor {
         (Rotation2::new(-self.angle) * (point - Point::from(self.position))).into()
     }
 
-    /// Whether two anchors on one body have the same point, made by the same expressions.
+    /// Returns whether two anchors on one body have the same point, made by the same expressions.
     pub(super) fn is_at(&self, other: &Self) -> bool {
         self.position.map(f64::to_bits) == other.position.map(f64::to_bits)
     }

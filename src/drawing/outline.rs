@@ -216,7 +216,8 @@ pub(super) fn unit(v: Point) -> Point {
     v.try_normalize(1e-12).unwrap_or_else(Point::x)
 }
 
-/// Whether a point lies inside closed lines: a ray from it meets them an odd number of times.
+/// Returns whether a point lies inside closed lines: a ray from it meets them an odd number of
+/// times.
 pub(super) fn contains(pieces: impl Iterator<Item = [Point; 2]>, p: Point) -> bool {
     let crossed = pieces.filter(|[a, b]| {
         (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)

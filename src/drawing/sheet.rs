@@ -222,7 +222,7 @@ impl Bounds {
         (self.high - self.low).map(|size| size.max(0.0))
     }
 
-    /// Whether two rectangles have an area in common.
+    /// Returns whether two rectangles have an area in common.
     pub(super) fn meets(&self, other: &Self) -> bool {
         self.low.x < other.high.x
             && other.low.x < self.high.x

@@ -149,7 +149,7 @@ fn resolution(mechanism: &Mechanism) -> [usize; 2] {
     [steps, (fewer / STEPS).clamp(1, MOST_TURNS)]
 }
 
-/// Whether all bodies end where they started, but for full turns.
+/// Returns whether all bodies end where they started, but for full turns.
 fn is_back(poses: &[Vec<f64>], bodies: usize) -> bool {
     let (start, end) = (&poses[0], &poses[poses.len() - 1]);
     let coordinates = 3 * bodies;

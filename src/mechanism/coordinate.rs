@@ -73,7 +73,7 @@ impl CoordinateKind {
         }
     }
 
-    /// Whether the coordinate is measured on the axes of a marker.
+    /// Returns whether the coordinate is measured on the axes of a marker.
     #[must_use]
     pub fn has_axes(self) -> bool {
         match self {
@@ -82,7 +82,7 @@ impl CoordinateKind {
         }
     }
 
-    /// Whether its values are angles; they are lengths otherwise.
+    /// Returns whether its values are angles; they are lengths otherwise.
     #[must_use]
     pub fn is_angle(self) -> bool {
         match self {

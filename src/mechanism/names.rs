@@ -14,7 +14,7 @@ const MAX_SUGGESTED_LENGTH: usize = 64;
 /// Most names that a message lists.
 const MAX_LISTED: usize = 20;
 
-/// Whether `name` matches `[A-Za-z][A-Za-z0-9_]*`.
+/// Returns whether `name` matches `[A-Za-z][A-Za-z0-9_]*`.
 ///
 /// Names of FMI type definitions have other characters, so that they never equal a variable's
 /// (FMI 2.0.4, section 2.2.3).
@@ -23,7 +23,7 @@ pub(super) fn is_legal(name: &str) -> bool {
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
 }
 
-/// Whether `name` is a device of Windows, which no file there can be called: `CON`, `com1`.
+/// Returns whether `name` is a device of Windows, which no file there can be called: `CON`, `com1`.
 pub(super) fn is_device(name: &str) -> bool {
     let is = |device: &&str| name.eq_ignore_ascii_case(device);
     let is_port = |port: &&str| {
@@ -49,8 +49,8 @@ pub(super) fn c_keywords() -> impl Iterator<Item = &'static str> {
 /// most 255 characters with their extension.
 pub(super) const MOST_CHARACTERS: usize = 240;
 
-/// Whether a mechanism may have this name: a C identifier that is no device of Windows, and no
-/// longer than a file's name.
+/// Returns whether a mechanism may have this name: a C identifier that is no device of Windows, and
+/// no longer than a file's name.
 #[must_use]
 pub fn is_identifier(name: &str) -> bool {
     is_c_identifier(name) && !is_device(name) && name.len() <= MOST_CHARACTERS
@@ -67,7 +67,7 @@ pub fn similar_identifier(name: &str) -> Option<String> {
     similar.into_iter().find(|similar| is_identifier(similar))
 }
 
-/// Whether `name` is an identifier of the C language and none of its words.
+/// Returns whether `name` is an identifier of the C language and none of its words.
 pub(super) fn is_c_identifier(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')

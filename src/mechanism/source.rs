@@ -165,7 +165,7 @@ impl Source {
     }
 }
 
-/// Whether every system and every zip tool accepts this as the name of a file.
+/// Returns whether every system and every zip tool accepts this as the name of a file.
 fn is_portable(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default();
     let legal = |c: char| c.is_alphanumeric() || " ._-+()".contains(c);

@@ -63,7 +63,7 @@ impl<N: Number> Spline<N> {
         &self.values
     }
 
-    /// Whether each abscissa is larger than the one before, and every number finite.
+    /// Returns whether each abscissa is larger than the one before, and every number finite.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let rises = |pair: &[N]| pair[0].real() < pair[1].real();

@@ -253,7 +253,7 @@ impl Host {
         message.text.clone()
     }
 
-    /// Whether there is an instance then, and what was logged.
+    /// Returns whether there is an instance then, and what was logged.
     pub(crate) fn instantiate(&mut self, slot: &str, with: &Instantiate) -> (bool, Vec<Message>) {
         let text = |text: &Option<String>| text.as_deref().map_or(NULL.to_owned(), escaped);
         let answer = self.call(&[
@@ -380,7 +380,7 @@ fn unescaped(text: &str) -> String {
     plain
 }
 
-/// Whether a program is there to be run.
+/// Returns whether a program is there to be run.
 pub(crate) fn has(program: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path).any(|folder| Path::join(&folder, program).is_file())

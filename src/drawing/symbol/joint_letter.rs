@@ -134,7 +134,7 @@ fn letters() -> impl Iterator<Item = String> {
 }
 
 impl Place {
-    /// Whether a point of a body is this place.
+    /// Returns whether a point of a body is this place.
     pub(super) fn has(&self, point: &Anchor) -> bool {
         self.points.iter().any(|own| are_one(own, point))
     }
@@ -144,7 +144,7 @@ impl Place {
     }
 }
 
-/// Whether two anchors are one point of one body, to within rounding.
+/// Returns whether two anchors are one point of one body, to within rounding.
 pub(super) fn are_one(a: &Anchor, b: &Anchor) -> bool {
     let [p, q] = [a, b].map(|anchor| Point::from(anchor.position));
     a.body == b.body && (p - q).norm() <= 1e-9 * p.norm().max(q.norm())

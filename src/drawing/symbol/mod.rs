@@ -47,7 +47,7 @@ pub(super) trait Shape {
         None
     }
 
-    /// Whether a point of the body that the symbol shows lies in the symbol.
+    /// Returns whether a point of the body that the symbol shows lies in the symbol.
     fn covers(&self, point: Point) -> bool {
         self.extent().iter().any(|disc| disc.covers(point))
     }

@@ -366,7 +366,7 @@ impl<'a> Pen<'a> {
     }
 }
 
-/// Whether a mark shows a body, or a part of it that moves along the body.
+/// Returns whether a mark shows a body, or a part of it that moves along the body.
 fn shows_body(mark: &Mark) -> bool {
     matches!(
         mark.layer,

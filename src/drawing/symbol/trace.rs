@@ -88,7 +88,7 @@ fn without_ways_back(path: &[Point], near: f64) -> Vec<&[Point]> {
     pieces
 }
 
-/// Whether a point is in the rectangle around two others, `near` included.
+/// Returns whether a point is in the rectangle around two others, `near` included.
 fn is_about(ends: &[Point], p: Point, near: f64) -> bool {
     let (a, b) = (ends[0], ends[1]);
     let between = |a: f64, b: f64, p: f64| p > a.min(b) - near && p < a.max(b) + near;

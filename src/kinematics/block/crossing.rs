@@ -24,8 +24,9 @@ pub(in crate::kinematics) const SEAM: f64 = 1.0 + 1e-9;
 ///
 /// On either side of the point, where the block is regular, position and both derivatives are known
 /// to rounding at two places, and at the point itself position and velocity; between them each
-/// unknown is the polynomial of degree 13 with these values. Newton–Raphson would lose the position as eps/δ at the distance δ from the point, the velocity
-/// as eps/δ² and the acceleration as eps/δ³.
+/// unknown is the polynomial of degree 13 with these values. Newton–Raphson would lose the position
+/// as eps/δ at the distance δ from the point, the velocity as eps/δ² and the acceleration as
+/// eps/δ³.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
     /// The redundant rows set aside, ascending: the blocks are those of the others.

@@ -237,8 +237,8 @@ impl Expression {
         )
     }
 
-    /// Whether it is made of pieces: it has a kink or a jump where it switches from one to the
-    /// next, unless they join smoothly.
+    /// Returns whether it is made of pieces: it has a kink or a jump where it switches from one to
+    /// the next, unless they join smoothly.
     #[must_use]
     pub fn has_pieces(&self) -> bool {
         use Operation::{Binary as Two, Unary as One};

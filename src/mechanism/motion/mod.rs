@@ -47,7 +47,7 @@ impl Interpolation {
 }
 
 impl Motion {
-    /// Whether it moves at all.
+    /// Returns whether it moves at all.
     #[must_use]
     pub fn uses_time(&self) -> bool {
         match self {

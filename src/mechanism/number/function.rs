@@ -42,7 +42,7 @@ pub enum Unary {
 }
 
 impl Unary {
-    /// Whether the function is constant between its jumps.
+    /// Returns whether the function is constant between its jumps.
     pub(super) fn is_step(self) -> bool {
         matches!(self, Self::Sign | Self::Floor | Self::Ceil)
     }

@@ -76,24 +76,24 @@ pub trait Number:
     /// a function defined by pieces is in force.
     fn real(self) -> f64;
 
-    /// Whether it is exactly zero and does not vary.
+    /// Returns whether it is exactly zero and does not vary.
     fn is_zero(self) -> bool;
 
-    /// Whether the value is a single number: always true but for intervals.
+    /// Returns whether the value is a single number: always true but for intervals.
     fn is_single(self) -> bool;
 
-    /// Whether value and derivatives are finite.
+    /// Returns whether value and derivatives are finite.
     fn is_finite(self) -> bool;
 
-    /// Whether the value is outside a function's domain. Always false for plain numbers, where
-    /// NaN itself says so.
+    /// Returns whether the value is outside a function's domain. Always false for plain numbers,
+    /// where NaN itself says so.
     fn is_undefined(self) -> bool;
 
-    /// Whether a derivative is not zero: always false for plain numbers and intervals.
+    /// Returns whether a derivative is not zero: always false for plain numbers and intervals.
     fn varies(self) -> bool;
 
-    /// Whether the value is at most that of `other`; `None` if that differs from point to point.
-    /// NaN is at most any number, so that a minimum keeps it.
+    /// Returns whether the value is at most that of `other`; `None` if that differs from point to
+    /// point. NaN is at most any number, so that a minimum keeps it.
     fn at_most(self, other: Self) -> Option<bool>;
 
     /// Returns the smaller number, point by point; the first at a tie.
@@ -115,7 +115,7 @@ pub trait Number:
     /// Returns the angle of the point (`x`, `self`) \[rad\].
     fn atan2(self, x: Self) -> Self;
 
-    /// Whether the angle of the point (`x`, `self`) jumps within the two intervals.
+    /// Returns whether the angle of the point (`x`, `self`) jumps within the two intervals.
     fn angle_jumps(self, x: Self) -> bool;
 
     /// Returns the larger number, point by point; the first at a tie.

@@ -73,7 +73,7 @@ impl ClosedPoints<f64> {
         along
     }
 
-    /// Whether the second derivative may jump.
+    /// Returns whether the second derivative may jump.
     pub(super) fn jumps(&self) -> bool {
         self.interpolation.jumps()
     }

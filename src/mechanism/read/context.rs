@@ -179,7 +179,7 @@ impl<'a> Context<'a> {
         Some(items?)
     }
 
-    /// Whether these parameters have values.
+    /// Returns whether these parameters have values.
     pub(super) fn knows(&self, mut parameters: impl Iterator<Item = ParameterId>) -> bool {
         parameters.all(|id| self.parameter_values[id.index()].is_some())
     }

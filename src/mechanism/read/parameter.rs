@@ -90,7 +90,8 @@ fn unit_of_multiple(text: &str) -> Option<&'static str> {
     names.find(|name| is_multiple(&letters, name))
 }
 
-/// Whether `letters` are those of the unit `name`, each of its symbols with or without a prefix.
+/// Returns whether `letters` are those of the unit `name`, each of its symbols with or without a
+/// prefix.
 fn is_multiple(letters: &str, name: &str) -> bool {
     const PREFIXES: [&str; 15] = [
         "da", "p", "n", "µ", "μ", "u", "m", "c", "d", "h", "k", "K", "M", "G", "T",

@@ -13,8 +13,8 @@ fn orders<S: Copy>(jet: Jet3<S>) -> [S; 4] {
     [jet.value, first, second, third]
 }
 
-/// Whether `value`, which comes from arithmetic that rounds to the nearest, may be a rounded
-/// value from `interval`.
+/// Returns whether `value`, which comes from arithmetic that rounds to the nearest, may be a
+/// rounded value from `interval`.
 fn contains_rounded(interval: Interval, value: f64) -> bool {
     // Some ten operations of half an epsilon each, with a magnification of a hundred.
     let slack = 1e-13 * (1.0 + value.abs());
@@ -212,12 +212,12 @@ fn point(whole: i64) -> Interval {
     Interval::point(whole as f64)
 }
 
-/// Whether the bounds are one number or neighbours.
+/// Returns whether the bounds are one number or neighbours.
 fn is_one_rounding(interval: Interval) -> bool {
     interval.high <= interval.low.next_up()
 }
 
-/// Whether the bounds are the numbers next to `exact`, or `exact` itself.
+/// Returns whether the bounds are the numbers next to `exact`, or `exact` itself.
 #[expect(clippy::cast_possible_truncation, reason = "whole numbers below 2^106")]
 fn is_tight(interval: Interval, exact: i128) -> bool {
     let contains = (interval.low as i128) <= exact && exact <= (interval.high as i128);

@@ -44,7 +44,7 @@ impl Interval {
         self.at_ends(|x| Self::of_exact_zero(f(x)))
     }
 
-    /// Whether it may contain a number (k + `phase`) · `period`, k an integer.
+    /// Returns whether it may contain a number (k + `phase`) · `period`, k an integer.
     fn may_contain(self, phase: f64, period: f64) -> bool {
         // Three roundings and that of the period, each of half an epsilon.
         let count = |x: f64, slack: f64| {

@@ -71,7 +71,7 @@ impl Interval {
         self.low.abs().max(self.high.abs())
     }
 
-    /// Whether `value` lies in it.
+    /// Returns whether `value` lies in it.
     #[must_use]
     pub fn contains(self, value: f64) -> bool {
         self.low <= value && value <= self.high
