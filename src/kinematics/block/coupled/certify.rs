@@ -27,9 +27,11 @@ use crate::kinematics::block::step::{BlockState, Step};
 use crate::kinematics::newton::{Rejected, STALLED};
 use crate::kinematics::system::Target;
 
-/// First trial radii, as a part of the largest move of an unknown: a motion that turns by φ
-/// deviates from its chord by φ²/8 in radians, and rarely by several times that.
-const FIRST_RADIUS: f64 = 0.1;
+/// First trial radii, as a multiple of the square of the largest move of an unknown: a motion that
+/// turns by φ deviates from its chord by φ²/8 in radians, and rarely by twenty times that.
+const FIRST_RADIUS: f64 = 2.5;
+/// Their least and largest part of that move.
+const FIRST_PART: [f64; 2] = [0.1, 0.2];
 /// Second trial radii where the first are too large, as a multiple of η.
 const SMALLER_RADIUS: f64 = 2.0;
 /// The norm of K that the next sub-step aims at.
@@ -156,7 +158,8 @@ impl CoupledBlock {
             largest = largest.max(chord.abs() / own(column));
         }
         self.move_to_chord(state, step, 0.5);
-        FIRST_RADIUS * largest + 2.0 * uncertain + f64::EPSILON
+        let [least, most] = FIRST_PART;
+        (FIRST_RADIUS * largest).clamp(least, most) * largest + 2.0 * uncertain + f64::EPSILON
     }
 
     /// Moves all unknowns of the rows to a place on the chord, from 0 to 1.
