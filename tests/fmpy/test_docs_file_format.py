@@ -149,6 +149,6 @@ def test_words(answers, choice):
 
 def test_functions():
     source = (ROOT / "src/mechanism/expression/function.rs").read_text(encoding="utf-8")
-    known = set(re.findall(r'\("(\w+)", Function::', source))
+    known = set(re.findall(r'\("(\w+)", Operation::', source))
     assert known
     assert set(documented("Functions")) == known
