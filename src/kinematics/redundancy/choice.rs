@@ -14,7 +14,7 @@ use crate::kinematics::assembly::estimate::go_to_estimate;
 use crate::kinematics::assembly::gaps::open_joints;
 use crate::kinematics::assembly::least_squares::holds;
 use crate::kinematics::error::{Error, OpenJoint};
-use crate::kinematics::linear::Echelon;
+use crate::kinematics::linear::{Echelon, Row};
 use crate::kinematics::model::{Model, RedundantRows};
 use crate::kinematics::newton::{Limits, SINGULAR};
 use crate::kinematics::path::Path;
@@ -138,7 +138,7 @@ fn choose_rows_near(model: &mut Model, state: &mut State, estimate: &[f64]) -> R
         // Far from where the rows hold together no rank means anything.
         explain_misfit(model, state).unwrap_or(error)
     })?;
-    let choice = choose_here(model, state, FIT);
+    let choice = choose_among(model, &jacobian_rows(model, state), FIT);
     let solved = model.system.equations().len() - choice.set_aside.len();
     if solved < model.system.unknowns() {
         return Err(singular_position(model, state));
@@ -202,10 +202,11 @@ fn return_to_fit_rows(model: &mut Model, state: &mut State) -> Result<(), Error>
         return Ok(());
     }
     let first = model.redundant.first.clone();
-    let set_aside = if fitness_without(model, state, &first).weakest > KEPT {
+    let rows = jacobian_rows(model, state);
+    let set_aside = if fitness_without(model, &rows, &first).weakest > KEPT {
         first
     } else {
-        let choice = choose_here(model, state, FITTER);
+        let choice = choose_among(model, &rows, FITTER);
         if choice.set_aside.len() > first.len() {
             return Err(singular_position(model, state));
         }
@@ -238,7 +239,7 @@ pub(in crate::kinematics) fn are_rows_fit(model: &Model, state: &State) -> bool 
 
 /// Returns whether the rows all together are nearly dependent at the pose.
 pub(in crate::kinematics) fn is_nearly_singular(model: &Model, state: &State) -> bool {
-    choose_here(model, state, FITTER).weakest < FIT
+    choose_among(model, &jacobian_rows(model, state), FITTER).weakest < FIT
 }
 
 /// Returns a choice of rows that are much farther from dependence here than those in use, if
@@ -249,16 +250,17 @@ fn fitter_rows(model: &Model, state: &State) -> Option<Choice> {
         return None;
     }
     let now = &model.redundant.now;
-    let here = fitness_without(model, state, now);
+    let rows = jacobian_rows(model, state);
+    let here = fitness_without(model, &rows, now);
     if here.weakest > FITTER {
         return None;
     }
-    let choice = choose_here(model, state, FITTER);
+    let choice = choose_among(model, &rows, FITTER);
     if choice.set_aside.len() != now.len() || choice.set_aside == *now {
         return None;
     }
     // At a change point all rows lose rank, but some lose more of it than others.
-    let there = fitness_without(model, state, &choice.set_aside);
+    let there = fitness_without(model, &rows, &choice.set_aside);
     (there.log_determinant > here.log_determinant + WORTH.ln()).then_some(choice)
 }
 
@@ -275,13 +277,12 @@ pub(in crate::kinematics) fn opened(model: &Model, state: &State) -> Option<Open
     open.pop().map(|(_, joint)| joint)
 }
 
-/// Chooses rows at the present places of the bodies: the drivers', then, in the order of
+/// Chooses among the rows of a Jacobian: the drivers', then, in the order of
 /// declaration, those whose remainder exceeds `fit`; if these are too few, those with a smaller
 /// remainder.
-fn choose_here(model: &Model, state: &State, mut fit: f64) -> Choice {
-    let rows = jacobian_rows(model, state);
+fn choose_among(model: &Model, rows: &[Row], mut fit: f64) -> Choice {
     let unknowns = model.system.unknowns();
-    let mut echelon = Echelon::new(unknowns, &rows);
+    let mut echelon = Echelon::new(unknowns, rows);
     let mut set_aside = drivers_first(&model.system);
     loop {
         set_aside.retain(|&row| echelon.offer(row, &rows[row], fit).is_some());
@@ -298,10 +299,9 @@ fn choose_here(model: &Model, state: &State, mut fit: f64) -> Choice {
     }
 }
 
-/// Returns how far all rows but these are from dependence at the present places of the bodies.
-fn fitness_without(model: &Model, state: &State, set_aside: &[usize]) -> Fitness {
-    let rows = jacobian_rows(model, state);
-    let mut echelon = Echelon::new(model.system.unknowns(), &rows);
+/// Returns how far the rows of a Jacobian but these are from dependence.
+fn fitness_without(model: &Model, rows: &[Row], set_aside: &[usize]) -> Fitness {
+    let mut echelon = Echelon::new(model.system.unknowns(), rows);
     for row in drivers_first(&model.system) {
         if set_aside.binary_search(&row).is_err()
             && echelon.offer(row, &rows[row], DEPENDENT).is_some()

@@ -160,17 +160,15 @@ fn enter_near_crossings(
     if near.is_empty() {
         return None;
     }
-    if drivers.is_some() && change_rows(model, state) {
-        // Blocks are others now. At one pose rows change once at the most.
-        fruitless.clear();
-        return_to_regular_pose(model, state);
-        return enter_near_crossings(model, state, drivers, fruitless);
-    }
-    if !are_rows_fit(model, state) {
-        for &block in &near {
-            fruitless.note(block, model.plan.blocks[block].regularity());
+    match drivers {
+        Some(_) if change_rows(model, state) => {
+            // Blocks are others now. At one pose rows change once at the most.
+            fruitless.clear();
+            return_to_regular_pose(model, state);
+            return enter_near_crossings(model, state, drivers, fruitless);
         }
-        return None;
+        None if !are_rows_fit(model, state) => return None,
+        _ => {}
     }
     let mut ahead = None;
     let mut work = Workspace::new(state);
