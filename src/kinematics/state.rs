@@ -284,6 +284,20 @@ impl State {
         self.factorised = false;
     }
 
+    /// Sets these redundant rows aside; if others were, the pose loses its crossings. Returns false if
+    /// they are of another mechanism; the rows set aside are then as before.
+    pub(super) fn set_aside(&mut self, model: &mut Model, rows: &[usize]) -> bool {
+        if model.redundant.now == rows {
+            return true;
+        }
+        self.release_crossings(model);
+        let fits = model.set_aside(rows);
+        if fits {
+            self.compile(model);
+        }
+        fits
+    }
+
     /// Goes to a pose that this mechanism was at. The rows in use there come back with its crossings.
     pub(super) fn restore(&mut self, model: &mut Model, pose: &Pose) {
         self.has_parameters &= self.pose.parameters == pose.parameters;
@@ -291,11 +305,9 @@ impl State {
         self.pose.copy_place(pose);
         self.targets.turns.copy_from_slice(&self.pose.turns);
         self.return_to_pose(model);
-        if let Some(crossing) = pose.crossings.first()
-            && model.redundant.now != crossing.set_aside
-        {
-            model.redundant.now.clone_from(&crossing.set_aside);
-            self.compile(model);
+        if let Some(crossing) = pose.crossings.first() {
+            let fits = self.set_aside(model, &crossing.set_aside);
+            debug_assert!(fits, "the mechanism was at the pose");
         }
         for crossing in &pose.crossings {
             self.add_crossing(model, crossing);
@@ -306,13 +318,8 @@ impl State {
     /// Goes to a pose with the choices that were in use there. Returns false if these are of
     /// another mechanism; the choices in use are then any.
     pub(super) fn resume(&mut self, model: &mut Model, pose: &Pose, carryover: &Carryover) -> bool {
-        let same_rows = model.redundant.now == carryover.set_aside;
-        if !same_rows {
-            self.release_crossings(model);
-            if !model.set_aside(&carryover.set_aside) {
-                return false;
-            }
-            self.compile(model);
+        if !self.set_aside(model, &carryover.set_aside) {
+            return false;
         }
         self.restore(model, pose);
         model.plan.take_over(&carryover.blocks)

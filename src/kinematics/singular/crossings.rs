@@ -46,12 +46,8 @@ pub(in crate::kinematics) fn admits_crossings(
     let Some(Crossing { set_aside, .. }) = pose.crossings.first().map(|first| &**first) else {
         return true;
     };
-    if model.redundant.now != *set_aside {
-        state.release_crossings(model);
-        if !model.set_aside(set_aside) {
-            return false;
-        }
-        state.compile(model);
+    if !state.set_aside(model, set_aside) {
+        return false;
     }
     let mut blocks: Vec<_> = pose.crossings.iter().map(|c| c.block).collect();
     blocks.sort_unstable();
