@@ -271,12 +271,12 @@ fn gather_in_one(
 ) -> Option<((Element, OpenJoint), Vec<f64>)> {
     let mut best: Option<(f64, (Element, OpenJoint), Vec<f64>)> = None;
     for (element, _) in spread {
+        let first = &model.system.equations()[model.system.rows_of(&[*element])[0]];
         state.move_to_pose(&model.system);
         let largest = gather(model, state, problem, *element);
         if let [joint] = &open_joints(model, state, &problem.rows, largest)[..]
             && joint.0 == *element
-            && let gap =
-                (joint.1.gap / model.system.size_of(*element, &state.at)).max(joint.1.angle)
+            && let gap = (joint.1.gap / first.size(&state.at)).max(joint.1.angle)
             && best
                 .as_ref()
                 .is_none_or(|(smallest, ..)| gap <= smallest * (1.0 + 1e-3))

@@ -3,7 +3,7 @@
 use crate::kinematics::certificate::StepBounds;
 use crate::kinematics::path::{Curve, Path, PathDrivers};
 use crate::kinematics::state::State;
-use crate::kinematics::system::System;
+use crate::kinematics::system::{Equation, System};
 use crate::mechanism::{DriverId, Interval, Jet3, ParameterId};
 
 /// Largest deviation of a prescribed motion that is not smooth, in radians and characteristic
@@ -57,7 +57,7 @@ pub(super) fn bound_drivers(
                     ends,
                     second: [drivers.here[index].second(), drivers.ahead[index].second()],
                     moves: drivers.parameters_move,
-                    unit: 1.0 / system.driver_row(driver).row_scale(&state.at),
+                    row: system.driver_row(driver),
                 };
                 motion.deviation(state, path, part, bounds)
             }
@@ -69,7 +69,7 @@ pub(super) fn bound_drivers(
 }
 
 /// A prescribed motion over a sub-step.
-struct Motion {
+struct Motion<'a> {
     driver: DriverId,
     /// Its values at both ends.
     ends: [f64; 2],
@@ -77,11 +77,11 @@ struct Motion {
     second: [f64; 2],
     /// Whether parameters move.
     moves: bool,
-    /// A radian, or the characteristic length.
-    unit: f64,
+    /// Its row, which has the unit of its values.
+    row: &'a Equation,
 }
 
-impl Motion {
+impl Motion<'_> {
     /// Bounds the deviation from the straight line between the ends.
     // Its stack of operands is no part of steps without motions.
     #[inline(never)]
@@ -126,6 +126,6 @@ impl Motion {
         let [from, to] = self.ends;
         let Interval { low, high } = range.value;
         let deviation = (high - from.min(to)).max(from.max(to) - low);
-        (deviation <= LARGEST_JUMP * self.unit).then_some(deviation)
+        (deviation * self.row.row_scale(&state.at) <= LARGEST_JUMP).then_some(deviation)
     }
 }

@@ -185,13 +185,6 @@ impl System {
         theirs.map(|(row, _)| row).collect()
     }
 
-    /// Returns the size of the part of the mechanism that an element belongs to \[m\].
-    pub(in crate::kinematics) fn size_of(&self, element: Element, at: &Configuration) -> f64 {
-        let mut equations = self.equations.iter();
-        let own = equations.find(|equation| equation.element == element);
-        own.map_or(at.size(), |equation| equation.size(at))
-    }
-
     /// Returns the unknowns and parameters in a row, each unknown once, ascending.
     pub(in crate::kinematics) fn incidence(&self, row: usize) -> Incidence {
         let mut incidence = Incidence::default();
