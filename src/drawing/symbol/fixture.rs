@@ -1,7 +1,9 @@
 //! Fixtures that hold pivots on ground.
 
+use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::composer::bits;
 use super::*;
 
 /// The fixture of a pivot on ground; it lies in the direction of the anchor's x-axis.
@@ -22,15 +24,19 @@ const BEYOND: f64 = 6.0;
 
 /// Composes one fixture per point of ground that holds a body, where the bodies leave room.
 pub(super) fn compose(composer: &mut Composer) {
-    let pivots = std::mem::take(&mut composer.pivots);
-    for (index, (at, _)) in pivots.iter().enumerate() {
-        if pivots[..index].iter().any(|(other, _)| other.is_at(at)) {
-            continue;
+    let mut index_at = HashMap::new();
+    let mut pivots: Vec<(Anchor, Vec<BodyId>)> = Vec::new();
+    for (at, body) in std::mem::take(&mut composer.pivots) {
+        let index = *index_at.entry(bits(at.position)).or_insert(pivots.len());
+        if index == pivots.len() {
+            pivots.push((at, Vec::new()));
         }
-        let held = pivots.iter().filter(|(other, _)| other.is_at(at));
+        pivots[index].1.extend(body);
+    }
+    for (at, held) in pivots {
         let leaving: Vec<f64> = held
-            .filter_map(|(_, body)| *body)
-            .flat_map(|body| directions_from(composer, *at, body))
+            .into_iter()
+            .flat_map(|body| directions_from(composer, at, body))
             .collect();
         let crowded = |fixture: f64| {
             let nearest = leaving.iter().map(|leaving| (leaving - fixture).cos());
