@@ -1,6 +1,12 @@
 //! The tracker: chooses the length of each sub-step and carries the mechanism along the path.
 
+mod length;
+mod pace;
+
 use std::sync::Arc;
+
+use length::HALF;
+use pace::{Pace, Verdict, most_substeps};
 
 use super::driver_bounds::bound_drivers;
 use super::outcome::{Blocked, Progress, Reason};
@@ -12,47 +18,16 @@ use crate::kinematics::model::Model;
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::kinematics::path::{Path, PathDrivers};
 use crate::kinematics::redundancy;
-use crate::kinematics::singular::{self, CROSSING_END, DriverLimit, FruitlessSearches, NEAR};
+use crate::kinematics::singular::{self, DriverLimit, FruitlessSearches, NEAR};
 use crate::kinematics::state::{State, UNIT_RATE};
 use crate::kinematics::system::System;
 use crate::mechanism::{DriverId, Jet};
 
-/// Most sub-steps of a path: some thousand turns.
-const MOST_SUBSTEPS: f64 = 100_000.0;
-/// The same for a mechanism of any size.
-const FEWEST_SUBSTEPS: f64 = 1_000.0;
-/// Most work of a path between these limits, in that of one row in closed form: about a second.
-const MOST_WORK: f64 = 5e7;
-/// The work of checking a cam's profile at each sub-step, while parameters move it.
-const WORK_OF_PROFILE: f64 = 5e4;
-/// A path is given up if, at the pace of this part of the most sub-steps, twice the most would be
-/// needed ahead.
-const PART_TO_JUDGE: f64 = 0.02;
-/// Fewest sub-steps that a pace is judged by.
-const ENOUGH_TO_JUDGE: u32 = 200;
 /// A motion that stops while a driver still moves by more than this per sub-step \[m or rad\] asks
 /// for too long a path.
 const LARGEST_LAST_MOVE: f64 = 1e-6;
 /// An invalid value within this part of the path ahead is reported as the cause of a stop.
 const JUST_AHEAD: f64 = 1e-9;
-/// Least ratio of a sub-step to the rejected one before it: the certificate of a much too long
-/// sub-step gives no reliable ratio.
-const LEAST_RATIO: f64 = 0.1;
-/// Ratio of a sub-step to the rejected one before it, without a ratio from the certificate.
-const HALF: f64 = 0.5;
-/// Largest ratio of a sub-step to the accepted one before it.
-const LARGEST_RATIO: f64 = 4.0;
-/// Safety factor on the length that the certificate of another sub-step suggests.
-const ROOM: f64 = 0.85;
-/// A path is blocked where a sub-step of this part of it is rejected.
-const SMALLEST_SUBSTEP: f64 = 1e-12;
-/// The same for the first sub-step, which may lead away from a dead point, from as near as the
-/// motion came to it. The motion slows down there as it has come on.
-const SMALLEST_FIRST_SUBSTEP: f64 = 1e-15;
-/// The same where the search is given up early: a pose that needs shorter ones is next to a singular
-/// position.
-const SMALLEST_WITHOUT_SEARCH: f64 = 1e-4;
-
 /// The storage for tracking paths.
 #[derive(Debug)]
 pub(in crate::kinematics) struct PathTracker {
@@ -109,7 +84,7 @@ impl PathTracker {
             is_halved: false,
             is_last_attempt: false,
             gives_up,
-            judged: (0, 0.0),
+            pace: Pace::default(),
             searched: 0.0,
             progress: Progress::default(),
         };
@@ -147,19 +122,10 @@ struct Run<'a> {
     is_last_attempt: bool,
     /// Whether it stops in front of singular positions without looking for them.
     gives_up: bool,
-    /// The number of sub-steps at which their pace was judged last, and the place on the path.
-    judged: (u32, f64),
+    pace: Pace,
     /// The regularity at which no fitter rows were found last; zero at first.
     searched: f64,
     progress: Progress,
-}
-
-/// The end of a sub-step.
-#[derive(Clone, Copy)]
-struct Goal {
-    s: f64,
-    /// Whether the path alone, not the length of the sub-step, decides it.
-    cut_short: bool,
 }
 
 /// The cause of a rejected sub-step.
@@ -198,16 +164,6 @@ impl Run<'_> {
             }
         }
         Ok(())
-    }
-
-    /// Returns the smallest length of the next sub-step.
-    #[inline]
-    fn smallest(&self) -> f64 {
-        if self.gives_up {
-            SMALLEST_WITHOUT_SEARCH
-        } else {
-            (0.01 * self.s).clamp(SMALLEST_FIRST_SUBSTEP, SMALLEST_SUBSTEP)
-        }
     }
 
     /// Makes sure that the mechanism is at the start of the path.
@@ -306,20 +262,20 @@ impl Run<'_> {
 
     /// Returns whether the path takes too many sub-steps, or would at the pace of the last ones.
     fn is_too_long(&mut self) -> bool {
-        let substeps = self.progress.substeps;
-        let (judged, from) = self.judged;
-        if substeps - judged < ENOUGH_TO_JUDGE {
-            return false;
+        let most = || {
+            let moving = self.drivers.parameters_move;
+            let profiles = if moving {
+                self.state.at.profiles().len()
+            } else {
+                0
+            };
+            most_substeps(self.model.plan.work(), profiles)
+        };
+        match self.pace.judge(self.progress.substeps, self.s, most) {
+            Verdict::Fair => false,
+            Verdict::Slow => !self.nears_end(),
+            Verdict::Exhausted => true,
         }
-        let most = self.most_substeps();
-        let since = f64::from(substeps - judged);
-        if since < PART_TO_JUDGE * most {
-            return false;
-        }
-        self.judged = (substeps, self.s);
-        let pace = (self.s - from) / since;
-        let is_slow = pace * 2.0 * most < 1.0 - self.s;
-        f64::from(substeps) >= most || is_slow && !self.nears_end()
     }
 
     /// Returns whether a singular position lies ahead on the path: the motion slows down in front of
@@ -331,15 +287,6 @@ impl Run<'_> {
         may_end
             && singular::find_end(self.model, self.state, self.path, self.s)
                 .is_some_and(|end| self.s < end.s && end.s <= 1.0)
-    }
-
-    /// Returns the most sub-steps of a path: fewer for a mechanism that takes more work.
-    fn most_substeps(&self) -> f64 {
-        let mut work = self.model.plan.work();
-        if self.drivers.parameters_move {
-            work += WORK_OF_PROFILE * self.state.at.profiles().len() as f64;
-        }
-        (MOST_WORK / work).clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS)
     }
 
     /// Takes one sub-step: predicts, corrects and certifies its end, then accepts it or tries a
@@ -483,78 +430,6 @@ impl Run<'_> {
         self.model.system.check_drivers(&self.drivers.values)
     }
 
-    /// Returns the end of the next sub-step, no further than `most`.
-    fn goal(&mut self, most: f64) -> Goal {
-        let start = self.s;
-        let mut goal = if start + self.length < most {
-            Goal {
-                s: start + self.length,
-                cut_short: false,
-            }
-        } else {
-            Goal {
-                s: most,
-                cut_short: true,
-            }
-        };
-        if let Some(limit) = self.limit {
-            let end = self.end_within(limit.driver, limit.way, goal.s);
-            goal.cut_short &= end >= goal.s;
-            goal.s = end;
-        }
-        if !self.state.pose.crossings.is_empty() {
-            let end = self.end_within_crossings(goal.s);
-            goal.cut_short |= end < goal.s;
-            goal.s = end;
-        }
-        goal
-    }
-
-    /// Returns an end of the sub-step, no further than `end`, up to which a driver moves by `most`
-    /// or less.
-    fn end_within(&self, driver: DriverId, most: f64, mut end: f64) -> f64 {
-        let from = self.drivers.here[driver.index()];
-        let way = |h: f64| h * (from.first().abs() + 0.5 * h * from.second().abs());
-        while way(end - self.s) > most {
-            end = self.s + 0.5 * (end - self.s);
-        }
-        end
-    }
-
-    /// Returns the place where a sub-step to `end` first leaves a crossing; `end` if it leaves
-    /// none.
-    fn end_within_crossings(&mut self, mut end: f64) -> f64 {
-        for index in 0..self.state.pose.crossings.len() {
-            let crossing = Arc::clone(&self.state.pose.crossings[index]);
-            let driver = crossing.driver.index();
-            // No further than from one end of the crossing to the other.
-            end = self.end_within(crossing.driver, 2.0 * crossing.half_width, end);
-            let (mut inside, mut outside) = (self.s, end);
-            let mut place = |s: f64| {
-                self.evaluate_drivers(s);
-                crossing.place(self.drivers.ahead[driver].value).abs()
-            };
-            if place(end) <= 1.0 {
-                continue;
-            }
-            // Bisection ends at the end of the crossing.
-            for _ in 0..100 {
-                let middle = 0.5 * (inside + outside);
-                let there = place(middle);
-                if there <= 1.0 {
-                    inside = middle;
-                } else {
-                    outside = middle;
-                }
-                if (1.0 - 0.5 * CROSSING_END..=1.0).contains(&there) {
-                    break;
-                }
-            }
-            end = inside;
-        }
-        end
-    }
-
     /// Notes the change points between the start of the sub-step and the pose.
     fn note_crossings(&mut self) {
         for crossing in &self.state.pose.crossings {
@@ -633,25 +508,6 @@ impl Run<'_> {
         } else {
             Reason::Lost
         }
-    }
-
-    /// Returns the ratio of the next sub-step to the rejected one, if the certificate gives one.
-    fn ratio_to_rejected(&self) -> Option<f64> {
-        let ratio = self.bounds.step_ratio();
-        let is_known = ratio.is_finite() && ratio > 1.0;
-        is_known.then(|| (ROOM / ratio.sqrt()).max(LEAST_RATIO))
-    }
-
-    /// Returns the length to try after a sub-step of length `h` was accepted. After a rejection
-    /// without a ratio it is no longer than `h`: the certificate of the accepted sub-step says
-    /// nothing of the obstacle behind its end.
-    fn lengthened(&mut self, h: f64) -> f64 {
-        let largest = if std::mem::take(&mut self.is_halved) {
-            1.0
-        } else {
-            LARGEST_RATIO
-        };
-        h * (ROOM / self.bounds.step_ratio().sqrt()).min(largest)
     }
 }
 

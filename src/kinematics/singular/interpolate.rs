@@ -34,7 +34,7 @@ pub(super) fn crossing_of(
     };
     let velocity = &point.tangents[1] + slope * &point.tangents[0];
     let speed = equation.scaled_speed(&velocity);
-    if (equation.start - point.tau).abs() * speed >= REACH {
+    if (equation.start() - point.tau).abs() * speed >= REACH {
         return None;
     }
     let free = &point.tangents[0] / point.tangents[0].amax();

@@ -66,7 +66,7 @@ pub(super) enum Finding {
 /// Looks for a singular position within the distance `reach` of the point at the start, scaled by
 /// the speed of the motion there.
 pub(super) fn find(equation: &mut ReducedEquation<'_>, start: ReducedPoint, reach: f64) -> Finding {
-    let rounding = if equation.reads_crossings {
+    let rounding = if equation.reads_crossings() {
         INTERPOLATED
     } else {
         ROUNDING * equation.extent()
@@ -147,7 +147,7 @@ fn newton(
         // Not a number is not within reach either.
         let within = length <= reach
             && (point.alpha + by_alpha).abs() <= 2.0 * reach
-            && (point.tau + by_tau - equation.start).abs() * speed <= 2.0 * reach;
+            && (point.tau + by_tau - equation.start()).abs() * speed <= 2.0 * reach;
         if !within {
             return None;
         }
@@ -232,7 +232,7 @@ fn crossing(equation: &ReducedEquation<'_>, point: ReducedPoint) -> Finding {
     // a α′² + 2 b α′ + c = 0, without cancellation; a = 0 leaves one of them infinite.
     let slopes = [sum / a, c / sum];
     // The pose, at α = 0, lies on one of them.
-    let off = [-point.alpha, (equation.start - point.tau) * speed];
+    let off = [-point.alpha, (equation.start() - point.tau) * speed];
     let away = |slope: f64| {
         let along = if slope.is_finite() {
             [slope, 1.0]

@@ -14,6 +14,7 @@
 //! | file | subject |
 //! |---|---|
 //! | [`near`] | blocks near a singular position |
+//! | [`upstream`] | the blocks that a block reads, moved along a line |
 //! | [`reduced`] | the reduced equation of a block |
 //! | [`locate`] | the singular position near a pose, and its kind |
 //! | [`interpolate`] | the motion through a change point |
@@ -28,6 +29,7 @@ mod locate;
 mod near;
 mod obstacle;
 mod reduced;
+mod upstream;
 
 pub use approach::Approach;
 pub use locate::SingularKind;

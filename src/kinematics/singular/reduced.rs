@@ -13,43 +13,14 @@
 //!
 //! ε_αα = −ψᵀF″\[V₁, V₁\], ε_ατ = −ψᵀF″\[V₁, V₂\], ε_ττ = −ψᵀ(F″\[V₂, V₂\] + F_p p″).
 
-use std::collections::BTreeSet;
-
 use nalgebra::DVector;
 
-use crate::kinematics::block::{BlockPlan, BlockSolver, BlockState};
-use crate::kinematics::configuration::Configuration;
+use super::upstream::{Line, Upstream, Workspace};
+use crate::kinematics::block::{BlockPlan, BlockSolver};
 use crate::kinematics::linear::{DenseLu, Factors, nan_or_larger};
 use crate::kinematics::model::Model;
-use crate::kinematics::newton::Limits;
-use crate::kinematics::path::{Motions, Path, Rates};
 use crate::kinematics::state::State;
-use crate::kinematics::system::{System, Targets, Values};
-use crate::mechanism::{DriverId, Jet};
-
-/// The line along which the drivers run.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Line<'a> {
-    /// The values of one driver, all others being held; τ is its value.
-    Driver(DriverId),
-    /// A path on which no parameter moves; τ is s.
-    Path(&'a Path),
-}
-
-impl Line<'_> {
-    /// Writes the drivers at τ with their derivatives in it; `held` are their present values.
-    fn drivers(self, tau: f64, held: &[f64], motions: &Motions, out: &mut [Jet]) {
-        match self {
-            Self::Path(path) => path.drivers(tau, motions, out),
-            Self::Driver(driver) => {
-                for (out, value) in out.iter_mut().zip(held) {
-                    *out = Jet::constant(*value);
-                }
-                out[driver.index()] = Jet::variable(tau);
-            }
-        }
-    }
-}
+use crate::mechanism::Jet;
 
 /// Most Newton corrections of a block from a near place.
 const MAX_CORRECTIONS: usize = 20;
@@ -57,68 +28,12 @@ const MAX_CORRECTIONS: usize = 20;
 /// neighbourhood.
 const LARGEST_STEP: f64 = 0.5;
 
-/// Vectors over all unknowns that the reduced equations of several blocks take in turn. Only the
-/// entries of the unknowns of a block and of those that it reads are set for its equation.
-pub(super) struct Workspace {
-    at: Configuration,
-    /// Rates along the line of the unknowns of the blocks moved: at the last place and at the start.
-    tangent: Rates,
-    origin_tangent: Rates,
-    /// Rates of one combination of motions.
-    combined: Vec<f64>,
-    /// Index of each unknown in its block.
-    place_of: Vec<Option<usize>>,
-}
-
-impl Workspace {
-    pub(super) fn new(state: &State) -> Self {
-        let unknowns = state.pose.q.len();
-        Self {
-            at: state.at.clone(),
-            tangent: Rates::new(unknowns),
-            origin_tangent: Rates::new(unknowns),
-            combined: vec![0.0; unknowns],
-            place_of: vec![None; unknowns],
-        }
-    }
-
-    /// Returns the mechanism at the last place as block solvers see it.
-    fn block_state<'b>(
-        &'b mut self,
-        system: &'b System,
-        targets: &'b Targets,
-        drivers: &'b [f64],
-    ) -> BlockState<'b> {
-        BlockState {
-            system,
-            targets,
-            drivers,
-            at: &mut self.at,
-            tangent: &mut self.tangent,
-        }
-    }
-}
-
 /// The reduced equation of a block.
 pub(super) struct ReducedEquation<'a> {
-    system: &'a System,
+    upstream: Upstream<'a>,
+    own: &'a mut BlockSolver,
     /// The redundant rows set aside.
     pub(super) set_aside: &'a [usize],
-    targets: &'a Targets,
-    motions: &'a Motions,
-    line: Line<'a>,
-    /// The block's index in the plan, the block itself, those before it, and the blocks that each
-    /// block reads.
-    block: usize,
-    own: &'a mut BlockSolver,
-    before: &'a mut [BlockSolver],
-    reads: &'a [Vec<usize>],
-    /// The blocks before it that it reads, directly or through others, ascending; and those of them
-    /// that were moved to the last place.
-    read_blocks: Vec<usize>,
-    moved: Vec<usize>,
-    /// Whether one of them comes from a crossing.
-    pub(super) reads_crossings: bool,
     rows: Vec<usize>,
     row_scales: Vec<f64>,
     /// The unknowns that the rows read, of the blocks before it.
@@ -126,13 +41,6 @@ pub(super) struct ReducedEquation<'a> {
     columns: Vec<usize>,
     /// Scale factor of each unknown \[m or rad\].
     pub(super) scales: Vec<f64>,
-    work: &'a mut Workspace,
-    held: &'a [f64],
-    jets: Vec<Jet>,
-    drivers: Vec<f64>,
-    /// The start: τ and the pose there.
-    pub(super) start: f64,
-    origin: &'a [f64],
     /// The bordering vectors, scaled.
     b: DVector<f64>,
     c: DVector<f64>,
@@ -182,12 +90,6 @@ impl<'a> ReducedEquation<'a> {
         start: f64,
         work: &'a mut Workspace,
     ) -> Option<(Self, ReducedPoint)> {
-        let State {
-            pose,
-            targets,
-            motions,
-            ..
-        } = state;
         let Model {
             system,
             plan,
@@ -197,18 +99,22 @@ impl<'a> ReducedEquation<'a> {
         let system = &*system;
         let BlockPlan { blocks, reads, .. } = plan;
         let (own, before) = blocks[..=block].split_last_mut()?;
+        let q = &state.pose.q;
         let columns = own.columns().to_vec();
         let read = reads[block].iter();
         let read_columns = read.flat_map(|&read| before[read].columns()).copied();
+        let read_columns = read_columns.collect();
         work.place_of.fill(None);
         for (place, &column) in columns.iter().enumerate() {
             work.place_of[column] = Some(place);
-            work.at.set_coordinate(column, pose.q[column]);
+            work.at.set_coordinate(column, q[column]);
         }
-        let read_blocks = read_through(block, reads, |_| false);
-        let mut read = read_blocks.iter().map(|&block| &before[block]);
-        let reads_crossings = read.any(|block| matches!(block, BlockSolver::InterpolatedBlock(_)));
+        let rows = own.rows().to_vec();
+        let row_scale = |&row: &usize| system.equations()[row].row_scale(&work.at);
+        let row_scales = rows.iter().map(row_scale).collect();
         let size = work.at.size();
+        let scale = |&column: &usize| system.column_scale(column, size);
+        let scales = columns.iter().map(scale).collect();
         let order = columns.len();
         let at_start = ReducedPoint {
             alpha: 0.0,
@@ -217,40 +123,19 @@ impl<'a> ReducedEquation<'a> {
             first: [0.0; 2],
             second: [0.0; 3],
             tangents: [DVector::zeros(order), DVector::zeros(order)],
-            z: columns.iter().map(|&column| pose.q[column]).collect(),
+            z: columns.iter().map(|&column| q[column]).collect(),
             pivot_ratio: 0.0,
         };
+        let blocks = (block, before, &reads[..]);
         let mut reduced = Self {
-            system,
-            set_aside: &redundant.now,
-            targets,
-            motions,
-            line,
-            block,
-            read_columns: read_columns.collect(),
-            rows: own.rows().to_vec(),
-            row_scales: own
-                .rows()
-                .iter()
-                .map(|&row| system.equations()[row].row_scale(&work.at))
-                .collect(),
-            scales: columns
-                .iter()
-                .map(|&column| system.column_scale(column, size))
-                .collect(),
-            columns,
+            upstream: Upstream::new(blocks, system, state, (line, start), work),
             own,
-            before,
-            reads,
-            moved: read_blocks.clone(),
-            read_blocks,
-            reads_crossings,
-            work,
-            held: &pose.drivers,
-            jets: vec![Jet::constant(0.0); pose.drivers.len()],
-            drivers: pose.drivers.clone(),
-            start,
-            origin: &pose.q,
+            set_aside: &redundant.now,
+            rows,
+            row_scales,
+            read_columns,
+            columns,
+            scales,
             b: DVector::zeros(order),
             c: DVector::zeros(order),
             residual: vec![0.0; order],
@@ -260,40 +145,35 @@ impl<'a> ReducedEquation<'a> {
             psi: vec![0.0; order + 1],
             speed: 0.0,
         };
-        reduced.move_all_before(start)?;
-        reduced.keep_tangent();
+        reduced.upstream.move_all_to(start)?;
+        reduced.upstream.keep_tangent();
         reduced.border()?;
         let at_start = reduced.correct(at_start)?;
         reduced.speed = reduced.scaled_speed(&at_start.tangents[1]);
         (reduced.speed > 0.0 && reduced.speed.is_finite()).then_some((reduced, at_start))
     }
 
-    /// Returns the largest scaled rate of the unknowns of the blocks moved and of these of its own.
-    pub(super) fn scaled_speed(&self, own: &DVector<f64>) -> f64 {
-        let size = self.work.at.size();
-        let moved = self.moved.iter();
-        let read = moved.flat_map(|&block| self.before[block].columns());
-        let read = read.map(|&column| {
-            (self.work.tangent.velocity()[column] / self.system.column_scale(column, size)).abs()
-        });
-        let rows = self.rows.iter().zip(&self.row_scales);
-        let driven = rows.map(|(&row, scale)| (self.driver(row).first() * scale).abs());
-        read.chain(driven).fold(own.amax(), f64::max)
+    /// Returns τ at the start.
+    pub(super) fn start(&self) -> f64 {
+        self.upstream.start
     }
 
-    /// Keeps the rates of all blocks moved, at the start.
-    fn keep_tangent(&mut self) {
-        let Workspace {
-            tangent,
-            origin_tangent,
-            ..
-        } = &mut *self.work;
-        let (velocity, acceleration) = origin_tangent.both_mut();
-        let moved = self.moved.iter();
-        for &column in moved.flat_map(|&block| self.before[block].columns()) {
-            velocity[column] = tangent.velocity()[column];
-            acceleration[column] = tangent.acceleration()[column];
-        }
+    /// Returns whether the block reads one that comes from a crossing.
+    pub(super) fn reads_crossings(&self) -> bool {
+        self.upstream.has_crossings
+    }
+
+    /// Returns the largest scaled rate of the unknowns of the blocks moved and of these of its own.
+    pub(super) fn scaled_speed(&self, own: &DVector<f64>) -> f64 {
+        let Upstream { system, work, .. } = &self.upstream;
+        let size = work.at.size();
+        let velocity = work.tangent.velocity();
+        let read = self.upstream.moved_columns();
+        let read = read.map(|column| (velocity[column] / system.column_scale(column, size)).abs());
+        let rows = self.rows.iter().zip(&self.row_scales);
+        let driver = |row: usize| self.upstream.driver(row).first();
+        let driven = rows.map(|(&row, scale)| (driver(row) * scale).abs());
+        read.chain(driven).fold(own.amax(), f64::max)
     }
 
     /// Takes for b and c the singular vectors of the Jacobian at the start, by two steps of
@@ -330,70 +210,17 @@ impl<'a> ReducedEquation<'a> {
         Some(())
     }
 
-    /// Moves the blocks that it reads to τ. One on a crossing depends on its driver alone: what it
-    /// reads itself stays where it is.
-    fn move_before(&mut self, tau: f64) -> Option<()> {
-        self.move_drivers(tau);
-        if self.reads_crossings {
-            self.moved = read_through(self.block, self.reads, |block| match &self.before[block] {
-                BlockSolver::InterpolatedBlock(block) => block.is_within(&self.drivers),
-                _ => false,
-            });
-        }
-        self.move_blocks(tau)
-    }
-
-    /// Moves all blocks to τ that it reads, directly or through others.
-    fn move_all_before(&mut self, tau: f64) -> Option<()> {
-        self.move_drivers(tau);
-        self.moved.clone_from(&self.read_blocks);
-        self.move_blocks(tau)
-    }
-
-    fn move_drivers(&mut self, tau: f64) {
-        self.line
-            .drivers(tau, self.held, self.motions, &mut self.jets);
-        for (value, jet) in self.drivers.iter_mut().zip(&self.jets) {
-            *value = jet.value;
-        }
-    }
-
-    /// Moves blocks to τ, where the drivers are: along tangent and curvature from the start, then by
-    /// Newton–Raphson. A block on a crossing follows it, and goes on beyond its end.
-    fn move_blocks(&mut self, tau: f64) -> Option<()> {
-        let off = tau - self.start;
-        let Workspace {
-            at, origin_tangent, ..
-        } = &mut *self.work;
-        let (velocity, acceleration) = (origin_tangent.velocity(), origin_tangent.acceleration());
-        for &block in &self.moved {
-            for &column in self.before[block].columns() {
-                let ahead = off * (velocity[column] + 0.5 * off * acceleration[column]);
-                at.set_coordinate(column, self.origin[column] + ahead);
-            }
-        }
-        let mut state = (self.work).block_state(self.system, self.targets, &self.drivers);
-        for &block in &self.moved {
-            let block = match &mut self.before[block] {
-                BlockSolver::InterpolatedBlock(on) if on.start_beyond(&mut state) => &mut on.block,
-                block => block,
-            };
-            close(block, &mut state, Limits::STEP, &self.jets)?;
-        }
-        Some(())
-    }
-
     /// Follows the motion of the block from a place to τ, by its own solver.
     pub(super) fn follow(&mut self, from: &Place, tau: f64) -> Option<Place> {
-        self.move_before(tau)?;
+        self.upstream.move_to(tau)?;
         let off = tau - from.tau;
         for (&column, z) in self.columns.iter().zip(&from.unknowns) {
             let ahead = off * (z.first() + 0.5 * off * z.second());
-            self.work.at.set_coordinate(column, z.value + ahead);
+            let at = &mut self.upstream.work.at;
+            at.set_coordinate(column, z.value + ahead);
         }
-        let mut state = (self.work).block_state(self.system, self.targets, &self.drivers);
-        close(self.own, &mut state, Limits::TO_THE_LAST_BIT, &self.jets)?;
-        let BlockState { at, tangent, .. } = state;
+        self.upstream.close(self.own)?;
+        let Workspace { at, tangent, .. } = &*self.upstream.work;
         let unknowns = self.columns.iter().map(|&column| {
             let rates = [tangent.velocity()[column], tangent.acceleration()[column]];
             Jet::new(at.coordinate(column), rates)
@@ -404,27 +231,17 @@ impl<'a> ReducedEquation<'a> {
         })
     }
 
-    fn driver(&self, row: usize) -> Jet {
-        self.system.equations()[row].target_rates(&self.jets)
-    }
-
     /// Evaluates F, F_p p′ and F_p p″ where the bodies are, and J, whose border stays empty.
     fn evaluate(&mut self) {
+        let upstream = &self.upstream;
         let Workspace {
-            at,
-            tangent,
-            place_of,
-            ..
-        } = &*self.work;
-        let values = Values {
-            at,
-            targets: self.targets,
-            drivers: &self.drivers,
-        };
+            tangent, place_of, ..
+        } = &*upstream.work;
+        let values = upstream.values();
         let (velocity, acceleration) = (tangent.velocity(), tangent.acceleration());
         self.bordered.clear();
         for (local, (&row, &row_scale)) in self.rows.iter().zip(&self.row_scales).enumerate() {
-            let driver = self.driver(row);
+            let driver = upstream.driver(row);
             let mut first = -driver.first() * row_scale;
             let mut second = -driver.second() * row_scale;
             let entry = |column: usize, value: f64| {
@@ -435,7 +252,8 @@ impl<'a> ReducedEquation<'a> {
                     second += value * acceleration[column];
                 }
             };
-            let found = (self.system).evaluate_scaled_row(row, row_scale, values, entry);
+            let system = upstream.system;
+            let found = system.evaluate_scaled_row(row, row_scale, values, entry);
             self.residual[local] = found.value;
             self.read_rates[0][local] = first;
             self.read_rates[1][local] = second;
@@ -444,12 +262,13 @@ impl<'a> ReducedEquation<'a> {
 
     /// Returns ψᵀF″\[V, V\] for V = x V₁ + y V₂, ψ being the one solved last.
     fn bend(&mut self, [along_alpha, along_tau]: &[DVector<f64>; 2], [x, y]: [f64; 2]) -> f64 {
+        let Upstream { system, work, .. } = &mut self.upstream;
         let Workspace {
             at,
             tangent,
             combined: rates,
             ..
-        } = &mut *self.work;
+        } = &mut **work;
         for &column in &self.read_columns {
             rates[column] = y * tangent.velocity()[column];
         }
@@ -458,7 +277,7 @@ impl<'a> ReducedEquation<'a> {
         }
         let rows = self.rows.iter().zip(&self.row_scales).zip(&self.psi);
         let terms = rows.map(|((&row, scale), psi)| {
-            let constraint = &self.system.equations()[row].constraint;
+            let constraint = &system.equations()[row].constraint;
             psi * (scale * constraint.quadratic(at, rates))
         });
         terms.sum()
@@ -468,7 +287,7 @@ impl<'a> ReducedEquation<'a> {
     /// derivatives of ε there, too.
     pub(super) fn solve(&mut self, from: ReducedPoint, by: [f64; 2]) -> Option<ReducedPoint> {
         let point = self.extrapolate(from, by);
-        self.move_before(point.tau)?;
+        self.upstream.move_to(point.tau)?;
         self.correct(point)
     }
 
@@ -495,7 +314,7 @@ impl<'a> ReducedEquation<'a> {
         let mut last = f64::INFINITY;
         for _ in 0..MAX_CORRECTIONS {
             for (&column, z) in self.columns.iter().zip(&point.z) {
-                self.work.at.set_coordinate(column, *z);
+                self.upstream.work.at.set_coordinate(column, *z);
             }
             self.evaluate();
             for (k, (b, c)) in self.b.iter().zip(self.c.iter()).enumerate() {
@@ -565,7 +384,8 @@ impl<'a> ReducedEquation<'a> {
     /// Returns α of unknowns of the block: c · (z − z⁰).
     fn alpha(&self, z: impl Iterator<Item = f64>) -> f64 {
         let unknowns = self.columns.iter().zip(&self.scales).zip(z);
-        let moved = unknowns.map(|((&column, scale), z)| (z - self.origin[column]) / scale);
+        let moved =
+            unknowns.map(|((&column, scale), z)| (z - self.upstream.origin[column]) / scale);
         moved.zip(self.c.iter()).map(|(moved, c)| moved * c).sum()
     }
 
@@ -581,35 +401,31 @@ impl<'a> ReducedEquation<'a> {
 
     /// Returns the singular values of the Jacobian at the last place, descending.
     pub(super) fn singular_values(&self) -> DVector<f64> {
-        let values = Values {
-            at: &self.work.at,
-            targets: self.targets,
-            drivers: &self.drivers,
-        };
-        let place = |column: usize| self.work.place_of[column];
-        let order = self.columns.len();
-        let (_, jacobian) = self.system.dense_rows(&self.rows, order, place, values);
+        let Upstream { system, work, .. } = &self.upstream;
+        let place = |column: usize| work.place_of[column];
+        let (order, values) = (self.columns.len(), self.upstream.values());
+        let (_, jacobian) = system.dense_rows(&self.rows, order, place, values);
         jacobian.singular_values()
     }
 
     /// Returns the largest distance of the block's bodies from the origin, scaled, at least one:
     /// rounding is some eps of it.
     pub(super) fn extent(&self) -> f64 {
+        let Upstream { system, work, .. } = &self.upstream;
         let origin = self.columns.iter().zip(&self.scales);
         origin
-            .filter(|(column, _)| !self.system.is_angle(**column))
-            .map(|(&column, scale)| (self.work.at.coordinate(column) / scale).abs())
+            .filter(|(column, _)| !system.is_angle(**column))
+            .map(|(&column, scale)| (work.at.coordinate(column) / scale).abs())
             .fold(1.0, f64::max)
     }
 
     /// Returns q at a point; unknowns that the block does not read are those of the start.
     pub(super) fn pose(&mut self, point: &ReducedPoint) -> Vec<f64> {
         // A block before it may be singular at this place.
-        let _ = self.move_all_before(point.tau);
-        let mut q = self.origin.to_vec();
-        let moved = self.moved.iter();
-        for &column in moved.flat_map(|&block| self.before[block].columns()) {
-            q[column] = self.work.at.coordinate(column);
+        let _ = self.upstream.move_all_to(point.tau);
+        let mut q = self.upstream.origin.to_vec();
+        for column in self.upstream.moved_columns() {
+            q[column] = self.upstream.work.at.coordinate(column);
         }
         for (&column, z) in self.columns.iter().zip(&point.z) {
             q[column] = *z;
@@ -619,35 +435,6 @@ impl<'a> ReducedEquation<'a> {
 
     /// Returns the drivers' values at the last place.
     pub(super) fn drivers(&self) -> &[f64] {
-        &self.drivers
+        &self.upstream.drivers
     }
-}
-
-/// Returns the blocks that a block reads, directly or through others, ascending, but not through
-/// those at which the search `stops`.
-fn read_through(block: usize, reads: &[Vec<usize>], stops: impl Fn(usize) -> bool) -> Vec<usize> {
-    let mut found = BTreeSet::new();
-    let mut open = reads[block].clone();
-    while let Some(block) = open.pop() {
-        if found.insert(block) && !stops(block) {
-            open.extend(&reads[block]);
-        }
-    }
-    found.into_iter().collect()
-}
-
-/// Solves a block and its rates by its own solver from where its bodies are.
-fn close(
-    block: &mut BlockSolver,
-    state: &mut BlockState<'_>,
-    limits: Limits,
-    drivers: &[Jet],
-) -> Option<()> {
-    block.close(state, limits).ok()?;
-    block.factorise(state).ok()?;
-    block.solve_rates(state, drivers);
-    let [velocity, acceleration] = [state.tangent.velocity(), state.tangent.acceleration()];
-    let mut columns = block.columns().iter();
-    let finite = columns.all(|&column| (velocity[column] + acceleration[column]).is_finite());
-    finite.then_some(())
 }
