@@ -58,6 +58,22 @@ impl Workspace {
             place_of: vec![None; unknowns],
         }
     }
+
+    /// Returns the mechanism at the last place as block solvers see it.
+    fn block_state<'b>(
+        &'b mut self,
+        system: &'b System,
+        targets: &'b Targets,
+        drivers: &'b [f64],
+    ) -> BlockState<'b> {
+        BlockState {
+            system,
+            targets,
+            drivers,
+            at: &mut self.at,
+            tangent: &mut self.tangent,
+        }
+    }
 }
 
 /// The blocks that one block reads, at one place of a line.
@@ -193,10 +209,7 @@ impl<'a> Upstream<'a> {
     fn move_blocks(&mut self, tau: f64) -> Option<()> {
         let off = tau - self.start;
         let Workspace {
-            at,
-            tangent,
-            origin_tangent,
-            ..
+            at, origin_tangent, ..
         } = &mut *self.work;
         let (velocity, acceleration) = (origin_tangent.velocity(), origin_tangent.acceleration());
         for &block in &self.moved {
@@ -205,13 +218,7 @@ impl<'a> Upstream<'a> {
                 at.set_coordinate(column, self.origin[column] + ahead);
             }
         }
-        let mut state = BlockState {
-            system: self.system,
-            targets: self.targets,
-            drivers: &self.drivers,
-            at,
-            tangent,
-        };
+        let mut state = (self.work).block_state(self.system, self.targets, &self.drivers);
         for &block in &self.moved {
             let block = match &mut self.before[block] {
                 BlockSolver::InterpolatedBlock(on) if on.start_beyond(&mut state) => &mut on.block,
@@ -225,14 +232,7 @@ impl<'a> Upstream<'a> {
     /// Solves the block that reads these and its rates by its own solver, from where its bodies
     /// are, to the last bit.
     pub(super) fn close(&mut self, own: &mut BlockSolver) -> Option<()> {
-        let Workspace { at, tangent, .. } = &mut *self.work;
-        let mut state = BlockState {
-            system: self.system,
-            targets: self.targets,
-            drivers: &self.drivers,
-            at,
-            tangent,
-        };
+        let mut state = (self.work).block_state(self.system, self.targets, &self.drivers);
         close(own, &mut state, Limits::TO_THE_LAST_BIT, &self.jets)
     }
 }
