@@ -87,3 +87,19 @@ fn generated_mechanisms_move_alike_in_any_steps_and_however_they_are_written() {
     // Not all of them close.
     assert!(agree as usize > 4 * fuzz::attack::KINDS.len(), "{agree}");
 }
+
+/// Lifts of twenty cells that fold at their change points: written in the reverse order, one cell
+/// found its change point where those before it were singular, too; a thousand sizes from the
+/// origin, a change point was refused for the rounding that is usual there.
+#[test]
+fn lifts_fold_in_any_order_and_far_from_the_origin() {
+    let names = || fuzz::attack::KINDS.iter().map(|(name, _)| *name);
+    let lift = names().position(|name| name == "scissor_lift");
+    let lift = lift.expect("it is a kind");
+    for seed in [304, 20099] {
+        let counts = fuzz::attack::run((lift, false), seed, 1, |seed, words| {
+            panic!("seed {seed}: {words}");
+        });
+        assert_eq!(counts.agree, 1, "seed {seed}");
+    }
+}

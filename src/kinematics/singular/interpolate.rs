@@ -1,6 +1,6 @@
 //! The motion through a change point, interpolated between its two sides.
 
-use super::locate::{Finding, ROUNDING};
+use super::locate::Finding;
 use super::reduced::{Place, ReducedEquation};
 use crate::kinematics::block::{Crossing, INNER, Polynomial, divided_differences};
 use crate::kinematics::linear::nan_or_larger;
@@ -16,7 +16,7 @@ const LEAST_REACH: f64 = 0.004;
 const BETWEEN: f64 = 0.85;
 /// Error of an acceleration, for velocities of one, with which no shorter crossing is tried.
 const GOOD: f64 = 4e-12;
-/// Largest error of an acceleration; far from the origin there is more rounding.
+/// Largest error of an acceleration, near the origin; farther away there is as much more rounding.
 const INTERPOLATED: f64 = 1e-6;
 /// Largest error of a prediction, as part of the distance between both motions.
 const OFF: f64 = 0.25;
@@ -67,8 +67,8 @@ pub(super) fn crossing_of(
                 free: free.iter().copied().collect(),
             };
             let error = error_between(&crossing, equation, &between, speed);
-            let rounding = error_of_shape(ROUNDING * equation.extent(), reach);
-            let least = best.as_ref().map_or(INTERPOLATED + rounding, |best| best.0);
+            let most = INTERPOLATED * equation.extent();
+            let least = best.as_ref().map_or(most, |best| best.0);
             if error <= least {
                 best = Some((error, crossing));
             }

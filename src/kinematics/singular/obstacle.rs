@@ -186,7 +186,11 @@ fn enter_near_crossings(
         let Some((mut equation, start)) = equation else {
             continue;
         };
-        let finding = find(&mut equation, start, REACH);
+        let finding = match find(&mut equation, start, REACH) {
+            // The place found is the singular position of that block.
+            _ if equation.reads_singular() => Finding::Nothing,
+            finding => finding,
+        };
         if !matches!(finding, Finding::Nothing) {
             fruitless.note(block, 0.0);
         }

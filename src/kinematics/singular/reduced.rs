@@ -163,6 +163,11 @@ impl<'a> ReducedEquation<'a> {
         self.upstream.has_crossings
     }
 
+    /// Returns whether a block that it reads is singular at the last place, and not on a crossing.
+    pub(super) fn reads_singular(&self) -> bool {
+        self.upstream.is_singular()
+    }
+
     /// Returns the largest scaled rate of the unknowns of the blocks moved and of these of its own.
     pub(super) fn scaled_speed(&self, own: &DVector<f64>) -> f64 {
         let Upstream { system, work, .. } = &self.upstream;

@@ -76,6 +76,9 @@ impl Workspace {
     }
 }
 
+/// A block of less regularity is singular.
+const SINGULAR: f64 = 1e-6;
+
 /// The blocks that one block reads, at one place of a line.
 pub(super) struct Upstream<'a> {
     pub(super) system: &'a System,
@@ -145,6 +148,18 @@ impl<'a> Upstream<'a> {
         moved
             .flat_map(|&block| self.before[block].columns())
             .copied()
+    }
+
+    /// Returns whether one of the blocks moved, other than those on a crossing, is singular at the
+    /// last place.
+    pub(super) fn is_singular(&self) -> bool {
+        let mut moved = self.moved.iter().map(|&block| &self.before[block]);
+        moved.any(|block| match block {
+            BlockSolver::InterpolatedBlock(on) => {
+                !on.is_within(&self.drivers) && on.block.regularity() < SINGULAR
+            }
+            block => block.regularity() < SINGULAR,
+        })
     }
 
     /// Returns the driver of a row at the last place, with its derivatives in τ.
