@@ -1,5 +1,7 @@
 //! The configuration: the bodies at one q, and the markers on them.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector2;
 
 use super::Error;
@@ -24,6 +26,11 @@ pub(super) fn axis(angle: f64) -> Vector2<f64> {
     } else {
         Vector2::new(cos, sin)
     }
+}
+
+/// Returns an angle on the turn nearest to `guess` \[rad\].
+pub(super) fn on_nearest_turn(angle: f64, guess: f64) -> f64 {
+    angle + TAU * ((guess - angle) / TAU).round()
 }
 
 /// A marker in its body's frame, with the parameter values in force.

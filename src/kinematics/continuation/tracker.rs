@@ -28,6 +28,7 @@ use crate::mechanism::{DriverId, Jet};
 const LARGEST_LAST_MOVE: f64 = 1e-6;
 /// An invalid value within this part of the path ahead is reported as the cause of a stop.
 const JUST_AHEAD: f64 = 1e-9;
+
 /// The storage for tracking paths.
 #[derive(Debug)]
 pub(in crate::kinematics) struct PathTracker {

@@ -77,7 +77,7 @@ impl Workspace {
 }
 
 /// A block of less regularity is singular.
-const SINGULAR: f64 = 1e-6;
+const LEAST_REGULARITY: f64 = 1e-6;
 
 /// The blocks that one block reads, at one place of a line.
 pub(super) struct Upstream<'a> {
@@ -150,15 +150,16 @@ impl<'a> Upstream<'a> {
             .copied()
     }
 
-    /// Returns whether one of the blocks moved, other than those on a crossing, is singular at the
-    /// last place.
+    /// Returns whether one of the blocks moved is singular at the last place; no block is where it
+    /// follows a crossing.
     pub(super) fn is_singular(&self) -> bool {
         let mut moved = self.moved.iter().map(|&block| &self.before[block]);
-        moved.any(|block| match block {
-            BlockSolver::InterpolatedBlock(on) => {
-                !on.is_within(&self.drivers) && on.block.regularity() < SINGULAR
-            }
-            block => block.regularity() < SINGULAR,
+        moved.any(|block| {
+            let solver = match block {
+                BlockSolver::InterpolatedBlock(on) if !on.is_within(&self.drivers) => &on.block,
+                block => block,
+            };
+            solver.regularity() < LEAST_REGULARITY
         })
     }
 

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use joint::JointParts;
 pub(super) use linearise::{RowValue, Values};
 
-use crate::kinematics::configuration::Configuration;
+use crate::kinematics::configuration::{Configuration, on_nearest_turn};
 use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, TurnEffect};
 use crate::kinematics::linear::nan_or_larger;
 use crate::kinematics::variation::VariedConfiguration;
@@ -411,7 +411,7 @@ impl System {
     ) -> f64 {
         let difference = (a - b) / self.column_scale(column, size);
         if self.is_angle(column) {
-            difference - TAU * (difference / TAU).round()
+            on_nearest_turn(difference, 0.0)
         } else {
             difference
         }

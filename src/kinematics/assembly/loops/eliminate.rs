@@ -1,11 +1,12 @@
 //! The elimination of x and y of the bodies from the rows of a block.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use super::form::{Angle, Closure, Form};
 use super::{Loops, MARGIN};
 use crate::kinematics::block::BlockState;
+use crate::kinematics::configuration::on_nearest_turn;
 use crate::kinematics::constraint::{Axis, Projection, Relation};
 use crate::mechanism::{Interval, MarkerId, Number};
 
@@ -147,8 +148,7 @@ impl<'a> Builder<'a> {
                 && *offset == Interval::point(0.0)
             {
                 let phi = torn[*k].midpoint();
-                let turns = ((estimate[3 * body + 2] - phi) / TAU).round();
-                torn[*k] = Interval::point(phi + TAU * turns);
+                torn[*k] = Interval::point(on_nearest_turn(phi, estimate[3 * body + 2]));
             }
         }
         let value = |column: &usize| {

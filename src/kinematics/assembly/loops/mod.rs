@@ -10,13 +10,14 @@
 mod eliminate;
 mod form;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use eliminate::Builder;
 use form::Closure;
 use nalgebra::DMatrix;
 
 use crate::kinematics::block::BlockState;
+use crate::kinematics::configuration::on_nearest_turn;
 use crate::mechanism::{Interval, Number};
 
 /// Most unknowns of a block whose angles are divided into boxes.
@@ -109,7 +110,7 @@ impl Loops {
                 Content::One(found) => {
                     let same = |known: &Vec<f64>| {
                         let mut pairs = known.iter().zip(&found);
-                        pairs.all(|(a, b)| (a - b - TAU * ((a - b) / TAU).round()).abs() < SAME)
+                        pairs.all(|(a, b)| on_nearest_turn(a - b, 0.0).abs() < SAME)
                     };
                     if !solutions.iter().any(same) {
                         solutions.push(found);

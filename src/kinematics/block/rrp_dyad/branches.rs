@@ -1,11 +1,11 @@
 //! The branches of the block, and its nearest pose where it has none.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use super::RrpDyad;
 use crate::kinematics::block::reach::ClosureGap;
 use crate::kinematics::block::step::BlockState;
-use crate::kinematics::configuration::BodyPose;
+use crate::kinematics::configuration::{BodyPose, on_nearest_turn};
 
 impl RrpDyad {
     /// Returns the two angles of body a at which the block closes, nearest the estimates first: the
@@ -32,7 +32,7 @@ impl RrpDyad {
         let away = ratio.clamp(-1.0, 1.0).acos();
         let guess = estimate[3 * self.body as usize + 2];
         let branches = [middle + away, middle - away].map(|angle| {
-            let phi = angle + TAU * ((guess - angle) / TAU).round();
+            let phi = on_nearest_turn(angle, guess);
             self.put(state.at.frames_mut(), &known, BodyPose::turned(phi));
             let columns = self.parts.columns.iter();
             let distance = columns
@@ -58,7 +58,7 @@ impl RrpDyad {
         let away = if known.kappa > 0.0 { PI } else { 0.0 };
         let angle = known.w.y.atan2(known.w.x) - known.g.y.atan2(known.g.x) + away;
         let guess = estimate[3 * self.body as usize + 2];
-        let phi = angle + TAU * ((guess - angle) / TAU).round();
+        let phi = on_nearest_turn(angle, guess);
         self.put(state.at.frames_mut(), &known, BodyPose::turned(phi));
     }
 }

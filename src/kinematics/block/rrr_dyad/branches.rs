@@ -1,20 +1,18 @@
 //! The branches of the block, and its nearest pose where it has none.
 
-use std::f64::consts::TAU;
-
 use nalgebra::Vector2;
 
 use super::{RrrDyad, Side};
 use crate::kinematics::block::reach::ClosureGap;
 use crate::kinematics::block::step::BlockState;
-use crate::kinematics::configuration::{BodyPose, perp, rotate};
+use crate::kinematics::configuration::{BodyPose, on_nearest_turn, perp, rotate};
 
 impl Side {
     /// Returns the angle at which its link points along `direction`, on the turn nearest to
     /// `guess`.
     fn turned_along(&self, direction: Vector2<f64>, guess: f64) -> f64 {
         let angle = direction.y.atan2(direction.x) - self.l.y.atan2(self.l.x);
-        angle + TAU * ((guess - angle) / TAU).round()
+        on_nearest_turn(angle, guess)
     }
 }
 
