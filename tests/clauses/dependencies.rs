@@ -6,7 +6,7 @@ use biela::fmi::{Causality, Interface, Kind, Quantity, Unknown, Version, describ
 use biela::kinematics::OutputSource;
 use biela::mechanism::Order;
 
-use crate::common::{Instance, assembled, instance_of, shipped, stems};
+use crate::common::{Instance, assembled, instance_of, references, shipped, stems};
 use crate::vr;
 
 /// All choices of `rates` and `extrapolation`.
@@ -14,15 +14,6 @@ const SETTINGS: [[i32; 2]; 6] = [[1, 1], [2, 1], [3, 1], [1, 2], [2, 2], [3, 2]]
 
 /// Step size \[s\]: some lengths do not go further than a few centimetres at 0.7 m/s.
 const H: f64 = 0.017;
-
-/// Returns the value references of the variables that `which` selects.
-fn references(instance: &Instance, which: impl Fn(Quantity) -> bool) -> Vec<u32> {
-    (0..)
-        .zip(instance.variables())
-        .filter(|(_, variable)| which(variable.quantity))
-        .map(|(reference, _)| reference)
-        .collect()
-}
 
 fn outputs(instance: &Instance) -> Vec<u32> {
     references(instance, |quantity| {

@@ -7,7 +7,7 @@ pub(crate) mod log;
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
-use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Sink, Status};
+use biela::fmi::{Category, Interface, MechanismModel, MechanismState, Quantity, Sink, Status};
 use biela::kinematics::{Curve, Path, Rates, Solver};
 use biela::mechanism::{Expression, Jet, Mechanism, Source, Variable};
 
@@ -25,6 +25,15 @@ impl Sink for Silent {
 pub(crate) fn instance_of(mechanism: Arc<Mechanism>, interface: Interface) -> Instance {
     let model = MechanismModel::new(mechanism, interface).expect("the mechanism assembles");
     Instance::new(model, Box::new(Silent), true)
+}
+
+/// Returns the value references of the variables whose quantities `which` selects.
+pub(crate) fn references(instance: &Instance, which: impl Fn(Quantity) -> bool) -> Vec<u32> {
+    (0..)
+        .zip(instance.variables())
+        .filter(|(_, variable)| which(variable.quantity))
+        .map(|(reference, _)| reference)
+        .collect()
 }
 
 /// A shipped mechanism with one driver, and each of its generalized coordinates as a formula in

@@ -3,8 +3,8 @@
 use biela::fmi::{Causality, Error, Failure, Interface, Quantity, State, StateError};
 use biela::mechanism::Order;
 
-use crate::common::{self, FmuState, Instance, instance_of, stems};
-use crate::{act, go_on, initialized, instance, look, references};
+use crate::common::{self, FmuState, Instance, instance_of, references, stems};
+use crate::{act, go_on, initialized, instance, look};
 
 /// The state as another instance reads it.
 fn through_bytes(from: &Instance, to: &mut Instance, state: &FmuState) -> FmuState {

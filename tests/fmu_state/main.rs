@@ -8,7 +8,7 @@ mod going_on;
 
 use biela::fmi::{Error, Interface, Kind, Quantity, State};
 use biela::mechanism::Order;
-use common::{Instance, instance_of, shipped};
+use common::{Instance, instance_of, references, shipped};
 
 fn instance(name: &str) -> Instance {
     instance_of(shipped(name), Interface::CoSimulation)
@@ -26,14 +26,6 @@ fn initialized(name: &str, settings: [i32; 2]) -> Instance {
     instance.enter_initialization_mode().expect("legal");
     instance.exit_initialization_mode().expect("it starts");
     instance
-}
-
-fn references(instance: &Instance, which: impl Fn(Quantity) -> bool) -> Vec<u32> {
-    (0..)
-        .zip(instance.variables())
-        .filter(|(_, variable)| which(variable.quantity))
-        .map(|(reference, _)| reference)
-        .collect()
 }
 
 /// All variables to the last bit, and what the status functions tell.
