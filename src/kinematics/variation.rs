@@ -122,8 +122,12 @@ impl<N> Default for VariedConfiguration<N> {
 }
 
 impl<N: Number> VariedConfiguration<N> {
-    /// Makes a mechanism at rest at the origin; numbers and q are still to be set.
-    pub(super) fn new(mechanism: &Mechanism, coefficients: usize, unknowns: usize) -> Self {
+    /// Makes a mechanism at rest at the origin, whose parameters are all zero.
+    pub(super) fn new(
+        mechanism: &Mechanism,
+        coefficients: &[Coefficient],
+        unknowns: usize,
+    ) -> Self {
         let zero = N::constant(0.0);
         let axis = [N::constant(1.0), zero];
         let frames = mechanism.markers.iter().map(|marker| VariedFrame {
@@ -133,29 +137,53 @@ impl<N: Number> VariedConfiguration<N> {
             axis,
         });
         let bodies = mechanism.bodies.len();
-        Self {
+        let mut origin = Self {
             frames: frames.collect(),
-            coefficients: vec![zero; coefficients],
+            coefficients: vec![zero; coefficients.len()],
             bodies,
             q: vec![zero; unknowns],
             axes: vec![axis; bodies],
-        }
+        };
+        origin.evaluate_numbers(mechanism, coefficients, &|_| zero, &|_| true);
+        origin
     }
 
-    /// Evaluates the numbers in the relations for these parameters. Allocates nothing.
+    /// Evaluates the numbers in the relations again that use parameters which have changed.
+    /// Allocates nothing.
     pub(super) fn set_parameters(
         &mut self,
         mechanism: &Mechanism,
         coefficients: &[Coefficient],
         parameter: &impl Fn(ParameterId) -> N,
+        has_changed: &impl Fn(ParameterId) -> bool,
+    ) {
+        let uses_changed = |expression: &Expression| expression.parameters().any(has_changed);
+        self.evaluate_numbers(mechanism, coefficients, parameter, &uses_changed);
+    }
+
+    /// Evaluates those numbers in the relations whose expressions are chosen.
+    fn evaluate_numbers(
+        &mut self,
+        mechanism: &Mechanism,
+        coefficients: &[Coefficient],
+        parameter: &impl Fn(ParameterId) -> N,
+        is_chosen: &impl Fn(&Expression) -> bool,
     ) {
         for (frame, marker) in self.frames.iter_mut().zip(&mechanism.markers) {
-            frame.position = marker.position.each_ref().map(|s| evaluate(s, parameter));
-            frame.angle = evaluate(&marker.angle, parameter);
-            frame.axis = direction(frame.angle);
+            for (s, expression) in frame.position.iter_mut().zip(&marker.position) {
+                if is_chosen(expression) {
+                    *s = evaluate(expression, parameter);
+                }
+            }
+            if is_chosen(&marker.angle) {
+                frame.angle = evaluate(&marker.angle, parameter);
+                frame.axis = direction(frame.angle);
+            }
         }
         for (value, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
-            *value = evaluate(&coefficient.expression, parameter);
+            if is_chosen(&coefficient.expression) {
+                *value = evaluate(&coefficient.expression, parameter);
+            }
         }
     }
 

@@ -228,7 +228,7 @@ impl State {
             .zip(rates.acceleration())
             .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
         let mut at = system.varied();
-        system.vary_parameters(&mut at, &parameter);
+        system.vary_parameters(&mut at, &parameter, &|_| true);
         for (column, motion) in motion.enumerate() {
             let [value, first, second] = motion.map(Dual::constant);
             at.set_coordinate(column, Varied::new(value, [first, second]));

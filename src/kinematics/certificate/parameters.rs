@@ -25,6 +25,9 @@ pub(in crate::kinematics) struct ParameterBounds {
     pub(in crate::kinematics) parameters: Vec<Enclosed>,
     /// The same as functions of the place on the sub-step.
     local: Vec<Enclosed>,
+    /// Those that move, or that differ from the sub-step before: numbers without them stay as they
+    /// are.
+    changed: Vec<bool>,
     /// The mechanism along the sub-step: its numbers, and the chords of unknowns.
     along: VariedConfiguration<Enclosed>,
     /// The mechanism at rest anywhere on the sub-step, and in a region around it.
@@ -161,6 +164,7 @@ impl ParameterBounds {
             moving: false,
             parameters: vec![Enclosed::constant(0.0); parameters],
             local: vec![Enclosed::constant(0.0); parameters],
+            changed: vec![false; parameters],
             along: system.varied(),
             around: system.varied(),
             markers: vec![MarkerChange::default(); mechanism.markers.len()],
@@ -216,8 +220,9 @@ impl ParameterBounds {
         }
         mechanism.derive_parameters(&mut self.parameters);
         let h = Interval::point(end) - Interval::point(start);
-        for (local, parameter) in self.local.iter_mut().zip(&self.parameters) {
-            *local = Enclosed::new(
+        let locals = self.local.iter_mut().zip(&mut self.changed);
+        for ((local, changed), parameter) in locals.zip(&self.parameters) {
+            let now = Enclosed::new(
                 parameter.value,
                 [
                     parameter.first() * h,
@@ -225,32 +230,43 @@ impl ParameterBounds {
                     parameter.third() * h.cube(),
                 ],
             );
+            *changed = now.varies() || now != *local;
+            *local = now;
         }
         let local = &self.local;
-        system.vary_parameters(&mut self.along, &|p| local[p.index()]);
-        system.vary_parameters(&mut self.around, &|p| {
-            Enclosed::fixed(local[p.index()].value)
-        });
+        let changed = |p: ParameterId| self.changed[p.index()];
+        system.vary_parameters(&mut self.along, &|p| local[p.index()], &changed);
+        system.vary_parameters(
+            &mut self.around,
+            &|p| Enclosed::fixed(local[p.index()].value),
+            &changed,
+        );
         let mut finite = true;
         for (index, change) in self.markers.iter_mut().enumerate() {
-            let id = MarkerId(index);
-            let (point, turned) = at.local(id);
-            let (position, angle) = self.along.local(id);
-            *change = MarkerChange {
-                start: evaluated(&mechanism.markers[index], before) - point,
-                position: Change::of(position, [point.x, point.y]),
-                angle: Change::of([angle], [turned]),
-            };
+            let marker = &mechanism.markers[index];
+            let mut numbers = marker.position.iter().chain([&marker.angle]);
+            if numbers.any(|number| number.parameters().any(changed)) {
+                let id = MarkerId(index);
+                let (point, turned) = at.local(id);
+                let (position, angle) = self.along.local(id);
+                *change = MarkerChange {
+                    start: evaluated(marker, before) - point,
+                    position: Change::of(position, [point.x, point.y]),
+                    angle: Change::of([angle], [turned]),
+                };
+            }
             finite &= change.position.is_finite() && change.angle.is_finite();
         }
         let rows = self.rows.iter_mut().zip(system.equations());
         for (index, (row, equation)) in rows.enumerate() {
             row.moves = row.parameters.iter().any(|p| local[p.index()].varies());
-            if let Target::Constant(target) = &equation.target {
+            if let Target::Constant(target) = &equation.target
+                && target.parameters().any(changed)
+            {
                 let target = evaluate(target, &|p| local[p.index()]);
                 row.target = Change::of([target], [targets.constant(index)]);
-                finite &= row.target.is_finite();
             }
+            finite &= row.target.is_finite();
         }
         finite
     }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use crate::kinematics::reference::generated::{BAR, Ground, chain, lift_from_below, scissor_lift};
 use crate::kinematics::reference::{assembled, grown, part};
 use crate::kinematics::{Curve, Path, Pose, Progress, Solver};
-use crate::mechanism::{DriverId, JointKind, Mechanism, Motion, ParameterId, Source};
+use crate::mechanism::{DriverId, JointKind, MarkerId, Mechanism, Motion, ParameterId, Source};
 
 /// Number of places of a sub-step at which the true motion is compared with the bounds.
 const SAMPLES: u32 = 12;
@@ -448,6 +448,46 @@ fn steps_of_moving_parameters_are_proved() {
         }
     }
     assert!(steps > 150 && substeps < 2 * steps, "{steps} {substeps}");
+}
+
+/// Numbers without moving parameters keep their bounds from one sub-step to the next. These are
+/// those of a new solver, whatever moved before.
+#[test]
+fn bounds_of_numbers_do_not_depend_on_what_moved_before() {
+    let move_one = |solver: &mut Solver, index: usize, by: f64| {
+        let mechanism = std::sync::Arc::clone(solver.mechanism());
+        let mut path = move_drivers(solver, 1e-3);
+        path.to[index] *= by;
+        mechanism.derive_parameters(&mut path.to);
+        let end = solver.track(&path);
+        let bounds = &solver.tracker.bounds.parameters;
+        let markers = (0..mechanism.markers.len()).map(MarkerId);
+        let markers: Vec<_> = markers
+            .map(|marker| [bounds.position(marker), bounds.angle(marker)])
+            .collect();
+        let rows = 0..solver.model.system.equations().len();
+        let targets: Vec<_> = rows.map(|row| bounds.target(row)).collect();
+        format!("{end:?} {:?} {markers:?} {targets:?}", solver.pose())
+    };
+    let mut pairs = 0;
+    for source in shipped() {
+        let (mut solver, _) = assembled(&source);
+        let home = solver.pose().clone();
+        let parameters = solver.mechanism().parameters.clone();
+        let own = parameters.iter().enumerate().filter(|(_, p)| !p.derived);
+        let own: Vec<_> = own.map(|(index, _)| index).collect();
+        for pair in own.windows(2) {
+            move_one(&mut solver, pair[0], 1.01);
+            solver.restore(&home);
+            let after = move_one(&mut solver, pair[1], 1.001);
+            solver.restore(&home);
+            let (mut new, _) = assembled(&source);
+            let alone = move_one(&mut new, pair[1], 1.001);
+            assert_eq!(after, alone, "{}, {pair:?}", source.name());
+            pairs += 1;
+        }
+    }
+    assert!(pairs > 100, "{pairs}");
 }
 
 /// Prescribed motions of every kind deviate from their chords by no more than their bounds.

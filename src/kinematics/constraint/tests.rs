@@ -151,10 +151,7 @@ fn configuration(mechanism: &Mechanism) -> Configuration {
 
 /// Makes the sample on numbers with derivatives.
 fn varied<N: Number>(mechanism: &Mechanism) -> VariedConfiguration<N> {
-    let mut varied = VariedConfiguration::new(mechanism, coefficients().len(), UNKNOWNS);
-    let none = |_| unreachable!("the sample has no parameters");
-    varied.set_parameters(mechanism, &coefficients(), &none);
-    varied
+    VariedConfiguration::new(mechanism, &coefficients(), UNKNOWNS)
 }
 
 fn mechanism() -> Mechanism {

@@ -264,13 +264,9 @@ impl Run<'_> {
     /// Returns whether the path takes too many sub-steps, or would at the pace of the last ones.
     fn is_too_long(&mut self) -> bool {
         let most = || {
-            let moving = self.drivers.parameters_move;
-            let profiles = if moving {
-                self.state.at.profiles().len()
-            } else {
-                0
-            };
-            most_substeps(self.model.plan.work(), profiles)
+            let Model { system, plan, .. } = &*self.model;
+            let moved = || [system.equations().len(), self.state.at.profiles().len()];
+            most_substeps(plan.work(), self.drivers.parameters_move.then(moved))
         };
         match self.pace.judge(self.progress.substeps, self.s, most) {
             Verdict::Fair => false,

@@ -224,19 +224,23 @@ impl System {
         anywhere
     }
 
-    /// Makes the mechanism on numbers with derivatives, at rest at the origin.
+    /// Makes the mechanism on numbers with derivatives, at rest at the origin, its parameters being
+    /// zero.
     pub(in crate::kinematics) fn varied<N: Number>(&self) -> VariedConfiguration<N> {
-        let coefficients = self.joint_parts.coefficients.len();
+        let coefficients = &self.joint_parts.coefficients;
         VariedConfiguration::new(&self.mechanism, coefficients, self.unknowns())
     }
 
-    /// Evaluates the numbers in the relations for these parameters. Allocates nothing.
+    /// Evaluates the numbers in the relations again that use parameters which have changed.
+    /// Allocates nothing.
     pub(in crate::kinematics) fn vary_parameters<N: Number>(
         &self,
         at: &mut VariedConfiguration<N>,
         parameter: &impl Fn(ParameterId) -> N,
+        has_changed: &impl Fn(ParameterId) -> bool,
     ) {
-        at.set_parameters(&self.mechanism, &self.joint_parts.coefficients, parameter);
+        let coefficients = &self.joint_parts.coefficients;
+        at.set_parameters(&self.mechanism, coefficients, parameter, has_changed);
     }
 
     /// Makes targets; [`set_parameters`](Self::set_parameters) gives them their values.

@@ -6,6 +6,8 @@ const MOST_SUBSTEPS: f64 = 100_000.0;
 const FEWEST_SUBSTEPS: f64 = 1_000.0;
 /// Most work of a path between these limits, in that of one row in closed form: about a second.
 const MOST_WORK: f64 = 5e7;
+/// The work of bounding the numbers of a row at each sub-step, while parameters move.
+const WORK_OF_NUMBERS: f64 = 10.0;
 /// The work of checking a cam's profile at each sub-step, while parameters move it.
 const WORK_OF_PROFILE: f64 = 5e4;
 /// A path is given up if, at the pace of this part of the most sub-steps, twice the most would be
@@ -56,8 +58,10 @@ impl Pace {
 }
 
 /// Returns the most sub-steps of a path: fewer where one takes more work, in that of one row in
-/// closed form. `profiles` are those of cams that parameters move.
-pub(super) fn most_substeps(work: f64, profiles: usize) -> f64 {
-    let work = work + WORK_OF_PROFILE * profiles as f64;
-    (MOST_WORK / work).clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS)
+/// closed form. `moved` are the numbers of rows and of profiles of cams, if parameters move.
+pub(super) fn most_substeps(work: f64, moved: Option<[usize; 2]>) -> f64 {
+    let of_moved = moved.map_or(0.0, |[rows, profiles]| {
+        WORK_OF_NUMBERS * rows as f64 + WORK_OF_PROFILE * profiles as f64
+    });
+    (MOST_WORK / (work + of_moved)).clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS)
 }
