@@ -5,7 +5,7 @@
 //! - one jump ends where tiny steps end: at the same pose, or at the same position that stops the
 //!   motion; a jump that the solver gives up for its number of sub-steps ends where tiny steps to
 //!   the same place end, as that number is a limit per call and tiny steps come farther with it;
-//! - the jump back ends at the start;
+//! - the jump back ends at the start, unless it is given up so;
 //! - a motion stops at a singular pose only;
 //! - lengths times a thousand or a thousandth, other names, another order of bodies and joints, and
 //!   another place in the plane change nothing: the same verdict, the same pose, sub-steps within a
@@ -101,7 +101,7 @@ impl End {
         if !message.is_empty() {
             let _ = write!(words, ", {message:.150}");
         }
-        if let Some(Back { off, message }) = &self.back {
+        if let Some(Back { off, message, .. }) = &self.back {
             let _ = write!(words, ", back to {off:.1e} {message:.150}");
         }
         words
@@ -113,6 +113,8 @@ impl End {
 struct Back {
     /// Why it does not end.
     message: String,
+    /// Whether it was given up for its number of sub-steps.
+    given_up: bool,
     /// Largest difference from the start, in radians and parts of the scale.
     off: f64,
 }
@@ -220,7 +222,7 @@ fn differences(kind: (usize, bool), seed: u64, plain: &Case, jump: &End) -> Resu
     if jump.stop.is_some_and(|rcond| rcond > REGULAR) {
         return differs("stops at a regular pose", &tiny);
     }
-    let leads_elsewhere = |back: &Back| back.off.is_nan() || back.off > SAME;
+    let leads_elsewhere = |back: &Back| !(back.given_up || back.off <= SAME);
     if jump.back.as_ref().is_some_and(leads_elsewhere) {
         return differs("the way back leads elsewhere", &tiny);
     }
@@ -362,6 +364,11 @@ impl Jump {
     }
 }
 
+/// Returns whether a motion was given up for its number of sub-steps.
+fn is_given_up(blocked: &Blocked) -> bool {
+    matches!(blocked.reason, Reason::TooLong | Reason::NearSingular)
+}
+
 /// Moves along the first `part` of the jump in a number of steps, and back if it is one.
 ///
 /// # Errors
@@ -418,7 +425,7 @@ fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Result<End, String
             Err(blocked) => {
                 end.substeps = end.substeps.max(blocked.progress.substeps);
                 end.reached = part * (f64::from(step - 1) + blocked.s) / f64::from(steps);
-                end.given_up = matches!(blocked.reason, Reason::TooLong | Reason::NearSingular);
+                end.given_up = is_given_up(&blocked);
                 if matches!(blocked.reason, Reason::Singular(_) | Reason::Lost) {
                     end.stop = Some(jump.solver.rcond());
                 }
@@ -430,6 +437,7 @@ fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Result<End, String
     end.q = view.undo(&jump.solver.pose().q[..bodies]);
     if steps == 1 && end.reached >= 1.0 {
         let tracked = jump.track(0.0);
+        let given_up = tracked.as_ref().err().is_some_and(is_given_up);
         let message = tracked.map_or_else(|blocked| format!("{blocked:?}"), |_| String::new());
         let off = distance(&view.undo(&jump.solver.pose().q[..bodies]), &end.start);
         let off = if message.is_empty() {
@@ -437,7 +445,11 @@ fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Result<End, String
         } else {
             f64::INFINITY
         };
-        end.back = Some(Back { message, off });
+        end.back = Some(Back {
+            message,
+            given_up,
+            off,
+        });
     }
     Ok(end)
 }

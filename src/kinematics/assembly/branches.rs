@@ -2,19 +2,27 @@
 
 use super::least_squares::LeastSquares;
 use super::loops::{AllBranches, all_branches};
-use super::part::ATTEMPTS;
+use super::part::STARTS;
 use crate::kinematics::block::{BlockBranches, BlockState, ClosureGap, SolveBlock};
 use crate::kinematics::constraint::{Gradient, Region};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
+
+/// Starts anywhere for a small block whose branches bounds do not list.
+const STARTS_ANYWHERE: usize = 24;
+/// Most unknowns of such a block.
+const FEW_UNKNOWNS: usize = 12;
+/// Branches whose squared distances from the estimates differ by less than this part are equally
+/// far.
+const EQUALLY_FAR: f64 = 1e-9;
 
 /// The effort of the search where neither a closed form nor bounds list all branches.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::kinematics) enum SearchEffort {
     /// Starts at and near the estimates, without bounds.
     Quick,
-    /// Starts at and near the estimates, then bounds.
+    /// Starts at and near the estimates, then bounds, or a few starts anywhere.
     Near,
-    /// This many starts anywhere as well.
+    /// Starts at and near the estimates, then bounds, or this many starts anywhere.
     Anywhere(usize),
 }
 
@@ -26,7 +34,7 @@ pub(in crate::kinematics) struct Branches {
     pub(super) given: usize,
     /// Number of starts tried.
     pub(super) starts: usize,
-    /// Number of starts without a branch.
+    /// Number of branches that were promised and not found.
     failures: usize,
 }
 
@@ -47,14 +55,41 @@ enum Source {
 #[derive(Debug)]
 struct Starts {
     part: LeastSquares,
-    most: usize,
-    /// Whether bounds are asked for branches that no start has found.
-    bounded: bool,
+    effort: SearchEffort,
+    /// The starts to be tried next.
+    next: Option<Stage>,
     /// Whether the rows are linear, once another branch has been asked for.
     is_linear: Option<bool>,
-    found: Vec<Vec<f64>>,
-    /// The branches that bounds list, once the starts near the estimates are used up.
+    /// All branches found.
+    found: Vec<Branch>,
+    /// The branches that bounds list, once they are asked.
     all: Option<AllBranches>,
+}
+
+/// A branch that was found.
+#[derive(Debug)]
+struct Branch {
+    /// The unknowns, in the order of the part's columns.
+    unknowns: Vec<f64>,
+    correction: Correction,
+    /// Sum of the squared differences from the estimates, scaled.
+    distance: f64,
+    is_given: bool,
+}
+
+/// Starts that are tried together.
+#[derive(Clone, Copy, Debug)]
+enum Stage {
+    /// Newton–Raphson from the estimates.
+    Newton,
+    /// A minimisation from the estimates.
+    Estimates,
+    /// Starts near the estimates.
+    Near,
+    /// The branches that bounds list.
+    Bounds,
+    /// Starts anywhere.
+    Anywhere,
 }
 
 impl Branches {
@@ -71,11 +106,8 @@ impl Branches {
             BlockBranches::None(gap) => Source::Gap(gap),
             BlockBranches::Unlisted => Source::Starts(Box::new(Starts {
                 part: LeastSquares::new(state.system, block.rows(), block.columns()),
-                bounded: !matches!(effort, SearchEffort::Quick),
-                most: match effort {
-                    SearchEffort::Quick | SearchEffort::Near => ATTEMPTS,
-                    SearchEffort::Anywhere(starts) => ATTEMPTS + starts,
-                },
+                effort,
+                next: Some(Stage::Newton),
                 is_linear: None,
                 found: Vec::new(),
                 all: None,
@@ -138,20 +170,17 @@ impl Branches {
                 }
                 Source::Explicit | Source::ClosedForm(_) | Source::Gap(_) => return None,
                 Source::Starts(starts) => {
+                    if let Some(correction) = starts.give(state) {
+                        self.given += 1;
+                        return Some(correction);
+                    }
                     if self.given > 0 && starts.is_linear(state) {
                         return None;
                     }
-                    if attempt == ATTEMPTS && starts.bounded {
-                        starts.list_all(state, estimate);
-                        // From here on a failure is one to close where a branch was promised.
-                        self.failures = 0;
-                    }
-                    let corrected = starts.close(block, state, estimate, attempt)?;
-                    if corrected.is_ok() && starts.is_known(state) {
-                        self.starts += 1;
-                        continue;
-                    }
-                    corrected
+                    let tried = starts.look(block, state, estimate)?;
+                    self.starts += tried.starts;
+                    self.failures += tried.failures;
+                    continue;
                 }
             };
             self.starts += 1;
@@ -166,46 +195,110 @@ impl Branches {
     }
 }
 
+/// The starts tried, and the failures to find a branch that was promised.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tried {
+    starts: usize,
+    failures: usize,
+}
+
 impl Starts {
-    /// Lists all branches by bounds over intervals, if the block has few enough angles.
-    fn list_all(&mut self, state: &BlockState<'_>, estimate: &[f64]) {
-        let problem = &self.part;
-        self.all = Some(all_branches(
-            &problem.rows,
-            &problem.columns,
-            state,
-            estimate,
-        ));
+    /// Puts the block on the nearest of the branches found that was not given yet.
+    fn give(&mut self, state: &mut BlockState<'_>) -> Option<Correction> {
+        let left = self.found.iter().filter(|branch| !branch.is_given);
+        let least = left.fold(f64::INFINITY, |least, branch| least.min(branch.distance));
+        // Of several that are equally far the one found first.
+        let most = least * (1.0 + EQUALLY_FAR);
+        let mut found = self.found.iter_mut();
+        let branch = found.find(|branch| !branch.is_given && branch.distance <= most)?;
+        branch.is_given = true;
+        self.part.write(state, &branch.unknowns);
+        Some(branch.correction)
     }
 
-    /// Tries to close the block from the next start; `None` if there is no other.
-    fn close(
+    /// Looks for branches from the next starts; `None` if there are none.
+    fn look(
         &mut self,
         block: &mut dyn SolveBlock,
         state: &mut BlockState<'_>,
         estimate: &[f64],
-        attempt: usize,
-    ) -> Option<Result<Correction, Rejected>> {
-        let Some(far) = attempt.checked_sub(ATTEMPTS) else {
-            return Some(self.part.attempt(block, state, estimate, attempt));
+    ) -> Option<Tried> {
+        let stage = self.next?;
+        self.next = match stage {
+            Stage::Newton => Some(Stage::Estimates),
+            Stage::Estimates => Some(Stage::Near),
+            Stage::Near if !matches!(self.effort, SearchEffort::Quick) => Some(Stage::Bounds),
+            Stage::Near | Stage::Bounds | Stage::Anywhere => None,
         };
-        let listed = self.all.as_ref().and_then(|all| all.branches.as_ref());
-        if let Some(listed) = listed {
-            self.part.write(state, listed.get(far)?);
-            return Some(block.close(state, Limits::ASSEMBLY));
+        let mut tried = Tried::default();
+        let mut note = |starts: &mut Self, state: &BlockState<'_>, closed| {
+            tried.starts += 1;
+            match closed {
+                Ok(correction) => starts.note(state, estimate, correction),
+                Err(Rejected) => tried.failures += usize::from(matches!(stage, Stage::Bounds)),
+            }
+        };
+        match stage {
+            Stage::Newton => {
+                let closed = self.part.close_by_newton(block, state, estimate);
+                note(self, state, closed);
+            }
+            Stage::Estimates => {
+                let closed = self.part.attempt(block, state, estimate, 0);
+                note(self, state, closed);
+            }
+            Stage::Near => {
+                for attempt in 1..STARTS {
+                    let closed = self.part.attempt(block, state, estimate, attempt);
+                    note(self, state, closed);
+                }
+            }
+            Stage::Bounds => {
+                let LeastSquares { rows, columns, .. } = &self.part;
+                let all = all_branches(rows, columns, state, estimate);
+                match &all.branches {
+                    Some(listed) => {
+                        for unknowns in listed {
+                            self.part.write(state, unknowns);
+                            let closed = block.close(state, Limits::ASSEMBLY);
+                            note(self, state, closed);
+                        }
+                    }
+                    None => self.next = Some(Stage::Anywhere),
+                }
+                self.all = Some(all);
+            }
+            Stage::Anywhere => {
+                for attempt in 0..self.starts_anywhere() {
+                    let closed = self.part.attempt_anywhere(block, state, estimate, attempt);
+                    note(self, state, closed);
+                }
+            }
         }
-        (attempt < self.most).then(|| self.part.attempt_anywhere(block, state, estimate, far))
+        Some(tried)
     }
 
-    /// Returns whether the present branch was found before, and notes it otherwise.
-    fn is_known(&mut self, state: &BlockState<'_>) -> bool {
+    /// Returns the number of starts anywhere.
+    fn starts_anywhere(&self) -> usize {
+        match self.effort {
+            SearchEffort::Anywhere(starts) => starts,
+            _ if self.part.columns.len() <= FEW_UNKNOWNS => STARTS_ANYWHERE,
+            _ => 0,
+        }
+    }
+
+    /// Notes the branch on which the block is, unless it is known.
+    fn note(&mut self, state: &BlockState<'_>, estimate: &[f64], correction: Correction) {
         let unknowns = self.part.read(state);
         let mut found = self.found.iter();
-        let is_known = found.any(|known| self.part.is_same(state, known, &unknowns));
-        if !is_known {
-            self.found.push(unknowns);
+        if !found.any(|known| self.part.is_same(state, &known.unknowns, &unknowns)) {
+            self.found.push(Branch {
+                distance: self.part.distance(state, &unknowns, estimate),
+                unknowns,
+                correction,
+                is_given: false,
+            });
         }
-        is_known
     }
 
     /// Returns whether the rows are linear in the unknowns, so that there is one branch at most.

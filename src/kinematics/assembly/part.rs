@@ -16,9 +16,6 @@ const STEPS_PER_WEIGHT: usize = 20;
 /// Number of starts: the estimates, and deterministic shifts of them. Estimates of zero often lie
 /// on a symmetry from which no minimisation can choose a side.
 pub(in crate::kinematics) const STARTS: usize = 8;
-/// Number of attempts at and near the estimates: Newton–Raphson alone from the estimates, then a
-/// minimisation from each of the starts.
-pub(in crate::kinematics) const ATTEMPTS: usize = 1 + STARTS;
 /// Minimisation steps from anywhere; a start that needs more is one of many.
 const STEPS_FROM_ANYWHERE: usize = 40;
 /// Points nearer than this part of the size of their part of the mechanism coincide.
@@ -41,6 +38,23 @@ impl LeastSquares {
         let size = state.at.size();
         let mut columns = self.columns.iter().zip(a).zip(b);
         columns.all(|((&column, &a), &b)| is_same(state.system, size, column, a, b))
+    }
+
+    /// Returns the sum of the squared differences of these unknowns from the estimates, scaled and
+    /// without whole turns; joint unknowns have no estimates.
+    pub(in crate::kinematics) fn distance(
+        &self,
+        state: &BlockState<'_>,
+        unknowns: &[f64],
+        estimate: &[f64],
+    ) -> f64 {
+        let (system, size) = (state.system, state.at.size());
+        let of_bodies = 3 * system.mechanism().bodies.len();
+        let columns = self.columns.iter().zip(unknowns);
+        let columns = columns.filter(|(column, _)| **column < of_bodies);
+        columns
+            .map(|(&column, &q)| system.difference(column, size, q, estimate[column]).powi(2))
+            .sum()
     }
 
     /// Goes to the estimates, or to one of the starts near them.
@@ -91,8 +105,29 @@ impl LeastSquares {
         }
     }
 
-    /// Tries to assemble the part, which is that of `block`, from one of [`ATTEMPTS`] starts at and
-    /// near the estimates.
+    /// Tries to close the part, which is that of `block`, by Newton–Raphson from the estimates. One
+    /// correction solves linear rows from any start, and estimates as good as that need no more; a
+    /// large part is worth more corrections before a minimisation.
+    ///
+    /// # Errors
+    ///
+    /// [`Rejected`] if this did not lead to a pose.
+    pub(in crate::kinematics) fn close_by_newton(
+        &self,
+        block: &mut dyn SolveBlock,
+        state: &mut BlockState<'_>,
+        estimate: &[f64],
+    ) -> Result<Correction, Rejected> {
+        self.start(state, estimate, 0);
+        let mut limits = Limits::ASSEMBLY;
+        if self.columns.len() <= SMALL_PART {
+            limits.iterations = 1;
+        }
+        block.close(state, limits)
+    }
+
+    /// Tries to assemble the part, which is that of `block`, by a minimisation from one of
+    /// [`STARTS`] at and near the estimates.
     ///
     /// # Errors
     ///
@@ -104,16 +139,6 @@ impl LeastSquares {
         estimate: &[f64],
         attempt: usize,
     ) -> Result<Correction, Rejected> {
-        let Some(attempt) = attempt.checked_sub(1) else {
-            // One correction solves linear rows from any start, and estimates as good as that need
-            // no more. A large part is worth more corrections before a minimisation.
-            self.start(state, estimate, 0);
-            let mut limits = Limits::ASSEMBLY;
-            if self.columns.len() <= SMALL_PART {
-                limits.iterations = 1;
-            }
-            return block.close(state, limits);
-        };
         self.start(state, estimate, attempt);
         let most = if attempt == 0 {
             LARGEST_PART
