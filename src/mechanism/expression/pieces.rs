@@ -1,15 +1,17 @@
 //! Bounds of an expression over ranges in which pieces of it meet.
 //!
 //! Each piece between which `min`, `max`, `abs`, `mod` and the like switch is
-//! taken over the whole range in turn. The hull of all choices bounds value and derivatives on both
-//! sides of the switch; whether the pieces join smoothly is not examined here.
+//! taken over the whole range in turn; where more than a few switch, the hull of both pieces stands
+//! for those of the rest. The hull of all choices bounds value and derivatives on both sides of the
+//! switch; whether the pieces join smoothly is not examined here.
 
 use super::function::Binary;
 use super::{Expression, MAX_STACK, Operation};
 use crate::mechanism::ParameterId;
 use crate::mechanism::number::{Interval, Jet3, Number, Unary};
 
-/// Most switches of an expression in one range.
+/// Most switches of an expression in one range whose pieces are taken in turn, as each doubles the
+/// work.
 const MOST_SWITCHES: u32 = 6;
 /// Number of parts of a range: the excess of the bounds is proportional to their width.
 const PARTS: u32 = 8;
@@ -50,8 +52,8 @@ impl Expression {
     }
 }
 
-/// Runs the rest of a program on a stack of some height, of which at most `switches` operations may
-/// switch: the hull of the results for both pieces of each.
+/// Runs the rest of a program on a stack of some height. Returns the hull of the results for both
+/// pieces of each of the first `switches` operations that switch.
 fn run_pieces(
     program: &[Operation],
     (mut stack, mut height): ([Jet3<Interval>; MAX_STACK], usize),
@@ -62,7 +64,12 @@ fn run_pieces(
     for (index, operation) in program.iter().enumerate() {
         let first = height - operation.arity();
         if let Some(pieces) = operation.switch(&stack[first..height]) {
-            let switches = switches.checked_sub(1)?;
+            let Some(switches) = switches.checked_sub(1) else {
+                let [one, other] = pieces;
+                stack[first] = one.hull(other);
+                height = first + 1;
+                continue;
+            };
             let [one, other] = pieces.map(|piece| {
                 stack[first] = piece;
                 let rest = &program[index + 1..];

@@ -41,13 +41,16 @@ fn contour(text: &str) -> ProfileInForce {
 }
 
 /// Smooth, with a narrow notch, and made of pieces that meet with a continuous curvature, with a
-/// jump of it, and exactly between two sectors.
-const CONTOURS: [&str; 5] = [
+/// jump of it, exactly between two sectors, and eight pairs at one angle.
+const CONTOURS: [&str; 6] = [
     "0.3*cos(theta) + sqrt(1 - (0.3*sin(theta))^2)",
     "1 - 0.002*exp(-((theta - 2)/0.003)^2)",
     "1 + 0.2*max(cos(theta), 0)^4",
     "1 + 0.2*max(cos(theta), 0)^2",
     "1 + 0.1*abs(theta - pi)^3*sin(theta/2)^4",
+    "1 + 0.02*(max(cos(theta), 0)^3 + max(cos(theta), 0)^4 + max(cos(theta), 0)^5 \
+     + max(cos(theta), 0)^6 + abs(cos(theta))^3 + abs(cos(theta))^5 + min(cos(theta), 0)^3 \
+     + min(cos(theta), 0)^4)",
 ];
 
 proptest! {
