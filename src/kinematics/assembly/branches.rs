@@ -207,7 +207,7 @@ impl Starts {
     fn give(&mut self, state: &mut BlockState<'_>) -> Option<Correction> {
         let left = self.found.iter().filter(|branch| !branch.is_given);
         let least = left.fold(f64::INFINITY, |least, branch| least.min(branch.distance));
-        // Of several that are equally far the one found first.
+        // The one found first precedes others that are equally far.
         let most = least * (1.0 + EQUALLY_FAR);
         let mut found = self.found.iter_mut();
         let branch = found.find(|branch| !branch.is_given && branch.distance <= most)?;

@@ -35,8 +35,10 @@ pub(in crate::kinematics) struct CoupledBlock {
     jacobian: Jacobian,
     condition: Condition,
     residual: Vec<f64>,
-    /// The largest residual in multiples of its rounding error.
+    /// The largest residual in multiples of its rounding error, and that at the start of the
+    /// sub-step.
     excess: f64,
+    start_excess: f64,
     correction: Vec<f64>,
     test: Box<ContractionTest>,
     tubes: CertifiedTubes,
@@ -77,6 +79,7 @@ impl CoupledBlock {
             condition: Condition::new(order),
             residual: vec![0.0; order],
             excess: 0.0,
+            start_excess: 0.0,
             correction: vec![0.0; order],
             tubes: CertifiedTubes::new(order + test.known.len()),
             segment: CheckedSegment::new(order, test.known.len()),

@@ -27,7 +27,6 @@ use super::CoupledBlock;
 use crate::kinematics::block::anchor::larger;
 use crate::kinematics::block::step::{BlockState, Step};
 use crate::kinematics::certificate::StepBounds;
-use crate::kinematics::newton::STALLED;
 use crate::kinematics::system::Target;
 
 /// Largest norm of K of a single step after which a tube is made: it then serves several steps.
@@ -92,7 +91,7 @@ struct CertifiedTube {
     upstream: f64,
     /// Increase of λ′ per unit of a driver's deviation from its chord.
     driver: f64,
-    /// Increase of λ′ by rounding.
+    /// Increase of λ′ per rounding of the rows.
     rounding: f64,
     /// Largest λ.
     longest: f64,
@@ -246,6 +245,7 @@ impl CoupledBlock {
         step: &mut Step<'_>,
     ) -> bool {
         let leading = self.tube_column(self.tubes.kept[index].leading);
+        let roundings = self.roundings();
         let Self {
             equations,
             test,
@@ -277,7 +277,7 @@ impl CoupledBlock {
         let open = 0.5 * moved * tube.opening
             + uncertain * tube.upstream
             + driven * tube.driver
-            + tube.rounding;
+            + roundings * tube.rounding;
         // The test asks for a strict inequality.
         let radius = 1.001 * open / (1.0 - tube.contraction);
         let inside = from.abs() <= 1.0 && to.abs() <= 1.0 && moved <= tube.longest;
@@ -429,7 +429,7 @@ impl CoupledBlock {
                 .system
                 .evaluate_row(row, state.values(), |_, _| {})
                 .rounding;
-            test.eta[local] = 2.0 * STALLED * rounding;
+            test.eta[local] = rounding;
             test.radii[local] = match state.system.equations()[row].target {
                 Target::Driver(_) => bend.row_scale,
                 Target::Constant(_) => 0.0,

@@ -24,7 +24,7 @@
 use super::CoupledBlock;
 use super::contraction::{ContractionTest, LARGEST_CONTRACTION, MOST_TRIES, ROOM, STRICTLY};
 use crate::kinematics::block::step::{BlockState, Step};
-use crate::kinematics::newton::{Rejected, STALLED};
+use crate::kinematics::newton::{AT_ROUNDING, Rejected};
 use crate::kinematics::system::Target;
 
 /// First trial radii, as a multiple of the square of the largest move of an unknown: a motion that
@@ -38,9 +38,11 @@ const SMALLER_RADIUS: f64 = 2.0;
 const GOOD_CONTRACTION: f64 = 0.6;
 
 impl CoupledBlock {
-    /// Notes the angles at the start of the sub-step, and what moving parameters do to rows without
-    /// bounds. The block's unknowns are at the start, earlier ones at their ends.
+    /// Notes residuals and angles at the start of the sub-step, and what moving parameters do to rows
+    /// without bounds. The block was evaluated last at the start; its unknowns are there, earlier
+    /// ones at their ends.
     pub(super) fn note_start(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
+        self.start_excess = self.excess;
         let bodies = 3 * state.system.mechanism().bodies.len();
         for &column in &self.equations.columns {
             if column < bodies && column % 3 == 2 {
@@ -129,6 +131,12 @@ impl CoupledBlock {
             }
         }
         step.bounds.require(step_ratio(contraction).min(1.0))
+    }
+
+    /// Returns the largest sum of a row's residuals at both ends of the sub-step, in multiples of its
+    /// rounding error, with the rounding of these residuals themselves.
+    pub(super) fn roundings(&self) -> f64 {
+        self.start_excess + self.excess + 2.0 * AT_ROUNDING
     }
 
     /// Clears the region and the chord in the work space.
@@ -225,6 +233,7 @@ impl CoupledBlock {
 
     /// Computes A.
     fn factorise_middle(&mut self, state: &BlockState<'_>) -> Result<(), Rejected> {
+        let roundings = self.roundings();
         let Self {
             equations, test, ..
         } = self;
@@ -236,8 +245,7 @@ impl CoupledBlock {
             ..
         } = &mut **test;
         equations.evaluate(state, middle, |local, value| {
-            // The rounding of the rows at both ends.
-            slack[local] += 2.0 * STALLED * value.rounding;
+            slack[local] += roundings * value.rounding;
         });
         middle.lu.factorise(0.0).map_err(|_| Rejected)?;
         middle.invert(inverse, unit);
