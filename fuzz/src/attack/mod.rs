@@ -7,6 +7,7 @@
 //!   the same place end, as that number is a limit per call and tiny steps come farther with it;
 //! - the jump back ends at the start, unless it is given up so;
 //! - a motion stops at a singular pose only;
+//! - drivers that are evenly accelerated, by inputs or by prescribed motions, lead to the same places;
 //! - lengths times a thousand or a thousandth, other names, another order of bodies and joints, and
 //!   another place in the plane change nothing: the same verdict, the same pose, sub-steps within a
 //!   factor of two;
@@ -23,7 +24,7 @@ use biela::kinematics::{Blocked, Curve, Error, Path, Progress, Reason, Solver};
 use biela::mechanism::{Mechanism, Source};
 
 use crate::mutation::Chance;
-use text::{Text, View};
+use text::{Law, Text, View};
 
 pub use kinds::{Draw, KINDS};
 
@@ -254,7 +255,10 @@ fn differences(kind: (usize, bool), seed: u64, plain: &Case, jump: &End) -> Resu
             ..plain
         },
     ];
-    for view in views {
+    let laws = [Law::FromRest, Law::Prescribed].map(|law| View { law, ..plain });
+    // Parameters do not wait for accelerated drivers.
+    let laws = laws.into_iter().filter(|_| !kind.1);
+    for view in views.into_iter().chain(laws) {
         let there = match end(&case(kind, seed, view), view, 1, 1.0) {
             // From estimates that are far off the search may end before it finds a pose: its starts
             // depend on order and axes.
@@ -283,7 +287,7 @@ fn differences(kind: (usize, bool), seed: u64, plain: &Case, jump: &End) -> Resu
         let fewer = jump.substeps.min(there.substeps);
         let more = jump.substeps.max(there.substeps);
         // Another order or place may choose other ones of redundant constraints.
-        let is_alike = keeps_axes(view) || !jump.is_redundant;
+        let is_alike = view.law == Law::Jump && (keeps_axes(view) || !jump.is_redundant);
         // In front of a stop the number of sub-steps is that of halvings.
         if is_alike && jump.reached >= 1.0 && more > most_ratio * fewer + 1 {
             return differs(&format!("other sub-steps in {view:?}"), &there);
@@ -335,6 +339,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 struct Jump {
     solver: Solver,
     path: Path,
+    law: Law,
     from: [Vec<f64>; 2],
     to: [Vec<f64>; 2],
 }
@@ -346,21 +351,38 @@ impl Jump {
         let pose = self.solver.pose().clone();
         let path = &mut self.path;
         path.start = pose.time;
-        path.duration = 0.0;
+        path.duration = match self.law {
+            Law::Jump => 0.0,
+            Law::FromRest => 1.0,
+            Law::Prescribed => s - pose.time,
+        };
         path.from.clone_from(&pose.parameters);
         for (k, value) in path.to.iter_mut().enumerate() {
             *value = between(self.from[0][k], self.to[0][k]);
         }
         for (k, curve) in path.curves.iter_mut().enumerate() {
-            let position = between(self.from[1][k], self.to[1][k]);
+            let (here, there) = (pose.drivers[k], between(self.from[1][k], self.to[1][k]));
+            let (position, jump, acceleration) = match self.law {
+                Law::Jump => (there, here - there, 0.0),
+                Law::FromRest => (here, 0.0, 2.0 * (there - here)),
+                Law::Prescribed => continue,
+            };
             *curve = Curve::Input {
                 position,
                 velocity: 0.0,
-                acceleration: 0.0,
-                jump: pose.drivers[k] - position,
+                acceleration,
+                jump,
             };
         }
         self.solver.track(path)
+    }
+
+    /// Returns the part of the way to the end at a place on the path.
+    fn part(&self, s: f64) -> f64 {
+        match self.law {
+            Law::Jump => s,
+            Law::FromRest | Law::Prescribed => s * s,
+        }
     }
 }
 
@@ -397,6 +419,7 @@ fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Result<End, String
     let mut jump = Jump {
         solver,
         path,
+        law: view.law,
         from: [start.parameters.clone(), start.drivers.clone()],
         to: [to, case.drivers.clone()],
     };
@@ -424,7 +447,8 @@ fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Result<End, String
             }
             Err(blocked) => {
                 end.substeps = end.substeps.max(blocked.progress.substeps);
-                end.reached = part * (f64::from(step - 1) + blocked.s) / f64::from(steps);
+                let here = jump.part(blocked.s);
+                end.reached = part * (f64::from(step - 1) + here) / f64::from(steps);
                 end.given_up = is_given_up(&blocked);
                 if matches!(blocked.reason, Reason::Singular(_) | Reason::Lost) {
                     end.stop = Some(jump.solver.rcond());

@@ -6,7 +6,18 @@ use std::fmt::Write as _;
 use super::Case;
 use crate::mutation::Chance;
 
-/// One of the ways to write down the same mechanism.
+/// The law by which the drivers move to their ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// At once, straight.
+    Jump,
+    /// From rest, evenly accelerated, within a second.
+    FromRest,
+    /// The same as motions that the file prescribes.
+    Prescribed,
+}
+
+/// One of the ways to write down the same mechanism and its jump.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// Factor on all lengths.
@@ -18,6 +29,8 @@ pub struct View<'a> {
     pub place: [f64; 3],
     /// Whether bodies and joints come in reverse order, and the markers of pins too.
     pub reversed: bool,
+    /// The law of its motion. Parameters run straight with any.
+    pub law: Law,
 }
 
 impl Default for View<'_> {
@@ -27,6 +40,7 @@ impl Default for View<'_> {
             prefix: "",
             place: [0.0; 3],
             reversed: false,
+            law: Law::Jump,
         }
     }
 }
@@ -199,25 +213,27 @@ impl<'a> Text<'a> {
 
     /// Adds a driver of an angle and its jump \[rad\].
     pub fn turn(&mut self, name: &str, markers: [&str; 2], from: f64, to: f64) {
-        self.driver(name, "angle", markers, from);
-        self.to.push(to);
+        self.driver(name, "angle", markers, [from, to]);
     }
 
     /// Adds a driver of a length, `x`, `y` or `distance`, and its jump.
-    pub fn push(&mut self, name: &str, kind: &str, markers: [&str; 2], [from, to]: [f64; 2]) {
-        let scale = self.view.scale;
-        self.driver(name, kind, markers, from * scale);
-        self.to.push(to * scale);
+    pub fn push(&mut self, name: &str, kind: &str, markers: [&str; 2], jump: [f64; 2]) {
+        let jump = jump.map(|length| length * self.view.scale);
+        self.driver(name, kind, markers, jump);
     }
 
-    fn driver(&mut self, name: &str, coordinate: &str, [i, j]: [&str; 2], start: f64) {
+    fn driver(&mut self, name: &str, coordinate: &str, [i, j]: [&str; 2], [from, to]: [f64; 2]) {
         let (i, j) = (self.marker(i), self.marker(j));
         let prefix = self.view.prefix;
+        let source = match self.view.law {
+            Law::Jump | Law::FromRest => format!("start = {from:?}"),
+            Law::Prescribed => format!("motion = '{from:?} + ({:?})*t^2'", to - from),
+        };
         let _ = writeln!(
             self.drivers,
-            "{prefix}{name} = {{ coordinate = '{coordinate}', markers = ['{i}', '{j}'], \
-             start = {start:?} }}"
+            "{prefix}{name} = {{ coordinate = '{coordinate}', markers = ['{i}', '{j}'], {source} }}"
         );
+        self.to.push(to);
     }
 
     /// Returns the name of a body in the file.
