@@ -459,7 +459,7 @@ fn end(case: &Case, view: View<'_>, steps: u32, part: f64) -> Result<End, String
         }
     }
     end.q = view.undo(&jump.solver.pose().q[..bodies]);
-    if steps == 1 && end.reached >= 1.0 {
+    if steps == 1 && end.reached >= 1.0 && view.law == Law::Jump {
         let tracked = jump.track(0.0);
         let given_up = tracked.as_ref().err().is_some_and(is_given_up);
         let message = tracked.map_or_else(|blocked| format!("{blocked:?}"), |_| String::new());

@@ -18,7 +18,7 @@ pub use rates::Rates;
 pub struct Path {
     /// Time at s = 0 \[s\].
     pub start: f64,
-    /// Time from s = 0 to s = 1 \[s\]; zero where only values change.
+    /// Time from s = 0 to s = 1 \[s\], not negative; zero where only values change.
     pub duration: f64,
     /// Parameters at s = 0 \[SI\].
     pub from: Vec<f64>,
