@@ -2,15 +2,18 @@
 
 use super::least_squares::LeastSquares;
 use super::loops::{AllBranches, all_branches};
-use super::part::STARTS;
+use super::part::{Distance, STARTS};
 use crate::kinematics::block::{BlockBranches, BlockState, ClosureGap, SolveBlock};
-use crate::kinematics::constraint::{Gradient, Region};
+use crate::kinematics::constraint::{Gradient, Region, TurnEffect};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
 
 /// Starts anywhere for a small block whose branches bounds do not list.
 const STARTS_ANYWHERE: usize = 24;
 /// Most unknowns of such a block.
 const FEW_UNKNOWNS: usize = 12;
+/// Largest difference of an unknown from its estimate, in radians and characteristic lengths, at
+/// which a branch found from the estimates is taken for the nearest one.
+const NEAR: f64 = 0.5;
 /// Branches whose squared distances from the estimates differ by less than this part are equally
 /// far.
 const EQUALLY_FAR: f64 = 1e-9;
@@ -20,9 +23,9 @@ const EQUALLY_FAR: f64 = 1e-9;
 pub(in crate::kinematics) enum SearchEffort {
     /// Starts at and near the estimates, without bounds.
     Quick,
-    /// Starts at and near the estimates, then bounds, or a few starts anywhere.
+    /// Bounds, or starts at and near the estimates and a few anywhere.
     Near,
-    /// Starts at and near the estimates, then bounds, or this many starts anywhere.
+    /// Bounds, or starts at and near the estimates and this many anywhere.
     Anywhere(usize),
 }
 
@@ -55,6 +58,12 @@ enum Source {
 #[derive(Debug)]
 struct Starts {
     part: LeastSquares,
+    /// The unknowns at their estimates, in the order of the part's columns.
+    estimate: Vec<f64>,
+    /// Whether it has so few unknowns that starts anywhere find all of its branches, as a rule.
+    is_small: bool,
+    /// Whether its rows count turns: each is another branch.
+    counts_turns: bool,
     effort: SearchEffort,
     /// The starts to be tried next.
     next: Option<Stage>,
@@ -72,8 +81,7 @@ struct Branch {
     /// The unknowns, in the order of the part's columns.
     unknowns: Vec<f64>,
     correction: Correction,
-    /// Sum of the squared differences from the estimates, scaled.
-    distance: f64,
+    distance: Distance,
     is_given: bool,
 }
 
@@ -84,10 +92,10 @@ enum Stage {
     Newton,
     /// A minimisation from the estimates.
     Estimates,
-    /// Starts near the estimates.
-    Near,
     /// The branches that bounds list.
     Bounds,
+    /// Starts near the estimates.
+    Near,
     /// Starts anywhere.
     Anywhere,
 }
@@ -104,14 +112,9 @@ impl Branches {
             BlockBranches::One => Source::Explicit,
             BlockBranches::Two(angles) => Source::ClosedForm(angles),
             BlockBranches::None(gap) => Source::Gap(gap),
-            BlockBranches::Unlisted => Source::Starts(Box::new(Starts {
-                part: LeastSquares::new(state.system, block.rows(), block.columns()),
-                effort,
-                next: Some(Stage::Newton),
-                is_linear: None,
-                found: Vec::new(),
-                all: None,
-            })),
+            BlockBranches::Unlisted => {
+                Source::Starts(Box::new(Starts::new(block, state, estimate, effort)))
+            }
         };
         Self {
             source,
@@ -174,9 +177,6 @@ impl Branches {
                         self.given += 1;
                         return Some(correction);
                     }
-                    if self.given > 0 && starts.is_linear(state) {
-                        return None;
-                    }
                     let tried = starts.look(block, state, estimate)?;
                     self.starts += tried.starts;
                     self.failures += tried.failures;
@@ -203,14 +203,51 @@ struct Tried {
 }
 
 impl Starts {
-    /// Puts the block on the nearest of the branches found that was not given yet.
+    fn new(
+        block: &dyn SolveBlock,
+        state: &mut BlockState<'_>,
+        estimate: &[f64],
+        effort: SearchEffort,
+    ) -> Self {
+        let system = state.system;
+        let counts_turns = |row: &usize| {
+            let constraint = &system.equations()[*row].constraint;
+            constraint.turn_effect() == TurnEffect::Proportional
+        };
+        let (rows, columns) = (block.rows(), block.columns());
+        let part = LeastSquares::new(system, rows, columns);
+        Self {
+            estimate: part.estimate(state, estimate),
+            part,
+            is_small: columns.len() <= FEW_UNKNOWNS,
+            counts_turns: rows.iter().any(counts_turns),
+            effort,
+            next: Some(Stage::Newton),
+            is_linear: None,
+            found: Vec::new(),
+            all: None,
+        }
+    }
+
+    /// Puts the block on the nearest of the branches found that was not given yet; on none while a
+    /// nearer one may be found.
     fn give(&mut self, state: &mut BlockState<'_>) -> Option<Correction> {
         let left = self.found.iter().filter(|branch| !branch.is_given);
-        let least = left.fold(f64::INFINITY, |least, branch| least.min(branch.distance));
+        let nearest = left.map(|branch| branch.distance.square);
+        let most = nearest.fold(f64::INFINITY, f64::min) * (1.0 + EQUALLY_FAR);
         // The one found first precedes others that are equally far.
-        let most = least * (1.0 + EQUALLY_FAR);
-        let mut found = self.found.iter_mut();
-        let branch = found.find(|branch| !branch.is_given && branch.distance <= most)?;
+        let mut found = self.found.iter();
+        let place = found.position(|b| !b.is_given && b.distance.square <= most)?;
+        let may_find_nearer = match self.next {
+            Some(Stage::Newton | Stage::Estimates | Stage::Bounds) => true,
+            Some(Stage::Near | Stage::Anywhere) => self.is_small,
+            None => false,
+        };
+        let is_near = self.found[place].distance.largest <= NEAR;
+        if may_find_nearer && !is_near && !self.is_linear(state) {
+            return None;
+        }
+        let branch = &mut self.found[place];
         branch.is_given = true;
         self.part.write(state, &branch.unknowns);
         Some(branch.correction)
@@ -223,18 +260,23 @@ impl Starts {
         state: &mut BlockState<'_>,
         estimate: &[f64],
     ) -> Option<Tried> {
+        if !self.found.is_empty() && self.is_linear(state) {
+            return None;
+        }
         let stage = self.next?;
+        let is_quick = matches!(self.effort, SearchEffort::Quick);
         self.next = match stage {
             Stage::Newton => Some(Stage::Estimates),
-            Stage::Estimates => Some(Stage::Near),
-            Stage::Near if !matches!(self.effort, SearchEffort::Quick) => Some(Stage::Bounds),
-            Stage::Near | Stage::Bounds | Stage::Anywhere => None,
+            Stage::Estimates if is_quick => Some(Stage::Near),
+            Stage::Estimates => Some(Stage::Bounds),
+            Stage::Near if !is_quick => Some(Stage::Anywhere),
+            Stage::Bounds | Stage::Near | Stage::Anywhere => None,
         };
         let mut tried = Tried::default();
         let mut note = |starts: &mut Self, state: &BlockState<'_>, closed| {
             tried.starts += 1;
             match closed {
-                Ok(correction) => starts.note(state, estimate, correction),
+                Ok(correction) => starts.note(state, correction),
                 Err(Rejected) => tried.failures += usize::from(matches!(stage, Stage::Bounds)),
             }
         };
@@ -247,12 +289,6 @@ impl Starts {
                 let closed = self.part.attempt(block, state, estimate, 0);
                 note(self, state, closed);
             }
-            Stage::Near => {
-                for attempt in 1..STARTS {
-                    let closed = self.part.attempt(block, state, estimate, attempt);
-                    note(self, state, closed);
-                }
-            }
             Stage::Bounds => {
                 let LeastSquares { rows, columns, .. } = &self.part;
                 let all = all_branches(rows, columns, state, estimate);
@@ -264,9 +300,15 @@ impl Starts {
                             note(self, state, closed);
                         }
                     }
-                    None => self.next = Some(Stage::Anywhere),
+                    None => self.next = Some(Stage::Near),
                 }
                 self.all = Some(all);
+            }
+            Stage::Near => {
+                for attempt in 1..STARTS {
+                    let closed = self.part.attempt(block, state, estimate, attempt);
+                    note(self, state, closed);
+                }
             }
             Stage::Anywhere => {
                 for attempt in 0..self.starts_anywhere() {
@@ -282,18 +324,19 @@ impl Starts {
     fn starts_anywhere(&self) -> usize {
         match self.effort {
             SearchEffort::Anywhere(starts) => starts,
-            _ if self.part.columns.len() <= FEW_UNKNOWNS => STARTS_ANYWHERE,
+            _ if self.is_small => STARTS_ANYWHERE,
             _ => 0,
         }
     }
 
     /// Notes the branch on which the block is, unless it is known.
-    fn note(&mut self, state: &BlockState<'_>, estimate: &[f64], correction: Correction) {
+    fn note(&mut self, state: &BlockState<'_>, correction: Correction) {
         let unknowns = self.part.read(state);
         let mut found = self.found.iter();
         if !found.any(|known| self.part.is_same(state, &known.unknowns, &unknowns)) {
+            let ends = [&self.estimate[..], &unknowns];
             self.found.push(Branch {
-                distance: self.part.distance(state, &unknowns, estimate),
+                distance: self.part.distance(state, ends, self.counts_turns),
                 unknowns,
                 correction,
                 is_given: false,

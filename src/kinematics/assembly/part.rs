@@ -27,6 +27,15 @@ pub(in crate::kinematics) const SMALL_PART: usize = 120;
 /// Most unknowns of a part that is minimised at all.
 pub(in crate::kinematics) const LARGEST_PART: usize = 300;
 
+/// A distance between two places of a part, in radians and characteristic lengths.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::kinematics) struct Distance {
+    /// The sum of the squared differences of its unknowns.
+    pub(in crate::kinematics) square: f64,
+    /// The largest one.
+    pub(in crate::kinematics) largest: f64,
+}
+
 impl LeastSquares {
     /// Returns whether these unknowns put the bodies in the same places, whole turns apart.
     pub(in crate::kinematics) fn is_same(
@@ -40,21 +49,49 @@ impl LeastSquares {
         columns.all(|((&column, &a), &b)| is_same(state.system, size, column, a, b))
     }
 
-    /// Returns the sum of the squared differences of these unknowns from the estimates, scaled and
-    /// without whole turns; joint unknowns have no estimates.
+    /// Returns the distance between two places, of angles with whole turns or without.
     pub(in crate::kinematics) fn distance(
         &self,
         state: &BlockState<'_>,
-        unknowns: &[f64],
-        estimate: &[f64],
-    ) -> f64 {
+        [a, b]: [&[f64]; 2],
+        counts_turns: bool,
+    ) -> Distance {
         let (system, size) = (state.system, state.at.size());
-        let of_bodies = 3 * system.mechanism().bodies.len();
-        let columns = self.columns.iter().zip(unknowns);
-        let columns = columns.filter(|(column, _)| **column < of_bodies);
-        columns
-            .map(|(&column, &q)| system.difference(column, size, q, estimate[column]).powi(2))
-            .sum()
+        let mut distance = Distance::default();
+        for ((&column, &a), &b) in self.columns.iter().zip(a).zip(b) {
+            let off = if counts_turns {
+                (a - b) / system.column_scale(column, size)
+            } else {
+                system.difference(column, size, a, b)
+            };
+            distance.square += off * off;
+            distance.largest = distance.largest.max(off.abs());
+        }
+        distance
+    }
+
+    /// Returns the unknowns at their estimates. A contact is estimated for bodies that are at theirs
+    /// altogether: how many of their coordinates earlier blocks have solved depends on the axes.
+    pub(in crate::kinematics) fn estimate(
+        &self,
+        state: &mut BlockState<'_>,
+        estimate: &[f64],
+    ) -> Vec<f64> {
+        let bodies = state.system.mechanism().bodies.len();
+        let own = || {
+            let own = self.columns.iter().map(|column| column / 3);
+            own.filter(|body| *body < bodies)
+        };
+        let before: Vec<_> = own().map(|body| state.at.frames()[body]).collect();
+        for column in own().flat_map(|body| 3 * body..3 * body + 3) {
+            state.at.set_coordinate(column, estimate[column]);
+        }
+        self.start_off(state, estimate, |_| 0.0);
+        let unknowns = self.read(state);
+        for (body, before) in own().zip(before) {
+            state.at.frames_mut()[body] = before;
+        }
+        unknowns
     }
 
     /// Goes to the estimates, or to one of the starts near them.

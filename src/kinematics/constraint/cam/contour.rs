@@ -13,6 +13,9 @@ use crate::mechanism::{
     Interval, Jet3, MarkerId, Mechanism, Number, ProfileBounds, ProfileInForce,
 };
 
+/// A follower nearer to the pole than this part of the radius is at it: estimates are rounded.
+pub(super) const AT_THE_POLE: f64 = 1e-9;
+
 /// A cam's contour with a contact on it.
 #[derive(Clone, Copy, Debug)]
 pub struct Contour {

@@ -8,7 +8,7 @@ use super::super::definition::{
 use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, speed_bound};
-use super::contour::{Contour, Shape};
+use super::contour::{AT_THE_POLE, Contour, Shape};
 use crate::kinematics::configuration::{Configuration, MarkerPose, perp};
 use crate::kinematics::variation::{Moving, VariedMechanism, add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
@@ -248,13 +248,18 @@ impl Constraint for FlatFace {
 }
 
 impl JointUnknown for FlatContact {
-    /// Returns the polar angle of the contour's point that is farthest towards the face.
+    /// Returns the polar angle of the contour's point that is farthest towards the face. A face
+    /// through the pole is on the side to which its normal points.
     fn estimate(&self, at: &Configuration) -> f64 {
         let (cam, follower) = (at.marker(self.contour.cam), at.marker(self.follower));
         let normal = perp(follower.axis);
         let side = normal.dot(&(follower.point - cam.point));
-        let towards = if side < 0.0 { -normal } else { normal };
-        at.profile(self.contour.profile)
-            .angle_of_least(|theta, radius| -Contour::arm(cam, theta, radius).dot(&towards))
+        let profile = at.profile(self.contour.profile);
+        let towards = if side < -AT_THE_POLE * profile.radius(0.0).value {
+            -normal
+        } else {
+            normal
+        };
+        profile.angle_of_least(|theta, radius| -Contour::arm(cam, theta, radius).dot(&towards))
     }
 }

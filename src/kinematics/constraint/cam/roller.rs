@@ -6,7 +6,7 @@ use super::super::definition::{Axis, Constraint, Dimension, Formula, Incidence, 
 use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, chord, speed_bound};
-use super::contour::{Contour, Shape};
+use super::contour::{AT_THE_POLE, Contour, Shape};
 use crate::kinematics::configuration::{Configuration, MarkerPose, perp};
 use crate::kinematics::variation::{Moving, VariedMechanism, add, dot, quarter_turn, subtract};
 use crate::mechanism::{MarkerId, Mechanism};
@@ -184,11 +184,14 @@ impl Constraint for Roller {
 
 impl JointUnknown for RollerContact {
     /// Returns the polar angle of the contour's point that is nearest the roller's centre. For a
-    /// centre inside the contour it is the centre's own polar angle.
+    /// centre inside the contour it is the centre's own polar angle, zero at the pole.
     fn estimate(&self, at: &Configuration) -> f64 {
         let cam = at.marker(self.contour.cam);
         let centre = at.marker(self.follower).point - cam.point;
         let profile = at.profile(self.contour.profile);
+        if centre.norm() <= AT_THE_POLE * profile.radius(0.0).value {
+            return 0.0;
+        }
         let direction = cam.axis.perp(&centre).atan2(cam.axis.dot(&centre));
         if centre.norm() < profile.radius(direction).value {
             return direction;
