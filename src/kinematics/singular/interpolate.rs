@@ -10,8 +10,10 @@ use crate::mechanism::{DriverId, Jet};
 /// fastest body or its way in characteristic lengths. Newton–Raphson at the distance δ gives
 /// accelerations to some eps/δ³, 1e-12 at the inner places of the first; the error of the
 /// polynomials falls with the twelfth power of the distance.
-const REACH: f64 = 0.2;
+const REACH: f64 = 0.25;
 const LEAST_REACH: f64 = 0.004;
+/// Ratio of the distance of a trial to that of the one before it.
+const SHORTER: f64 = 0.8;
 /// Place between inner places and ends at which the error of the polynomials is about the largest.
 const BETWEEN: f64 = 0.85;
 /// Error of an acceleration, for velocities of one, with which no shorter crossing is tried.
@@ -77,7 +79,7 @@ pub(super) fn crossing_of(
                 break;
             }
         }
-        reach *= 0.5;
+        reach *= SHORTER;
     }
     best.map(|(_, crossing)| crossing)
 }
