@@ -26,6 +26,8 @@ use biela::mechanism::{Mechanism, Source};
 use crate::mutation::Chance;
 use text::{Law, Text, View};
 
+pub use text::Variant;
+
 pub use kinds::{Draw, KINDS};
 
 /// Most sub-steps of a call.
@@ -150,17 +152,14 @@ pub struct Counts {
     pub substeps: u32,
 }
 
-/// Runs a number of cases of a kind, with lengths that jump as well if `moving`, and reports each
-/// difference to `found`, with the seed of its case.
-pub fn run(
-    (kind, moving): (usize, bool),
-    seed: u64,
-    cases: u64,
-    mut found: impl FnMut(u64, &str),
-) -> Counts {
+/// A kind of mechanisms, as its place in [`KINDS`], in one of the variants.
+pub type Kind = (usize, Variant);
+
+/// Runs a number of cases of a kind, and reports each difference to `found`, with the seed of its case.
+pub fn run(kind: Kind, seed: u64, cases: u64, mut found: impl FnMut(u64, &str)) -> Counts {
     let mut counts = Counts::default();
     for case in seed..seed + cases {
-        let (finding, jump) = try_case((kind, moving), case);
+        let (finding, jump) = try_case(kind, case);
         if let Some(jump) = jump {
             counts.substeps = counts.substeps.max(jump.substeps);
             counts.given_up += u32::from(jump.given_up);
@@ -180,21 +179,21 @@ pub fn run(
 }
 
 /// Returns a case as it is written down in a view.
-fn case((kind, moving): (usize, bool), seed: u64, view: View<'_>) -> Case {
+fn case((kind, variant): Kind, seed: u64, view: View<'_>) -> Case {
     // Neighbouring seeds shall have nothing in common.
     let mut chance = Chance::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    (KINDS[kind].1)(&mut chance, Text::new(view, moving))
+    (KINDS[kind].1)(&mut chance, Text::new(view, variant))
 }
 
 /// Returns the mechanism file of a case, and the jump.
 #[must_use]
-pub fn plain_case(kind: (usize, bool), seed: u64) -> Case {
+pub fn plain_case(kind: Kind, seed: u64) -> Case {
     case(kind, seed, View::default())
 }
 
 /// Tries a case. Returns the end of the jump, too, if the mechanism closes.
 #[must_use]
-fn try_case(kind: (usize, bool), seed: u64) -> (Finding, Option<End>) {
+fn try_case(kind: Kind, seed: u64) -> (Finding, Option<End>) {
     let plain = plain_case(kind, seed);
     let Ok(jump) = end(&plain, View::default(), 1, 1.0) else {
         return (Finding::NotAssembled, None);
@@ -207,7 +206,7 @@ fn try_case(kind: (usize, bool), seed: u64) -> (Finding, Option<End>) {
 /// # Errors
 ///
 /// The first difference, in words.
-fn differences(kind: (usize, bool), seed: u64, plain: &Case, jump: &End) -> Result<(), String> {
+fn differences(kind: Kind, seed: u64, plain: &Case, jump: &End) -> Result<(), String> {
     let differs = |what: &str, other: &End| {
         let [jump, other] = [jump, other].map(End::describe);
         Err(format!("{what}: jump {jump}; other {other}"))
@@ -257,7 +256,7 @@ fn differences(kind: (usize, bool), seed: u64, plain: &Case, jump: &End) -> Resu
     ];
     let laws = [Law::FromRest, Law::Prescribed].map(|law| View { law, ..plain });
     // Parameters do not wait for accelerated drivers.
-    let laws = laws.into_iter().filter(|_| !kind.1);
+    let laws = laws.into_iter().filter(|_| kind.1 != Variant::Moving);
     for view in views.into_iter().chain(laws) {
         let there = match end(&case(kind, seed, view), view, 1, 1.0) {
             // From estimates that are far off the search may end before it finds a pose: its starts

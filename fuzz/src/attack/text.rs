@@ -6,6 +6,17 @@ use std::fmt::Write as _;
 use super::Case;
 use crate::mutation::Chance;
 
+/// The numbers of a mechanism that are not as simple as they could be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variant {
+    /// None: all lengths stay, all bodies are estimated where they are.
+    Fixed,
+    /// Some lengths are parameters that jump.
+    Moving,
+    /// Estimates are up to 0.2 lengths and 0.7 rad off.
+    Rough,
+}
+
 /// The law by which the drivers move to their ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
@@ -84,8 +95,7 @@ pub fn frame(name: &str, place: Point, angle: f64) -> Mark<'_> {
 /// begins.
 pub struct Text<'a> {
     view: View<'a>,
-    /// Whether some lengths are parameters that jump.
-    moving: bool,
+    variant: Variant,
     head: String,
     ground: String,
     bodies: Vec<String>,
@@ -97,10 +107,10 @@ pub struct Text<'a> {
 
 impl<'a> Text<'a> {
     /// Begins a mechanism.
-    pub fn new(view: View<'a>, moving: bool) -> Self {
+    pub fn new(view: View<'a>, variant: Variant) -> Self {
         Self {
             view,
-            moving,
+            variant,
             head: String::new(),
             ground: String::new(),
             bodies: Vec::new(),
@@ -115,7 +125,7 @@ impl<'a> Text<'a> {
     /// jumps.
     pub fn length(&mut self, chance: &mut Chance, value: f64) -> String {
         let length = value * self.view.scale;
-        if !self.moving || chance.between(0.0, 1.0) > 0.3 {
+        if self.variant != Variant::Moving || chance.between(0.0, 1.0) > 0.3 {
             return format!("{length:?}");
         }
         let name = format!("{}p{}", self.view.prefix, self.parameters.len());
@@ -182,7 +192,11 @@ impl<'a> Text<'a> {
     }
 
     /// Adds a body with markers as they are written in the file.
-    pub fn body(&mut self, name: &str, markers: &str, [x, y, phi]: [f64; 3]) {
+    pub fn body(&mut self, name: &str, markers: &str, pose: [f64; 3]) {
+        let [x, y, phi] = match self.variant {
+            Variant::Fixed | Variant::Moving => pose,
+            Variant::Rough => near(name, pose),
+        };
         let ([x, y], phi) = self.placed([x, y], phi);
         let prefix = self.view.prefix;
         self.bodies.push(format!(
@@ -315,4 +329,15 @@ pub fn angle(chance: &mut Chance) -> f64 {
 /// Returns 1 or -1.
 pub fn sign(chance: &mut Chance) -> f64 {
     chance.between(-1.0, 1.0).signum()
+}
+
+/// Returns a pose near that of a body. The body's name decides which, so that it is the same in all
+/// views.
+fn near(name: &str, [x, y, phi]: [f64; 3]) -> [f64; 3] {
+    let seed = name.bytes().fold(1, |seed: u64, byte| {
+        (seed ^ u64::from(byte)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    });
+    let mut chance = Chance::new(seed);
+    let mut off = |most: f64| chance.between(-most, most);
+    [x + off(0.2), y + off(0.2), phi + off(0.7)]
 }

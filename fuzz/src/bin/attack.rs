@@ -1,4 +1,4 @@
-//! Attacks the solver with generated mechanisms: `attack [CASES [SEED [KIND [fixed|moving]]]]`.
+//! Attacks the solver with generated mechanisms: `attack [CASES [SEED [KIND [fixed|moving|rough]]]]`.
 
 #![allow(
     clippy::print_stdout,
@@ -8,6 +8,8 @@
 
 use std::process::ExitCode;
 
+use fuzz::attack::Variant;
+
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let mut number = |default: u64| {
@@ -15,7 +17,7 @@ fn main() -> ExitCode {
         given.map_or(Ok(default), |text| text.parse())
     };
     let (Ok(cases), Ok(seed)) = (number(1000), number(1)) else {
-        eprintln!("usage: attack [CASES [SEED [KIND [fixed|moving]]]]");
+        eprintln!("usage: attack [CASES [SEED [KIND [fixed|moving|rough]]]]");
         return ExitCode::from(2);
     };
     let kind = arguments.next();
@@ -25,19 +27,23 @@ fn main() -> ExitCode {
         if kind.as_deref().is_some_and(|kind| kind != *name) {
             continue;
         }
-        for (moving, lengths) in [(false, "fixed"), (true, "moving")] {
-            if only.as_deref().is_some_and(|only| only != lengths) {
+        for (variant, word, words) in [
+            (Variant::Fixed, "fixed", "fixed lengths"),
+            (Variant::Moving, "moving", "moving lengths"),
+            (Variant::Rough, "rough", "rough estimates"),
+        ] {
+            if only.as_deref().is_some_and(|only| only != word) {
                 continue;
             }
-            let kind = (index, moving);
-            let counts = fuzz::attack::run(kind, seed, cases, |case, words| {
-                println!("{name}, {lengths} lengths, seed {case}: {words}");
+            let kind = (index, variant);
+            let counts = fuzz::attack::run(kind, seed, cases, |case, finding| {
+                println!("{name}, {words}, seed {case}: {finding}");
                 if cases == 1 {
                     println!("{:#?}", fuzz::attack::plain_case(kind, case));
                 }
             });
             let last = seed + cases - 1;
-            println!("{name}, {lengths} lengths, seeds {seed} to {last}: {counts:?}");
+            println!("{name}, {words}, seeds {seed} to {last}: {counts:?}");
             differ += counts.differ;
         }
     }
