@@ -128,3 +128,22 @@ fn loops_behind_cams_close_alike_in_any_order_and_direction() {
 fn an_excavator_moves_alike_far_from_the_origin() {
     try_case("excavator", Variant::Fixed, 304);
 }
+
+/// Without estimates coupled loops have a nearest branch all the same: it was another one at other
+/// scales, in the reverse order and far from the origin.
+#[test]
+fn loops_without_estimates_close_alike() {
+    for (kind, seed) in [
+        ("two_loops_of_cylinders", 120_019),
+        ("two_loops_of_cylinders", 120_027),
+        ("triad", 120_001),
+        ("triad", 120_019),
+        ("ring_of_four", 120_000),
+        ("ring_of_four", 120_009),
+        ("platform", 120_038),
+        ("cam_slide", 120_005),
+        ("cam_slide", 120_012),
+    ] {
+        try_case(kind, Variant::LeftOut, seed);
+    }
+}

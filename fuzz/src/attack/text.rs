@@ -15,6 +15,8 @@ pub enum Variant {
     Moving,
     /// Estimates are up to 0.2 lengths and 0.7 rad off.
     Rough,
+    /// All estimates are at the origin.
+    LeftOut,
 }
 
 /// The law by which the drivers move to their ends.
@@ -196,6 +198,7 @@ impl<'a> Text<'a> {
         let [x, y, phi] = match self.variant {
             Variant::Fixed | Variant::Moving => pose,
             Variant::Rough => near(name, pose),
+            Variant::LeftOut => [0.0; 3],
         };
         let ([x, y], phi) = self.placed([x, y], phi);
         let prefix = self.view.prefix;

@@ -1,4 +1,4 @@
-//! Attacks the solver with generated mechanisms: `attack [CASES [SEED [KIND [fixed|moving|rough]]]]`.
+//! Attacks the solver with generated mechanisms: `attack [CASES [SEED [KIND [fixed|moving|rough|none]]]]`.
 
 #![allow(
     clippy::print_stdout,
@@ -17,7 +17,7 @@ fn main() -> ExitCode {
         given.map_or(Ok(default), |text| text.parse())
     };
     let (Ok(cases), Ok(seed)) = (number(1000), number(1)) else {
-        eprintln!("usage: attack [CASES [SEED [KIND [fixed|moving|rough]]]]");
+        eprintln!("usage: attack [CASES [SEED [KIND [fixed|moving|rough|none]]]]");
         return ExitCode::from(2);
     };
     let kind = arguments.next();
@@ -31,8 +31,11 @@ fn main() -> ExitCode {
             (Variant::Fixed, "fixed", "fixed lengths"),
             (Variant::Moving, "moving", "moving lengths"),
             (Variant::Rough, "rough", "rough estimates"),
+            (Variant::LeftOut, "none", "no estimates"),
         ] {
-            if only.as_deref().is_some_and(|only| only != word) {
+            // Without estimates gears have no nearest branch: asked for only.
+            let is_asked = only.as_deref().map(|only| only == word);
+            if !is_asked.unwrap_or(variant != Variant::LeftOut) {
                 continue;
             }
             let kind = (index, variant);
