@@ -13,7 +13,7 @@ const STARTS_ANYWHERE: usize = 24;
 const FEW_UNKNOWNS: usize = 12;
 /// Largest difference of an unknown from its estimate, in radians and characteristic lengths, at
 /// which a branch found from the estimates is taken for the nearest one.
-const NEAR: f64 = 0.5;
+const NEAR: f64 = 0.25;
 /// Branches whose squared distances from the estimates differ by less than this part are equally
 /// far.
 const EQUALLY_FAR: f64 = 1e-9;
