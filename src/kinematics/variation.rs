@@ -9,8 +9,7 @@
 
 use super::configuration::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
 use crate::mechanism::{
-    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, Number, ParameterId,
-    ProfileAlong, Taylor,
+    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, Number, ProfileAlong, Taylor,
 };
 
 /// A quantity with its first two derivatives in time, each with its change along a direction.
@@ -144,45 +143,39 @@ impl<N: Number> VariedConfiguration<N> {
             q: vec![zero; unknowns],
             axes: vec![axis; bodies],
         };
-        origin.evaluate_numbers(mechanism, coefficients, &|_| zero, &|_| true);
+        let parameters = vec![zero; mechanism.parameters.len()];
+        origin.set_parameters(mechanism, coefficients, &parameters, None);
         origin
     }
 
-    /// Evaluates the numbers in the relations again that use parameters which have changed.
-    /// Allocates nothing.
+    /// Evaluates the numbers in the relations for these parameters, or only those numbers that use
+    /// parameters which have `changed`. Allocates nothing.
     pub(super) fn set_parameters(
         &mut self,
         mechanism: &Mechanism,
         coefficients: &[Coefficient],
-        parameter: &impl Fn(ParameterId) -> N,
-        has_changed: &impl Fn(ParameterId) -> bool,
+        parameters: &[N],
+        changed: Option<&[bool]>,
     ) {
-        let uses_changed = |expression: &Expression| expression.parameters().any(has_changed);
-        self.evaluate_numbers(mechanism, coefficients, parameter, &uses_changed);
-    }
-
-    /// Evaluates those numbers in the relations whose expressions are chosen.
-    fn evaluate_numbers(
-        &mut self,
-        mechanism: &Mechanism,
-        coefficients: &[Coefficient],
-        parameter: &impl Fn(ParameterId) -> N,
-        is_chosen: &impl Fn(&Expression) -> bool,
-    ) {
+        let evaluated = |expression: &Expression| {
+            let mut used = expression.parameters();
+            let is_stale = changed.is_none_or(|changed| used.any(|p| changed[p.index()]));
+            is_stale.then(|| evaluate(expression, parameters))
+        };
         for (frame, marker) in self.frames.iter_mut().zip(&mechanism.markers) {
             for (s, expression) in frame.position.iter_mut().zip(&marker.position) {
-                if is_chosen(expression) {
-                    *s = evaluate(expression, parameter);
+                if let Some(value) = evaluated(expression) {
+                    *s = value;
                 }
             }
-            if is_chosen(&marker.angle) {
-                frame.angle = evaluate(&marker.angle, parameter);
-                frame.axis = direction(frame.angle);
+            if let Some(angle) = evaluated(&marker.angle) {
+                frame.angle = angle;
+                frame.axis = direction(angle);
             }
         }
         for (value, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
-            if is_chosen(&coefficient.expression) {
-                *value = evaluate(&coefficient.expression, parameter);
+            if let Some(now) = evaluated(&coefficient.expression) {
+                *value = now;
             }
         }
     }
@@ -291,11 +284,9 @@ impl<N: Moving> VariedMechanism<'_, N> {
 }
 
 /// Returns the value of an expression without time.
-pub(super) fn evaluate<N: Number>(
-    expression: &Expression,
-    parameter: &impl Fn(ParameterId) -> N,
-) -> N {
-    expression.evaluate(parameter, N::constant(0.0))
+#[inline(never)]
+pub(super) fn evaluate<N: Number>(expression: &Expression, parameters: &[N]) -> N {
+    expression.evaluate(&|p| parameters[p.index()], N::constant(0.0))
 }
 
 /// Returns the unit vector at an angle \[rad\].

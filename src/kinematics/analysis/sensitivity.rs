@@ -228,7 +228,7 @@ impl State {
             .zip(rates.acceleration())
             .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
         let mut at = system.varied();
-        system.vary_parameters(&mut at, &parameter, &|_| true);
+        system.vary_parameters(&mut at, &parameters, None);
         for (column, motion) in motion.enumerate() {
             let [value, first, second] = motion.map(Dual::constant);
             at.set_coordinate(column, Varied::new(value, [first, second]));
@@ -242,7 +242,7 @@ impl State {
             .equations()
             .iter()
             .map(|equation| match &equation.target {
-                Target::Constant(value) => evaluate(value, &parameter),
+                Target::Constant(value) => evaluate(value, &parameters),
                 Target::Driver(driver) => drivers[driver.index()],
             })
             .collect();

@@ -243,8 +243,7 @@ impl Starts {
             Some(Stage::Near | Stage::Anywhere) => self.is_small,
             None => false,
         };
-        let is_near = self.found[place].distance.largest <= NEAR;
-        if may_find_nearer && !is_near && !self.is_linear(state) {
+        if may_find_nearer && self.found[place].distance.largest > NEAR {
             return None;
         }
         let branch = &mut self.found[place];
@@ -260,10 +259,11 @@ impl Starts {
         state: &mut BlockState<'_>,
         estimate: &[f64],
     ) -> Option<Tried> {
-        if !self.found.is_empty() && self.is_linear(state) {
-            return None;
-        }
         let stage = self.next?;
+        if !self.found.is_empty() && self.is_linear(state) {
+            self.next = None;
+            return Some(Tried::default());
+        }
         let is_quick = matches!(self.effort, SearchEffort::Quick);
         self.next = match stage {
             Stage::Newton => Some(Stage::Estimates),
@@ -272,52 +272,52 @@ impl Starts {
             Stage::Near if !is_quick => Some(Stage::Anywhere),
             Stage::Bounds | Stage::Near | Stage::Anywhere => None,
         };
-        let mut tried = Tried::default();
-        let mut note = |starts: &mut Self, state: &BlockState<'_>, closed| {
-            tried.starts += 1;
-            match closed {
-                Ok(correction) => starts.note(state, correction),
-                Err(Rejected) => tried.failures += usize::from(matches!(stage, Stage::Bounds)),
-            }
+        let attempts = match stage {
+            Stage::Newton | Stage::Estimates => 0..1,
+            Stage::Bounds => return Some(self.ask_bounds(block, state, estimate)),
+            Stage::Near => 1..STARTS,
+            Stage::Anywhere => 0..self.starts_anywhere(),
         };
-        match stage {
-            Stage::Newton => {
-                let closed = self.part.close_by_newton(block, state, estimate);
-                note(self, state, closed);
-            }
-            Stage::Estimates => {
-                let closed = self.part.attempt(block, state, estimate, 0);
-                note(self, state, closed);
-            }
-            Stage::Bounds => {
-                let LeastSquares { rows, columns, .. } = &self.part;
-                let all = all_branches(rows, columns, state, estimate);
-                match &all.branches {
-                    Some(listed) => {
-                        for unknowns in listed {
-                            self.part.write(state, unknowns);
-                            let closed = block.close(state, Limits::ASSEMBLY);
-                            note(self, state, closed);
-                        }
-                    }
-                    None => self.next = Some(Stage::Near),
-                }
-                self.all = Some(all);
-            }
-            Stage::Near => {
-                for attempt in 1..STARTS {
-                    let closed = self.part.attempt(block, state, estimate, attempt);
-                    note(self, state, closed);
-                }
-            }
-            Stage::Anywhere => {
-                for attempt in 0..self.starts_anywhere() {
-                    let closed = self.part.attempt_anywhere(block, state, estimate, attempt);
-                    note(self, state, closed);
-                }
+        let starts = attempts.len();
+        for attempt in attempts {
+            let closed = match stage {
+                Stage::Newton => self.part.close_by_newton(block, state, estimate),
+                Stage::Anywhere => self.part.attempt_anywhere(block, state, estimate, attempt),
+                _ => self.part.attempt(block, state, estimate, attempt),
+            };
+            if let Ok(correction) = closed {
+                self.note(state, correction);
             }
         }
-        Some(tried)
+        Some(Tried {
+            starts,
+            failures: 0,
+        })
+    }
+
+    /// Looks for the branches that bounds list.
+    fn ask_bounds(
+        &mut self,
+        block: &mut dyn SolveBlock,
+        state: &mut BlockState<'_>,
+        estimate: &[f64],
+    ) -> Tried {
+        let mut tried = Tried::default();
+        let LeastSquares { rows, columns, .. } = &self.part;
+        let all = all_branches(rows, columns, state, estimate);
+        if all.branches.is_none() {
+            self.next = Some(Stage::Near);
+        }
+        for unknowns in all.branches.iter().flatten() {
+            self.part.write(state, unknowns);
+            tried.starts += 1;
+            match block.close(state, Limits::ASSEMBLY) {
+                Ok(correction) => self.note(state, correction),
+                Err(Rejected) => tried.failures += 1,
+            }
+        }
+        self.all = Some(all);
+        tried
     }
 
     /// Returns the number of starts anywhere.

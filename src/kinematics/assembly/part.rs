@@ -44,12 +44,11 @@ impl LeastSquares {
         a: &[f64],
         b: &[f64],
     ) -> bool {
-        let size = state.at.size();
-        let mut columns = self.columns.iter().zip(a).zip(b);
-        columns.all(|((&column, &a), &b)| is_same(state.system, size, column, a, b))
+        self.distance(state, [a, b], false).largest < SAME
     }
 
     /// Returns the distance between two places, of angles with whole turns or without.
+    #[inline(never)]
     pub(in crate::kinematics) fn distance(
         &self,
         state: &BlockState<'_>,
@@ -78,18 +77,19 @@ impl LeastSquares {
         estimate: &[f64],
     ) -> Vec<f64> {
         let bodies = state.system.mechanism().bodies.len();
-        let own = || {
-            let own = self.columns.iter().map(|column| column / 3);
-            own.filter(|body| *body < bodies)
-        };
-        let before: Vec<_> = own().map(|body| state.at.frames()[body]).collect();
-        for column in own().flat_map(|body| 3 * body..3 * body + 3) {
-            state.at.set_coordinate(column, estimate[column]);
+        let mut before = Vec::new();
+        let own = self.columns.iter().map(|column| column / 3);
+        for body in own.filter(|body| *body < bodies) {
+            before.push((body, state.at.frames()[body]));
+            for (k, &guess) in estimate[3 * body..3 * body + 3].iter().enumerate() {
+                state.at.set_coordinate(3 * body + k, guess);
+            }
         }
         self.start_off(state, estimate, |_| 0.0);
         let unknowns = self.read(state);
-        for (body, before) in own().zip(before) {
-            state.at.frames_mut()[body] = before;
+        // The first place noted of a body is the one that it had.
+        for (body, place) in before.into_iter().rev() {
+            state.at.frames_mut()[body] = place;
         }
         unknowns
     }

@@ -23,8 +23,9 @@ pub(in crate::kinematics) struct ParameterBounds {
     pub(in crate::kinematics) moving: bool,
     /// All parameters as functions of the place on the path.
     pub(in crate::kinematics) parameters: Vec<Enclosed>,
-    /// The same as functions of the place on the sub-step.
+    /// The same as functions of the place on the sub-step, and at rest anywhere on it.
     local: Vec<Enclosed>,
+    resting: Vec<Enclosed>,
     /// Those that move, or that differ from the sub-step before: numbers without them stay as they
     /// are.
     changed: Vec<bool>,
@@ -164,6 +165,7 @@ impl ParameterBounds {
             moving: false,
             parameters: vec![Enclosed::constant(0.0); parameters],
             local: vec![Enclosed::constant(0.0); parameters],
+            resting: vec![Enclosed::constant(0.0); parameters],
             changed: vec![false; parameters],
             along: system.varied(),
             around: system.varied(),
@@ -220,8 +222,9 @@ impl ParameterBounds {
         }
         mechanism.derive_parameters(&mut self.parameters);
         let h = Interval::point(end) - Interval::point(start);
-        let locals = self.local.iter_mut().zip(&mut self.changed);
-        for ((local, changed), parameter) in locals.zip(&self.parameters) {
+        let locals = self.local.iter_mut().zip(&mut self.resting);
+        let locals = locals.zip(&mut self.changed).zip(&self.parameters);
+        for (((local, resting), changed), parameter) in locals {
             let now = Enclosed::new(
                 parameter.value,
                 [
@@ -232,15 +235,12 @@ impl ParameterBounds {
             );
             *changed = now.varies() || now != *local;
             *local = now;
+            *resting = Enclosed::fixed(now.value);
         }
+        system.vary_parameters(&mut self.along, &self.local, Some(&self.changed));
+        system.vary_parameters(&mut self.around, &self.resting, Some(&self.changed));
         let local = &self.local;
         let changed = |p: ParameterId| self.changed[p.index()];
-        system.vary_parameters(&mut self.along, &|p| local[p.index()], &changed);
-        system.vary_parameters(
-            &mut self.around,
-            &|p| Enclosed::fixed(local[p.index()].value),
-            &changed,
-        );
         let mut finite = true;
         for (index, change) in self.markers.iter_mut().enumerate() {
             let marker = &mechanism.markers[index];
@@ -263,7 +263,7 @@ impl ParameterBounds {
             if let Target::Constant(target) = &equation.target
                 && target.parameters().any(changed)
             {
-                let target = evaluate(target, &|p| local[p.index()]);
+                let target = evaluate(target, local);
                 row.target = Change::of([target], [targets.constant(index)]);
             }
             finite &= row.target.is_finite();

@@ -231,16 +231,16 @@ impl System {
         VariedConfiguration::new(&self.mechanism, coefficients, self.unknowns())
     }
 
-    /// Evaluates the numbers in the relations again that use parameters which have changed.
-    /// Allocates nothing.
+    /// Evaluates the numbers in the relations for these parameters, or only those numbers that use
+    /// parameters which have `changed`. Allocates nothing.
     pub(in crate::kinematics) fn vary_parameters<N: Number>(
         &self,
         at: &mut VariedConfiguration<N>,
-        parameter: &impl Fn(ParameterId) -> N,
-        has_changed: &impl Fn(ParameterId) -> bool,
+        parameters: &[N],
+        changed: Option<&[bool]>,
     ) {
         let coefficients = &self.joint_parts.coefficients;
-        at.set_parameters(&self.mechanism, coefficients, parameter, has_changed);
+        at.set_parameters(&self.mechanism, coefficients, parameters, changed);
     }
 
     /// Makes targets; [`set_parameters`](Self::set_parameters) gives them their values.

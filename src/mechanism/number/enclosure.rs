@@ -46,6 +46,8 @@ pub(in crate::mechanism) fn expand(
 
 impl Jet3<Interval> {
     /// Returns the bounds that enclose both, order by order.
+    // Inlined, it would be many times in the libraries of FMUs.
+    #[inline(never)]
     pub(in crate::mechanism) fn hull(self, other: Self) -> Self {
         self.pairwise(other, |x, y| Interval::hull([x, y]))
     }
