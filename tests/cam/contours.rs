@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use biela::kinematics::{Path, Rates, Reason};
+use biela::kinematics::{Path, Rates, Reason, Solver};
 use biela::mechanism::Jet;
 
 use crate::common::{assembled, parse, straight_to};
@@ -18,6 +18,17 @@ const PIECES: [&str; 5] = [
     "0.05 + 0.001*(mod(theta, pi)/pi*(1 - mod(theta, pi)/pi))^2",
 ];
 
+/// Turns a cam to an angle, in a step that is proved and has few sub-steps.
+fn turn_to(solver: &mut Solver, path: &mut Path, angle: f64, what: &str) {
+    straight_to(solver, path, angle);
+    let progress = solver.track(path);
+    let progress = progress.unwrap_or_else(|blocked| panic!("{what}: {blocked:?}"));
+    assert_eq!(progress.checked, 0, "{what}");
+    assert!(progress.substeps < 100, "{what}: {progress:?}");
+    // Some hundred roundings of lengths and slopes.
+    assert!(solver.residual() < 1e-13, "{what}");
+}
+
 /// A follower runs over the switches of such contours, in large steps and in small ones, both ways.
 /// On the knife edge, which is above the axle, stands R(90° − u).
 #[test]
@@ -32,15 +43,8 @@ fn contours_of_smooth_pieces_are_run_over() {
                 let home = solver.pose().clone();
                 for step in (1..=2 * steps).chain((0..2 * steps).rev()) {
                     let angle = start + TAU * f64::from(step) / f64::from(steps);
-                    straight_to(&solver, &mut path, angle);
-                    let progress = solver.track(&path);
-                    let progress = progress.unwrap_or_else(|blocked| {
-                        panic!("{name}, {profile}, {step} of {steps}: {blocked:?}")
-                    });
-                    assert_eq!(progress.checked, 0, "{name}, {profile}, {step} of {steps}");
-                    assert!(progress.substeps < 100, "{name}, {profile}: {progress:?}");
-                    // Some hundred roundings of lengths and slopes.
-                    assert!(solver.residual() < 1e-13, "{name}, {profile}");
+                    let what = format!("{name}, {profile}, {step} of {steps}");
+                    turn_to(&mut solver, &mut path, angle, &what);
                     if name == "cam_knife" {
                         let theta = (TAU / 4.0 - angle).rem_euclid(TAU);
                         let height = follower_height(&solver, &mechanism);
@@ -173,15 +177,8 @@ fn contours_by_motion_laws_are_run_over() {
             let start = solver.pose().drivers[0];
             for step in (1..=2 * steps).chain((0..2 * steps).rev()) {
                 let angle = start + 0.1 + TAU * f64::from(step) / f64::from(steps);
-                straight_to(&solver, &mut path, angle);
-                let progress = solver.track(&path);
-                let progress = progress.unwrap_or_else(|blocked| {
-                    panic!("{name}, {law}, {step} of {steps}: {blocked:?}")
-                });
-                assert_eq!(progress.checked, 0, "{name}, {law}, {step} of {steps}");
-                assert!(progress.substeps < 100, "{name}, {law}: {progress:?}");
-                // Some hundred roundings of lengths and slopes.
-                assert!(solver.residual() < 1e-13, "{name}, {law}");
+                let what = format!("{name}, {law}, {step} of {steps}");
+                turn_to(&mut solver, &mut path, angle, &what);
                 if name != "cam_knife" {
                     continue;
                 }
