@@ -284,6 +284,7 @@ impl<N: Moving> VariedMechanism<'_, N> {
 }
 
 /// Returns the value of an expression without time.
+// Inlined, it would be many times in the libraries of FMUs.
 #[inline(never)]
 pub(super) fn evaluate<N: Number>(expression: &Expression, parameters: &[N]) -> N {
     expression.evaluate(&|p| parameters[p.index()], N::constant(0.0))

@@ -154,6 +154,13 @@ pub struct Marker {
     pub angle: Expression,
 }
 
+impl Marker {
+    /// Returns all its numbers: x', y' and the angle.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = &Expression> {
+        self.position.iter().chain([&self.angle])
+    }
+}
+
 /// Named set of constraints between two markers.
 #[derive(Clone, Debug)]
 pub struct Joint {

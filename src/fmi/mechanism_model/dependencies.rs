@@ -255,7 +255,7 @@ impl<'a> DependencyTable<'a> {
             // Points of forces and reactions.
             for marker in &body.markers {
                 let marker = &mechanism.markers[marker.index()];
-                for expression in marker.position.iter().chain([&marker.angle]) {
+                for expression in marker.numbers() {
                     origins.add_expression(mechanism, expression);
                 }
             }

@@ -44,11 +44,12 @@ impl LeastSquares {
         a: &[f64],
         b: &[f64],
     ) -> bool {
-        self.distance(state, [a, b], false).largest < SAME
+        let size = state.at.size();
+        let mut columns = self.columns.iter().zip(a).zip(b);
+        columns.all(|((&column, &a), &b)| is_same(state.system, size, column, a, b))
     }
 
     /// Returns the distance between two places, of angles with whole turns or without.
-    #[inline(never)]
     pub(in crate::kinematics) fn distance(
         &self,
         state: &BlockState<'_>,

@@ -14,7 +14,7 @@ use crate::kinematics::constraint::partial;
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{Equation, System, Target, Targets};
 use crate::kinematics::variation::{Enclosed, VariedConfiguration, VariedMechanism, evaluate};
-use crate::mechanism::{Interval, Marker, MarkerId, Number, ParameterId};
+use crate::mechanism::{Expression, Interval, Marker, MarkerId, Number, ParameterId};
 
 /// Bounds of the numbers in the equations over a sub-step.
 #[derive(Debug, Default)]
@@ -244,8 +244,8 @@ impl ParameterBounds {
         let mut finite = true;
         for (index, change) in self.markers.iter_mut().enumerate() {
             let marker = &mechanism.markers[index];
-            let mut numbers = marker.position.iter().chain([&marker.angle]);
-            if numbers.any(|number| number.parameters().any(changed)) {
+            let mut used = marker.numbers().flat_map(Expression::parameters);
+            if used.any(changed) {
                 let id = MarkerId(index);
                 let (point, turned) = at.local(id);
                 let (position, angle) = self.along.local(id);
