@@ -93,9 +93,9 @@ fn a_cycle_of_set_step_and_get_allocates_nothing() {
         "andrews",
     ] {
         let mut instance = silent(name);
-        let outputs: Vec<u32> = (0..instance.variables().len() as u32)
+        let outputs: Vec<u32> = (1..=instance.variables().len() as u32)
             .filter(|vr| {
-                let variable = &instance.variables()[*vr as usize];
+                let variable = &instance.variables()[*vr as usize - 1];
                 matches!(variable.kind, biela::fmi::Kind::Real { .. })
             })
             .collect();
@@ -108,10 +108,10 @@ fn a_cycle_of_set_step_and_get_allocates_nothing() {
                 let t = 0.01 * f64::from(step);
                 // The three inputs of the driver, a derivative, a large step now and then.
                 let angle = 0.6 + t + if step % 10 == 0 { 2.5 } else { 0.0 };
-                instance.set_real(&[0, 1, 2], &[angle, 1.0, 0.1]).unwrap();
+                instance.set_real(&[1, 2, 3], &[angle, 1.0, 0.1]).unwrap();
                 if step % 3 == 0 {
                     instance
-                        .set_real_input_derivatives(&[0], &[1], &[1.0])
+                        .set_real_input_derivatives(&[1], &[1], &[1.0])
                         .unwrap();
                 }
                 // Reading between setting and stepping, too.
@@ -140,9 +140,9 @@ fn steps_and_events_of_fmi_3_allocate_nothing() {
                 ..CoSimulation::default()
             };
             instance.agree(agreed).unwrap();
-            let references: Vec<u32> = (0..instance.variables().len() as u32)
+            let references: Vec<u32> = (1..=instance.variables().len() as u32)
                 .filter(|vr| {
-                    let variable = &instance.variables()[*vr as usize];
+                    let variable = &instance.variables()[*vr as usize - 1];
                     variable.kind.is_real()
                 })
                 .collect();
@@ -152,7 +152,7 @@ fn steps_and_events_of_fmi_3_allocate_nothing() {
             let count = allocations(|| {
                 for step in 0..50 {
                     let t = 0.01 * f64::from(step);
-                    instance.set_real(&[0, 1, 2], &[0.6 + t, 1.0, 0.1]).unwrap();
+                    instance.set_real(&[1, 2, 3], &[0.6 + t, 1.0, 0.1]).unwrap();
                     instance.get_real(&references, &mut values).unwrap();
                     instance.new_discrete_states().unwrap();
                     instance.enter_step_mode().unwrap();
@@ -174,7 +174,8 @@ fn a_tunable_table_allocates_nothing() {
         .variables()
         .iter()
         .position(|variable| variable.name == "lift")
-        .expect("it has one") as u32;
+        .expect("it has one");
+    let lift = biela::fmi::value_reference(lift);
     instance.setup_experiment(0.0, None).unwrap();
     instance.enter_initialization_mode().unwrap();
     instance.exit_initialization_mode().unwrap();

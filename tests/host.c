@@ -220,7 +220,7 @@ static fmi2Component component(void)
 /* What no logger may do: calls that read, change and free the instance. */
 static void call_back(fmi2Component c)
 {
-    const fmi2ValueReference first = 0;
+    const fmi2ValueReference first = 1;
     fmi2Real value = 7.0;
     fmi2Status statuses[] = {
         fmu.GetReal(c, &first, 1, &value),
@@ -577,7 +577,7 @@ static void lives(void)
     long long n = integer(field());
     char *guid = unescape(field()), *uri = unescape(field());
     fmi2CallbackFunctions callbacks = {.allocateMemory = calloc, .freeMemory = free};
-    const fmi2ValueReference first = 0;
+    const fmi2ValueReference first = 1;
     const fmi2Integer order = 1;
     int worst = fmi2OK;
     for (; n > 0; n--) {
@@ -628,7 +628,7 @@ struct runner {
 static void *run(void *argument)
 {
     struct runner *runner = argument;
-    const fmi2ValueReference input = 0;
+    const fmi2ValueReference input = 1;
     for (int k = 0; k < runner->steps; k++) {
         fmi2Real t = 0.1 * k, value = 0.35 + 0.01 * t;
         fmu.SetReal(runner->component, &input, 1, &value);
@@ -671,7 +671,7 @@ static void modes(void)
     static fmi2Real times[MOST_STEPS], inputs[MOST_STEPS];
     static fmi2Real values[MOST_STEPS][LONGEST_LIST], first[MOST_STEPS][LONGEST_LIST];
     fmi2ValueReference outputs[LONGEST_LIST];
-    const fmi2ValueReference input = 0;
+    const fmi2ValueReference input = 1;
     char *guid = unescape(field()), *uri = unescape(field());
     size_t n = size(field());
     value_references(outputs);

@@ -39,8 +39,8 @@
     X(SetInt64, (instance, NULL, 0, NULL, 0)) X(SetUInt64, (instance, NULL, 0, NULL, 0))           \
     X(SetBoolean, (instance, NULL, 0, NULL, 0)) X(SetString, (instance, NULL, 0, NULL, 0))         \
     X(SetBinary, (instance, NULL, 0, NULL, NULL, 0)) X(SetClock, (instance, NULL, 0, NULL))        \
-    X(GetNumberOfVariableDependencies, (instance, 0, &size))                                       \
-    X(GetVariableDependencies, (instance, 0, NULL, NULL, NULL, NULL, 0))                           \
+    X(GetNumberOfVariableDependencies, (instance, 1, &size))                                       \
+    X(GetVariableDependencies, (instance, 1, NULL, NULL, NULL, NULL, 0))                           \
     X(GetFMUState, (instance, &state)) X(SetFMUState, (instance, other))                           \
     X(FreeFMUState, (instance, &none)) X(SerializedFMUStateSize, (instance, other, &size))         \
     X(SerializeFMUState, (instance, other, bytes, other_size))                                     \
@@ -278,7 +278,7 @@ static void states(void)
 
 /* ---- event mode ---- */
 
-/* Sets the input 0 in event mode and prints the output `reference` before and after a step. */
+/* Sets the input 1 in event mode and prints the output `reference` before and after a step. */
 static void events(fmi3ValueReference reference)
 {
     fmi3Instance instance = co_simulation(1, 1, NULL, 0, NULL, NULL);
@@ -287,7 +287,7 @@ static void events(fmi3ValueReference reference)
         fmi3Boolean update, terminate, a, b, c, early, needed;
         fmi3Float64 time;
         if (n > 0) check(fmu.EnterEventMode(instance), "EnterEventMode");
-        set(instance, 0, 0.4 + 0.05 * n);
+        set(instance, 1, 0.4 + 0.05 * n);
         printf("%.17g", get(instance, reference));
         check(fmu.UpdateDiscreteStates(instance, &update, &terminate, &a, &b, &c, &time), "update");
         if (update || terminate || a || b || c) fail("UpdateDiscreteStates", "there is nothing");
@@ -319,21 +319,21 @@ static void set_inputs(fmi3InstanceEnvironment environment, fmi3Float64 time,
     (void)early_return, (void)early_return_time;
     if (environment != &update) fail("environment", "another one");
     if (!set_requested || !get_allowed || !finished || can_return_early) fail("flags", "wrong");
-    (void)get(update.instance, 0);
+    (void)get(update.instance, 1);
     /* Not freed while the step waits. */
     fmu.FreeInstance(update.instance);
-    set(update.instance, 0, swing(time));
-    set(update.instance, 1, 2 * cos(2 * time));
-    set(update.instance, 2, -4 * sin(2 * time));
+    set(update.instance, 1, swing(time));
+    set(update.instance, 2, 2 * cos(2 * time));
+    set(update.instance, 3, -4 * sin(2 * time));
     update.points++;
 }
 
 /* Prints time, position, velocity and acceleration of three consecutive outputs after each step. */
 static void intermediate(const fmi3ValueReference outputs[3])
 {
-    const fmi3ValueReference required[] = {0, 1, 2};
+    const fmi3ValueReference required[] = {1, 2, 3};
     update.instance = co_simulation(0, 0, required, COUNT(required), &update, set_inputs);
-    set(update.instance, 0, swing(0));
+    set(update.instance, 1, swing(0));
     initialize(update.instance);
     for (int n = 0; n < 16; n++) {
         fmi3Boolean needed, terminate, early;
@@ -352,21 +352,21 @@ static void intermediate(const fmi3ValueReference outputs[3])
 
 /* ---- early return ---- */
 
-/* Drives the input 0 from `start` with `velocity` along its own curve and prints where the steps
+/* Drives the input 1 from `start` with `velocity` along its own curve and prints where the steps
  * end early: time, whether an event is to be handled, whether the simulation must end. */
 static void early(int with_events, fmi3ValueReference extrapolation, double start, double velocity)
 {
     fmi3Instance instance = co_simulation(with_events, 1, NULL, 0, NULL, NULL);
     const fmi3Int64 taylor = 2;
     check(fmu.SetInt64(instance, &extrapolation, 1, &taylor, 1), "SetInt64");
-    set(instance, 0, start);
+    set(instance, 1, start);
     initialize(instance);
     if (with_events) check(fmu.EnterStepMode(instance), "EnterStepMode");
     fmi3Float64 time = 0;
     for (int n = 0; n < 100; n++) {
         fmi3Boolean needed, terminate, early;
-        set(instance, 0, start + velocity * time);
-        set(instance, 1, velocity);
+        set(instance, 1, start + velocity * time);
+        set(instance, 2, velocity);
         check(fmu.DoStep(instance, time, 0.2, fmi3True, &needed, &terminate, &early, &time),
               "DoStep");
         if (early) printf("%.17g %d %d\n", time, needed, terminate);

@@ -4,7 +4,7 @@ mod common;
 
 use std::f64::consts::{PI, TAU};
 
-use biela::fmi::{Category, Error, Failure, Interface, State};
+use biela::fmi::{Category, Error, Failure, Interface, State, value_reference};
 use common::log::Heard;
 use common::{Instance, instance_of, parse, shipped};
 
@@ -29,9 +29,8 @@ fn read(instance: &mut Instance, names: &[&str]) -> Vec<f64> {
     let references: Vec<u32> = names
         .iter()
         .map(|name| {
-            list.iter()
-                .position(|v| v.name == *name)
-                .expect("an output") as u32
+            let place = list.iter().position(|v| v.name == *name);
+            value_reference(place.expect("an output"))
         })
         .collect();
     let mut values = vec![0.0; names.len()];
@@ -46,15 +45,15 @@ fn read(instance: &mut Instance, names: &[&str]) -> Vec<f64> {
 fn a_discarded_step_leaves_pose_and_rates_of_the_last_communication_point() {
     let mut instance = running("tlv");
     for (step, length) in [0.36, 0.38, 0.41].into_iter().enumerate() {
-        instance.set_real(&[0], &[length]).unwrap();
+        instance.set_real(&[1], &[length]).unwrap();
         instance.do_step(0.1 * step as f64, 0.1).unwrap();
     }
     let names = ["arm.phi", "arm.omega", "arm.alpha"];
     let before = read(&mut instance, &names);
     assert!(before[1] > 0.0);
-    instance.set_real(&[0, 1], &[0.5, 7.0]).unwrap();
+    instance.set_real(&[1, 2], &[0.5, 7.0]).unwrap();
     assert_ne!(read(&mut instance, &names), before);
-    instance.set_real(&[0], &[0.9]).unwrap();
+    instance.set_real(&[1], &[0.9]).unwrap();
     let error = instance.do_step(0.3, 0.1).expect_err("0.9 m is too long");
     assert!(matches!(error, Error::Model(Failure::Discarded(_))));
     assert_eq!(instance.state(), State::StepFailed);
@@ -65,7 +64,7 @@ fn a_discarded_step_leaves_pose_and_rates_of_the_last_communication_point() {
 #[test]
 fn a_step_that_would_never_end_is_discarded() {
     let mut instance = running("four_bar");
-    instance.set_real(&[0], &[1e12]).unwrap();
+    instance.set_real(&[1], &[1e12]).unwrap();
     let error = instance.do_step(0.0, 0.1).expect_err("that is too far");
     assert!(error.to_string().contains("more sub-steps"), "{error}");
 }
@@ -75,12 +74,12 @@ fn a_step_that_would_never_end_is_discarded() {
 fn a_step_far_too_short_is_no_singular_position() {
     let mut instance = running("tlv");
     for (step, length) in [0.36, 0.361].into_iter().enumerate() {
-        instance.set_real(&[0], &[length]).unwrap();
+        instance.set_real(&[1], &[length]).unwrap();
         instance.do_step(1e-300 * step as f64, 1e-300).unwrap();
     }
     let variables = instance.variables();
     let alpha = variables.iter().position(|v| v.name == "arm.alpha");
-    let alpha = alpha.expect("an output") as u32;
+    let alpha = value_reference(alpha.expect("an output"));
     let error = instance
         .get_real(&[alpha], &mut [0.0])
         .expect_err("endless");
@@ -99,9 +98,9 @@ fn the_last_successful_time_of_a_moving_input_is_where_it_stopped() {
     for step in 0.. {
         let t = 0.4 * f64::from(step);
         let off = if step % 2 == 0 { 1e-9 } else { 0.0 };
-        instance.set_real(&[0], &[0.35 + 0.2 * t + off]).unwrap();
+        instance.set_real(&[1], &[0.35 + 0.2 * t + off]).unwrap();
         instance
-            .set_real_input_derivatives(&[0], &[1], &[0.2])
+            .set_real_input_derivatives(&[1], &[1], &[0.2])
             .unwrap();
         if instance.do_step(t, 0.4).is_err() {
             break;
@@ -116,7 +115,7 @@ fn the_last_successful_time_of_a_moving_input_is_where_it_stopped() {
 fn a_dead_point_is_told_with_driver_value_limit_and_bodies() {
     let heard = Heard::default();
     let mut instance = running_with("tlv", &heard);
-    instance.set_real(&[0], &[0.7]).unwrap();
+    instance.set_real(&[1], &[0.7]).unwrap();
     instance.do_step(0.0, 0.1).expect_err("0.7 m is too long");
     assert_eq!(
         heard.take(Category::Warning),
@@ -156,7 +155,7 @@ fn a_dead_point_is_not_told_with_drivers_of_other_bodies() {
     let mechanism = parse(&format!("{triangle}{wheels}"));
     let mut instance = started(heard.instance(mechanism, Interface::CoSimulation, true));
     // The side's length and the fan's angle.
-    instance.set_real(&[0, 3], &[0.7, 2.0]).unwrap();
+    instance.set_real(&[1, 4], &[0.7, 2.0]).unwrap();
     instance.do_step(0.0, 0.1).expect_err("0.7 m is too long");
     let [message] = &heard.take(Category::Warning)[..] else {
         panic!("one warning")
@@ -179,7 +178,7 @@ fn an_approach_to_a_dead_point_is_warned_of_once() {
         .into_iter()
         .enumerate()
     {
-        instance.set_real(&[0], &[0.65 - off]).unwrap();
+        instance.set_real(&[1], &[0.65 - off]).unwrap();
         instance.do_step(step as f64, 1.0).unwrap();
         let messages = heard.take(Category::Warning);
         warned.push(messages.len());
@@ -203,7 +202,7 @@ fn a_change_point_is_an_event_not_a_warning() {
     let mut passed = 0;
     for step in 1..=500 {
         let angle = start + TAU * f64::from(step) / 500.0;
-        instance.set_real(&[0], &[angle]).unwrap();
+        instance.set_real(&[1], &[angle]).unwrap();
         instance.do_step(f64::from(step - 1), 1.0).unwrap();
         let [q] = read(&mut instance, &["follower.phi"])[..] else {
             panic!("one output was asked for")
@@ -251,7 +250,7 @@ fn references_in_a_row_read_as_each_by_itself() {
         let outputs = bodies.map_or(String::new(), |list| format!("bodies = [{list}]\n"));
         let text = text.replace("[outputs]\n", &format!("[outputs]\n{outputs}"));
         let mut instance = started(instance_of(parse(&text), Interface::CoSimulation));
-        let reals: Vec<_> = instance.variables().iter().zip(0_u32..).collect();
+        let reals: Vec<_> = instance.variables().iter().zip(1_u32..).collect();
         let reals: Vec<_> = reals
             .into_iter()
             .filter(|(variable, _)| variable.kind.is_real())

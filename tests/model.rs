@@ -250,7 +250,7 @@ fn running(interface: Interface) -> (Instance<Integrator>, Log) {
     let mut instance = Instance::new(Integrator::new(interface), Box::new(log.clone()), false);
     let ready = instance
         .setup_experiment(1.0, Some(100.0))
-        .and_then(|()| instance.set_real(&[1], &[2.0]))
+        .and_then(|()| instance.set_real(&[2], &[2.0]))
         .and_then(|()| instance.enter_initialization_mode())
         .and_then(|()| instance.exit_initialization_mode());
     ready.expect("legal");
@@ -259,22 +259,22 @@ fn running(interface: Interface) -> (Instance<Integrator>, Log) {
 
 fn y(instance: &mut Instance<Integrator>) -> Result<f64, Error> {
     let mut value = [0.0];
-    instance.get_real(&[2], &mut value).map(|()| value[0])
+    instance.get_real(&[3], &mut value).map(|()| value[0])
 }
 
 #[test]
 fn it_steps_until_it_is_full() {
     let (mut instance, log) = running(Interface::CoSimulation);
-    instance.set_real(&[0], &[1.5]).unwrap();
+    instance.set_real(&[1], &[1.5]).unwrap();
     instance.do_step(1.0, 2.0).unwrap();
     assert_eq!(y(&mut instance), Ok(6.0));
-    let slope: Vec<_> = instance.output_derivatives(&[2], &[1]).unwrap().collect();
+    let slope: Vec<_> = instance.output_derivatives(&[3], &[1]).unwrap().collect();
     assert_eq!(slope, [3.0]);
-    let none = instance.output_derivatives(&[2], &[2]).map(|_| ());
+    let none = instance.output_derivatives(&[3], &[2]).map(|_| ());
     assert_eq!(none.unwrap_err().status(), Status::Error);
     // The state machine and the checks of arguments are the layer's.
     assert!(matches!(
-        instance.set_real(&[1], &[3.0]),
+        instance.set_real(&[2], &[3.0]),
         Err(Error::NotSettable { .. })
     ));
     assert!(matches!(
@@ -295,7 +295,7 @@ fn it_steps_until_it_is_full() {
     );
     // Back, and on.
     instance.set_fmu_state(&before).unwrap();
-    instance.set_real(&[0], &[-1.0]).unwrap();
+    instance.set_real(&[1], &[-1.0]).unwrap();
     instance.do_step(3.0, 1.0).unwrap();
     assert_eq!(y(&mut instance), Ok(4.0));
     instance.reset().unwrap();
@@ -308,7 +308,7 @@ fn it_is_asked_at_any_time_in_model_exchange() {
     assert_eq!(instance.state(), State::EventMode);
     instance.new_discrete_states().unwrap();
     instance.enter_continuous_time_mode().unwrap();
-    instance.set_real(&[0], &[1.0]).unwrap();
+    instance.set_real(&[1], &[1.0]).unwrap();
     for (time, expected) in [(3.0, 4.0), (2.0, 2.0), (6.0, 10.0)] {
         instance.set_time(time).unwrap();
         assert_eq!(y(&mut instance), Ok(expected), "at {time}");
@@ -318,7 +318,7 @@ fn it_is_asked_at_any_time_in_model_exchange() {
     // Nothing was committed, so that it is possible to go on otherwise.
     instance.set_time(2.0).unwrap();
     instance.completed_integrator_step().unwrap();
-    instance.set_real(&[0], &[0.0]).unwrap();
+    instance.set_real(&[1], &[0.0]).unwrap();
     instance.set_time(7.0).unwrap();
     assert_eq!(y(&mut instance), Ok(2.0));
     assert!(matches!(
@@ -330,7 +330,7 @@ fn it_is_asked_at_any_time_in_model_exchange() {
 #[test]
 fn its_state_survives_bytes_and_belongs_to_its_interface() {
     let (mut instance, _) = running(Interface::CoSimulation);
-    instance.set_real(&[0], &[0.1]).unwrap();
+    instance.set_real(&[1], &[0.1]).unwrap();
     instance.do_step(1.0, 0.3).unwrap();
     let state = instance.fmu_state().unwrap();
     let bytes = instance.serialize_fmu_state(&state).unwrap();
@@ -357,8 +357,8 @@ fn its_state_survives_bytes_and_belongs_to_its_interface() {
 fn it_is_described_and_packed() {
     let model = Integrator::new(Interface::CoSimulation);
     let unknown = Unknown {
-        value_reference: 2,
-        dependencies: [(0, DependencyKind::Dependent)].into(),
+        value_reference: 3,
+        dependencies: [(1, DependencyKind::Dependent)].into(),
         parameters: [].into(),
     };
     let description = ModelDescription {

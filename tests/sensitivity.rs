@@ -4,7 +4,7 @@ mod common;
 #[path = "common/differences.rs"]
 mod differences;
 
-use biela::fmi::{Causality, Interface, Quantity, Variable};
+use biela::fmi::{Causality, Interface, Quantity, Variable, value_reference};
 use biela::kinematics::OutputSource;
 use common::{Instance, instance_of, shipped, stems};
 use differences::{DIFFERENCE, differences, move_inputs, references};
@@ -41,7 +41,7 @@ fn every_derivative_agrees_with_differences() {
             let differences = differences(&mut instance, &unknowns, known);
             let mut largest = [1.0_f64; 3];
             let order = |place: usize| {
-                let variable = &instance.variables()[unknowns[place] as usize];
+                let variable = &instance.variables()[unknowns[place] as usize - 1];
                 match variable.quantity {
                     Quantity::Output(OutputSource::Signal(_, order)) => order as usize,
                     _ => 0,
@@ -54,8 +54,8 @@ fn every_derivative_agrees_with_differences() {
                 assert!(
                     (exact - difference).abs() <= DIFFERENCE * largest[order(place)],
                     "{name}: `{}` by `{}`: {exact} and {difference}",
-                    instance.variables()[unknowns[place] as usize].name,
-                    instance.variables()[known as usize].name,
+                    instance.variables()[unknowns[place] as usize - 1].name,
+                    instance.variables()[known as usize - 1].name,
                 );
             }
         }
@@ -67,7 +67,7 @@ fn every_derivative_agrees_with_differences() {
 fn derivatives_are_linear_in_the_direction() {
     let mut instance = moving("four_bar");
     let unknowns = references(&instance, |v| v.causality == Causality::Output);
-    let knowns = [0, 1, 2, 3, 0];
+    let knowns = [1, 2, 3, 4, 1];
     let changes = [0.3, -1.0, 2.0, 0.01, 0.4];
     let mut sum = vec![0.0; unknowns.len()];
     for (known, change) in knowns.iter().zip(changes) {
@@ -96,14 +96,13 @@ fn an_estimate_is_differentiated() {
     instance.exit_initialization_mode().unwrap();
     for step in 0..3 {
         let t = 0.1 * f64::from(step);
-        instance.set_real(&[0], &[0.5 + t]).unwrap();
+        instance.set_real(&[1], &[0.5 + t]).unwrap();
         instance.do_step(t, 0.1).unwrap();
     }
     let reference = |name: &str| {
         let mut variables = instance.variables().iter();
-        variables
-            .position(|variable| variable.name == name)
-            .unwrap() as u32
+        let place = variables.position(|variable| variable.name == name);
+        value_reference(place.unwrap())
     };
     let unknowns = [reference("rod.vx"), reference("rod.omega")];
     let length = reference("length");
@@ -114,11 +113,11 @@ fn an_estimate_is_differentiated() {
     // x = sin(u)/4 at u = 0.7 where u̇ = 1, so that ∂vx/∂u = -sin(u) u̇/4 and ∂vx/∂u̇ = cos(u)/4. The
     // slope of the parabola through three points 0.1 s apart changes by 3/2 of the last one's change.
     let slope = 1.5 / 0.1;
-    let [vx, omega] = by(0).unwrap();
+    let [vx, omega] = by(1).unwrap();
     let truth = -0.25 * 0.7_f64.sin() + 0.25 * 0.7_f64.cos() * slope;
     assert!((vx - truth).abs() < 1e-14, "{vx}");
     assert!((omega - slope).abs() < 1e-14, "{omega}");
-    let [vx, omega] = by(1).unwrap();
+    let [vx, omega] = by(2).unwrap();
     assert!((vx - 0.25 * 0.7_f64.cos()).abs() < 1e-14, "{vx}");
     assert!((omega - 1.0).abs() < 1e-15, "{omega}");
     // After initialization parameters are no knowns any more.
@@ -137,11 +136,12 @@ fn accepted_points_of_model_exchange_have_given_rates() {
     for step in 1..4 {
         let t = 0.1 * f64::from(step);
         instance.set_time(t).unwrap();
-        instance.set_real(&[0, 1], &[0.5 + t, 1.0]).unwrap();
+        instance.set_real(&[1, 2], &[0.5 + t, 1.0]).unwrap();
         instance.completed_integrator_step().unwrap();
     }
     let mut variables = instance.variables().iter();
-    let omega = variables.position(|v| v.name == "rod.omega").unwrap() as u32;
+    let omega = variables.position(|v| v.name == "rod.omega");
+    let omega = value_reference(omega.unwrap());
     let by_inputs = |instance: &mut Instance| {
         [0, 1, 2].map(|known| {
             let values = instance.directional_derivative(&[omega], &[known], &[1.0]);

@@ -16,7 +16,7 @@
     X(3, InstantiateCoSimulation) X(3, FreeInstance) X(3, EnterInitializationMode)                 \
     X(3, ExitInitializationMode) X(3, SetFloat64) X(3, DoStep) X(3, GetFloat64)
 
-enum { INPUTS = 3, FIRST_OUTPUT = 9 };
+enum { INPUTS = 3, FIRST_OUTPUT = 10 };
 
 struct cycle {
     void *library;
@@ -123,7 +123,7 @@ struct cycle *cycle_open(const char *library, int version, const char *token,
 /* The same calls in both versions. */
 static int step2(struct cycle *cycle, double time, double size)
 {
-    static const fmi2ValueReference in[INPUTS] = {0, 1, 2};
+    static const fmi2ValueReference in[INPUTS] = {1, 2, 3};
     return cycle->SetReal2(cycle->component, in, INPUTS, cycle->inputs) == fmi2OK &&
            cycle->DoStep2(cycle->component, time, size, fmi2True) == fmi2OK &&
            cycle->GetReal2(cycle->component, cycle->order, OUTPUTS, cycle->outputs) == fmi2OK;
@@ -131,7 +131,7 @@ static int step2(struct cycle *cycle, double time, double size)
 
 static int step3(struct cycle *cycle, double time, double size)
 {
-    static const fmi3ValueReference in[INPUTS] = {0, 1, 2};
+    static const fmi3ValueReference in[INPUTS] = {1, 2, 3};
     fmi3Boolean event, terminate, early;
     fmi3Float64 last;
     return cycle->SetFloat643(cycle->component, in, INPUTS, cycle->inputs, INPUTS) == fmi3OK &&

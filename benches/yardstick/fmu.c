@@ -7,7 +7,7 @@
 #include "fmi2Functions.h"
 #include "closed_form.h"
 
-enum { ANGLE, VELOCITY, ACCELERATION, CRANK, COUPLER, ROCKER, BASE, FIRST_OUTPUT = 9 };
+enum { ANGLE = 1, VELOCITY, ACCELERATION, CRANK, COUPLER, ROCKER, BASE, FIRST_OUTPUT = 10 };
 enum { REALS = FIRST_OUTPUT + OUTPUTS };
 
 enum state { INSTANTIATED, INITIALIZATION, STEP, TERMINATED };
@@ -17,7 +17,7 @@ struct instance {
     fmi2Real real[REALS];
 };
 
-static fmi2Boolean is_input(fmi2ValueReference vr) { return vr <= ACCELERATION; }
+static fmi2Boolean is_input(fmi2ValueReference vr) { return vr >= ANGLE && vr <= ACCELERATION; }
 static fmi2Boolean is_parameter(fmi2ValueReference vr) { return vr >= CRANK && vr <= BASE; }
 
 static void solve(struct instance *at)
@@ -113,7 +113,7 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
     struct instance *at = c;
     if (!at || at->state == INSTANTIATED || (n && !(vr && value))) return fmi2Error;
     for (size_t k = 0; k < n; k++) {
-        if (vr[k] >= REALS || (vr[k] > BASE && vr[k] < FIRST_OUTPUT)) return fmi2Error;
+        if (!vr[k] || vr[k] >= REALS || (vr[k] > BASE && vr[k] < FIRST_OUTPUT)) return fmi2Error;
         value[k] = at->real[vr[k]];
     }
     return fmi2OK;

@@ -194,7 +194,7 @@ fn make(
 ) -> Option<(Call, Result<(), Error>)> {
     let is_fmi3 = instance.version() == Version::Fmi3;
     let count = instance.variables().len();
-    let reference = |index: u8| (usize::from(index) % (count + 1)) as u32;
+    let reference = |index: u8| (usize::from(index) % (count + 2)) as u32;
     let chosen = |saved: &[FmuState], index: u8| saved[usize::from(index) % saved.len()].clone();
     let made = match request {
         Request::SetupExperiment(start, stop) => (

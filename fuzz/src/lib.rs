@@ -57,7 +57,7 @@ fn shipped(index: u8) -> Arc<Mechanism> {
 
 /// The value references of all Reals.
 fn reals(instance: &Instance) -> Vec<u32> {
-    let variables = (0..).zip(instance.variables());
+    let variables = (1..).zip(instance.variables());
     variables
         .filter(|(_, variable)| variable.kind.is_real())
         .map(|(reference, _)| reference)

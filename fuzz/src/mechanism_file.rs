@@ -53,7 +53,7 @@ fn run_instance(mechanism: &Arc<Mechanism>, interface: Interface) {
         return;
     }
     let all = |causality| -> Vec<u32> {
-        let variables = (0..).zip(instance.variables());
+        let variables = (1..).zip(instance.variables());
         variables
             .filter(|(_, variable)| variable.causality == causality)
             .map(|(reference, _)| reference)
@@ -84,7 +84,7 @@ fn run_instance(mechanism: &Arc<Mechanism>, interface: Interface) {
         if let Ok(values) = read {
             // A motion may be infinitely fast; a pose is a pose.
             let positions = values.iter().zip(&reals).filter(|&(_, &reference)| {
-                let quantity = instance.variables()[reference as usize].quantity;
+                let quantity = instance.variables()[reference as usize - 1].quantity;
                 matches!(
                     quantity,
                     Quantity::Output(OutputSource::Signal(_, Order::Position))

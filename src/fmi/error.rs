@@ -44,7 +44,7 @@ pub enum Error {
         allowed: Vec<State>,
     },
     /// No variable has this value reference.
-    #[error("there is no variable with value reference {value_reference}; the last one is {last}")]
+    #[error("there is no variable with value reference {value_reference}; expected 1 to {last}")]
     ValueReference {
         /// The value reference.
         value_reference: u32,

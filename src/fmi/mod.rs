@@ -46,4 +46,4 @@ pub use package::{Platform, RuntimeLibrary, write as write_archive};
 pub use state::{Call, Interface, Phase, State, Version};
 pub use status::Status;
 pub use uri::{UriError, resource_path};
-pub use variable::{Causality, Enumeration, Kind, Variability, Variable};
+pub use variable::{Causality, Enumeration, Kind, Variability, Variable, value_reference};

@@ -36,7 +36,7 @@ use super::variable::Variable;
 /// #[derive(Clone, Debug, Default, PartialEq)]
 /// struct State {
 ///     time: f64,
-///     /// u and y, by value reference.
+///     /// u and y.
 ///     reals: [f64; 2],
 /// }
 ///
@@ -123,11 +123,11 @@ use super::variable::Variable;
 /// instance.setup_experiment(0.0, None)?;
 /// instance.enter_initialization_mode()?;
 /// instance.exit_initialization_mode()?;
-/// instance.set_real(&[0], &[21.0])?;
+/// instance.set_real(&[1], &[21.0])?;
 /// instance.do_step(0.0, 0.1)?;
-/// assert_eq!(instance.reals(&[1])?.next(), Some(42.0));
+/// assert_eq!(instance.reals(&[2])?.next(), Some(42.0));
 /// // The instance keeps the standard's rules; the model does not know them.
-/// assert!(instance.set_real(&[1], &[0.0]).is_err());
+/// assert!(instance.set_real(&[2], &[0.0]).is_err());
 /// assert!(instance.do_step(0.0, 0.1).is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -198,7 +198,7 @@ pub trait Model: Sized {
     /// The values do not exist for what the host has set.
     fn refresh(&mut self, groups: Groups, phase: Phase, log: &Logger) -> Result<(), Failure>;
 
-    /// Returns the values of all variables by value reference. Values of groups that were not
+    /// Returns the values of all variables by their places in the list. Values of groups that were not
     /// [refreshed](Self::refresh) since the last change, and of variables that are no Reals, have
     /// no meaning.
     fn reals(&self) -> &[f64];

@@ -3,7 +3,8 @@
 use super::state::Version;
 use crate::unit::Unit;
 
-/// One scalar variable of an FMU. Its value reference is its index in the model's list.
+/// One scalar variable of an FMU. Its place in the model's list decides its
+/// [value reference](value_reference).
 #[derive(Clone, Debug)]
 pub struct Variable<Q> {
     /// Structured name: `crank.phi`, `crank_angle.position`.
@@ -18,8 +19,8 @@ pub struct Variable<Q> {
     pub variability: Variability,
     /// Type, with the attributes of that type.
     pub kind: Kind,
-    /// Value reference of the variable whose time derivative this one is.
-    pub derivative_of: Option<u32>,
+    /// Place of the variable whose time derivative this one is.
+    pub derivative_of: Option<usize>,
 }
 
 /// FMI causality.
@@ -87,9 +88,9 @@ pub struct Enumeration {
 /// Returns the value reference of each variable's time derivative.
 pub(super) fn derivatives<Q>(variables: &[Variable<Q>]) -> Box<[Option<u32>]> {
     let mut derivatives = vec![None; variables.len()];
-    for (value_reference, variable) in (0..).zip(variables) {
+    for (place, variable) in variables.iter().enumerate() {
         if let Some(of) = variable.derivative_of {
-            derivatives[of as usize] = Some(value_reference);
+            derivatives[of] = Some(place);
         }
     }
     derivatives.into()

@@ -191,7 +191,7 @@ fn wrong_arguments_are_refused_and_change_nothing() {
         assert_eq!(host.get_reals(A, &everything), before, "{request:?}");
     }
     // Without events, which a refused list of categories would have switched on.
-    let start = host.get_real(A, "0");
+    let start = host.get_real(A, "1");
     host.ok(&["DoStep", A, "0", "1", "1"]);
     assert_eq!(
         host.get_real(A, &fmu.vr("crank.phi")).to_bits(),

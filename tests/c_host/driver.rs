@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 
-use biela::fmi::{Causality, Kind, Quantity, RESOURCE, Status};
+use biela::fmi::{Causality, Kind, Quantity, RESOURCE, Status, value_reference};
 use biela::mechanism::{Mechanism, Source};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use set_up::runtime_library;
@@ -69,7 +69,7 @@ impl Fmu {
     pub(crate) fn vr(&self, name: &str) -> String {
         let mut all = self.variables.iter();
         let found = all.position(|variable| variable.name == name);
-        found.unwrap_or_else(|| panic!("no `{name}`")).to_string()
+        value_reference(found.unwrap_or_else(|| panic!("no `{name}`"))).to_string()
     }
 
     /// The value references of all Reals.
@@ -83,7 +83,7 @@ impl Fmu {
     }
 
     fn all(&self, which: impl Fn(&Variable) -> bool) -> Vec<u32> {
-        (0..)
+        (1..)
             .zip(&self.variables)
             .filter(|(_, variable)| which(variable))
             .map(|(value_reference, _)| value_reference)

@@ -8,9 +8,9 @@ use crate::driver::{A, B, Fmu, Host, Instantiate};
 fn running(host: &mut Host, slot: &str, fmu: &Fmu) {
     host.instantiated(slot, fmu);
     host.initialize(slot);
-    host.set_real(slot, "0", 0.37);
+    host.set_real(slot, "1", 0.37);
     assert_eq!(host.do_step(slot, 0.0, 0.1).status, Status::Ok);
-    host.ok(&["SetRealInputDerivatives", slot, "1", "0", "1", "0.2"]);
+    host.ok(&["SetRealInputDerivatives", slot, "1", "1", "1", "0.2"]);
     assert_eq!(host.do_step(slot, 0.1, 0.1).status, Status::Ok);
 }
 
@@ -19,7 +19,7 @@ fn go_on(host: &mut Host, slot: &str, fmu: &Fmu) -> Vec<Vec<f64>> {
     (2..10)
         .map(|step| {
             let t = 0.1 * f64::from(step);
-            host.set_real(slot, "0", 0.35 + 0.1 * t);
+            host.set_real(slot, "1", 0.35 + 0.1 * t);
             assert_eq!(host.do_step(slot, t, 0.1).status, Status::Ok, "{t}");
             host.get_reals(slot, &fmu.reals())
         })
@@ -71,7 +71,7 @@ fn a_step_that_failed_is_taken_back() {
 
     running(&mut host, A, &fmu);
     host.ok(&["GetFMUstate", A, "0"]);
-    host.set_real(A, "0", 0.9);
+    host.set_real(A, "1", 0.9);
     assert_eq!(host.do_step(A, 0.2, 0.1).status, Status::Discard);
     assert_eq!(host.ok(&["GetBooleanStatus", A, "3", "room"]), ["1"]);
     host.refused(&["DoStep", A, "0.2", "0.1", "1"]);

@@ -58,10 +58,10 @@ fn memory_is_used_as_it_should() {
     let (n, outputs) = (outputs.len().to_string(), outputs.join(","));
     for t in ["0.1", "0.2"] {
         host.ok(&["SetTime", A, t]);
-        host.set_real(A, "0", 1.5);
+        host.set_real(A, "1", 1.5);
         host.ok(&["GetReal", A, &n, &outputs, "room"]);
         let request = ["GetDirectionalDerivative", A, &n, &outputs];
-        host.ok(&[&request[..], &["2", "0,1", "1,0.5", "room"]].concat());
+        host.ok(&[&request[..], &["2", "1,2", "1,0.5", "room"]].concat());
         host.ok(&["CompletedIntegratorStep", A, "room", "room"]);
     }
     host.ok(&["EnterEventMode", A]);

@@ -50,8 +50,8 @@ fn a_logger_that_calls_back_is_refused() {
     for request in [
         &["EnterInitializationMode"][..],
         &["ExitInitializationMode"],
-        &["SetReal", "1", "0", "1.5"],
-        &["SetReal", "1", "0", "nan"],
+        &["SetReal", "1", "1", "1.5"],
+        &["SetReal", "1", "1", "nan"],
         &["DoStep", "0", "0.1", "1"],
     ] {
         let at = |slot| [&request[..1], &[slot], &request[1..]].concat();

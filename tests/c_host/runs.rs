@@ -23,7 +23,7 @@ pub(crate) fn run(host: &mut Host, slot: &str, fmu: &Fmu) -> Vec<Vec<f64>> {
     let rows = points()
         .map(|t| {
             let values = motion(t).map(|value| value.to_string()).join(",");
-            host.ok(&["SetReal", slot, "3", "0,1,2", &values]);
+            host.ok(&["SetReal", slot, "3", "1,2,3", &values]);
             host.ok(&["DoStep", slot, &t.to_string(), "0.1", "1"]);
             host.get_reals(slot, &fmu.reals())
         })
@@ -54,7 +54,7 @@ fn run_in_rust(fmu: &Fmu) -> Vec<Vec<f64>> {
             let reals = fmu.reals();
             let mut values = vec![0.0; reals.len()];
             let stepped = instance
-                .set_real(&[0, 1, 2], &motion(t))
+                .set_real(&[1, 2, 3], &motion(t))
                 .and_then(|()| instance.do_step(t, 0.1))
                 .and_then(|()| instance.get_real(&reals, &mut values));
             stepped.expect("the crank turns fully");
@@ -102,7 +102,7 @@ fn instances_do_not_know_of_each_other() {
     };
     // Both ways of driving keep within what the triangle can do.
     let step = |host: &mut Host, slot: &str, fmu: &Fmu, t: f64| {
-        host.set_real(slot, "0", 0.35 + 0.1 * t);
+        host.set_real(slot, "1", 0.35 + 0.1 * t);
         assert_eq!(host.do_step(slot, t, 0.1).status, Status::Ok);
         host.get_reals(slot, &fmu.reals())
     };

@@ -116,7 +116,7 @@ fn for_interface(fmu: &Fmu, interface: Interface) -> Instantiate {
 /// The call with right arguments for the triangle driven by its length, at 0.1 s.
 fn request(function: &str, slot: &str, state: State, saved: &Saved) -> Vec<String> {
     // Position input, fixed parameter `rates`, and `arm.x`.
-    let (input, rates, output) = ("0", "5", "7");
+    let (input, rates, output) = ("1", "6", "8");
     let arguments: &[&str] = match function {
         "SetDebugLogging" => &["1", "1", "logEvents"],
         "SetupExperiment" => &["0.5", "2"],
@@ -209,7 +209,7 @@ fn bring_to(host: &mut Host, (interface, state): (Interface, State), fmu: &Fmu) 
 fn integrate_to(host: &mut Host, state: State) {
     host.ok(&["EnterContinuousTimeMode", A]);
     host.ok(&["SetTime", A, "0.1"]);
-    host.set_real(A, "0", 0.4);
+    host.set_real(A, "1", 0.4);
     let answer = host.ok(&["CompletedIntegratorStep", A, "room", "room"]);
     assert_eq!(answer, ["0", "0"]);
     match state {
@@ -222,12 +222,12 @@ fn integrate_to(host: &mut Host, state: State) {
 
 /// From the start of co-simulation on, to 0.1 s.
 fn step_to(host: &mut Host, state: State) {
-    host.set_real(A, "0", 0.4);
+    host.set_real(A, "1", 0.4);
     assert_eq!(host.do_step(A, 0.0, 0.1).status, Status::Ok);
     match state {
         State::StepComplete => {}
         State::StepFailed => {
-            host.set_real(A, "0", 0.9);
+            host.set_real(A, "1", 0.9);
             assert_eq!(host.do_step(A, 0.1, 0.1).status, Status::Discard);
         }
         State::Terminated => drop(host.ok(&["Terminate", A])),
@@ -241,15 +241,15 @@ fn examine(host: &mut Host, fmu: &Fmu) -> Vec<Answer> {
     let (n, reals) = (reals.len().to_string(), reals.join(","));
     let look: [&[&str]; 7] = [
         &["GetReal", A, &n, &reals, "room"],
-        &["GetInteger", A, "2", "5,6", "room"],
-        &["GetRealOutputDerivatives", A, "2", "7,10", "2,1", "room"],
+        &["GetInteger", A, "2", "6,7", "room"],
+        &["GetRealOutputDerivatives", A, "2", "8,11", "2,1", "room"],
         &[
             "GetDirectionalDerivative",
             A,
             "2",
-            "7,10",
+            "8,11",
             "2",
-            "0,1",
+            "1,2",
             "1,2",
             "room",
         ],

@@ -20,11 +20,11 @@ fn a_step_beyond_a_dead_point_is_discarded() {
         for request in ["EnterInitializationMode", "ExitInitializationMode"] {
             assert_eq!(host.call(&[request, A]).status, Status::Ok);
         }
-        host.set_real(A, "0", 0.4);
+        host.set_real(A, "1", 0.4);
         assert_eq!(host.do_step(A, 0.0, 0.1).status, Status::Ok);
         let before = host.get_reals(A, &fmu.outputs());
 
-        host.set_real(A, "0", 0.9);
+        host.set_real(A, "1", 0.9);
         let answer = host.do_step(A, 0.1, 0.1);
         assert_eq!(answer.status, Status::Discard);
         let logged: Vec<_> = answer
@@ -66,7 +66,7 @@ fn a_moving_input_gets_as_far_as_the_dead_point() {
     host.instantiated(A, &fmu);
     host.initialize(A);
     // From 0.35 m at 1 m/s, 0.65 m is reached after 0.3 s.
-    host.ok(&["SetRealInputDerivatives", A, "1", "0", "1", "1"]);
+    host.ok(&["SetRealInputDerivatives", A, "1", "1", "1", "1"]);
     assert_eq!(host.do_step(A, 0.0, 0.5).status, Status::Discard);
     let last: f64 = host.ok(&["GetRealStatus", A, "2", "room"])[0]
         .parse()
@@ -87,8 +87,8 @@ fn input_derivatives_carry_the_input_along() {
     host.instantiated(A, &fmu);
     host.initialize(A);
     let (start, first, second, h) = (1.0, 2.0, -3.0, 0.25);
-    host.set_real(A, "0", start);
-    host.ok(&["SetRealInputDerivatives", A, "2", "0,0", "1,2", "2,-3"]);
+    host.set_real(A, "1", start);
+    host.ok(&["SetRealInputDerivatives", A, "2", "1,1", "1,2", "2,-3"]);
     assert_eq!(host.do_step(A, 0.0, h).status, Status::Ok);
     for (name, expected) in [
         ("crank.phi", start + h * (first + 0.5 * h * second)),
@@ -106,7 +106,7 @@ fn derivatives_of_outputs_are_the_outputs_of_the_next_order() {
     let mut host = Host::start();
     host.instantiated(A, &fmu);
     host.initialize(A);
-    host.ok(&["SetReal", A, "3", "0,1,2", "1.2,3,-4"]);
+    host.ok(&["SetReal", A, "3", "1,2,3", "1.2,3,-4"]);
     assert_eq!(host.do_step(A, 0.0, 0.1).status, Status::Ok);
     let outputs = [
         "rocker.phi",

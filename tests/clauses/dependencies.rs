@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use biela::fmi::{Causality, Interface, Kind, Quantity, Unknown, Version, describe};
+use biela::fmi::{
+    Causality, Interface, Kind, Quantity, Unknown, Version, describe, value_reference,
+};
 use biela::kinematics::OutputSource;
 use biela::mechanism::Order;
 
@@ -27,8 +29,8 @@ fn inputs(instance: &Instance) -> Vec<u32> {
 
 /// Returns values for all inputs, each different from its start value.
 fn moving(instance: &Instance, inputs: &[u32], t: f64) -> Vec<f64> {
-    let values = inputs.iter().map(|&reference| {
-        let variable = &instance.variables()[reference as usize];
+    let values = inputs.iter().enumerate().map(|(place, &reference)| {
+        let variable = &instance.variables()[reference as usize - 1];
         let (Quantity::Input(_, order), Kind::Real { start, .. }) =
             (variable.quantity, &variable.kind)
         else {
@@ -37,8 +39,8 @@ fn moving(instance: &Instance, inputs: &[u32], t: f64) -> Vec<f64> {
         let start = start.expect("inputs have start values");
         match order {
             Order::Position => start + 0.003 + 0.1 * t * t,
-            Order::Velocity => 0.7 + 0.1 * f64::from(reference) + 0.2 * t,
-            Order::Acceleration => -0.4 + 0.1 * f64::from(reference),
+            Order::Velocity => 0.7 + 0.1 * place as f64 + 0.2 * t,
+            Order::Acceleration => -0.4 + 0.1 * place as f64,
         }
     });
     values.collect()
@@ -149,7 +151,7 @@ fn outputs_depend_on_declared_inputs_and_time_only() {
             // With held inputs, a longer step changes what depends on time itself.
             if settings == [2, 1] {
                 let changed = differing(&outputs, &base, &after(None, 1.01 * H));
-                let time = description.variables.len() as u32 - 1;
+                let time = description.variables.len() as u32;
                 assert_declared(&description.outputs, &changed, time, &name);
             }
         }
@@ -169,14 +171,14 @@ fn initial_unknowns_depend_on_declared_knowns_only() {
             instance.set_real(&inputs, &values).expect("inputs");
             let mut unknowns = outputs(&instance);
             unknowns.extend(
-                (0..)
+                (1..)
                     .zip(instance.variables())
                     .filter_map(|(vr, variable)| {
                         (variable.causality == Causality::CalculatedParameter).then_some(vr)
                     }),
             );
             let base = read(&mut instance, &unknowns);
-            let parameters = (0..)
+            let parameters = (1..)
                 .zip(instance.variables())
                 .filter_map(|(vr, variable)| {
                     let real =
@@ -197,7 +199,7 @@ fn initial_unknowns_depend_on_declared_knowns_only() {
             for setting in ["rates", "extrapolation"] {
                 let found = instance.variables().iter().position(|v| v.name == setting);
                 let Some(known) = found else { continue };
-                let known = known as u32;
+                let known = value_reference(known);
                 let value = instance.integers(&[known]).expect("legal").next();
                 for choice in 1..=3 {
                     if instance.set_integer(&[known], &[choice]).is_ok() {
@@ -233,7 +235,7 @@ fn each_declared_input_acts_in_some_setting() {
         let mut after = |known: u32, by: f64| {
             instance.set_fmu_state(&before).expect("its own");
             let mut values = at(&instance, &inputs, 4.0 * H);
-            values[known as usize] += by;
+            values[known as usize - 1] += by;
             instance.set_real(&inputs, &values).expect("inputs");
             instance.do_step(point, H).expect("it is not far");
             read(&mut instance, &outputs)
@@ -287,7 +289,7 @@ fn assert_derivatives(
 }
 
 fn orders(instance: &Instance, outputs: &[u32]) -> Vec<usize> {
-    let order = |&vr: &u32| match instance.variables()[vr as usize].quantity {
+    let order = |&vr: &u32| match instance.variables()[vr as usize - 1].quantity {
         Quantity::Output(OutputSource::Signal(_, order)) => order as usize,
         _ => panic!("no output"),
     };

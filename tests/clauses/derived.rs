@@ -82,7 +82,7 @@ fn they_depend_on_the_inputs_of_what_they_use() {
     let reference = |name: &str| {
         let mut variables = description.variables.iter();
         let found = variables.position(|v| v.name == name);
-        found.expect("it is there") as u32
+        biela::fmi::value_reference(found.expect("it is there"))
     };
     let of = |name: &str| {
         let mut unknowns = description.initial_unknowns.iter();

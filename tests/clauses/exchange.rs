@@ -126,7 +126,7 @@ fn a_getter_of_co_simulation_does_not_discard() {
             .map(|_| ())
             .expect_err("too long"),
         instance
-            .directional_derivative(&[arm], &[0], &[1.0])
+            .directional_derivative(&[arm], &[1], &[1.0])
             .map(|_| ())
             .expect_err("too long"),
     ] {

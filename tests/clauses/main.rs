@@ -17,14 +17,14 @@ mod rates;
 mod step_mode;
 mod values;
 
-use biela::fmi::Interface;
+use biela::fmi::{Interface, value_reference};
 use common::Instance;
 
 /// Returns the value reference of a variable.
 fn vr(instance: &Instance, name: &str) -> u32 {
     let mut variables = instance.variables().iter();
     let found = variables.position(|variable| variable.name == name);
-    found.unwrap_or_else(|| panic!("no variable `{name}`")) as u32
+    value_reference(found.unwrap_or_else(|| panic!("no variable `{name}`")))
 }
 
 /// Returns the values of Real variables.

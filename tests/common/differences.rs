@@ -1,6 +1,6 @@
 //! Derivatives of outputs by differences of fourth order, through the FMI instance.
 
-use biela::fmi::{Kind, Quantity, Variable};
+use biela::fmi::{Kind, Quantity, Variable, value_reference};
 use biela::mechanism::Order;
 
 use super::common::Instance;
@@ -15,7 +15,7 @@ pub const DIFFERENCE: f64 = 1e-6;
 
 /// Returns the value references of some variables.
 pub fn references(instance: &Instance, which: impl Fn(&Variable<Quantity>) -> bool) -> Vec<u32> {
-    let variables = (0..).zip(instance.variables());
+    let variables = (1..).zip(instance.variables());
     let found = variables.filter(|(_, variable)| which(variable));
     found.map(|(reference, _)| reference).collect()
 }
@@ -24,8 +24,8 @@ pub fn references(instance: &Instance, which: impl Fn(&Variable<Quantity>) -> bo
 pub fn move_inputs(instance: &mut Instance) {
     // Between the points of every table.
     instance.setup_experiment(0.317, None).expect("legal");
-    for (reference, variable) in (0..).zip(instance.variables().to_vec()) {
-        let more = 0.1 * f64::from(reference);
+    for (place, variable) in instance.variables().to_vec().into_iter().enumerate() {
+        let (reference, more) = (value_reference(place), 0.1 * place as f64);
         let value = match (variable.quantity, variable.kind) {
             (Quantity::Input(_, order), Kind::Real { start, .. }) => match order {
                 // Some lengths do not go further than a few centimetres.

@@ -29,7 +29,7 @@ pub(crate) fn instance_of(mechanism: Arc<Mechanism>, interface: Interface) -> In
 
 /// Returns the value references of the variables whose quantities `which` selects.
 pub(crate) fn references(instance: &Instance, which: impl Fn(Quantity) -> bool) -> Vec<u32> {
-    (0..)
+    (1..)
         .zip(instance.variables())
         .filter(|(_, variable)| which(variable.quantity))
         .map(|(reference, _)| reference)

@@ -105,8 +105,8 @@ def test_unknown_value_references(slave):
         lambda: instance.fmi.getReal([999_999]),
         lambda: instance.fmi.setReal([999_999], [1.0]),
         lambda: instance.fmi.getInteger([999_999]),
-        lambda: instance.fmi.getBoolean([0]),
-        lambda: instance.fmi.getString([0]),
+        lambda: instance.fmi.getBoolean([1]),
+        lambda: instance.fmi.getString([1]),
         lambda: instance.fmi.setRealInputDerivatives([999_999], [1], [1.0]),
     ):
         with pytest.raises(FMICallException) as refused:

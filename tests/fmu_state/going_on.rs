@@ -102,9 +102,9 @@ fn what_was_set_since_the_last_step_is_part_of_the_state() {
         for step in 0..3 {
             act(&mut instance, step);
         }
-        instance.set_real(&[0, 1], &[1.3, 0.5]).unwrap();
+        instance.set_real(&[1, 2], &[1.3, 0.5]).unwrap();
         instance
-            .set_real_input_derivatives(&[0], &[2], &[0.7])
+            .set_real_input_derivatives(&[1], &[2], &[0.7])
             .unwrap();
         if read_ahead {
             look(&mut instance);
@@ -117,7 +117,7 @@ fn what_was_set_since_the_last_step_is_part_of_the_state() {
 #[test]
 fn tunable_parameters_are_part_of_the_state() {
     let mut instance = initialized("four_bar", [1, 1]);
-    let tunable = (0..)
+    let tunable = (1..)
         .zip(instance.variables())
         .find(|(_, variable)| variable.name == "rocker_length")
         .map(|(reference, _)| reference)
@@ -129,7 +129,7 @@ fn tunable_parameters_are_part_of_the_state() {
 }
 
 fn fixed_parameter(instance: &Instance) -> u32 {
-    (0..)
+    (1..)
         .zip(instance.variables())
         .find(|(_, variable)| variable.causality == Causality::Parameter)
         .map(|(reference, _)| reference)
@@ -145,15 +145,15 @@ fn states_before_the_first_step() {
         |instance| {
             let parameter = fixed_parameter(instance);
             instance.setup_experiment(2.0, Some(3.0)).unwrap();
-            instance.set_real(&[0, parameter], &[0.7, 0.21]).unwrap();
+            instance.set_real(&[1, parameter], &[0.7, 0.21]).unwrap();
         },
         |instance| {
             instance.enter_initialization_mode().unwrap();
-            instance.set_real(&[0], &[0.9]).unwrap();
+            instance.set_real(&[1], &[0.9]).unwrap();
         },
         |instance| {
             instance.enter_initialization_mode().unwrap();
-            instance.set_real(&[0], &[0.9]).unwrap();
+            instance.set_real(&[1], &[0.9]).unwrap();
             look(instance);
         },
     ];
@@ -192,7 +192,7 @@ fn a_host_goes_on_from_before_a_step_that_failed() {
         act(instance, 1);
     }
     let before = detour.fmu_state().unwrap();
-    detour.set_real(&[0], &[TOO_LONG]).unwrap();
+    detour.set_real(&[1], &[TOO_LONG]).unwrap();
     let error = detour.do_step(0.2, 0.1).unwrap_err();
     assert!(matches!(error, Error::Model(Failure::Discarded(_))));
     assert_eq!(detour.state(), State::StepFailed);
@@ -225,7 +225,7 @@ fn a_host_goes_on_after_termination_and_a_failed_initialization() {
         matches!(quantity, Quantity::Parameter(_))
     })
     .into_iter()
-    .find(|&reference| broken.variables()[reference as usize].name == "arm_length")
+    .find(|&reference| broken.variables()[reference as usize - 1].name == "arm_length")
     .unwrap();
     broken.set_real(&[parameter], &[10.0]).unwrap();
     broken.enter_initialization_mode().unwrap();

@@ -39,9 +39,9 @@ struct Look {
 }
 
 fn look(instance: &mut Instance) -> Look {
-    let (reals, integers): (Vec<u32>, Vec<u32>) =
-        (0..instance.variables().len() as u32).partition(|&reference| {
-            let variable = &instance.variables()[reference as usize];
+    let (reals, integers): (Vec<u32>, Vec<u32>) = (1..=instance.variables().len() as u32)
+        .partition(|&reference| {
+            let variable = &instance.variables()[reference as usize - 1];
             matches!(variable.kind, Kind::Real { .. })
         });
     let values = instance.reals(&reals);
@@ -70,7 +70,7 @@ fn act(instance: &mut Instance, step: u32) -> Act {
     for position in references(instance, |quantity| {
         matches!(quantity, Quantity::Input(_, Order::Position))
     }) {
-        let start = match instance.variables()[position as usize].kind {
+        let start = match instance.variables()[position as usize - 1].kind {
             Kind::Real { start, .. } => start.expect("inputs have start values"),
             _ => unreachable!("inputs are Reals"),
         };

@@ -54,8 +54,8 @@ pub struct Instance<M: Model> {
     groups: Box<[Groups]>,
     /// The Reals that the host asked for last.
     request: Request,
-    /// Value reference of each variable's time derivative.
-    derivatives: Box<[Option<u32>]>,
+    /// Place of each variable's time derivative.
+    derivatives: Box<[Option<usize>]>,
     /// Whether each variable is an input that accepts any finite value at any time.
     continuous_inputs: Box<[bool]>,
     version: Version,

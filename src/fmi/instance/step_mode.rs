@@ -4,7 +4,7 @@ use super::stepping::TIME_ROUNDING;
 use super::{Error, Failure, Instance, Interface, Version, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, Phase, State};
-use crate::fmi::variable::Causality;
+use crate::fmi::variable::{Causality, place};
 
 /// Agreements between an instance and the host of an FMI 3.0 co-simulation
 /// (`fmi3InstantiateCoSimulation`).
@@ -81,7 +81,7 @@ impl<M: Model> Instance<M> {
                 let name = variable.name.clone();
                 return Err(Error::NotIntermediate { name });
             }
-            intermediate[value_reference as usize] = true;
+            intermediate[place(value_reference)] = true;
         }
         self.intermediate = intermediate.into();
         self.co_simulation = co_simulation;
@@ -284,7 +284,7 @@ impl<M: Model> Instance<M> {
     /// Checks that variables are among the required intermediate ones.
     pub(super) fn check_intermediate(&self, value_references: &[u32]) -> Result<(), Error> {
         for &value_reference in value_references {
-            if self.intermediate.get(value_reference as usize) != Some(&true) {
+            if self.intermediate.get(place(value_reference)) != Some(&true) {
                 let name = self.variable(value_reference)?.name.clone();
                 return Err(Error::NotIntermediate { name });
             }

@@ -8,7 +8,7 @@ use super::{Error, Instance, check_finite};
 use crate::fmi::error::check_limits;
 use crate::fmi::model::{Groups, Model};
 use crate::fmi::state::{Call, State, Version};
-use crate::fmi::variable::{Causality, Kind, Variability, Variable};
+use crate::fmi::variable::{Causality, Kind, Variability, Variable, place};
 
 /// Groups of a variable that is no Real: a bit that no model uses, as it is the last one.
 const NO_REAL: Groups = 1 << (Groups::BITS - 1);
@@ -46,7 +46,7 @@ impl<M: Model> Instance<M> {
             self.check_intermediate(value_references)?;
         }
         for (&value_reference, &value) in value_references.iter().zip(values) {
-            let is_input = self.continuous_inputs.get(value_reference as usize);
+            let is_input = self.continuous_inputs.get(place(value_reference));
             if !(is_input == Some(&true) && value.is_finite()) {
                 self.check_real(value_reference, value)?;
             }
@@ -57,7 +57,7 @@ impl<M: Model> Instance<M> {
         let quantities = &self.quantities;
         let values = value_references.iter().zip(values);
         self.model
-            .set_reals(values.map(|(&vr, &value)| (quantities[vr as usize], value)));
+            .set_reals(values.map(|(&vr, &value)| (quantities[place(vr)], value)));
         Ok(())
     }
 
@@ -96,7 +96,7 @@ impl<M: Model> Instance<M> {
         }
         let quantities = &self.quantities;
         self.model
-            .set_integers(values.map(|(vr, value)| (quantities[vr as usize], value as i32)));
+            .set_integers(values.map(|(vr, value)| (quantities[place(vr)], value as i32)));
         Ok(())
     }
 
@@ -146,7 +146,7 @@ impl<M: Model> Instance<M> {
         }
         let quantities = &self.quantities;
         self.model.set_input_derivatives(
-            entries.map(|((&vr, &order), &value)| (quantities[vr as usize], order as usize, value)),
+            entries.map(|((&vr, &order), &value)| (quantities[place(vr)], order as usize, value)),
         );
         Ok(())
     }
@@ -193,7 +193,7 @@ impl<M: Model> Instance<M> {
     ///
     /// A variable is unknown or no Real.
     fn note_request(&mut self, value_references: &[u32]) -> Result<(), Error> {
-        let group = |&vr: &u32| self.groups.get(vr as usize).copied().unwrap_or(NO_REAL);
+        let group = |&vr: &u32| self.groups.get(place(vr)).copied().unwrap_or(NO_REAL);
         let groups = value_references.iter().map(group).fold(0, |a, b| a | b);
         if groups & NO_REAL != 0 {
             return Err(self.why_not_real(value_references));
@@ -235,7 +235,7 @@ impl<M: Model> Instance<M> {
         }
         let (model, quantities) = (&self.model, &self.quantities);
         let values = value_references.iter();
-        Ok(values.map(|&vr| model.integer(quantities[vr as usize])))
+        Ok(values.map(|&vr| model.integer(quantities[place(vr)])))
     }
 
     /// `fmi2GetRealOutputDerivatives`: returns time derivatives of outputs in the order of their
@@ -268,20 +268,20 @@ impl<M: Model> Instance<M> {
                 });
             }
             if let Some(derivative) = self.derivative(value_reference, order) {
-                groups |= self.groups[derivative as usize];
+                groups |= self.groups[derivative];
             }
         }
         self.check_readable(value_references)?;
         self.refresh(Call::GetRealOutputDerivatives, groups)?;
         Ok(entries.map(|(&value_reference, &order)| {
             let derivative = self.derivative(value_reference, order);
-            derivative.map_or(0.0, |vr| self.model.reals()[vr as usize])
+            derivative.map_or(0.0, |place| self.model.reals()[place])
         }))
     }
 
-    /// Returns the reference of a variable's time derivative.
-    fn derivative(&self, value_reference: u32, order: i32) -> Option<u32> {
-        (0..order).try_fold(value_reference, |vr, _| self.derivatives[vr as usize])
+    /// Returns the place of a variable's time derivative.
+    fn derivative(&self, value_reference: u32, order: i32) -> Option<usize> {
+        (0..order).try_fold(place(value_reference), |place, _| self.derivatives[place])
     }
 
     #[inline(always)]
@@ -295,10 +295,10 @@ impl<M: Model> Instance<M> {
     pub(super) fn variable(&self, value_reference: u32) -> Result<&Variable<M::Quantity>, Error> {
         let variables = self.variables();
         variables
-            .get(value_reference as usize)
+            .get(place(value_reference))
             .ok_or_else(|| Error::ValueReference {
                 value_reference,
-                last: variables.len().saturating_sub(1),
+                last: variables.len(),
             })
     }
 
@@ -358,11 +358,11 @@ impl<M: Model> Instance<M> {
     }
 }
 
-/// Returns the range of value references that are consecutive, as nearly all hosts ask for them.
+/// Returns the range of places that follow one another, as nearly all hosts ask for them.
 fn consecutive(value_references: &[u32]) -> Option<Range<usize>> {
-    let first = *value_references.first()? as usize;
+    let first = place(*value_references.first()?);
     let run = first..first + value_references.len();
-    let given = value_references.iter().map(|&vr| vr as usize);
+    let given = value_references.iter().map(|&vr| place(vr));
     given.eq(run.clone()).then_some(run)
 }
 
@@ -371,7 +371,7 @@ fn consecutive(value_references: &[u32]) -> Option<Range<usize>> {
 pub(super) struct Request {
     references: Vec<u32>,
     groups: Groups,
-    /// The references as a range, if they are consecutive.
+    /// The places as a range, if they follow one another.
     run: Option<Range<usize>>,
 }
 
@@ -405,7 +405,7 @@ impl Reals<'_> {
         match self.0 {
             Places::Consecutive(values) => write_to(items, values.copied()),
             Places::Scattered(references, values) => {
-                write_to(items, references.map(|&vr| values[vr as usize]));
+                write_to(items, references.map(|&vr| values[place(vr)]));
             }
         }
     }
@@ -424,7 +424,7 @@ impl Iterator for Reals<'_> {
     fn next(&mut self) -> Option<f64> {
         match &mut self.0 {
             Places::Consecutive(values) => values.next().copied(),
-            Places::Scattered(references, values) => Some(values[*references.next()? as usize]),
+            Places::Scattered(references, values) => Some(values[place(*references.next()?)]),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::MechanismModel;
 use super::variables::Quantity;
 use crate::fmi::model_description::DependencyKind;
-use crate::fmi::variable::{Causality, Variable};
+use crate::fmi::variable::{Causality, Variable, place, value_reference};
 use crate::kinematics::{Dependencies, ForceQuantity, OutputSource, Structure};
 use crate::mechanism::{Coordinate, DriverId, Load, Mechanism, Order, Signal, Variable as Of};
 
@@ -37,13 +37,13 @@ impl<'a> DependencyTable<'a> {
         structure: &'a Structure,
         variables: &[Variable<Quantity>],
     ) -> Self {
-        let known = (0..).zip(variables);
+        let known = variables.iter().enumerate();
         let known = known.filter(|(_, variable)| variable.causality != Causality::Output);
         Self {
             mechanism,
             structure,
             references: known
-                .map(|(vr, variable)| (variable.quantity, vr))
+                .map(|(place, variable)| (variable.quantity, value_reference(place)))
                 .collect(),
         }
     }
@@ -281,7 +281,7 @@ impl MechanismModel {
             quantity,
             causality,
             ..
-        } = self.variables[value_reference as usize];
+        } = self.variables[place(value_reference)];
         let mut known = table.of(quantity).unwrap_or_default();
         if causality == Causality::Output && !initializing {
             known.inputs.extend(known.parameters);

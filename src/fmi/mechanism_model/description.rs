@@ -8,7 +8,7 @@ use super::{MechanismModel, guid};
 use crate::fmi::model::Model;
 use crate::fmi::model_description::{Experiment, Member, ModelDescription, Terminal, Unknown};
 use crate::fmi::state::Version;
-use crate::fmi::variable::{Causality, Kind, Variable};
+use crate::fmi::variable::{Causality, Kind, Variable, value_reference};
 use crate::kinematics::{OutputSource, Structure, System};
 use crate::mechanism::{Mechanism, Order, Unit, rounded};
 
@@ -24,7 +24,8 @@ pub fn describe<'a>(
     let table = DependencyTable::new(mechanism, structure, &variables);
     let mut outputs = Vec::new();
     let mut initial_unknowns = Vec::new();
-    for (value_reference, variable) in (0..).zip(&variables) {
+    for (place, variable) in variables.iter().enumerate() {
+        let value_reference = value_reference(place);
         let Some(known) = table.of(variable.quantity) else {
             continue;
         };

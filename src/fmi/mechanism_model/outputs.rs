@@ -1,4 +1,4 @@
-//! Values of Reals by value reference, computed in groups.
+//! Values of Reals, computed in groups.
 
 use super::MechanismModel;
 use super::variables::Quantity;
@@ -36,7 +36,7 @@ const FORCES: Groups = LOADS | EFFORTS | REACTIONS;
 const POSES: Groups = BODIES | MARKERS | COORDINATES | DERIVED;
 const RATES: Groups = POSES << 1;
 
-/// Values of all variables by value reference.
+/// Values of all variables by their places.
 #[derive(Debug)]
 pub(super) struct Reals {
     values: Box<[f64]>,
@@ -45,25 +45,25 @@ pub(super) struct Reals {
     bodies: Box<[BodyPlace]>,
     /// All signals but those of bodies.
     signals: Box<[SignalPlace]>,
-    /// Value references, groups and quantities of all other Reals.
-    others: Box<[(u32, Groups, Quantity)]>,
+    /// Places, groups and quantities of all other Reals.
+    others: Box<[(usize, Groups, Quantity)]>,
 }
 
-/// A body among the outputs. Its nine values have consecutive references: x, y, phi, then their
-/// velocities, then their accelerations.
+/// A body among the outputs. Its nine values follow one another: x, y, phi, then their velocities,
+/// then their accelerations.
 #[derive(Clone, Copy, Debug)]
 struct BodyPlace {
     /// Its index.
     body: usize,
-    /// Value reference of its x.
-    reference: usize,
+    /// Place of its x.
+    first: usize,
 }
 
-/// A signal and its value references by order.
+/// A signal and the places of its values by order.
 #[derive(Clone, Copy, Debug)]
 struct SignalPlace {
     signal: Signal,
-    references: [u32; 3],
+    places: [usize; 3],
 }
 
 /// Returns the group of a quantity; 0 for a choice among items.
@@ -112,22 +112,22 @@ impl Reals {
         let mut bodies = Vec::new();
         let mut signals = Vec::new();
         let mut others = Vec::new();
-        for (vr, variable) in (0_u32..).zip(variables) {
+        for (place, variable) in variables.iter().enumerate() {
             match variable.quantity {
                 Quantity::Output(OutputSource::Signal(signal, Order::Position)) => match signal {
                     Signal::Body(body, 0) => bodies.push(BodyPlace {
                         body: body.index(),
-                        reference: vr as usize,
+                        first: place,
                     }),
                     Signal::Body(..) => {}
                     _ => {
-                        let next = |of: u32| derivatives[of as usize].expect("signals have two");
-                        let references = [vr, next(vr), next(next(vr))];
-                        signals.push(SignalPlace { signal, references });
+                        let next = |of: usize| derivatives[of].expect("signals have two");
+                        let places = [place, next(place), next(next(place))];
+                        signals.push(SignalPlace { signal, places });
                     }
                 },
                 Quantity::Output(OutputSource::Signal(..)) => {}
-                quantity => others.push((vr, group(mechanism, quantity), quantity)),
+                quantity => others.push((place, group(mechanism, quantity), quantity)),
             }
         }
         Self {
@@ -197,8 +197,8 @@ impl MechanismModel {
         let (q, _) = self.solver.pose().q.as_chunks();
         let (velocities, _) = self.solution.rates.velocity().as_chunks();
         let (accelerations, _) = self.solution.rates.acceleration().as_chunks();
-        for &BodyPlace { body, reference } in bodies.iter() {
-            let (to, _) = values[reference..reference + 9].as_chunks_mut::<3>();
+        for &BodyPlace { body, first } in bodies.iter() {
+            let (to, _) = values[first..first + 9].as_chunks_mut::<3>();
             if groups & BODIES != 0 {
                 to[0] = q[body];
             }
@@ -220,25 +220,25 @@ impl MechanismModel {
         } = &mut self.reals;
         let (solver, solution) = (&mut self.solver, &self.solution);
         let (rates, driver_rates) = (&solution.rates, &solution.driver_rates);
-        for SignalPlace { signal, references } in signals.iter() {
+        for SignalPlace { signal, places } in signals.iter() {
             let group = group_of(*signal);
             let [pose, derivatives] = [group, group << 1].map(|group| groups & group != 0);
             if pose || derivatives {
                 let jet = solver.signal(*signal, rates, driver_rates);
                 if pose {
-                    values[references[0] as usize] = jet.value;
+                    values[places[0]] = jet.value;
                 }
                 if derivatives {
-                    values[references[1] as usize] = jet.first();
-                    values[references[2] as usize] = jet.second();
+                    values[places[1]] = jet.first();
+                    values[places[2]] = jet.second();
                 }
             }
         }
-        for &(vr, group, quantity) in others.iter() {
+        for &(place, group, quantity) in others.iter() {
             if groups & group == 0 {
                 continue;
             }
-            values[vr as usize] = match quantity {
+            values[place] = match quantity {
                 Quantity::Input(driver, order) => self.course.inputs[driver.index()].get(order),
                 Quantity::ForceInput(place) => self.course.force_inputs[place].get(),
                 Quantity::Parameter(parameter) => self.course.parameters[parameter.index()],

@@ -9,7 +9,7 @@ use crate::kinematics::{Dependencies, Output, OutputSource};
 use crate::mechanism::{DriverId, DriverSource, Mechanism, Order, ParameterId, Unit};
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
-pub const TABLE_VERSION: u32 = 2;
+pub const TABLE_VERSION: u32 = 3;
 /// Version of the variables of forces, part of the GUID of mechanisms with dynamics.
 pub(super) const FORCE_TABLE_VERSION: u32 = 1;
 
@@ -100,7 +100,7 @@ impl Table {
         let traits = (causality, Variability::Continuous);
         let place = self.list.len();
         self.add(name.name, name.description, quantity, traits, kind);
-        let of = name.derivative_of.map(|distance| (place - distance) as u32);
+        let of = name.derivative_of.map(|distance| place - distance);
         self.list[place].derivative_of = of;
     }
 

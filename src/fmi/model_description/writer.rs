@@ -12,7 +12,7 @@ use super::xml::{Element, ElementWriter, Xml, boolean, non_empty, number};
 use super::{Capabilities, Experiment, ModelDescription, Unknown};
 use crate::fmi::log::Category;
 use crate::fmi::state::Version;
-use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable};
+use crate::fmi::variable::{Causality, Enumeration, Kind, Variability, Variable, value_reference};
 use crate::unit::Unit;
 
 /// Writes the root element; `generated` is the attribute `generationDateAndTime`.
@@ -56,8 +56,10 @@ pub(super) fn write<Q>(
             write_log_categories(xml, standard)?;
             write_experiment(xml, description.experiment)?;
             xml.create_element("ModelVariables").with_content(|xml| {
-                let mut variables = (0_u32..).zip(variables);
-                variables.try_for_each(|(vr, variable)| write_variable(xml, standard, vr, variable))
+                let mut variables = variables.iter().enumerate();
+                variables.try_for_each(|(place, variable)| {
+                    write_variable(xml, standard, value_reference(place), variable)
+                })
             })?;
             write_structure(xml, description)
         })
@@ -390,7 +392,9 @@ fn write_values<Q>(
             let display = unit.and_then(|unit| unit.display);
             let [min, max, nominal, start] =
                 [min, max, nominal, start].map(|value| value.map(number));
-            let derivative = variable.derivative_of.map(|of| identifier(standard, of));
+            // Some hosts of FMI 2.0 count each variable that has one as a state; the FMU has no states.
+            let derivative = variable.derivative_of.filter(|_| standard == Version::Fmi3);
+            let derivative = derivative.map(|of| value_reference(of).to_string());
             element.with_optional(&[
                 ("declaredType", unit.and_then(type_of)),
                 ("unit", unit.map(|unit| unit.name)),
@@ -408,15 +412,6 @@ fn write_values<Q>(
         }
     };
     element.empty()
-}
-
-/// Returns the number by which other elements refer to a variable: in FMI 2.0 its index, counted from
-/// 1, in FMI 3.0 its value reference.
-fn identifier(standard: Version, value_reference: u32) -> String {
-    match standard {
-        Version::Fmi2 => (value_reference + 1).to_string(),
-        Version::Fmi3 => value_reference.to_string(),
-    }
 }
 
 fn causality_name(causality: Causality) -> &'static str {
@@ -481,12 +476,13 @@ fn write_unknown(
     let mut dependencies = unknown.dependencies.clone();
     let attribute = match standard {
         Version::Fmi2 => "index",
+        // Which counts from 1, as value references do.
         Version::Fmi3 => {
             dependencies.extend(&unknown.parameters);
             "valueReference"
         }
     };
-    let known = dependencies.keys().map(|vr| identifier(standard, *vr));
+    let known = dependencies.keys().map(u32::to_string);
     let kinds = dependencies.values().map(|kind| kind.name());
     let [known, kinds] = [
         known.collect::<Vec<_>>().join(" "),
@@ -494,10 +490,7 @@ fn write_unknown(
     ];
     xml.create_element(element)
         .with_attributes([
-            (
-                attribute,
-                identifier(standard, unknown.value_reference).as_str(),
-            ),
+            (attribute, unknown.value_reference.to_string().as_str()),
             ("dependencies", &known),
         ])
         // The schema forbids an empty list of kinds.

@@ -17,7 +17,7 @@ fn adjoint_derivatives_are_those_of_the_transposed_jacobian() {
             let variables = instance.variables().iter().enumerate();
             variables
                 .filter(|(_, v)| causality.contains(&v.causality) && v.kind.is_real())
-                .map(|(index, _)| index as u32)
+                .map(|(place, _)| biela::fmi::value_reference(place))
                 .collect()
         };
         use biela::fmi::Causality::{Independent, Input, Output, Parameter};
@@ -80,7 +80,7 @@ fn dependencies_at_run_time_are_those_of_the_model_description() {
                 .unwrap();
             assert_eq!(found, expected(unknown));
         }
-        let input = instance.dependencies(call, 0).unwrap();
+        let input = instance.dependencies(call, 1).unwrap();
         assert_eq!(input, []);
     }
 }

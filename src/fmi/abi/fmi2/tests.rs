@@ -126,7 +126,7 @@ fn memory_to_be_written_need_not_hold_anything() {
     // after `fmi2DeSerializeFMUstate` has written it.
     unsafe {
         assert_eq!(fmi2EnterInitializationMode(c), fmi2OK);
-        let status = fmi2GetReal(c, [0, 1].as_ptr(), 2, values.as_mut_ptr().cast());
+        let status = fmi2GetReal(c, [1, 2].as_ptr(), 2, values.as_mut_ptr().cast());
         assert_eq!(status, fmi2OK);
         let written = [values[0].assume_init(), values[1].assume_init()];
         assert_eq!(written[1].to_bits(), 0.0_f64.to_bits());
