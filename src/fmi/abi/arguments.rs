@@ -1,5 +1,6 @@
-//! Arrays and strings of the host.
+//! Arrays and strings of the host, which may begin at any address.
 
+use std::borrow::Cow;
 use std::ffi::{CStr, c_char};
 use std::mem::MaybeUninit;
 use std::slice;
@@ -9,23 +10,46 @@ use crate::fmi::Error;
 /// Fault of a pointer that is null.
 pub(super) const NULL: &str = "is a null pointer";
 
-/// Returns the array of `length` items at `pointer`.
+/// A value at any address.
+#[derive(Clone, Copy)]
+#[repr(C, packed)]
+pub(super) struct Unaligned<T>(T);
+
+impl<T> From<T> for Unaligned<T> {
+    #[inline]
+    fn from(value: T) -> Self {
+        Self(value)
+    }
+}
+
+/// Returns the array of `length` items at `pointer`, a copy if it is not aligned.
 ///
 /// # Safety
 ///
 /// A pointer that is not null points to `length` items that live and do not change while the
 /// slice is used.
-pub(super) unsafe fn slice<'a, T>(
+pub(super) unsafe fn slice<'a, T: Copy>(
     name: &'static str,
     pointer: *const T,
     length: usize,
-) -> Result<&'a [T], Error> {
+) -> Result<Cow<'a, [T]>, Error> {
     check_array(name, pointer, length)?;
     if length == 0 {
-        return Ok(&[]);
+        return Ok(Cow::Borrowed(&[]));
     }
     // SAFETY: checked above as far as possible, promised by the caller beyond.
-    Ok(unsafe { slice::from_raw_parts(pointer, length) })
+    Ok(unsafe {
+        if pointer.is_aligned() {
+            Cow::Borrowed(slice::from_raw_parts(pointer, length))
+        } else {
+            copy(slice::from_raw_parts(pointer.cast(), length)).into()
+        }
+    })
+}
+
+#[cold]
+fn copy<T: Copy>(items: &[Unaligned<T>]) -> Vec<T> {
+    items.iter().map(|item| item.0).collect()
 }
 
 /// Returns the memory for `length` items at `pointer`, to be written. It may hold nothing yet, so that
@@ -39,21 +63,24 @@ pub(super) unsafe fn room<'a, T: Copy>(
     name: &'static str,
     pointer: *mut T,
     length: usize,
-) -> Result<&'a mut [MaybeUninit<T>], Error> {
+) -> Result<&'a mut [MaybeUninit<Unaligned<T>>], Error> {
     check_array(name, pointer, length)?;
     if length == 0 {
         return Ok(&mut []);
     }
     // SAFETY: checked above as far as possible, promised by the caller beyond; items that may hold
-    // nothing have the layout of items.
+    // nothing, at any address, have the size of items.
     Ok(unsafe { slice::from_raw_parts_mut(pointer.cast(), length) })
 }
 
 /// Writes values from the first item on, as many as there are and have room.
 #[inline]
-pub(super) fn fill<T: Copy>(room: &mut [MaybeUninit<T>], values: impl IntoIterator<Item = T>) {
+pub(super) fn fill<T: Copy>(
+    room: &mut [MaybeUninit<Unaligned<T>>],
+    values: impl IntoIterator<Item = T>,
+) {
     for (item, value) in room.iter_mut().zip(values) {
-        item.write(value);
+        item.write(value.into());
     }
 }
 
@@ -68,8 +95,6 @@ fn check_array<T>(name: &'static str, pointer: *const T, length: usize) -> Resul
         return Ok(());
     } else if pointer.is_null() {
         NULL
-    } else if !pointer.is_aligned() {
-        "is not aligned for its type"
     } else if length > isize::MAX as usize / size_of::<T>() {
         "has an impossible length"
     } else {

@@ -23,7 +23,7 @@
 //!   not been freed. A call on it while another is being served, from the logger or from another
 //!   thread, is refused.
 //! - A pointer to an array that is not null points to as many items as the argument for its length
-//!   says. Items that are read hold values and do not change during the call; items that are
+//!   says, at any address. Items that are read hold values and do not change during the call; items that are
 //!   written may hold nothing yet, and nobody else uses them during the call.
 //! - A string that is not null ends in NUL.
 //! - An FMU state that is not null came from this library, has not been freed, and is used by

@@ -51,7 +51,7 @@ macro_rules! fmu_state_calls {
                 let state = instance.fmu_state()?;
                 match handle.cast::<FmuState>().as_mut() {
                     Some(existing) => *existing = state,
-                    None => fmu_state.write(hand_over(state)),
+                    None => fmu_state.write_unaligned(hand_over(state)),
                 }
                 Ok(())
             };
@@ -66,7 +66,7 @@ macro_rules! fmu_state_calls {
                 let handle = slice(ARGUMENT, fmu_state, 1)?[0];
                 if !handle.is_null() {
                     drop(Box::from_raw(handle.cast::<FmuState>()));
-                    fmu_state.write(null_mut());
+                    fmu_state.write_unaligned(null_mut());
                 }
                 Ok(())
             };
@@ -96,7 +96,7 @@ macro_rules! fmu_state_calls {
             ) = |instance| {
                 let bytes = slice("serializedState", serialized_state.cast(), size)?;
                 let room = room(ARGUMENT, fmu_state, 1)?;
-                fill(room, [hand_over(instance.deserialize_fmu_state(bytes)?)]);
+                fill(room, [hand_over(instance.deserialize_fmu_state(&bytes)?)]);
                 Ok(())
             };
         }

@@ -400,7 +400,7 @@ impl Request {
 impl Reals<'_> {
     /// Writes the values from the first item on, as many as have room.
     #[inline]
-    pub fn write_to(self, items: &mut [MaybeUninit<f64>]) {
+    pub fn write_to(self, items: &mut [MaybeUninit<impl From<f64>>]) {
         // A loop for each variant, rather than a choice for each value.
         match self.0 {
             Places::Consecutive(values) => write_to(items, values.copied()),
@@ -412,9 +412,9 @@ impl Reals<'_> {
 }
 
 #[inline]
-fn write_to(items: &mut [MaybeUninit<f64>], values: impl Iterator<Item = f64>) {
+fn write_to(items: &mut [MaybeUninit<impl From<f64>>], values: impl Iterator<Item = f64>) {
     for (item, value) in items.iter_mut().zip(values) {
-        item.write(value);
+        item.write(value.into());
     }
 }
 

@@ -11,41 +11,41 @@ instance_calls! {
     fmi2GetReal(vr: *const u32, nvr: usize, value: *mut f64) = |instance| {
         let vr = slice("vr", vr, nvr)?;
         let room = room("value", value, nvr)?;
-        instance.reals(vr)?.write_to(room);
+        instance.reals(&vr)?.write_to(room);
         Ok(())
     };
     /// `fmi2SetReal`.
     fmi2SetReal(vr: *const u32, nvr: usize, value: *const f64) = |instance| {
         let vr = slice("vr", vr, nvr)?;
-        instance.set_real(vr, slice("value", value, nvr)?)
+        instance.set_real(&vr, &slice("value", value, nvr)?)
     };
     /// `fmi2GetInteger`: counts of the solver, and the choices.
     fmi2GetInteger(vr: *const u32, nvr: usize, value: *mut i32) = |instance| {
         let vr = slice("vr", vr, nvr)?;
         let room = room("value", value, nvr)?;
-        fill(room, instance.integers(vr)?);
+        fill(room, instance.integers(&vr)?);
         Ok(())
     };
     /// `fmi2SetInteger`.
     fmi2SetInteger(vr: *const u32, nvr: usize, value: *const i32) = |instance| {
         let vr = slice("vr", vr, nvr)?;
-        instance.set_integer(vr, slice("value", value, nvr)?)
+        instance.set_integer(&vr, &slice("value", value, nvr)?)
     };
     /// `fmi2GetBoolean`: there are no Boolean variables.
     fmi2GetBoolean(vr: *const u32, nvr: usize, _: *mut i32) = |instance| {
-        instance.no_variables(Call::GetBoolean, "Boolean", slice("vr", vr, nvr)?)
+        instance.no_variables(Call::GetBoolean, "Boolean", &slice("vr", vr, nvr)?)
     };
     /// `fmi2SetBoolean`: there are no Boolean variables.
     fmi2SetBoolean(vr: *const u32, nvr: usize, _: *const i32) = |instance| {
-        instance.no_variables(Call::SetBoolean, "Boolean", slice("vr", vr, nvr)?)
+        instance.no_variables(Call::SetBoolean, "Boolean", &slice("vr", vr, nvr)?)
     };
     /// `fmi2GetString`: there are no String variables.
     fmi2GetString(vr: *const u32, nvr: usize, _: *mut *const c_char) = |instance| {
-        instance.no_variables(Call::GetString, "String", slice("vr", vr, nvr)?)
+        instance.no_variables(Call::GetString, "String", &slice("vr", vr, nvr)?)
     };
     /// `fmi2SetString`: there are no String variables.
     fmi2SetString(vr: *const u32, nvr: usize, _: *const *const c_char) = |instance| {
-        instance.no_variables(Call::SetString, "String", slice("vr", vr, nvr)?)
+        instance.no_variables(Call::SetString, "String", &slice("vr", vr, nvr)?)
     };
     /// `fmi2GetDirectionalDerivative`.
     fmi2GetDirectionalDerivative(
@@ -60,7 +60,7 @@ instance_calls! {
         let knowns = slice("vKnown_ref", vr_known, n_known)?;
         let changes = slice("dvKnown", dv_known, n_known)?;
         let room = room("dvUnknown", dv_unknown, n_unknown)?;
-        fill(room, instance.directional_derivative(unknowns, knowns, changes)?);
+        fill(room, instance.directional_derivative(&unknowns, &knowns, &changes)?);
         Ok(())
     };
 }

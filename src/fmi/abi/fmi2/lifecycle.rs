@@ -41,11 +41,11 @@ pub unsafe extern "C" fn fmi2Instantiate(
     _visible: i32,
     logging_on: i32,
 ) -> Handle {
-    if functions.is_null() || !functions.is_aligned() {
+    if functions.is_null() {
         return null_mut();
     }
-    // SAFETY: not null, aligned, and promised by the caller to be readable.
-    let callbacks = unsafe { &*functions };
+    // SAFETY: not null, and promised by the caller to be readable.
+    let callbacks = unsafe { functions.read_unaligned() };
     let make = || {
         let arguments = [
             ("instanceName", instance_name),
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
             }
         };
         let folder = resource_path(resources).map_err(Error::from)?;
-        let sink = Box::new(HostLogger::new(callbacks, name));
+        let sink = Box::new(HostLogger::new(&callbacks, name));
         let logging_on = logging_on != 0;
         let version = Version::Fmi2;
         let instance = Instance::instantiate(version, guid, &folder, interface, sink, logging_on)?;
@@ -73,7 +73,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
         // SAFETY: the host's promise.
         let name = unsafe { text("instanceName", instance_name) };
         let message = format!("fmi2Instantiate: {message}");
-        let logger = HostLogger::new(callbacks, name.unwrap_or_default());
+        let logger = HostLogger::new(&callbacks, name.unwrap_or_default());
         logger.write(Status::Error, Category::Error, &message);
     };
     instantiate(make, complain)

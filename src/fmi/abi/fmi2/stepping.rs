@@ -18,7 +18,7 @@ instance_calls! {
     ) = |instance| {
         let vr = slice("vr", vr, nvr)?;
         let (order, value) = (slice("order", order, nvr)?, slice("value", value, nvr)?);
-        instance.set_real_input_derivatives(vr, order, value)
+        instance.set_real_input_derivatives(&vr, &order, &value)
     };
     /// `fmi2GetRealOutputDerivatives`.
     fmi2GetRealOutputDerivatives(
@@ -29,7 +29,7 @@ instance_calls! {
     ) = |instance| {
         let (vr, order) = (slice("vr", vr, nvr)?, slice("order", order, nvr)?);
         let room = room("value", value, nvr)?;
-        fill(room, instance.output_derivatives(vr, order)?);
+        fill(room, instance.output_derivatives(&vr, &order)?);
         Ok(())
     };
     /// `fmi2DoStep`. Nothing is kept for going back, so that

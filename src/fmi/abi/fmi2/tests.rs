@@ -151,6 +151,42 @@ fn memory_to_be_written_need_not_hold_anything() {
     }
 }
 
+/// Hosts that pack their data pass pointers that are not aligned.
+#[test]
+fn arrays_begin_at_any_address() {
+    let c = component(Breaking::default());
+    // SAFETY: the component is a new one.
+    assert_eq!(unsafe { fmi2EnterInitializationMode(c) }, fmi2OK);
+    for offset in 0..8 {
+        let mut memory = [[0_u8; 8]; 8];
+        let set = f64::from(offset) + 0.1;
+        // SAFETY: the memory has room for a reference, two numbers and a state, each with its offset.
+        unsafe {
+            let place = |k: usize| {
+                memory
+                    .as_mut_ptr()
+                    .cast::<u8>()
+                    .add(16 * k + offset as usize)
+            };
+            let [references, given, got, state] = [0, 1, 2, 3].map(place);
+            let (references, state) = (references.cast::<u32>(), state.cast::<Handle>());
+            let (given, got) = (given.cast::<f64>(), got.cast::<f64>());
+            references.write_unaligned(1);
+            given.write_unaligned(set);
+            assert_eq!(fmi2SetReal(c, references, 1, given), fmi2OK);
+            assert_eq!(fmi2GetReal(c, references, 1, got), fmi2OK);
+            assert_eq!(got.read_unaligned().to_bits(), set.to_bits());
+            state.write_unaligned(null_mut());
+            assert_eq!(fmi2GetFMUstate(c, state), fmi2OK);
+            assert_eq!(fmi2SetFMUstate(c, state.read_unaligned()), fmi2OK);
+            assert_eq!(fmi2FreeFMUstate(c, state), fmi2OK);
+            assert!(state.read_unaligned().is_null());
+        }
+    }
+    // SAFETY: it is not used any more.
+    unsafe { fmi2FreeInstance(c) };
+}
+
 /// Checks at compile time that each function has the signature of the standard's header.
 macro_rules! check_signatures {
     ($($function:ident: $signature:ident,)*) => {

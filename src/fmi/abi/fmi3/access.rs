@@ -30,7 +30,7 @@ instance_calls! {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
         let room = room("values", values, n_values)?;
-        instance.reals(references)?.write_to(room);
+        instance.reals(&references)?.write_to(room);
         Ok(())
     };
     /// `fmi3SetFloat64`.
@@ -42,7 +42,7 @@ instance_calls! {
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
-        instance.set_real(references, slice("values", values, n_values)?)
+        instance.set_real(&references, &slice("values", values, n_values)?)
     };
     /// `fmi3GetInt64`: the choices.
     fmi3GetInt64(
@@ -54,7 +54,7 @@ instance_calls! {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
         let room = room("values", values, n_values)?;
-        fill(room, instance.integers(references)?.map(i64::from));
+        fill(room, instance.integers(&references)?.map(i64::from));
         Ok(())
     };
     /// `fmi3SetInt64`.
@@ -66,7 +66,7 @@ instance_calls! {
     ) = |instance| {
         check_count("nValues", n_values, n_value_references)?;
         let references = slice("valueReferences", value_references, n_value_references)?;
-        instance.set_integer(references, slice("values", values, n_values)?)
+        instance.set_integer(&references, &slice("values", values, n_values)?)
     };
 }
 
@@ -85,7 +85,7 @@ macro_rules! without_variables {
                 ) = |instance| {
                     check_count("nValues", n_values, n_value_references)?;
                     let references = slice("valueReferences", value_references, n_value_references)?;
-                    instance.no_variables(Call::$call, $type, references)
+                    instance.no_variables(Call::$call, $type, &references)
                 };
             )*
         }
@@ -129,7 +129,7 @@ macro_rules! without_clocks {
                     $(_: $array),+
                 ) = |instance| {
                     let references = slice("valueReferences", value_references, n_value_references)?;
-                    instance.no_variables(Call::$call, "Clock", references)
+                    instance.no_variables(Call::$call, "Clock", &references)
                 };
             )*
         }

@@ -34,7 +34,7 @@ macro_rules! partial_derivatives {
                     let knowns = slice("knowns", knowns, n_knowns)?;
                     let seed = slice("seed", seed, n_seed)?;
                     let room = room("sensitivity", sensitivity, n_sensitivity)?;
-                    fill(room, instance.$method(unknowns, knowns, seed)?);
+                    fill(room, instance.$method(&unknowns, &knowns, &seed)?);
                     Ok(())
                 };
             )*
@@ -62,7 +62,7 @@ instance_calls! {
         let references = slice("valueReferences", value_references, n_value_references)?;
         let orders = slice("orders", orders, n_value_references)?;
         let room = room("values", values, n_values)?;
-        fill(room, instance.output_derivatives(references, orders)?);
+        fill(room, instance.output_derivatives(&references, &orders)?);
         Ok(())
     };
     /// `fmi3GetNumberOfVariableDependencies`.

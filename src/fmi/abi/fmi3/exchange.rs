@@ -40,7 +40,7 @@ instance_calls! {
         for (_, flag) in flags {
             flag.write(false);
         }
-        next_event_time.write(0.0);
+        next_event_time.write_unaligned(0.0);
         terminate_simulation.write(must_end);
         Ok(())
     };

@@ -144,7 +144,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
             event_mode_used,
             early_return_allowed,
             intermediate_update: intermediate_update.is_some(),
-            required_intermediate_variables: required.to_vec(),
+            required_intermediate_variables: required.into_owned(),
         })
     };
     // SAFETY: the host's promise.

@@ -62,7 +62,7 @@ pub unsafe extern "C" fn fmi3DoStep(
             event_handling_needed.write(outcome.event_handling_needed);
             terminate_simulation.write(outcome.terminate_simulation);
             early_return.write(outcome.early_return);
-            last_successful_time.write(outcome.last_successful_time);
+            last_successful_time.write_unaligned(outcome.last_successful_time);
         }
     }
     status

@@ -8,8 +8,47 @@ use super::exchange::*;
 use super::fmu_state::*;
 use super::lifecycle::*;
 use super::stepping::*;
-use crate::fmi::Status;
-use crate::fmi::abi::component::status_code;
+use crate::fmi::abi::component::{Component, status_code};
+use crate::fmi::{Category, Instance, Interface, MechanismModel, Sink, Status, Version};
+use crate::mechanism::{Mechanism, Source};
+
+/// In FMI 3.0 a refused call ends the simulation (2.3.1): pointers that are not aligned are no reason.
+#[test]
+fn a_step_writes_to_any_address() {
+    let text = include_str!("../../../../mechanisms/pendulum.toml");
+    let (mechanism, _) = Mechanism::parse(&Source::new("pendulum.toml", text)).unwrap();
+    let model = MechanismModel::new(mechanism.into(), Interface::CoSimulation).unwrap();
+    let instance = Instance::of_version(Version::Fmi3, model, Box::new(Silent), false);
+    let c = Component::hand_over(instance, None);
+    let mut memory = [[0_u8; 8]; 4];
+    let [mut event, mut end, mut early] = [false; 3];
+    // SAFETY: the component is a new one; the memory has room for a reference and a number, each at an
+    // odd address.
+    unsafe {
+        assert_eq!(
+            fmi3EnterInitializationMode(c, false, 0.0, 0.0, false, 0.0),
+            0
+        );
+        assert_eq!(fmi3ExitInitializationMode(c), 0);
+        let memory = memory.as_mut_ptr().cast::<u8>();
+        let (reference, number) = (memory.add(1).cast::<u32>(), memory.add(17).cast::<f64>());
+        reference.write_unaligned(1);
+        number.write_unaligned(0.7);
+        assert_eq!(fmi3SetFloat64(c, reference, 1, number, 1), 0);
+        let (event, end, early) = (&raw mut event, &raw mut end, &raw mut early);
+        assert_eq!(fmi3DoStep(c, 0.0, 0.25, true, event, end, early, number), 0);
+        assert_eq!(number.read_unaligned().to_bits(), 0.25_f64.to_bits());
+        assert_eq!(fmi3GetFloat64(c, reference, 1, number, 1), 0);
+        assert_eq!(number.read_unaligned().to_bits(), 0.7_f64.to_bits());
+        fmi3FreeInstance(c);
+    }
+}
+
+struct Silent;
+
+impl Sink for Silent {
+    fn write(&self, _: Status, _: Category, _: &str) {}
+}
 
 /// Checks at compile time that each function has the signature of the standard's header.
 macro_rules! check_signatures {
