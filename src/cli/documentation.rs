@@ -339,7 +339,7 @@ fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
         .filter_map(|variable| parameter(variable, values));
     let mut html = table(&header, rows);
     let settings = variables.iter().filter_map(|variable| {
-        let Kind::Enumeration(choices) = &variable.kind else {
+        let Kind::Enumeration { choices, start } = &variable.kind else {
             return None;
         };
         let items: Vec<String> = (1..)
@@ -347,7 +347,7 @@ fn parameters(variables: &[Variable<Quantity>], values: &[f64]) -> String {
             .map(|(number, (name, what))| format!("{number} ({name}) {what}"))
             .collect();
         let what = format!("{}: {}", variable.description, items.join("; "));
-        Some([variable.name.clone(), "1".to_owned(), what])
+        Some([variable.name.clone(), start.to_string(), what])
     });
     let settings: Vec<[String; 3]> = settings.collect();
     if !settings.is_empty() {

@@ -72,8 +72,13 @@ pub enum Kind {
     /// A count, which changes at communication points: a discrete Integer in FMI 2.0, a continuous
     /// Float64 in FMI 3.0, where discrete variables change at events only (2.4.7.4).
     Integer,
-    /// One of a few named items, counted from 1; the start value is 1.
-    Enumeration(&'static Enumeration),
+    /// One of a few named items, counted from 1.
+    Enumeration {
+        /// The items.
+        choices: &'static Enumeration,
+        /// Start value.
+        start: i32,
+    },
 }
 
 /// A choice among named items, counted from 1.
@@ -85,8 +90,23 @@ pub struct Enumeration {
     pub items: &'static [(&'static str, &'static str)],
 }
 
-/// Returns the value reference of each variable's time derivative.
-pub(super) fn derivatives<Q>(variables: &[Variable<Q>]) -> Box<[Option<u32>]> {
+/// Returns the value reference of the variable at a place in the model's list.
+///
+/// References count from 1, as the indices of FMI 2.0 do, so that hosts which take a reference for an
+/// index find the same variable.
+#[must_use]
+pub fn value_reference(place: usize) -> u32 {
+    place as u32 + 1
+}
+
+/// Returns the place of a value reference, which lies outside every list if there is no such variable.
+#[inline]
+pub(super) fn place(value_reference: u32) -> usize {
+    (value_reference as usize).wrapping_sub(1)
+}
+
+/// Returns the place of each variable's time derivative.
+pub(super) fn derivatives<Q>(variables: &[Variable<Q>]) -> Box<[Option<usize>]> {
     let mut derivatives = vec![None; variables.len()];
     for (place, variable) in variables.iter().enumerate() {
         if let Some(of) = variable.derivative_of {
@@ -127,7 +147,7 @@ impl Kind {
             (Self::Real { .. }, Version::Fmi2) => "a Real",
             (Self::Integer, Version::Fmi2) => "an Integer",
             (Self::Real { .. } | Self::Integer, Version::Fmi3) => "a Float64",
-            (Self::Enumeration(_), _) => "an Enumeration",
+            (Self::Enumeration { .. }, _) => "an Enumeration",
         }
     }
 }

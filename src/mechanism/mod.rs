@@ -12,6 +12,7 @@
 //! | `force` | [`Force`]: springs, dampers, actuators, loads |
 //! | `signal` | [`Signal`]: what moves, and the names of its variables |
 //! | `derived` | [`DerivedMeasure`]: functions of signals |
+//! | `setting` | start values of the FMU's settings |
 //! | `names`, `lookup`, `id` | names, and what they stand for |
 //! | `wording` | names and numbers in messages |
 //!
@@ -31,6 +32,7 @@ mod number;
 mod parameter;
 mod profile;
 mod read;
+mod setting;
 mod signal;
 mod source;
 mod spline;
@@ -59,6 +61,7 @@ pub use parameter::{DerivedParameter, Parameter};
 pub use profile::{
     ContourPoint, Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce,
 };
+pub use setting::{Extrapolation, RateSource};
 pub(crate) use signal::{COMPONENTS, SUFFIXES};
 pub use signal::{Order, Signal};
 pub use source::{Position, Source, Span};
@@ -408,6 +411,10 @@ pub struct Simulation {
     pub tolerance: f64,
     /// Acceleration of gravity \[m/s²\], without effect on the motion.
     pub gravity: [Expression; 2],
+    /// Start value of the FMU's parameter `rates`.
+    pub rates: RateSource,
+    /// Start value of the FMU's parameter `extrapolation`.
+    pub extrapolation: Extrapolation,
 }
 
 impl Mechanism {

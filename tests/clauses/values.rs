@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use biela::fmi::{Error, Interface, Status, Version, describe};
 
-use crate::common::{assembled, folder, instance_of, parse, shipped, stems};
+use crate::common::{Instance, assembled, folder, instance_of, parse, shipped, stems};
 use crate::{get, set, started, vr};
 
 /// "If the actual order is lower, the retrieved value is 0", with `fmi2OK`.
@@ -41,6 +41,37 @@ fn output_derivatives_beyond_the_known_ones_are_zero() {
         let expected = format!("cannot be of order {order}; expected 1 to 2");
         assert!(error.to_string().ends_with(&expected), "{error}");
     }
+}
+
+/// The file gives the settings their start values (2.2.7), which a reset restores.
+#[test]
+fn the_file_gives_the_settings_their_start_values() {
+    let text = std::fs::read_to_string(folder("mechanisms").join("four_bar.toml"));
+    let text = text.expect("it is shipped");
+    let settings = "[simulation]\nrates = 'inputs'\nextrapolation = 'taylor'\n";
+    let mechanism = parse(&text.replace("[simulation]\n", settings));
+    let mut instance = instance_of(mechanism, Interface::CoSimulation);
+    let settings = ["rates", "extrapolation"].map(|name| vr(&instance, name));
+    let values = |instance: &mut Instance| -> Vec<i32> {
+        instance.integers(&settings).expect("legal").collect()
+    };
+    instance.set_integer(&settings, &[1, 1]).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
+    assert_eq!(values(&mut instance), [1, 1]);
+    instance.reset().expect("legal");
+    let mut instance = started(instance);
+    assert_eq!(values(&mut instance), [2, 2]);
+    // `auto` would estimate the velocity, which nobody has set.
+    set(&mut instance, [("crank_angle.position", 1.3)]);
+    instance.do_step(0.0, 0.1).expect("the crank turns freely");
+    assert_eq!(get(&mut instance, ["crank.phi", "crank.omega"]), [1.3, 0.0]);
+    // `hold` would leave the angle.
+    set(&mut instance, [("crank_angle.velocity", 3.0)]);
+    instance.do_step(0.1, 0.1).expect("the crank turns freely");
+    let [phi, omega] = get(&mut instance, ["crank.phi", "crank.omega"]);
+    // Rounding of an angle of the order of one.
+    assert!((phi - (1.3 + 0.1 * 3.0)).abs() < 1e-14, "{phi}");
+    assert_eq!(omega, 3.0);
 }
 
 /// "On a fixed or tunable parameter `fmi2Status = fmi2Discard` is returned"; so the instance can be

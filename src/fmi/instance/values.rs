@@ -83,8 +83,8 @@ impl<M: Model> Instance<M> {
         let values = values.map(|(&value_reference, &value)| (value_reference, value.into()));
         for (value_reference, value) in values.clone() {
             let variable = self.settable(value_reference, "Integer or Enumeration")?;
-            if let Kind::Enumeration(enumeration) = variable.kind {
-                let count = enumeration.items.len();
+            if let Kind::Enumeration { choices, .. } = variable.kind {
+                let count = choices.items.len();
                 if !usize::try_from(value).is_ok_and(|value| (1..=count).contains(&value)) {
                     return Err(Error::Item {
                         name: variable.name.clone(),
@@ -433,7 +433,7 @@ impl Iterator for Reals<'_> {
 pub(in crate::fmi) fn check_value<Q>(variable: &Variable<Q>, value: f64) -> Result<(), Error> {
     let limits = match variable.kind {
         Kind::Real { min, max, .. } => [min, max],
-        Kind::Integer | Kind::Enumeration(_) => [None; 2],
+        Kind::Integer | Kind::Enumeration { .. } => [None; 2],
     };
     check_limits(&variable.name, value, limits)
 }

@@ -1,8 +1,8 @@
 //! The last samples of one driver's inputs, and the rates estimated from them.
 
-use super::rule::{RateSource, Source};
+use super::rule::Source;
 use crate::fmi::codec::{Codec, Unreadable};
-use crate::mechanism::Order;
+use crate::mechanism::{Order, RateSource};
 
 /// The inputs at one communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -18,9 +18,9 @@
 use std::f64::consts::TAU;
 
 use super::history::{History, Sample};
-use super::rule::{Extrapolation, RateSource, Rule, Source};
+use super::rule::{Rule, Source};
 use crate::fmi::codec::{Codec, Unreadable};
-use crate::mechanism::Order;
+use crate::mechanism::{Extrapolation, Order, RateSource};
 
 /// The three FMI inputs of one driver.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 use super::MechanismModel;
 use super::monitor::Contradiction;
-use super::rule::{RateSource, Source};
+use super::rule::Source;
 use crate::fmi::log::{Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
-use crate::mechanism::{Driver, DriverId, Order, rounded, shown};
+use crate::mechanism::{Driver, DriverId, Order, RateSource, rounded, shown};
 
 impl MechanismModel {
     /// Describes why the path was not followed to its end: the drivers that may be the cause, their

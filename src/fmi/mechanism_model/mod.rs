@@ -53,13 +53,15 @@ use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
 use crate::kinematics::{self, Carryover, Forces, Path, Pose, Progress, Solution, Solver};
-use crate::mechanism::{DriverId, DriverSource, Jet, Mechanism, Order, ParameterId};
+use crate::mechanism::{
+    DriverId, DriverSource, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource,
+};
 use force_input::ForceInput;
 use input::DriverInput;
 use monitor::Monitor;
 use outputs::Reals;
 use parts::Parts;
-use rule::{Extrapolation, RateSource, Rule, Source};
+use rule::{Rule, Source};
 
 /// A mechanism at the values that a host has set.
 #[derive(Debug)]
@@ -143,8 +145,8 @@ impl Course {
             start_pose: Arc::clone(start),
             parameters: mechanism.default_parameters(),
             rule: Rule {
-                rates: RateSource::Auto,
-                extrapolation: Extrapolation::Hold,
+                rates: mechanism.simulation.rates,
+                extrapolation: mechanism.simulation.extrapolation,
             },
             committed: Pose::clone(start),
             committed_carryover: carryover.clone(),

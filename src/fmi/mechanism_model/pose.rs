@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::rule::Source;
-use super::{Freshness, MechanismModel, RateSource, failed, without_value};
+use super::{Freshness, MechanismModel, failed, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::Logger;
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve, Progress, Start};
-use crate::mechanism::{DriverId, DriverSource};
+use crate::mechanism::{DriverId, DriverSource, RateSource};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
 /// input counts as continuous: a host's polynomials do not meet exactly.

@@ -1,54 +1,39 @@
 //! The FMU's parameters `rates` and `extrapolation`, and the sources of rates.
 
 use crate::fmi::variable::Enumeration;
+use crate::mechanism::{Extrapolation, RateSource};
 
-/// Use of the rate inputs: the FMU's parameter `rates`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RateSource {
-    Auto = 1,
-    Inputs = 2,
-    Estimated = 3,
-}
+/// Choices of the parameter `rates`.
+pub(super) const RATES: &Enumeration = &Enumeration {
+    name: "biela.Rates",
+    items: &[
+        (
+            RateSource::Auto.word(),
+            "each rate input once it was set to other than zero after initialization, \
+             otherwise input derivatives, otherwise an estimate",
+        ),
+        (RateSource::Inputs.word(), "the rate inputs, always"),
+        (
+            RateSource::Estimated.word(),
+            "input derivatives, otherwise an estimate from the last three positions",
+        ),
+    ],
+};
 
-impl RateSource {
-    pub(super) const ALL: [Self; 3] = [Self::Auto, Self::Inputs, Self::Estimated];
-    pub(super) const CHOICES: &Enumeration = &Enumeration {
-        name: "biela.Rates",
-        items: &[
-            (
-                "auto",
-                "each rate input once it was set to other than zero after initialization, \
-                 otherwise input derivatives, otherwise an estimate",
-            ),
-            ("inputs", "the rate inputs, always"),
-            (
-                "estimated",
-                "input derivatives, otherwise an estimate from the last three positions",
-            ),
-        ],
-    };
-}
-
-/// Path of positions without input derivatives: the FMU's parameter `extrapolation`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Extrapolation {
-    Hold = 1,
-    Taylor = 2,
-}
-
-impl Extrapolation {
-    pub(super) const ALL: [Self; 2] = [Self::Hold, Self::Taylor];
-    pub(super) const CHOICES: &Enumeration = &Enumeration {
-        name: "biela.Extrapolation",
-        items: &[
-            (
-                "hold",
-                "held over a step: outputs lag the inputs by one step",
-            ),
-            ("taylor", "extrapolated by velocity and acceleration"),
-        ],
-    };
-}
+/// Choices of the parameter `extrapolation`.
+pub(super) const EXTRAPOLATION: &Enumeration = &Enumeration {
+    name: "biela.Extrapolation",
+    items: &[
+        (
+            Extrapolation::Hold.word(),
+            "held over a step: outputs lag the inputs by one step",
+        ),
+        (
+            Extrapolation::Taylor.word(),
+            "extrapolated by velocity and acceleration",
+        ),
+    ],
+};
 
 /// The FMU's parameters that decide about paths and rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::rule::{Extrapolation, RateSource, Source};
+use super::rule::Source;
 use super::{Course, Freshness, MechanismModel, Quantity};
 use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
@@ -10,7 +10,7 @@ use crate::fmi::variable::Causality;
 use crate::kinematics::{
     BlockCarryover, Carryover, CheckedSegment, Crossing, PivotOrder, Polynomial, Pose, Progress,
 };
-use crate::mechanism::{DriverId, Jet};
+use crate::mechanism::{DriverId, Extrapolation, Jet, RateSource};
 
 /// Largest residual of a pose that is read, relative to its largest coordinate in characteristic
 /// lengths and radians. Newton leaves 1e-15; the next step closes a pose within this tolerance.

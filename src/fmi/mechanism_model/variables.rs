@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::rule::{Extrapolation, RateSource};
+use super::rule::{EXTRAPOLATION, RATES};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
 use crate::kinematics::{Dependencies, Output, OutputSource};
 use crate::mechanism::{DriverId, DriverSource, Mechanism, Order, ParameterId, Unit};
@@ -56,7 +56,7 @@ pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
         .iter()
         .any(|driver| driver.motion().is_none())
     {
-        table.add_settings();
+        table.add_settings(mechanism);
     }
     table.add_outputs(mechanism);
     table.add_solver();
@@ -172,21 +172,27 @@ impl Table {
         }
     }
 
-    fn add_settings(&mut self) {
+    fn add_settings(&mut self, mechanism: &Mechanism) {
         let traits = (Causality::Parameter, Variability::Fixed);
         self.add(
             "rates",
             "source of the velocity and acceleration of the inputs",
             Quantity::RateSource,
             traits,
-            Kind::Enumeration(RateSource::CHOICES),
+            Kind::Enumeration {
+                choices: RATES,
+                start: mechanism.simulation.rates as i32,
+            },
         );
         self.add(
             "extrapolation",
             "path of inputs without input derivatives during a step",
             Quantity::Extrapolation,
             traits,
-            Kind::Enumeration(Extrapolation::CHOICES),
+            Kind::Enumeration {
+                choices: EXTRAPOLATION,
+                start: mechanism.simulation.extrapolation as i32,
+            },
         );
     }
 

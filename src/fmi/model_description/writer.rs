@@ -238,8 +238,8 @@ fn types<Q>(variables: &[Variable<Q>]) -> Vec<Type> {
                     types.push(Type::Real(name, usual));
                 }
             }
-            Kind::Enumeration(enumeration) if names.insert(enumeration.name) => {
-                types.push(Type::Enumeration(enumeration));
+            Kind::Enumeration { choices, .. } if names.insert(choices.name) => {
+                types.push(Type::Enumeration(choices));
             }
             _ => {}
         }
@@ -343,7 +343,7 @@ fn write_variable<Q>(
         (Kind::Real { .. }, Version::Fmi3) => ("Float64", variable.variability),
         (Kind::Integer, Version::Fmi2) => ("Integer", variable.variability),
         (Kind::Integer, Version::Fmi3) => ("Float64", Variability::Continuous),
-        (Kind::Enumeration(_), _) => ("Enumeration", variable.variability),
+        (Kind::Enumeration { .. }, _) => ("Enumeration", variable.variability),
     };
     let crosses = matches!(variable.causality, Causality::Input | Causality::Output);
     let is_intermediate =
@@ -407,9 +407,10 @@ fn write_values<Q>(
             ])
         }
         Kind::Integer => element,
-        Kind::Enumeration(enumeration) => {
-            element.with_attributes([("declaredType", enumeration.name), ("start", "1")])
-        }
+        Kind::Enumeration { choices, start } => element.with_attributes([
+            ("declaredType", choices.name),
+            ("start", start.to_string().as_str()),
+        ]),
     };
     element.empty()
 }
@@ -475,8 +476,8 @@ fn write_unknown(
 ) -> io::Result<()> {
     let mut dependencies = unknown.dependencies.clone();
     let attribute = match standard {
-        Version::Fmi2 => "index",
         // Which counts from 1, as value references do.
+        Version::Fmi2 => "index",
         Version::Fmi3 => {
             dependencies.extend(&unknown.parameters);
             "valueReference"

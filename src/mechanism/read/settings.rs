@@ -2,7 +2,10 @@
 
 use crate::mechanism::diagnostic::code;
 use crate::mechanism::wording::shown_apart;
-use crate::mechanism::{BodyId, Expression, Indeterminate, MarkerId, Outputs, Simulation, Unit};
+use crate::mechanism::{
+    BodyId, Expression, Extrapolation, Indeterminate, MarkerId, Outputs, RateSource, Simulation,
+    Unit,
+};
 
 use super::context::Context;
 use super::kind::{Array, Fields, List, Word};
@@ -35,8 +38,19 @@ table! {
         tolerance: Quantity = RATIO.positive(),
         /// Acceleration of gravity; [0, -9.81] if left out.
         gravity: [Quantity; 2] = Array::new("[x, y]", [NUMBER.in_unit(Unit::METRE_PER_SECOND_SQUARED); 2]),
+        /// Start value of the FMU's parameter `rates`: the source of the drivers' rates.
+        rates: RateSource = RATES,
+        /// Start value of the FMU's parameter `extrapolation`: the path of inputs during a step.
+        extrapolation: Extrapolation = EXTRAPOLATION,
     }
 }
+
+const RATES: Word<RateSource> = Word::new("source of rates", code::ILLEGAL_VALUE, || {
+    RateSource::ALL.map(|source| (source.word(), source)).into()
+});
+const EXTRAPOLATION: Word<Extrapolation> = Word::new("extrapolation", code::ILLEGAL_VALUE, || {
+    Extrapolation::ALL.map(|path| (path.word(), path)).into()
+});
 
 const INDETERMINATE: Word<Indeterminate> = Word::new("treatment", code::ILLEGAL_VALUE, || {
     vec![
@@ -104,6 +118,8 @@ impl<'a> Context<'a> {
             step,
             tolerance: keys.tolerance.number().unwrap_or(1e-6),
             gravity: gravity.unwrap_or_else(|| GRAVITY.map(Expression::constant)),
+            rates: keys.rates.value.unwrap_or_default(),
+            extrapolation: keys.extrapolation.value.unwrap_or_default(),
         }
     }
 }
