@@ -106,7 +106,11 @@ class Mechanism:
         self, motions: _Motions, parameters: _Values, estimates: Sequence[float] | None
     ) -> str: ...
     def fmu(
-        self, fmi: str, runtime: str | os.PathLike[str] | None, platforms: Sequence[str]
+        self,
+        fmi: str,
+        terminals: bool,
+        runtime: str | os.PathLike[str] | None,
+        platforms: Sequence[str],
     ) -> bytes: ...
 
 class Run:

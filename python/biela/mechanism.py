@@ -378,10 +378,12 @@ class Mechanism:
         platforms: Iterable[str] = (),
         runtime: str | os.PathLike | None = None,
         fmi: int = 2,
+        terminals: bool = False,
     ) -> Path:
         """Writes the FMU and returns its path, by default the mechanism's name with `.fmu`.
 
-        `fmi` is the version of the standard: 2 or 3.
+        `fmi` is the version of the standard: 2 or 3; `terminals` adds terminals and an icon to an FMU
+        of FMI 2.0.
 
         `platforms` narrows the FMU to some of those of `biela platforms`; `runtime` is a folder of
         runtime libraries that replace those of this package.
@@ -389,7 +391,7 @@ class Mechanism:
         path = Path(path) if path is not None else Path(f"{self.name}.fmu")
         folder = os.fspath(runtime) if runtime is not None else None
         names = [platforms] if isinstance(platforms, str) else list(platforms)
-        path.write_bytes(bytes(self._inner.fmu(str(fmi), folder, names)))
+        path.write_bytes(bytes(self._inner.fmu(str(fmi), terminals, folder, names)))
         return path
 
     def _chosen(self, wanted: Sequence[str] | None) -> tuple[list[str], list[str], list[int]]:

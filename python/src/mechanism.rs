@@ -470,6 +470,7 @@ impl Mechanism {
         &self,
         py: Python<'_>,
         fmi: &str,
+        terminals: bool,
         runtime: Option<PathBuf>,
         platforms: Vec<String>,
     ) -> Result<Vec<u8>, Failure> {
@@ -479,6 +480,7 @@ impl Mechanism {
                 &self.source,
                 &self.model,
                 fmi,
+                terminals,
                 runtime.as_deref(),
                 &platforms,
             )

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::column::Output;
 use super::error::Error;
 use super::film::Film;
+use super::form::Form;
 use super::input::Input;
 use super::live;
 use super::motion::Motion;
@@ -64,13 +65,13 @@ pub(super) struct Shown {
     ranges: Vec<Option<Range>>,
 }
 
-/// Returns the picture and the page of a mechanism, and the licences, for an FMU of a version of the
-/// standard; `home` has the mechanism's own pose. With the solver for pages there is a second page,
-/// on which the mechanism is moved by hand.
+/// Returns the picture and the page of a mechanism, and the licences, for an FMU of this form; `home`
+/// has the mechanism's own pose. With the solver for pages there is a second page, on which the
+/// mechanism is moved by hand.
 pub(super) fn documents(
     input: &Input,
     home: &Solver,
-    version: Version,
+    form: Form,
     page_solver: Option<&[u8]>,
 ) -> Result<Vec<Document>, Error> {
     let refuse = |error| input.error(error);
@@ -97,19 +98,28 @@ pub(super) fn documents(
         path: path.to_owned(),
         content,
     };
-    let diagram = match version {
+    let diagram = match form.version {
         Version::Fmi2 => "model.png",
         Version::Fmi3 => "documentation/diagram.png",
     };
     let values = &home.pose().parameters;
     let has_live_page = page_solver.is_some();
-    let page = page(&input.mechanism, values, &shown, version, has_live_page);
-    let mut documents = vec![
-        document("terminalsAndIcons/icon.png", picture.clone()),
+    let page = page(
+        &input.mechanism,
+        values,
+        &shown,
+        form.version,
+        has_live_page,
+    );
+    let mut documents = Vec::new();
+    if form.terminals {
+        documents.push(document("terminalsAndIcons/icon.png", picture.clone()));
+    }
+    documents.extend([
         document(diagram, picture),
         document("documentation/index.html", page.into_bytes()),
         document("documentation/licenses/license.txt", LICENSES.to_vec()),
-    ];
+    ]);
     if let Some(page_solver) = page_solver {
         let solver = live::solver(page_solver);
         // The FMU depends on what is in the file, not on the file's name.
@@ -488,7 +498,8 @@ mod tests {
             let mechanism = Arc::new(mechanism);
             let input = Input { source, mechanism };
             let home = input.assemble().expect("it closes");
-            let documents = documents(&input, &home, Version::Fmi2, Some(b"\0asm"));
+            let form = Form::new(Version::Fmi2, false);
+            let documents = documents(&input, &home, form, Some(b"\0asm"));
             let documents = documents.expect("it can be drawn").into_iter();
             documents
                 .map(|document| (document.path, document.content))

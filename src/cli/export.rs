@@ -8,6 +8,7 @@ use clap::Args;
 
 use super::documentation;
 use super::error::Error;
+use super::form::Form;
 use super::input::{Input, warn_of_misfits};
 use super::input_files::InputFiles;
 use super::message::tell;
@@ -24,9 +25,9 @@ use crate::kinematics::Solver;
 /// file, its outputs position, velocity and acceleration of all bodies. The mechanism is
 /// assembled first; one that does not close is not exported.
 ///
-/// The FMU contains its picture (model.png; with --fmi 3 documentation/diagram.png), its terminals,
-/// and its documentation (documentation/index.html): the
-/// mechanism in motion, its variables and parameters, the limits of its drivers. If the solver for
+/// The FMU contains its picture (model.png; with --fmi 3 documentation/diagram.png) and its
+/// documentation (documentation/index.html): the mechanism in motion, its variables and parameters,
+/// the limits of its drivers. If the solver for
 /// pages is installed, documentation/page.html is the page of `biela page`.
 ///
 /// The FMU runs on the platforms that `biela platforms` lists with a library.
@@ -57,6 +58,10 @@ pub(super) struct Export {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = platform,
         conflicts_with = "model_description")]
     platforms: Vec<Platform>,
+    /// Add terminals and an icon to an FMU of FMI 2.0, for hosts that read them there; an FMU of
+    /// FMI 3.0 always has them.
+    #[arg(long, conflicts_with = "model_description")]
+    terminals: bool,
     /// Leave out the page on which the mechanism is moved by hand.
     #[arg(long, conflicts_with = "model_description")]
     no_page: bool,
@@ -89,7 +94,8 @@ impl Export {
             true => None,
             false => page_solver::find(None)?,
         };
-        let fmu = pack(&input, &solver, self.fmi, &libraries, page.as_deref())?;
+        let form = Form::new(self.fmi, self.terminals);
+        let fmu = pack(&input, &solver, form, &libraries, page.as_deref())?;
         write(&path, &fmu)?;
         let platforms: Vec<_> = (libraries.iter())
             .map(|library| library.platform.folder(self.fmi))
@@ -109,18 +115,21 @@ impl Export {
 pub(super) fn pack(
     input: &Input,
     solver: &Solver,
-    version: Version,
+    form: Form,
     libraries: &[RuntimeLibrary],
     page: Option<&[u8]>,
 ) -> Result<Vec<u8>, Error> {
-    let documents = documentation::documents(input, solver, version, page)?;
+    let documents = documentation::documents(input, solver, form, page)?;
+    let mut description = describe(&input.mechanism, solver.structure(), form.version);
+    if !form.terminals {
+        description.terminals.clear();
+    }
     let mut archive = Cursor::new(Vec::new());
     write_fmu(
         &mut archive,
         &input.source,
         &input.mechanism,
-        solver.structure(),
-        version,
+        &description,
         libraries,
         &documents,
         generation_time()?.as_deref(),

@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::check::json::report_on;
 use super::conditions::check_limits;
 use super::export::{pack, platform, version};
+use super::form::Form;
 use super::input::Input;
 use super::{conditions, page_solver, range, runtime};
 use crate::fmi::Platform;
@@ -21,8 +22,8 @@ pub fn check(source: &Source, modes: bool) -> Value {
     report_on(source, modes)
 }
 
-/// Returns the FMU that `biela export` writes, of the version `2` or `3` of FMI, for these platforms;
-/// for all without any. The libraries come from the folder `runtime`, or are those of this program.
+/// Returns the FMU that `biela export` writes, of the version `2` or `3` of FMI, with or without
+/// `terminals` if it is 2, for these platforms; for all without any. The libraries come from the folder `runtime`, or are those of this program.
 ///
 /// # Errors
 ///
@@ -31,13 +32,14 @@ pub fn archive(
     source: &Source,
     mechanism: &Arc<Mechanism>,
     fmi: &str,
+    terminals: bool,
     runtime: Option<&Path>,
     platforms: &[&str],
 ) -> Result<Vec<u8>, String> {
     let platforms: Vec<Platform> = (platforms.iter().copied())
         .map(platform)
         .collect::<Result<_, _>>()?;
-    let version = version(fmi)?;
+    let form = Form::new(version(fmi)?, terminals);
     let input = Input {
         source: source.clone(),
         mechanism: Arc::clone(mechanism),
@@ -47,7 +49,7 @@ pub fn archive(
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         let page = page_solver::find(None)?;
         let solver = input.assemble()?;
-        pack(&input, &solver, version, &libraries, page.as_deref())
+        pack(&input, &solver, form, &libraries, page.as_deref())
     };
     pack().map_err(|error: super::error::Error| error.to_string())
 }

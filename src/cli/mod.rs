@@ -15,6 +15,7 @@ mod draw;
 mod error;
 mod export;
 mod film;
+mod form;
 mod input;
 mod input_files;
 mod library;

@@ -95,8 +95,8 @@ pub struct RuntimeLibrary {
     pub content: Cow<'static, [u8]>,
 }
 
-/// Writes an FMU: model description, terminals, documents, runtime libraries and resources, each
-/// resource with its name in `resources/`.
+/// Writes an FMU: model description, terminals and icon if there are any, documents, runtime libraries
+/// and resources, each resource with its name in `resources/`.
 ///
 /// The same input gives the same bytes: entries have a fixed order and a fixed date.
 ///

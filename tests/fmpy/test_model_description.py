@@ -480,7 +480,7 @@ def test_archive(fmu, name):
     library = fmu(name).library.relative_to(fmu(name).folder).as_posix()
     assert library in files
     folders = {Path(file).parts[0] for file in files if "/" in file}
-    assert folders == {"binaries", "resources", "documentation", "terminalsAndIcons"}
+    assert folders == {"binaries", "resources", "documentation"}
     assert "documentation/index.html" in files
     picture = (fmu(name).folder / "model.png").read_bytes()
     assert picture.startswith(b"\x89PNG")

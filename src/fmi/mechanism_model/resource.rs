@@ -2,14 +2,11 @@
 
 use std::io::{self, Seek, Write};
 use std::path::Path;
-use std::sync::Arc;
 
-use super::describe;
+use super::variables::Quantity;
 use crate::fmi::error::Failure;
-use crate::fmi::model_description::Document;
+use crate::fmi::model_description::{Document, ModelDescription};
 use crate::fmi::package::{self, RuntimeLibrary};
-use crate::fmi::state::Version;
-use crate::kinematics::Structure;
 use crate::mechanism::{Mechanism, Severity, Source};
 
 /// Name of the mechanism's file in `resources/`.
@@ -32,22 +29,17 @@ pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
     }
 }
 
-/// Writes the FMU of a mechanism for a version of the standard: its file, its model description,
-/// runtime libraries and documents. The same input gives the same bytes.
+/// Writes the FMU of a mechanism: its file, its model description, runtime libraries and documents.
+/// The same input gives the same bytes.
 ///
 /// # Errors
 ///
 /// `out` cannot be written.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the parts of an archive, which have no common owner"
-)]
 pub fn write_fmu(
     out: impl Write + Seek,
     source: &Source,
-    mechanism: &Arc<Mechanism>,
-    structure: &Structure,
-    version: Version,
+    mechanism: &Mechanism,
+    description: &ModelDescription<'_, Quantity>,
     libraries: &[RuntimeLibrary],
     documents: &[Document],
     generated: Option<&str>,
@@ -58,7 +50,7 @@ pub fn write_fmu(
     }
     package::write(
         out,
-        &describe(mechanism, structure, version),
+        description,
         libraries,
         &resources,
         documents,
