@@ -14,7 +14,7 @@ use super::input_files::InputFiles;
 use super::message::tell;
 use super::output::write;
 use super::page_solver;
-use super::runtime;
+use super::runtime::{self, FoundLibrary};
 use super::stdout::is_stdout;
 use crate::fmi::{Platform, RuntimeLibrary, Version, describe, write_fmu};
 use crate::kinematics::Solver;
@@ -87,6 +87,7 @@ impl Export {
         for library in found.iter().filter_map(|found| found.path.as_deref()) {
             files.add("a runtime library", library);
         }
+        let platforms = packed(&found, self.fmi, !self.platforms.is_empty());
         let libraries: Vec<_> = found.into_iter().map(|found| found.library).collect();
         files.refuse_as_outputs(&[Some(&path)])?;
         let solver = assemble(&input)?;
@@ -97,17 +98,36 @@ impl Export {
         let form = Form::new(self.fmi, self.terminals);
         let fmu = pack(&input, &solver, form, &libraries, page.as_deref())?;
         write(&path, &fmu)?;
-        let platforms: Vec<_> = (libraries.iter())
-            .map(|library| library.platform.folder(self.fmi))
-            .collect();
         let name = if is_stdout(&path) {
             "stdout".into()
         } else {
             path.to_string_lossy()
         };
-        tell(format_args!("wrote {name} ({})", platforms.join(", ")));
+        tell(format_args!("wrote {name} ({platforms})"));
         Ok(())
     }
+}
+
+/// Says which platforms libraries are for, each with what it needs there; then, unless the platforms
+/// were `chosen`, which ones are left out.
+fn packed(libraries: &[FoundLibrary], version: Version, chosen: bool) -> String {
+    let names = libraries.iter().map(|found| {
+        let name = found.library.platform.folder(version);
+        match found.glibc() {
+            Some(glibc) => format!("{name}, glibc {glibc} or newer"),
+            None => name.to_owned(),
+        }
+    });
+    let mut parts: Vec<String> = names.collect();
+    let is_packed = |platform: &Platform| libraries.iter().any(|f| f.library.platform == *platform);
+    let missing = Platform::ALL
+        .into_iter()
+        .filter(|platform| !is_packed(platform));
+    let missing: Vec<&str> = missing.map(|platform| platform.folder(version)).collect();
+    if !chosen && !missing.is_empty() {
+        parts.push(format!("not {}", missing.join(", ")));
+    }
+    parts.join("; ")
 }
 
 /// Returns the FMU of a mechanism, which `solver` has assembled; with a page if the solver for pages

@@ -37,41 +37,13 @@ impl Platforms {
                         || "in this program".to_owned(),
                         |path| path.display().to_string(),
                     ),
-                    glibc(&found.library.content),
+                    found.glibc(),
                 ),
             };
-            let needs = needs.map_or_else(String::new, |[major, minor]| {
-                format!(", glibc {major}.{minor}")
-            });
+            let needs = needs.map_or_else(String::new, |version| format!(", glibc {version}"));
             let system = format!("{}{needs}", platform.system);
             let _ = writeln!(text, "{:<16}{system:<34}{library}", platform.name);
         }
         print(&text)
-    }
-}
-
-/// Returns the newest version of glibc whose symbols an ELF library names.
-fn glibc(library: &[u8]) -> Option<[u32; 2]> {
-    const MARK: &[u8] = b"\0GLIBC_";
-    let versions = library.windows(MARK.len()).enumerate();
-    let versions = versions.filter(|(_, window)| *window == MARK);
-    let versions = versions.filter_map(|(at, _)| {
-        let text = library[at + MARK.len()..].split(|byte| *byte == 0).next()?;
-        let mut numbers = std::str::from_utf8(text).ok()?.split('.');
-        let mut next = || numbers.next()?.parse().ok();
-        Some([next()?, next()?])
-    });
-    versions.max()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::glibc;
-
-    #[test]
-    fn the_newest_version_counts() {
-        let names = b"\0GLIBC_2.2.5\0GLIBC_2.17\0puts\0GLIBC_2.4\0GLIBC_PRIVATE\0";
-        assert_eq!(glibc(names), Some([2, 17]));
-        assert_eq!(glibc(b"MZ"), None);
     }
 }

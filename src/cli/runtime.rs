@@ -14,6 +14,14 @@ pub(super) struct FoundLibrary {
     pub(super) path: Option<PathBuf>,
 }
 
+impl FoundLibrary {
+    /// Returns the oldest version of glibc that the library runs with; `None` if it uses none.
+    pub(super) fn glibc(&self) -> Option<String> {
+        let version = glibc(&self.library.content);
+        version.map(|[major, minor]| format!("{major}.{minor}"))
+    }
+}
+
 /// Returns the runtime libraries in `folder` if one is given, otherwise those installed with this
 /// program, in the order of the platforms.
 ///
@@ -128,4 +136,30 @@ fn read(platform: Platform, path: PathBuf) -> Result<FoundLibrary, Error> {
         library: RuntimeLibrary { platform, content },
         path: Some(path),
     })
+}
+
+/// Returns the newest version of glibc whose symbols an ELF library names.
+fn glibc(library: &[u8]) -> Option<[u32; 2]> {
+    const MARK: &[u8] = b"\0GLIBC_";
+    let versions = library.windows(MARK.len()).enumerate();
+    let versions = versions.filter(|(_, window)| *window == MARK);
+    let versions = versions.filter_map(|(at, _)| {
+        let text = library[at + MARK.len()..].split(|byte| *byte == 0).next()?;
+        let mut numbers = std::str::from_utf8(text).ok()?.split('.');
+        let mut next = || numbers.next()?.parse().ok();
+        Some([next()?, next()?])
+    });
+    versions.max()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::glibc;
+
+    #[test]
+    fn the_newest_version_counts() {
+        let names = b"\0GLIBC_2.2.5\0GLIBC_2.17\0puts\0GLIBC_2.4\0GLIBC_PRIVATE\0";
+        assert_eq!(glibc(names), Some([2, 17]));
+        assert_eq!(glibc(b"MZ"), None);
+    }
 }

@@ -72,9 +72,12 @@ ROUNDING = 1e-9
 
 
 def same_line(shown: str, printed: str) -> bool:
-    """Whether two lines are the same up to the last digit of each number and to rounding."""
+    """Whether two lines are the same up to the last digit of each number and to rounding; `…` in the
+    one that is shown stands for any text."""
     if shown == printed:
         return True
+    if "…" in shown:
+        return re.fullmatch(".*".join(map(re.escape, shown.split("…"))), printed) is not None
     if NUMBER.split(shown.rstrip()) != NUMBER.split(printed.rstrip()):
         return False
     pairs = zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=True)
