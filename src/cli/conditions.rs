@@ -57,6 +57,7 @@ impl Conditions {
         let parameters = self.parameters(mechanism)?;
         let mut driven = mechanism.clone();
         let mut driven_by_option = Vec::new();
+        let mut forces_by_option = Vec::new();
         let drivers = mechanism.drivers.len();
         let force_inputs = mechanism.force_inputs();
         let names = mechanism.drivers.iter().map(|driver| driver.name.as_str());
@@ -66,6 +67,7 @@ impl Conditions {
                 let size = mechanism.parse_expression(text, Some(Variable::Time));
                 let size = size.map_err(|error| DRIVE.refuse(text, &error))?;
                 set_force(&mut driven.forces[input.force].load, input.component, size);
+                forces_by_option.push(input.name.as_str());
                 continue;
             }
             let motion = motion(mechanism, text, &parameters, start)?;
@@ -79,7 +81,7 @@ impl Conditions {
             driven_by_option.push(DriverId(index));
         }
         let signals = match signals {
-            Some(path) => Signals::read(path, &driven)?,
+            Some(path) => Signals::read(path, &driven, &forces_by_option)?,
             None => Signals::default(),
         };
         if let Some(driver) = driven_by_option.iter().find(|d| signals.has(**d)) {

@@ -20,6 +20,15 @@ impl Message {
         tell(format_args!("{style}{kind}{style:#}: {text}"));
     }
 
+    /// Returns the message with another text about the same.
+    pub(super) fn about(self, text: impl FnOnce(String) -> String) -> Self {
+        match self {
+            Self::Error(inner) => Self::Error(text(inner)),
+            Self::Warning(inner) => Self::Warning(text(inner)),
+            Self::Note(inner) => Self::Note(text(inner)),
+        }
+    }
+
     /// Returns the kind, the style of the kind, and the text.
     fn parts(&self) -> (&'static str, impl Display, &str) {
         match self {

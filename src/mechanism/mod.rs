@@ -54,7 +54,7 @@ pub use id::{BodyId, DriverId, MarkerId, ParameterId};
 pub(crate) use motion::not_finite;
 pub use motion::{Interpolation, Law, Motion, MotionInForce, MotionTable};
 #[cfg(feature = "cli")]
-pub(crate) use names::help;
+pub(crate) use names::{did_you_mean, help};
 pub use names::{is_identifier, similar_identifier};
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::{DerivedParameter, Parameter};

@@ -148,7 +148,7 @@ pub(crate) fn help(name: &str, candidates: &[&str], further: &[&str]) -> Option<
 }
 
 /// Returns "did you mean `crank`?" if that is near.
-fn did_you_mean(name: &str, candidates: &[&str]) -> Option<String> {
+pub(crate) fn did_you_mean(name: &str, candidates: &[&str]) -> Option<String> {
     nearest(name, candidates).map(|near| format!("did you mean {}?", quoted(near)))
 }
 
