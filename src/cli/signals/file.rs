@@ -306,11 +306,8 @@ impl<'a> Column<'a> {
             return None;
         }
         let is_whole = values.iter().all(|value| value.fract() == 0.0);
-        let largest =
-            values
-                .iter()
-                .copied()
-                .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        let larger = |a: f64, b: &f64| if b.abs() > a.abs() { *b } else { a };
+        let largest = values.iter().fold(0.0, larger);
         let suspect = if is_whole { largest } else { values[0] };
         let message = large_angle(suspect)?;
         let name = self.name;
