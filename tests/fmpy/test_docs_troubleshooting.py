@@ -91,6 +91,7 @@ PARTS = {
     "its GUID is longer than itself": "no instance can be in the serialized FMU state: …",
     "it is in state …": "no instance can be in the serialized FMU state: …",
     "this FMU provides no directional derivatives": "of a model without them, which none is",
+    "…, glibc … or newer": "wrote …",
     "FMU state set: … at t = … s": "an event",
     "the rate input": "an event: … now comes from …",
     "differences of the velocity": "an event: … now comes from …",
