@@ -96,7 +96,7 @@ pub use forces::{
 };
 pub use initial_pose::{Assembly, Start};
 pub use linear::PivotOrder;
-pub use output::{Output, OutputSource};
+pub use output::{Output, OutputSource, omitted_reactions};
 pub use path::{Curve, Path, Rates};
 pub use redundancy::Redundancy;
 pub use singular::{Approach, LARGEST_BLOCK, SingularKind, SingularPoint};

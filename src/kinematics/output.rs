@@ -59,7 +59,8 @@ impl Output {
             list.add_driver(mechanism, DriverId(index));
         }
         list.add_places(mechanism);
-        list.add_derived_and_forces(mechanism);
+        let omitted = omitted_reactions(mechanism).unwrap_or_default();
+        list.add_derived_and_forces(mechanism, &omitted);
         list.0
     }
 
@@ -72,10 +73,10 @@ impl Output {
     }
 
     /// Returns the outputs of a mechanism whose input drivers a host moves: bodies, markers,
-    /// measures, prescribed motions, measures computed from others, forces; in the file's order
-    /// within each group.
+    /// measures, prescribed motions, measures computed from others, forces without the
+    /// [omitted reactions](omitted_reactions); in the file's order within each group.
     #[must_use]
-    pub fn of_host(mechanism: &Arc<Mechanism>) -> Vec<Self> {
+    pub fn of_host(mechanism: &Mechanism, omitted: &[Element]) -> Vec<Self> {
         let mut list = List::default();
         list.add_places(mechanism);
         for (index, driver) in mechanism.drivers.iter().enumerate() {
@@ -83,7 +84,7 @@ impl Output {
                 list.add_driver(mechanism, DriverId(index));
             }
         }
-        list.add_derived_and_forces(mechanism);
+        list.add_derived_and_forces(mechanism, omitted);
         list.0
     }
 
@@ -210,7 +211,7 @@ impl List {
         }
     }
 
-    fn add_derived_and_forces(&mut self, mechanism: &Arc<Mechanism>) {
+    fn add_derived_and_forces(&mut self, mechanism: &Mechanism, omitted: &[Element]) {
         let derived = mechanism.derived.iter().enumerate();
         self.0.extend(derived.map(|(index, measure)| Output {
             name: measure.name.clone(),
@@ -221,7 +222,7 @@ impl List {
         }));
         if mechanism.has_dynamics() {
             self.add_driver_forces(mechanism);
-            self.add_reactions(mechanism);
+            self.add_reactions(mechanism, omitted);
             let given = mechanism.given_forces().into_iter();
             self.0.extend(given.map(|given| Output {
                 name: given.name,
@@ -270,12 +271,8 @@ impl List {
         }
     }
 
-    /// Adds the reactions of joints and constraints.
-    fn add_reactions(&mut self, mechanism: &Arc<Mechanism>) {
-        let omitted = match mechanism.outputs.indeterminate {
-            Indeterminate::Omit => indeterminate(mechanism),
-            Indeterminate::MinimumNorm => Vec::new(),
-        };
+    /// Adds the reactions of joints and constraints but the omitted ones.
+    fn add_reactions(&mut self, mechanism: &Mechanism, omitted: &[Element]) {
         for &index in &mechanism.outputs.joints {
             let joint = &mechanism.joints[index];
             if omitted.contains(&Element::Joint(index)) {
@@ -321,20 +318,24 @@ impl List {
     }
 }
 
-/// Returns the joints and constraints whose reactions redundant constraints leave indeterminate,
-/// at the file's own values; none if the mechanism does not assemble there.
-fn indeterminate(mechanism: &Arc<Mechanism>) -> Vec<Element> {
+/// Returns the joints and constraints whose reactions are no outputs, since redundant constraints leave
+/// them indeterminate. `None` where the file alone decides: no masses or forces, no redundant
+/// constraints, or reactions of least norm. Otherwise a rank decides, at the file's own values, which
+/// rounding may change; no joint is omitted if the mechanism does not assemble there.
+#[must_use]
+pub fn omitted_reactions(mechanism: &Arc<Mechanism>) -> Option<Vec<Element>> {
+    let omits = mechanism.outputs.indeterminate == Indeterminate::Omit;
     let system = System::new(Arc::clone(mechanism));
-    if system.equations().len() <= system.unknowns() {
-        return Vec::new();
+    if !mechanism.has_dynamics() || !omits || system.equations().len() <= system.unknowns() {
+        return None;
     }
     let Ok(mut solver) = Solver::new(Arc::clone(system.mechanism())) else {
-        return Vec::new();
+        return Some(Vec::new());
     };
-    match solver.assemble(&Path::new(mechanism)) {
+    Some(match solver.assemble(&Path::new(mechanism)) {
         Ok(_) => solver.indeterminate(),
         Err(_) => Vec::new(),
-    }
+    })
 }
 
 /// Returns the file's own description of a coordinate, or else what it measures.

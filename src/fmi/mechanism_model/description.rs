@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
+use super::MechanismModel;
 use super::dependencies::{DependencyTable, Kinds};
-use super::variables::{Quantity, variables};
-use super::{MechanismModel, guid};
+use super::guid::guid_without;
+use super::variables::{Quantity, variables_without};
 use crate::fmi::model::Model;
 use crate::fmi::model_description::{Experiment, Member, ModelDescription, Terminal, Unknown};
 use crate::fmi::state::Version;
 use crate::fmi::variable::{Causality, Kind, Variable, value_reference};
-use crate::kinematics::{OutputSource, Structure, System};
+use crate::kinematics::{Element, OutputSource, Structure, System, omitted_reactions};
 use crate::mechanism::{Mechanism, Order, Unit, rounded};
 
 /// Returns the model description of a mechanism's FMU for a version of the standard.
@@ -19,7 +20,18 @@ pub fn describe<'a>(
     structure: &Structure,
     standard: Version,
 ) -> ModelDescription<'a, Quantity> {
-    let mut variables = variables(mechanism);
+    let omitted = omitted_reactions(mechanism).unwrap_or_default();
+    describe_without(mechanism, structure, standard, &omitted)
+}
+
+/// Returns the model description without the reactions of some joints and constraints.
+pub(super) fn describe_without<'a>(
+    mechanism: &'a Arc<Mechanism>,
+    structure: &Structure,
+    standard: Version,
+    omitted: &[Element],
+) -> ModelDescription<'a, Quantity> {
+    let mut variables = variables_without(mechanism, omitted);
     set_nominal(mechanism, &mut variables);
     let table = DependencyTable::new(mechanism, structure, &variables);
     let mut outputs = Vec::new();
@@ -51,7 +63,7 @@ pub fn describe<'a>(
         version: mechanism.version.as_deref(),
         copyright: mechanism.copyright.as_deref(),
         license: mechanism.license.as_deref(),
-        guid: guid(mechanism),
+        guid: guid_without(mechanism, omitted),
         experiment: Experiment {
             start: simulation.start,
             stop: simulation.stop,

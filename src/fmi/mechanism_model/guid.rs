@@ -1,20 +1,32 @@
 //! The GUID that ties a model description to its mechanism.
 
+use std::sync::Arc;
+
 use uuid::Uuid;
 
 use super::variables::{FORCE_TABLE_VERSION, TABLE_VERSION};
+use crate::kinematics::{Element, omitted_reactions};
 use crate::mechanism::Mechanism;
 
 /// Name space of biela's GUIDs, an arbitrary constant.
 const NAMESPACE: Uuid = Uuid::from_u128(0x8d0c_61f7_2f0e_4b36_9a53_b1e1_a0f0_0d1e);
 
-/// Returns the GUID of a mechanism's FMU: a hash of its values and tables and of the version of
-/// the table of variables. Comments and layout of the file have no effect.
+/// Returns the GUID of a mechanism's FMU: a hash of its values and tables, of the version of the table
+/// of variables, and of the reactions that it omits. Comments and layout of the file have no effect.
 #[must_use]
 pub fn guid(mechanism: &Mechanism) -> String {
+    let omitted = omitted_reactions(&Arc::new(mechanism.clone()));
+    guid_without(mechanism, &omitted.unwrap_or_default())
+}
+
+/// Returns the GUID of the FMU that omits the reactions of some joints and constraints.
+pub(super) fn guid_without(mechanism: &Mechanism, omitted: &[Element]) -> String {
     let mut content = format!("biela {TABLE_VERSION}\n{}", mechanism.canonical);
     if mechanism.has_dynamics() {
         content += &format!("\nforces {FORCE_TABLE_VERSION}");
+    }
+    for element in omitted {
+        content += &format!("\nwithout {}", element.name(mechanism));
     }
     format!("{{{}}}", Uuid::new_v5(&NAMESPACE, content.as_bytes()))
 }

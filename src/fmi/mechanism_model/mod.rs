@@ -52,16 +52,20 @@ use super::model::{Groups, Model};
 use super::model_description::{Capabilities, DependencyKind};
 use super::state::{Interface, Phase};
 use super::variable::Variable;
-use crate::kinematics::{self, Carryover, Forces, Path, Pose, Progress, Solution, Solver};
+use crate::kinematics::{
+    self, Carryover, Element, Forces, Path, Pose, Progress, Solution, Solver, omitted_reactions,
+};
 use crate::mechanism::{
     DriverId, DriverSource, Extrapolation, Jet, Mechanism, Order, ParameterId, RateSource,
 };
 use force_input::ForceInput;
+use guid::guid_without;
 use input::DriverInput;
 use monitor::Monitor;
 use outputs::Reals;
 use parts::Parts;
 use rule::{Rule, Source};
+use variables::variables_without;
 
 /// A mechanism at the values that a host has set.
 #[derive(Debug)]
@@ -183,6 +187,16 @@ impl MechanismModel {
     ///
     /// The mechanism does not assemble.
     pub fn new(mechanism: Arc<Mechanism>, interface: Interface) -> Result<Self, kinematics::Error> {
+        let omitted = omitted_reactions(&mechanism).unwrap_or_default();
+        Self::without(mechanism, interface, &omitted)
+    }
+
+    /// Assembles a mechanism whose FMU omits the reactions of some joints and constraints.
+    fn without(
+        mechanism: Arc<Mechanism>,
+        interface: Interface,
+        omitted: &[Element],
+    ) -> Result<Self, kinematics::Error> {
         let path = Path::new(&mechanism);
         let solver = Solver::assembled(Arc::clone(&mechanism), &path)?;
         let file_pose = Arc::new(solver.pose().clone());
@@ -193,9 +207,9 @@ impl MechanismModel {
         if mechanism.has_dynamics() {
             solution.seek_forces(&solver);
         }
-        let variables = variables(&mechanism);
+        let variables = variables_without(&mechanism, omitted);
         Ok(Self {
-            guid: guid(&mechanism),
+            guid: guid_without(&mechanism, omitted),
             interface,
             reals: Reals::new(&mechanism, &variables),
             variables,
@@ -275,8 +289,8 @@ impl Model for MechanismModel {
     };
 
     fn load(resources: &FilePath, interface: Interface) -> Result<Self, Failure> {
-        let mechanism = Arc::new(resource::read(resources)?);
-        Self::new(mechanism, interface).map_err(failed)
+        let (mechanism, omitted) = resource::read(resources)?;
+        Self::without(mechanism, interface, &omitted).map_err(failed)
     }
 
     fn guid(&self) -> &str {

@@ -1,19 +1,66 @@
 //! The mechanism inside an FMU.
 
+use std::fs;
 use std::io::{self, Seek, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 use super::variables::Quantity;
 use crate::fmi::error::Failure;
 use crate::fmi::model_description::{Document, ModelDescription};
 use crate::fmi::package::{self, RuntimeLibrary};
+use crate::kinematics::{Element, omitted_reactions};
 use crate::mechanism::{Mechanism, Severity, Source};
 
 /// Name of the mechanism's file in `resources/`.
 pub const RESOURCE: &str = "mechanism.toml";
 
+/// Name of the file in `resources/` that lists the joints and constraints whose reactions are no
+/// variables, one name per line. A rank has decided about them at export, which another processor may
+/// decide otherwise: value references would shift.
+const OMITTED_REACTIONS: &str = "omitted_reactions.txt";
+
+/// Reads the mechanism from the folder of resources, and the joints and constraints whose reactions it
+/// omits.
+pub(super) fn read(resources: &Path) -> Result<(Arc<Mechanism>, Vec<Element>), Failure> {
+    let mechanism = Arc::new(read_mechanism(resources)?);
+    let omitted = match read_omitted(resources, &mechanism)? {
+        Some(omitted) => omitted,
+        // The GUID tells whether the export has found the same.
+        None => omitted_reactions(&mechanism).unwrap_or_default(),
+    };
+    Ok((mechanism, omitted))
+}
+
+/// Reads the joints and constraints whose reactions are omitted, if they are listed.
+fn read_omitted(resources: &Path, mechanism: &Mechanism) -> Result<Option<Vec<Element>>, Failure> {
+    let path = resources.join(OMITTED_REACTIONS);
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => {
+            let path = path.display();
+            return Err(Failure::Failed(format!("cannot read `{path}`: {error}")));
+        }
+    };
+    let joints = (0..mechanism.joints.len()).map(Element::Joint);
+    let constraints = (0..mechanism.constraints.len()).map(Element::Constraint);
+    let elements: Vec<_> = joints.chain(constraints).collect();
+    let named = |name: &str| {
+        let mut elements = elements.iter();
+        let found = elements.find(|element| element.name(mechanism) == name);
+        found.copied().ok_or_else(|| {
+            Failure::Failed(format!(
+                "`{OMITTED_REACTIONS}` names `{name}`, which is no joint or constraint of \
+                 `{RESOURCE}`: the resources do not belong together"
+            ))
+        })
+    };
+    text.lines().map(named).collect::<Result<_, _>>().map(Some)
+}
+
 /// Reads the mechanism from the folder of resources.
-pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
+fn read_mechanism(resources: &Path) -> Result<Mechanism, Failure> {
     let path = resources.join(RESOURCE);
     let source = Source::open(RESOURCE, &path).map_err(|error| {
         let path = path.display();
@@ -38,13 +85,21 @@ pub(super) fn read(resources: &Path) -> Result<Mechanism, Failure> {
 pub fn write_fmu(
     out: impl Write + Seek,
     source: &Source,
-    mechanism: &Mechanism,
+    mechanism: &Arc<Mechanism>,
     description: &ModelDescription<'_, Quantity>,
     libraries: &[RuntimeLibrary],
     documents: &[Document],
     generated: Option<&str>,
 ) -> io::Result<()> {
+    let omitted = omitted_reactions(mechanism);
+    let listed = omitted.map(|omitted| {
+        let names = omitted.iter().map(|element| element.name(mechanism));
+        names.fold(String::new(), |list, name| list + name + "\n")
+    });
     let mut resources = vec![(RESOURCE, source.text().as_bytes())];
+    if let Some(list) = &listed {
+        resources.push((OMITTED_REACTIONS, list.as_bytes()));
+    }
     for file in &mechanism.table_files {
         resources.push((file.name.as_str(), file.text.as_bytes()));
     }
@@ -56,4 +111,144 @@ pub fn write_fmu(
         documents,
         generated,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fmi::mechanism_model::MechanismModel;
+    use crate::fmi::mechanism_model::description::{describe, describe_without};
+    use crate::fmi::model::Model as _;
+    use crate::fmi::state::{Interface, Version};
+    use crate::kinematics::Solver;
+
+    /// A bar on three cranks: the reactions of its three pins are indeterminate.
+    const THREE_CRANKS: &str = r#"
+format = 1
+name = "three_cranks"
+[ground.markers]
+A = [0, 0]
+B = [1, 0]
+C = [2, 0]
+[bodies]
+one = { markers = { O = [0, 0], P = [1, 0] }, estimate = [0, 0, "60*deg"] }
+two = { markers = { O = [0, 0], P = [1, 0] }, estimate = [1, 0, "60*deg"] }
+three = { markers = { O = [0, 0], P = [1, 0] }, estimate = [2, 0, "60*deg"] }
+bar = { markers = { A = [0, 0], B = [1, 0], C = [2, 0] }, mass = 1, estimate = [0.5, 0.8, 0] }
+[joints]
+A = { type = "revolute", markers = ["ground.A", "one.O"] }
+B = { type = "revolute", markers = ["ground.B", "two.O"] }
+C = { type = "revolute", markers = ["ground.C", "three.O"] }
+P = { type = "revolute", markers = ["one.P", "bar.A"] }
+Q = { type = "revolute", markers = ["two.P", "bar.B"] }
+R = { type = "revolute", markers = ["three.P", "bar.C"] }
+[drivers]
+angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg" }
+"#;
+
+    /// Returns the content of each file in `resources/` of an FMU.
+    fn resources(fmu: Vec<u8>) -> Vec<(String, String)> {
+        let mut archive = zip::ZipArchive::new(io::Cursor::new(fmu)).unwrap();
+        let names: Vec<_> = archive.file_names().map(str::to_owned).collect();
+        let names = names.iter().filter_map(|name| {
+            let file = name.strip_prefix("resources/")?;
+            Some((file.to_owned(), name.clone()))
+        });
+        let names: Vec<_> = names.collect();
+        let mut content = |name: &str| io::read_to_string(archive.by_name(name).unwrap()).unwrap();
+        names
+            .into_iter()
+            .map(|(file, name)| (file, content(&name)))
+            .collect()
+    }
+
+    /// Returns the FMU's mechanism, its resources, and its GUID and variables at export.
+    fn exported() -> (Arc<Mechanism>, Vec<(String, String)>) {
+        let source = Source::new(RESOURCE, THREE_CRANKS);
+        let mechanism = Arc::new(Mechanism::parse(&source).unwrap().0);
+        let solver = Solver::new(Arc::clone(&mechanism)).unwrap();
+        let mut fmu = io::Cursor::new(Vec::new());
+        write_fmu(
+            &mut fmu,
+            &source,
+            &mechanism,
+            &describe(&mechanism, solver.structure(), Version::Fmi2),
+            &[],
+            &[],
+            None,
+        )
+        .unwrap();
+        let files = resources(fmu.into_inner());
+        (mechanism, files)
+    }
+
+    fn load(files: &[(String, String)]) -> Result<MechanismModel, Failure> {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, content) in files {
+            fs::write(folder.path().join(name), content).unwrap();
+        }
+        MechanismModel::load(folder.path(), Interface::CoSimulation)
+    }
+
+    /// Each list stands for the decision of another processor at export: the variables are those of the
+    /// export's model description, in the same order, and the GUID tells one list from the other.
+    #[test]
+    fn an_fmu_keeps_to_the_reactions_that_its_export_has_omitted() {
+        let (mechanism, files) = exported();
+        let listed = |name: &str| files.iter().position(|(file, _)| file == name);
+        let place = listed(OMITTED_REACTIONS).expect("the export lists them");
+        assert_eq!(files.len(), 2);
+        let solver = Solver::new(Arc::clone(&mechanism)).unwrap();
+        let all: Vec<_> = (0..mechanism.joints.len()).map(Element::Joint).collect();
+        let here = omitted_reactions(&mechanism).expect("there are redundant constraints");
+        assert!(!here.is_empty(), "indeterminate reactions are omitted");
+        let mut guids = Vec::new();
+        for omitted in [&here[..], &[], &all[..1], &all[1..3], &all] {
+            let description =
+                describe_without(&mechanism, solver.structure(), Version::Fmi2, omitted);
+            let mut files = files.clone();
+            let names = omitted.iter().map(|element| element.name(&mechanism));
+            let list: String = names.map(|name| format!("{name}\n")).collect();
+            if omitted == here {
+                assert_eq!(files[place].1, list);
+            }
+            files[place].1 = list;
+            let model = load(&files).unwrap();
+            assert_eq!(model.guid(), description.guid);
+            let names = |variables: &[crate::fmi::Variable<_>]| -> Vec<String> {
+                variables
+                    .iter()
+                    .map(|variable| variable.name.clone())
+                    .collect()
+            };
+            assert_eq!(names(model.variables()), names(&description.variables));
+            guids.push(description.guid);
+        }
+        let count = guids.len();
+        guids.sort();
+        guids.dedup();
+        assert_eq!(guids.len(), count);
+
+        // Of an FMU without the list the GUID alone tells.
+        let mut without = files.clone();
+        without.remove(place);
+        let guid = load(&without).unwrap().guid().to_owned();
+        assert_eq!(guid, super::super::guid(&mechanism));
+    }
+
+    #[test]
+    fn a_list_of_other_names_is_refused() {
+        let (_, mut files) = exported();
+        files
+            .iter_mut()
+            .find(|(name, _)| name == OMITTED_REACTIONS)
+            .unwrap()
+            .1 = "A\nZ\n".into();
+        let error = load(&files).map(drop).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "`omitted_reactions.txt` names `Z`, which is no joint or constraint of \
+             `mechanism.toml`: the resources do not belong together"
+        );
+    }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::rule::{EXTRAPOLATION, RATES};
 use crate::fmi::variable::{Causality, Kind, Variability, Variable};
-use crate::kinematics::{Dependencies, Output, OutputSource};
+use crate::kinematics::{Dependencies, Element, Output, OutputSource, omitted_reactions};
 use crate::mechanism::{DriverId, DriverSource, Mechanism, Order, ParameterId, Unit};
 
 /// Version of the table, part of the GUID. A change of the table for the same mechanism raises it.
@@ -47,6 +47,15 @@ pub enum Quantity {
 /// from others, forces, solver, time; in the file's order within each group.
 #[must_use]
 pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
+    let omitted = omitted_reactions(mechanism).unwrap_or_default();
+    variables_without(mechanism, &omitted)
+}
+
+/// Returns the variables without the reactions of some joints and constraints.
+pub(super) fn variables_without(
+    mechanism: &Mechanism,
+    omitted: &[Element],
+) -> Vec<Variable<Quantity>> {
     let mut table = Table::default();
     table.add_inputs(mechanism);
     table.add_force_inputs(mechanism);
@@ -58,7 +67,7 @@ pub fn variables(mechanism: &Arc<Mechanism>) -> Vec<Variable<Quantity>> {
     {
         table.add_settings(mechanism);
     }
-    table.add_outputs(mechanism);
+    table.add_outputs(mechanism, omitted);
     table.add_solver();
     table.add(
         "time",
@@ -196,8 +205,8 @@ impl Table {
         );
     }
 
-    fn add_outputs(&mut self, mechanism: &Arc<Mechanism>) {
-        for output in Output::of_host(mechanism) {
+    fn add_outputs(&mut self, mechanism: &Mechanism, omitted: &[Element]) {
+        for output in Output::of_host(mechanism, omitted) {
             let quantity = Quantity::Output(output.source);
             let unit = match output.source {
                 // It may have none.
