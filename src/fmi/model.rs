@@ -249,7 +249,8 @@ pub trait Model: Sized {
     fn update_discrete(&mut self) {}
 
     /// Takes a step of `size` \[s\] from the committed point, and commits its end, at time `end`
-    /// \[s\].
+    /// \[s\]. The host's time of the committed point, `end - size`, may differ from the model's by
+    /// rounding.
     ///
     /// # Errors
     ///

@@ -15,6 +15,7 @@ mod logging;
 mod masters;
 mod rates;
 mod step_mode;
+mod times;
 mod values;
 
 use biela::fmi::{Interface, value_reference};

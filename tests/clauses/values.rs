@@ -168,26 +168,3 @@ fn no_variable_has_the_name_of_a_type() {
         assert!(both.is_empty(), "{}: {both:?}", mechanism.name);
     }
 }
-
-/// Communication points may be off by rounding, 1e-9 of the time, but no step leads back.
-#[test]
-fn no_step_leads_back_in_time() {
-    let mut instance = instance_of(shipped("four_bar"), Interface::CoSimulation);
-    instance.setup_experiment(1e6, None).expect("legal");
-    crate::initialized(&mut instance);
-    instance.do_step(1e6, 0.01).expect("it stands");
-    let [now] = get(&mut instance, ["time"]);
-    let refused = instance
-        .do_step(now - 9e-4, 1e-4)
-        .expect_err("that leads back");
-    assert!(
-        refused
-            .to_string()
-            .contains("is not where the last step ended")
-    );
-    instance
-        .do_step(now - 9e-4, 0.01)
-        .expect("that is rounding");
-    let [then] = get(&mut instance, ["time"]);
-    assert!(then > now, "{then} {now}");
-}

@@ -1,6 +1,5 @@
 //! Model exchange for models without continuous states and event indicators.
 
-use super::stepping::TIME_ROUNDING;
 use super::{Category, Error, Failure, Instance, Status, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, Interface, State, Version};
@@ -65,8 +64,10 @@ impl<M: Model> Instance<M> {
     /// permits no discard here (2.1.3). Refuses a point beyond the stop time (2.1.6).
     fn commit(&mut self, call: Call) -> Result<(), Error> {
         let time = self.model.time();
-        if let Some(stop) = self.course.stop_time
-            && time > stop + TIME_ROUNDING * stop.abs().max(time - self.course.last_successful_time)
+        // An accepted point stays accepted at its events.
+        let h = time - self.course.last_successful_time;
+        if h > 0.0
+            && let Some(stop) = self.passed_stop_time(time, h)
         {
             return Err(Error::Time {
                 message: format!("the time {time} s is beyond the stop time {stop} s"),

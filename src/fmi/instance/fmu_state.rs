@@ -26,6 +26,7 @@ pub struct FmuState<S> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Course {
     pub(super) state: State,
+    pub(super) start_time: f64,
     pub(super) stop_time: Option<f64>,
     pub(super) last_successful_time: f64,
     /// Whether the last step was discarded.
@@ -44,6 +45,7 @@ impl Course {
     pub(super) fn new(time: f64) -> Self {
         Self {
             state: State::Instantiated,
+            start_time: time,
             stop_time: None,
             last_successful_time: time,
             discarded: false,
@@ -57,6 +59,7 @@ impl Course {
     fn visit(&mut self, codec: &mut impl Codec) -> Result<(), Unreadable> {
         let Self {
             state,
+            start_time,
             stop_time,
             last_successful_time,
             discarded,
@@ -65,6 +68,7 @@ impl Course {
             at_dead_point,
         } = self;
         codec.one_of(state, &State::ALL)?;
+        codec.finite(start_time)?;
         codec.option(stop_time, 0.0, Codec::finite)?;
         codec.finite(last_successful_time)?;
         let flags = [discarded, terminated, set_since_step, at_dead_point];

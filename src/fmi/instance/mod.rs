@@ -291,6 +291,7 @@ impl<M: Model> Instance<M> {
         }
         self.model.set_time(start);
         self.course.last_successful_time = start;
+        self.course.start_time = start;
         self.course.stop_time = stop;
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Steps and events of co-simulation in FMI 3.0 (4.2).
 
-use super::stepping::TIME_ROUNDING;
+use super::stepping::time_rounding;
 use super::{Error, Failure, Instance, Interface, Version, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, Phase, State};
@@ -170,7 +170,15 @@ impl<M: Model> Instance<M> {
                 self.abandon_step();
                 return Err(error);
             }
-            step.stop = time.clamp(self.model.time(), step.end);
+            let (now, end) = (self.model.time(), step.end);
+            let rounding = time_rounding(end, step.size);
+            step.stop = if time > end - rounding {
+                end
+            } else if time < now + rounding {
+                now
+            } else {
+                time
+            };
         }
         self.next_part()
     }
@@ -255,7 +263,7 @@ impl<M: Model> Instance<M> {
         self.pending_step = None;
         self.model.meet_dead_point();
         let mut time = self.model.time();
-        let progressed = time > start + TIME_ROUNDING * start.abs().max(h);
+        let progressed = self.has_progressed(start, h);
         let was_at_dead_point = std::mem::replace(&mut self.course.at_dead_point, true);
         if was_at_dead_point && !progressed {
             // The pose went the rest of its way to the same dead point.

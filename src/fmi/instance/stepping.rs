@@ -5,9 +5,19 @@ use crate::fmi::model::Model;
 use crate::fmi::state::{Call, State};
 use crate::fmi::status::Status;
 
-/// Tolerance of communication points, relative to the larger of time and step: hosts add up step
-/// sizes.
-pub(super) const TIME_ROUNDING: f64 = 1e-9;
+/// Roundings of a time within which two times are one: a host that multiplies makes two per point, and
+/// the sum of point and step size is rounded too.
+const ROUNDINGS: f64 = 4.0;
+/// Part of a step within which two times are one: some hosts count time in nanoseconds.
+const PART_OF_STEP: f64 = 1e-6;
+/// Part of a step within which a dead point is located.
+const LOCATED: f64 = 1e-9;
+
+/// Returns the difference within which two times of an experiment near `time`, with steps of size `h`,
+/// are one.
+pub(super) fn time_rounding(time: f64, h: f64) -> f64 {
+    (ROUNDINGS * f64::EPSILON * time.abs()).max(PART_OF_STEP * h)
+}
 
 impl<M: Model> Instance<M> {
     /// `fmi2DoStep`: steps from the last communication point over `h` seconds.
@@ -36,8 +46,7 @@ impl<M: Model> Instance<M> {
     #[cold]
     fn fail_step(&mut self, communication_point: f64, h: f64, failure: Failure) -> Error {
         if let Failure::Discarded(_) = failure {
-            let rounding = TIME_ROUNDING * communication_point.abs().max(h);
-            let progressed = self.course.last_successful_time > communication_point + rounding;
+            let progressed = self.has_progressed(communication_point, h);
             self.course.state = State::StepFailed;
             self.course.discarded = true;
             self.course.terminated = !(progressed && self.state_held);
@@ -45,7 +54,30 @@ impl<M: Model> Instance<M> {
         self.failed(Call::DoStep, failure)
     }
 
-    /// Checks that a step starts where the last one has ended, and passes no stop time.
+    /// Returns whether the model has left the start of a step of size `h`.
+    pub(super) fn has_progressed(&self, start: f64, h: f64) -> bool {
+        let rounding = time_rounding(start, 0.0).max(LOCATED * h);
+        self.model.time() > start + rounding
+    }
+
+    /// Returns the stop time if a step of size `h` to `time` passes it by more than rounding.
+    #[inline(always)]
+    pub(super) fn passed_stop_time(&self, time: f64, h: f64) -> Option<f64> {
+        let passed = |stop: &f64| time > *stop && time - *stop > self.summed_rounding(time, h);
+        self.course.stop_time.filter(passed)
+    }
+
+    /// Returns the rounding of the time of a host that adds up steps of size `h`: up to half a rounding
+    /// of the time per step. A step that passes the stop time by half of itself passes it anyway.
+    #[cold]
+    fn summed_rounding(&self, time: f64, h: f64) -> f64 {
+        let steps = (time - self.course.start_time) / h;
+        let summed = 0.5 * f64::EPSILON * time.abs() * steps;
+        time_rounding(time, h).max(summed.min(0.5 * h))
+    }
+
+    /// Checks that a step starts where the last one has ended, and passes no stop time. The step then
+    /// starts at the host's point, so that its rounding does not add up.
     #[inline(always)]
     pub(super) fn check_step(&self, communication_point: f64, h: f64) -> Result<(), Error> {
         check_finite("currentCommunicationPoint", communication_point)?;
@@ -55,19 +87,18 @@ impl<M: Model> Instance<M> {
             return refuse(format!("the step size {h} s is not positive"));
         }
         let time = self.model.time();
-        let rounding = TIME_ROUNDING * time.abs().max(h);
-        let is_behind = communication_point + h < time;
-        if (communication_point - time).abs() > rounding || is_behind {
+        let (end, rounding) = (communication_point + h, time_rounding(time, h));
+        if (communication_point - time).abs() > rounding || end < time {
             return refuse(format!(
                 "the communication point {communication_point} s is not where the last step \
                  ended, {time} s"
             ));
         }
-        match self.course.stop_time {
-            Some(stop) if communication_point + h > stop + rounding => refuse(format!(
+        match self.passed_stop_time(end, h) {
+            Some(stop) => refuse(format!(
                 "the step from {communication_point} s over {h} s passes the stop time {stop} s"
             )),
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 

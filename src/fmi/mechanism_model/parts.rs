@@ -32,6 +32,7 @@ impl MechanismModel {
         if !self.course.at_committed {
             self.return_to_committed();
         }
+        self.course.time = self.start_of_step(h, end);
         self.set_path(self.course.time, h);
         self.report_falls(log);
         self.course.path_progress = Progress::default();

@@ -34,7 +34,7 @@ impl MechanismModel {
         if !self.course.at_committed {
             self.return_to_committed();
         }
-        let start = self.course.time;
+        let start = self.start_of_step(h, end);
         self.set_path(start, h);
         match self.solver.track(&self.path) {
             Ok(progress) => {
@@ -57,6 +57,17 @@ impl MechanismModel {
                 self.report_falls(log);
                 Err(self.fail_step(&blocked, log))
             }
+        }
+    }
+
+    /// Returns the host's time of the committed point, at which a step of size `h` to `end` starts: the
+    /// model's own, unless rounding has parted them.
+    pub(super) fn start_of_step(&self, h: f64, end: f64) -> f64 {
+        let time = self.course.time;
+        if (time + h).to_bits() == end.to_bits() {
+            time
+        } else {
+            end - h
         }
     }
 
