@@ -1,5 +1,7 @@
 //! Messages to the host by category.
 
+use std::cell::Cell;
+
 use super::state::Version;
 use super::status::Status;
 
@@ -8,7 +10,7 @@ use super::status::Status;
 pub enum Category {
     /// Every message.
     All,
-    /// Advice, and reasons of discarded calls.
+    /// Advice, remarks on the mechanism, and reasons of discarded calls.
     Warning,
     /// Messages of a call that returns `fmi2Discard`.
     Discard,
@@ -71,6 +73,25 @@ impl Category {
     }
 }
 
+/// Kind of advice on wrong use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Advice {
+    /// A driver is beyond its limits.
+    Limits,
+    /// An angle jumps, as one does that the host wraps.
+    WrappedAngle,
+    /// Given rates contradict the motion, or are missing in model exchange.
+    Rates,
+    /// A singular position is near: a dead point may follow.
+    SingularPosition,
+}
+
+impl Advice {
+    fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
 /// Receiver of messages: the host's logger callback.
 pub trait Sink {
     /// Takes one message.
@@ -81,9 +102,13 @@ pub trait Sink {
 pub struct Logger {
     sink: Box<dyn Sink + Send>,
     enabled: u8,
-    /// Whether errors and reasons of discarded calls reach the host with any settings: in FMI 3.0
-    /// they do not (2.3.1).
+    /// Whether errors, reasons of discarded calls and advice on wrong use reach the host with any
+    /// settings: in FMI 3.0 they do not (2.3.1).
     insistent: bool,
+    /// Kinds of advice that the host got in this run, one bit each.
+    advised: Cell<u8>,
+    /// Whether advice was given since [`take_warning`](Self::take_warning).
+    warned: Cell<bool>,
 }
 
 impl std::fmt::Debug for Logger {
@@ -101,6 +126,8 @@ impl Logger {
             sink,
             enabled,
             insistent: version == Version::Fmi2,
+            advised: Cell::new(0),
+            warned: Cell::new(false),
         }
     }
 
@@ -115,15 +142,48 @@ impl Logger {
         self.enabled != 0
     }
 
-    /// Sends advice to the host if the category of warnings is on. Its status is `fmi2OK`: several
-    /// hosts end a simulation when a call returns `fmi2Warning`, so that no call does.
-    pub fn advise(&self, message: impl FnOnce() -> String) {
+    /// Returns whether the host gets advice of this kind now. Callers ask before they look for what
+    /// deserves it.
+    #[inline]
+    #[must_use]
+    pub fn wants_advice(&self, kind: Advice) -> bool {
+        self.insistent && self.advised.get() & kind.bit() == 0 || self.wants(Category::Warning)
+    }
+
+    /// Gives advice on wrong use. The first of its kind in a run has the status `fmi2Warning`, which
+    /// the call returns, and reaches an FMI 2.0 host with any settings; all others are
+    /// [remarks](Self::remark). In FMI 3.0 nothing is logged while the category is off (2.3.1), and the
+    /// call then returns `fmi3OK`: a status without its reason helps nobody.
+    pub fn advise(&self, kind: Advice, message: impl FnOnce() -> String) {
+        if self.advised.get() & kind.bit() != 0 {
+            self.remark(message);
+        } else if self.wants_advice(kind) {
+            self.advised.set(self.advised.get() | kind.bit());
+            self.warned.set(true);
+            self.warn(&message());
+        }
+    }
+
+    /// Returns whether advice was given since the last question.
+    #[inline]
+    pub(super) fn take_warning(&self) -> bool {
+        self.warned.get() && self.warned.replace(false)
+    }
+
+    /// Begins a run, in which each kind of advice is given anew.
+    pub(super) fn begin_run(&self) {
+        self.advised.set(0);
+    }
+
+    /// Sends a remark to the host if the category of warnings is on. Its status is `fmi2OK`.
+    pub fn remark(&self, message: impl FnOnce() -> String) {
         if self.wants(Category::Warning) {
             self.sink.write(Status::Ok, Category::Warning, &message());
         }
     }
 
-    /// Sends the reason why the mechanism cannot go on: in FMI 2.0 with any settings.
+    /// Sends a warning, such as the reason why the mechanism cannot go on: in FMI 2.0 with any
+    /// settings.
     pub(super) fn warn(&self, message: &str) {
         if self.insistent || self.wants(Category::Warning) {
             self.sink.write(Status::Warning, Category::Warning, message);

@@ -5,7 +5,7 @@
 pub enum Status {
     /// Success.
     Ok = 0,
-    /// Success with a warning. No call of biela returns it: several hosts take it for a failure.
+    /// Success with advice on wrong use, once for each kind of [`Advice`](super::Advice) in a run.
     Warning = 1,
     /// Not possible from here; the host may continue another way.
     Discard = 2,

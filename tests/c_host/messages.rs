@@ -134,3 +134,55 @@ fn categories_are_switched_on_and_off() {
     host.ok(&["SetDebugLogging", A, "1", "1", "logAll"]);
     assert_eq!(categories(&host.call(&["Reset", A])), ["logEvents"]);
 }
+
+/// Whoever has not asked for messages is told of a wrong use: `loggingOn` switches debug logging
+/// (2.1.5). The call returns `fmi2Warning`, once in a run.
+#[test]
+fn advice_on_wrong_use_reaches_a_host_with_default_settings() {
+    let fmu = Fmu::of("tlv");
+    let mut host = Host::start();
+    host.instantiated(A, &fmu);
+    for _ in 0..2 {
+        host.initialize(A);
+        // To within a nanometre of the dead point, and back.
+        for (step, length) in [0.65 - 1e-9, 0.5, 0.65 - 1e-9, 0.5].into_iter().enumerate() {
+            host.set_real(A, "0", length);
+            let answer = host.do_step(A, step as f64, 1.0);
+            assert_advice(&answer, step == 0, "near a singular position");
+        }
+        host.ok(&["Reset", A]);
+    }
+
+    // An angle alone in model exchange, 10 rad/s by steps of 0.1 s.
+    let fmu = Fmu::of("four_bar");
+    let with = Instantiate {
+        model_exchange: true,
+        ..Instantiate::right(&fmu)
+    };
+    assert_eq!(host.instantiate(B, &with), (true, vec![]));
+    host.initialize(B);
+    host.ok(&["NewDiscreteStates", B, "room"]);
+    host.ok(&["EnterContinuousTimeMode", B]);
+    for step in 1..20 {
+        host.ok(&["SetTime", B, &(0.1 * f64::from(step)).to_string()]);
+        host.set_real(B, "0", f64::from(step));
+        let answer = host.call(&["CompletedIntegratorStep", B, "room", "room"]);
+        // The sixth sample ends the fifth step that contradicts.
+        assert_advice(&answer, step == 6, "connect `crank_angle.velocity`");
+    }
+}
+
+#[track_caller]
+fn assert_advice(answer: &Answer, expected: bool, part: &str) {
+    if !expected {
+        assert_eq!((answer.status, &answer.log[..]), (Status::Ok, &[][..]));
+        return;
+    }
+    assert_eq!(answer.status, Status::Warning);
+    let [message] = &answer.log[..] else {
+        panic!("{answer:?}")
+    };
+    let found = (message.status, message.category.as_str());
+    assert_eq!(found, (Status::Warning, "logStatusWarning"));
+    assert!(message.text.contains(part), "{message:?}");
+}

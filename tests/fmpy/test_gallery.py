@@ -15,9 +15,10 @@ def test_every_mechanism_has_a_truth():
 
 
 @pytest.mark.parametrize("name", sorted(CASES))
-def test_full_motion(fmu, name):
+def test_full_motion(fmu, name, capsys):
     row = run(name, CASES[name], fmu(name))
     assert row.failures == []
+    assert capsys.readouterr().out == "", "FMPy shows no advice on ordinary use"
     assert row.name in table([row])
 
 

@@ -153,7 +153,7 @@ fn serve(
     f: impl FnOnce(&mut Instance) -> Result<(), Error>,
 ) -> Status {
     let outcome = catch_unwind(AssertUnwindSafe(|| match f(instance) {
-        Ok(()) => Status::Ok,
+        Ok(()) => instance.succeeded(),
         Err(error) => instance.report(call, &error),
     }));
     outcome.unwrap_or_else(|payload| {

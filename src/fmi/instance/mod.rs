@@ -167,6 +167,8 @@ impl<M: Model> Instance<M> {
     /// Logs an error and returns the call's status. In FMI 3.0 a call that has failed ends the
     /// simulation (2.3.1).
     pub fn report(&mut self, call: &str, error: &Error) -> Status {
+        // The error's status stands for the whole call.
+        self.logger.take_warning();
         let status = error.status();
         let message = format!("{call}: {error}");
         if self.version == Version::Fmi3 {
@@ -192,6 +194,16 @@ impl<M: Model> Instance<M> {
             _ => self.logger.write(status, Category::Error, &message),
         }
         status
+    }
+
+    /// Returns the status of a call that has succeeded: a warning if the model has given advice in it.
+    #[inline]
+    pub fn succeeded(&self) -> Status {
+        if self.logger.take_warning() {
+            Status::Warning
+        } else {
+            Status::Ok
+        }
     }
 
     /// Returns the error of a call in which the model failed. Where the standard permits no
@@ -381,6 +393,7 @@ impl<M: Model> Instance<M> {
         self.model.reset();
         self.course = Course::new(self.model.time());
         self.state_held = false;
+        self.logger.begin_run();
         self.log_event(|_| "reset".to_owned());
         Ok(())
     }

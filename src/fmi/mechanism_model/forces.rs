@@ -42,7 +42,7 @@ impl MechanismModel {
         }
         if let Some(forces) = self.solution.forces() {
             for lift_off in self.solver.lift_offs(forces, &mut self.course.lifted) {
-                log.advise(|| lift_off.to_string());
+                log.remark(|| lift_off.to_string());
             }
         }
     }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::MechanismModel;
 use super::monitor::Contradiction;
 use super::rule::Source;
-use crate::fmi::log::{Category, Logger};
+use crate::fmi::log::{Advice, Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
@@ -102,10 +102,10 @@ impl MechanismModel {
     pub(super) fn report_mechanism(&self, log: &Logger) {
         if log.wants(Category::Warning) {
             for redundancy in self.solver.redundancies() {
-                log.advise(|| redundancy.to_string());
+                log.remark(|| redundancy.to_string());
             }
             for misfit in self.solver.geometry_warnings() {
-                log.advise(|| misfit.to_string());
+                log.remark(|| misfit.to_string());
             }
         }
     }
@@ -113,15 +113,18 @@ impl MechanismModel {
     /// Reports each approach to a singular position once.
     pub(super) fn report_approach(&mut self, log: &Logger) {
         if let Some(approach) = self.solver.approach(&mut self.course.near_singular) {
-            log.advise(|| format!("t = {} s: {approach}", self.course.time));
+            let time = self.course.time;
+            log.advise(Advice::SingularPosition, || {
+                format!("t = {time} s: {approach}")
+            });
         }
     }
 
     /// Reports once an angle that falls by more than half a turn on the path, as an angle does that
-    /// the host wraps. Observes nothing for a host that wants no warnings.
+    /// the host wraps. Observes nothing for a host that does not get to know.
     #[inline]
     pub(super) fn report_falls(&mut self, log: &Logger) {
-        if log.wants(Category::Warning) {
+        if log.wants_advice(Advice::WrappedAngle) {
             self.observe_falls(log);
         }
     }
@@ -137,7 +140,7 @@ impl MechanismModel {
                 && monitor.falls(-jump, input.last_change())
             {
                 let name = &driver.name;
-                log.advise(|| {
+                log.advise(Advice::WrappedAngle, || {
                     format!(
                         "t = {} s: driver `{name}` jumps by {} rad within one step, which the \
                          mechanism follows turn by turn; if the host wraps the angle, set \
@@ -150,21 +153,24 @@ impl MechanismModel {
         }
     }
 
-    /// Reports to a host that wants messages what a step of size `h` from `start` brought about,
-    /// before the step is recorded.
+    /// Reports to a host that wants messages what a step from `start` brought about, before the step
+    /// is recorded.
     #[inline(never)]
-    pub(super) fn report_step(&mut self, start: f64, h: f64, log: &Logger) {
-        if log.wants(Category::Warning) || log.wants(Category::Events) {
-            self.report_inputs(start, h, log);
-        }
+    pub(super) fn report_step(&mut self, start: f64, log: &Logger) {
+        self.report_sources(start, log);
         self.report_contacts(log);
         self.log_crossings(log);
         self.log_effort(log);
     }
 
-    /// Reports excursions of drivers beyond their limits, rates that come from another source than
-    /// before, and given rates that contradict the motion.
-    fn report_inputs(&mut self, start: f64, h: f64, log: &Logger) {
+    /// Reports excursions of drivers beyond their limits, and given rates that contradict the motion,
+    /// in a step of size `h` from `start`, before the step is recorded.
+    pub(super) fn report_inputs(&mut self, start: f64, h: f64, log: &Logger) {
+        let of_limits = log.wants_advice(Advice::Limits);
+        let of_rates = log.wants_advice(Advice::Rates);
+        if !of_limits && !of_rates {
+            return;
+        }
         let rates = self.rule().rates;
         let advice = match self.interface {
             Interface::CoSimulation => ", or set `rates` to 3 (`estimated`)",
@@ -173,22 +179,36 @@ impl MechanismModel {
         for (index, driver) in self.mechanism.drivers.iter().enumerate() {
             let (input, monitor) = (&self.course.inputs[index], &mut self.course.monitors[index]);
             let value = self.solver.pose().drivers[index];
-            if let Some(message) = driver.excursion(value, start + h, &mut monitor.beyond) {
-                log.advise(|| message);
+            if of_limits
+                && let Some(message) = driver.excursion(value, start + h, &mut monitor.beyond)
+            {
+                log.advise(Advice::Limits, || message);
             }
-            if driver.motion().is_some() {
+            if !of_rates || driver.motion().is_some() {
                 continue;
-            }
-            for (order, source) in monitor.changes(self.course.sources[index]) {
-                if rates == RateSource::Auto && log.wants(Category::Events) {
-                    let message = describe_source(driver, order, source, start);
-                    log.write(Status::Ok, Category::Events, &message);
-                }
             }
             let now = input.sample(rates, start);
             let last = input.last_sample(start);
             if let Some(contradiction) = last.and_then(|last| monitor.compare(last, &now)) {
-                log.advise(|| describe_contradiction(driver, contradiction, start, advice));
+                log.advise(Advice::Rates, || {
+                    describe_contradiction(driver, contradiction, start, advice)
+                });
+            }
+        }
+    }
+
+    /// Logs rates that come from another source than in the step before.
+    fn report_sources(&self, start: f64, log: &Logger) {
+        if self.rule().rates != RateSource::Auto || !log.wants(Category::Events) {
+            return;
+        }
+        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
+            if driver.motion().is_none() {
+                let monitor = &self.course.monitors[index];
+                for (order, source) in monitor.changes(self.course.sources[index]) {
+                    let message = describe_source(driver, order, source, start);
+                    log.write(Status::Ok, Category::Events, &message);
+                }
             }
         }
     }

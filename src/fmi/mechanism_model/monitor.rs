@@ -1,4 +1,4 @@
-//! Observation of one driver for a host that wants messages: finds what deserves one, each once.
+//! Observation of one driver: finds what deserves a message, each once.
 
 use std::f64::consts::PI;
 

@@ -75,8 +75,9 @@ impl MechanismModel {
     /// reports what it brought about, and records the inputs.
     pub(super) fn complete_step(&mut self, start: f64, h: f64, log: &Logger) {
         self.report_approach(log);
+        self.report_inputs(start, h, log);
         if log.is_on() {
-            self.report_step(start, h, log);
+            self.report_step(start, log);
         }
         let rule = self.rule();
         let course = &mut self.course;
@@ -379,7 +380,7 @@ impl MechanismModel {
                     crossings: 0,
                     checked: 0,
                 };
-                log.advise(|| {
+                log.remark(|| {
                     "no continuous motion leads from the mechanism file's own pose to the start \
                      values: assembled at the start values from the estimates instead, possibly \
                      in another assembly mode"

@@ -46,7 +46,7 @@ pub unsafe extern "C" fn fmi3DoStep(
     {
         // SAFETY: the step has begun, so that there is an instance; it stays while the host is
         // called back.
-        status = unsafe {
+        let part = unsafe {
             let callback = Component::begin_callback(instance);
             let wish = callback.and_then(|callback| callback.call(time, can_return_early));
             Component::end_callback(instance);
@@ -55,6 +55,8 @@ pub unsafe extern "C" fn fmi3DoStep(
                 Ok(())
             })
         };
+        // A warning in one part is one of the whole step.
+        status = status.max(part);
     }
     if let Some(StepProgress::Done(outcome)) = progress {
         // SAFETY: the places were checked above.
