@@ -107,8 +107,10 @@ fn a_cycle_of_set_step_and_get_allocates_nothing() {
             for step in 0..100 {
                 let t = 0.01 * f64::from(step);
                 // The three inputs of the driver, a derivative, a large step now and then.
-                let angle = 0.6 + t + if step % 10 == 0 { 2.5 } else { 0.0 };
-                instance.set_real(&[1, 2, 3], &[angle, 1.0, 0.1]).unwrap();
+                let jump = if step % 10 == 0 { 2.5 } else { 0.0 };
+                let angle = 0.6 + t * (1.0 + 0.05 * t) + jump;
+                let inputs = [angle, 1.0 + 0.1 * t, 0.1];
+                instance.set_real(&[1, 2, 3], &inputs).unwrap();
                 if step % 3 == 0 {
                     instance
                         .set_real_input_derivatives(&[1], &[1], &[1.0])

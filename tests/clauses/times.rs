@@ -89,8 +89,7 @@ fn no_step_leads_back_in_time() {
     assert!(then > now, "{then} {now}");
 }
 
-/// How hosts get the time of their nth communication point: by start, step size, n and the time
-/// before.
+/// Time of a host's nth communication point, by start, step size, n and the time of the point before.
 type Clock = fn(f64, f64, f64, f64) -> f64;
 
 const CLOCKS: [(&str, Clock); 4] = [

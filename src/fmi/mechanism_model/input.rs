@@ -253,10 +253,10 @@ impl DriverInput {
         self.history.last_change()
     }
 
-    /// Ends a step of size `h` from `start`: records the inputs there, and clears the derivatives.
-    pub(super) fn record(&mut self, rule: Rule, start: f64, h: f64) {
+    /// Ends a step of size `h`: records the inputs at its start, and clears the derivatives.
+    pub(super) fn record(&mut self, rule: Rule, start: Sample, h: f64) {
         self.extrapolated_over = if self.is_extrapolated(rule) { h } else { 0.0 };
-        self.history.push(self.sample(rule.rates, start), h);
+        self.history.push(start, h);
         self.derivatives = [[None; 2]; 3];
     }
 
@@ -314,11 +314,17 @@ mod tests {
         for (step, &time) in times.iter().enumerate() {
             if step > 0 {
                 let before = times[step - 1];
-                input.record(AUTO, before, time - before);
+                record(&mut input, AUTO, before, time - before);
             }
             input.set(Order::Position, position(time));
         }
         input
+    }
+
+    /// Ends a step of size `h` from `start`.
+    fn record(input: &mut DriverInput, rule: Rule, start: f64, h: f64) {
+        let sample = input.sample(rule.rates, start);
+        input.record(rule, sample, h);
     }
 
     fn rates_after(input: &DriverInput, rule: Rule, time: f64, h: f64) -> [f64; 2] {
@@ -346,9 +352,9 @@ mod tests {
     #[test]
     fn a_communication_point_is_one_sample_with_any_number_of_values() {
         let mut input = in_steps(&[0.0, 1.0], |t| t);
-        input.record(AUTO, 1.0, 1.0);
+        record(&mut input, AUTO, 1.0, 1.0);
         input.set(Order::Position, 7.0);
-        input.record(AUTO, 1.0, 1.0);
+        record(&mut input, AUTO, 1.0, 1.0);
         assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), [7.0, 0.0]);
     }
 
@@ -413,7 +419,7 @@ mod tests {
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.0), [3.0, 0.0]);
         assert_eq!(rates_after(&input, AUTO, 0.0, 1.0), [0.0, 0.0]);
         assert_eq!(rates_after(&input, INPUTS, 0.0, 1.0), [3.0, 0.0]);
-        input.record(AUTO, 0.0, 1.0);
+        record(&mut input, AUTO, 0.0, 1.0);
         input.set(Order::Position, 7.0);
         assert_eq!(rates_after(&input, AUTO, 1.0, 1.0), [7.0, 0.0]);
         input.set(Order::Velocity, 3.0);
@@ -425,7 +431,7 @@ mod tests {
         let mut input = DriverInput::new(0.0);
         input.set(Order::Velocity, 3.0);
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [3.0, 0.0]);
-        input.record(AUTO, 0.0, 1.0);
+        record(&mut input, AUTO, 0.0, 1.0);
         input.set(Order::Velocity, 4.0);
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), [4.0, 2.0]);
         assert_eq!(rates_after(&input, INPUTS, 0.5, 0.5), [4.0, 0.0]);
@@ -437,7 +443,7 @@ mod tests {
         let mut input = in_steps(&[0.0, 1.0, 2.0, 3.0], |t| t * t);
         input.set(Order::Velocity, 100.0);
         assert_eq!(rates_after(&input, AUTO, 3.0, 1.0), [100.0, 2.0]);
-        input.record(AUTO, 3.0, 1.0);
+        record(&mut input, AUTO, 3.0, 1.0);
         input.set(Order::Velocity, 101.0);
         assert_eq!(rates_after(&input, AUTO, 4.0, 1.0), [101.0, 1.0]);
     }
@@ -467,7 +473,7 @@ mod tests {
     fn input_derivatives_last_one_step() {
         let mut input = DriverInput::new(1.0);
         input.set_derivative(Order::Position, 1, 2.0);
-        input.record(AUTO, 0.0, 1.0);
+        record(&mut input, AUTO, 0.0, 1.0);
         assert_eq!(input.path(AUTO, 0.5, 0.5), [0.0, 0.0]);
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), [0.0, 0.0]);
     }
@@ -488,7 +494,7 @@ mod tests {
         let mut input = DriverInput::new(1.0);
         input.set_derivative(Order::Position, 1, 2.0);
         assert_eq!(rates_after(&input, AUTO, 0.0, 0.5), [2.0, 0.0]);
-        input.record(AUTO, 0.0, 1.0);
+        record(&mut input, AUTO, 0.0, 1.0);
         input.set_derivative(Order::Position, 1, 3.0);
         assert_eq!(rates_after(&input, AUTO, 0.5, 0.5), [3.0, 2.0]);
     }

@@ -163,36 +163,16 @@ impl MechanismModel {
         self.log_effort(log);
     }
 
-    /// Reports excursions of drivers beyond their limits, and given rates that contradict the motion,
-    /// in a step of size `h` from `start`, before the step is recorded.
-    pub(super) fn report_inputs(&mut self, start: f64, h: f64, log: &Logger) {
-        let of_limits = log.wants_advice(Advice::Limits);
-        let of_rates = log.wants_advice(Advice::Rates);
-        if !of_limits && !of_rates {
+    /// Reports excursions of drivers beyond their limits at `time`.
+    pub(super) fn report_excursions(&mut self, time: f64, log: &Logger) {
+        if !log.wants_advice(Advice::Limits) {
             return;
         }
-        let rates = self.rule().rates;
-        let advice = match self.interface {
-            Interface::CoSimulation => ", or set `rates` to 3 (`estimated`)",
-            Interface::ModelExchange => "",
-        };
-        for (index, driver) in self.mechanism.drivers.iter().enumerate() {
-            let (input, monitor) = (&self.course.inputs[index], &mut self.course.monitors[index]);
-            let value = self.solver.pose().drivers[index];
-            if of_limits
-                && let Some(message) = driver.excursion(value, start + h, &mut monitor.beyond)
-            {
+        let values = &self.solver.pose().drivers;
+        let monitors = self.course.monitors.iter_mut().zip(values);
+        for (driver, (monitor, value)) in self.mechanism.drivers.iter().zip(monitors) {
+            if let Some(message) = driver.excursion(*value, time, &mut monitor.beyond) {
                 log.advise(Advice::Limits, || message);
-            }
-            if !of_rates || driver.motion().is_some() {
-                continue;
-            }
-            let now = input.sample(rates, start);
-            let last = input.last_sample(start);
-            if let Some(contradiction) = last.and_then(|last| monitor.compare(last, &now)) {
-                log.advise(Advice::Rates, || {
-                    describe_contradiction(driver, contradiction, start, advice)
-                });
             }
         }
     }
@@ -258,12 +238,17 @@ fn describe_source(driver: &Driver, order: Order, source: Source, time: f64) -> 
     format!("t = {time} s: the {rate} of driver `{name}` now comes from {source}")
 }
 
-fn describe_contradiction(
+/// Describes a given rate that contradicts the motion.
+pub(super) fn describe_contradiction(
     driver: &Driver,
     contradiction: Contradiction,
     time: f64,
-    advice: &str,
+    interface: Interface,
 ) -> String {
+    let advice = match interface {
+        Interface::CoSimulation => ", or set `rates` to 3 (`estimated`)",
+        Interface::ModelExchange => "",
+    };
     let Contradiction {
         order,
         given,

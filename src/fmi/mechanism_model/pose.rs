@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::messages::describe_contradiction;
 use super::rule::Source;
 use super::{Freshness, MechanismModel, failed, without_value};
 use crate::fmi::error::Failure;
-use crate::fmi::log::Logger;
+use crate::fmi::log::{Advice, Logger};
 use crate::fmi::state::{Interface, Phase};
 use crate::kinematics::{Blocked, Curve, Progress, Start};
 use crate::mechanism::{DriverId, DriverSource, RateSource};
@@ -75,19 +76,30 @@ impl MechanismModel {
     /// reports what it brought about, and records the inputs.
     pub(super) fn complete_step(&mut self, start: f64, h: f64, log: &Logger) {
         self.report_approach(log);
-        self.report_inputs(start, h, log);
+        self.report_excursions(start + h, log);
         if log.is_on() {
             self.report_step(start, log);
         }
-        let rule = self.rule();
+        let (rule, interface) = (self.rule(), self.interface);
+        let observes_rates = log.wants_advice(Advice::Rates);
         let course = &mut self.course;
         let observed = course.monitors.iter_mut().zip(&course.sources);
         let inputs = self.mechanism.drivers.iter().zip(&mut course.inputs);
         for ((driver, input), (monitor, sources)) in inputs.zip(observed) {
             monitor.sources = *sources;
-            if driver.motion().is_none() {
-                input.record(rule, start, h);
+            if driver.motion().is_some() {
+                continue;
             }
+            let now = input.sample(rule.rates, start);
+            if observes_rates
+                && let Some(last) = input.last_sample(start)
+                && let Some(contradiction) = monitor.compare(last, &now)
+            {
+                log.advise(Advice::Rates, || {
+                    describe_contradiction(driver, contradiction, start, interface)
+                });
+            }
+            input.record(rule, now, h);
         }
     }
 

@@ -149,20 +149,16 @@ angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg
     /// Returns the content of each file in `resources/` of an FMU.
     fn resources(fmu: Vec<u8>) -> Vec<(String, String)> {
         let mut archive = zip::ZipArchive::new(io::Cursor::new(fmu)).unwrap();
-        let names: Vec<_> = archive.file_names().map(str::to_owned).collect();
-        let names = names.iter().filter_map(|name| {
-            let file = name.strip_prefix("resources/")?;
-            Some((file.to_owned(), name.clone()))
+        let files = (0..archive.len()).filter_map(|index| {
+            let file = archive.by_index(index).unwrap();
+            let path = String::from_utf8(file.name_raw().to_vec()).unwrap();
+            let name = path.strip_prefix("resources/")?.to_owned();
+            Some((name, io::read_to_string(file).unwrap()))
         });
-        let names: Vec<_> = names.collect();
-        let mut content = |name: &str| io::read_to_string(archive.by_name(name).unwrap()).unwrap();
-        names
-            .into_iter()
-            .map(|(file, name)| (file, content(&name)))
-            .collect()
+        files.collect()
     }
 
-    /// Returns the FMU's mechanism, its resources, and its GUID and variables at export.
+    /// Returns the mechanism and the resources of its FMU.
     fn exported() -> (Arc<Mechanism>, Vec<(String, String)>) {
         let source = Source::new(RESOURCE, THREE_CRANKS);
         let mechanism = Arc::new(Mechanism::parse(&source).unwrap().0);
@@ -229,7 +225,7 @@ angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg
         guids.dedup();
         assert_eq!(guids.len(), count);
 
-        // Of an FMU without the list the GUID alone tells.
+        // The GUID alone tells of an FMU without the list.
         let mut without = files.clone();
         without.remove(place);
         let guid = load(&without).unwrap().guid().to_owned();
