@@ -199,7 +199,7 @@ angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg
         let here = omitted_reactions(&mechanism).expect("there are redundant constraints");
         assert!(!here.is_empty(), "indeterminate reactions are omitted");
         let mut guids = Vec::new();
-        for omitted in [&here[..], &[], &all[..1], &all[1..3], &all] {
+        for omitted in [&here[..], &[], &all[..1], &all[1..3], &all[..5]] {
             let description =
                 describe_without(&mechanism, solver.structure(), Version::Fmi2, omitted);
             let mut files = files.clone();
