@@ -49,6 +49,26 @@ fn diagnostics(source: &Source) -> Vec<Diagnostic> {
     }
 }
 
+/// A file in millimetres with angles in degrees has one warning for all lengths and one for all
+/// angles, with a place for each.
+#[test]
+fn many_numbers_in_another_unit_make_one_warning() {
+    let numbers = [150, 220, 310, 170, 180, 190, 210, 230];
+    let markers = numbers.map(|x| format!("M{x} = [{x}, 0, 90]"));
+    let text = format!(
+        "format = 1\nname = \"many\"\n[ground.markers]\nO = [0.02, 0]\n{}\n\
+         [bodies.a.markers]\nO = [0, 0]\n\
+         [joints.O]\ntype = \"revolute\"\nmarkers = [\"ground.O\", \"a.O\"]\n",
+        markers.join("\n")
+    );
+    let found = diagnostics(&Source::new("many.toml", text.as_str()));
+    for code in ["large-length", "large-angle"] {
+        let warnings: Vec<_> = found.iter().filter(|d| d.code == code).collect();
+        assert_eq!(warnings.len(), 1, "{found:#?}");
+        assert_eq!(warnings[0].labels.len(), numbers.len());
+    }
+}
+
 #[test]
 fn each_bad_file_is_answered_as_reviewed() {
     for (stem, source) in files("tests/diagnostics") {

@@ -8,6 +8,7 @@ import os
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import Any, Union
 
@@ -444,7 +445,7 @@ class Mechanism:
             start, stop, step = self._inner.simulation
             # A last step shorter than this part of the others is rounding.
             steps = max(0, int(np.ceil((stop - start) / step - 1e-9)))
-            times = np.minimum(start + step * np.arange(steps + 1), stop)
+            times = np.minimum(_as_written(start, step, steps), stop)
         drivers = self.drivers
         motions: list = []
         for name, value in drive.items():
@@ -489,6 +490,15 @@ def _given(parameters: Parameters | None) -> list[tuple[str, float | str]]:
                 "'120*mm'; `sweep` takes arrays"
             ) from None
     return given
+
+
+def _as_written(start: float, step: float, steps: int) -> NDArray:
+    """Returns start + i·step as decimal numbers: 0.7 for seven steps of 0.1, not 0.7000000000000001."""
+    times = start + step * np.arange(steps + 1)
+    decimals = max(-int(Decimal(repr(number)).as_tuple().exponent) for number in (start, step))
+    if decimals > 0 and np.max(np.abs(times)) * 10.0**decimals < 2.0**53:
+        times = np.round(times, decimals)
+    return times
 
 
 def _numbers(argument: str, value: Any, name: str | None = None) -> NDArray:

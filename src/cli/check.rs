@@ -19,7 +19,8 @@ use super::suggested_estimates::as_estimates;
 use super::times::Times;
 use crate::kinematics::{self, Element, Mode, Modes, Path, Play, Rates, Solver, System};
 use crate::mechanism::{
-    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, shown,
+    CoordinateKind, DerivedMeasure, DriverId, DriverSource, Jet, Mechanism, Order, Unit, fixed,
+    shown,
 };
 
 /// Check a mechanism file: read it, count its constraints, assemble it.
@@ -292,13 +293,13 @@ fn describe_bodies(solver: &Solver) -> String {
     for ((body, q), moved) in bodies.zip(moves) {
         let _ = writeln!(
             out,
-            "  {:<width$}  {:>12.6}  {:>12.6}  {:>12.6}  {:>12.6}  {:>12.6}",
+            "  {:<width$}  {:>12}  {:>12}  {:>12}  {:>12}  {:>12}",
             body.name,
-            tidy(q[0]),
-            tidy(q[1]),
-            tidy(q[2].to_degrees()),
-            tidy(moved.length),
-            tidy(moved.angle.to_degrees())
+            fixed(q[0], 6),
+            fixed(q[1], 6),
+            fixed(q[2].to_degrees(), 6),
+            fixed(moved.length, 6),
+            fixed(moved.angle.to_degrees(), 6)
         );
     }
     out
@@ -392,9 +393,9 @@ fn describe_modes(mechanism: &Mechanism, modes: &Modes) -> String {
 
 fn with_unit(kind: CoordinateKind, value: f64) -> String {
     if kind.is_angle() {
-        format!("{:.6} deg", tidy(value.to_degrees()))
+        format!("{} deg", fixed(value.to_degrees(), 6))
     } else {
-        format!("{:.6} m", tidy(value))
+        format!("{} m", fixed(value, 6))
     }
 }
 
@@ -405,9 +406,4 @@ pub(super) fn scientific(value: f64, decimals: usize) -> String {
     }
     let text = format!("{value:.decimals$e}");
     text.strip_suffix("e0").map_or(text.clone(), str::to_owned)
-}
-
-/// Returns zero for a number that six decimals would show as a negative zero.
-fn tidy(value: f64) -> f64 {
-    if value.abs() < 5e-7 { 0.0 } else { value }
 }

@@ -98,7 +98,52 @@ impl Times {
         match row {
             0 => self.start,
             row if row == self.steps => self.stop,
-            row => self.start + row as f64 * self.step,
+            row => as_written(self.start, row as f64, self.step),
         }
+    }
+}
+
+/// Returns start + row · step as decimal numbers: 0.7 for seven steps of 0.1, where the product of
+/// binary numbers is 0.7000000000000001.
+fn as_written(start: f64, row: f64, step: f64) -> f64 {
+    let decimals = |number: f64| {
+        let text = number.to_string();
+        text.split_once('.')
+            .map_or(0, |(_, decimals)| decimals.len())
+    };
+    let time = start + row * step;
+    let decimals = decimals(start).max(decimals(step));
+    let written: f64 = format!("{time:.decimals$}").parse().unwrap_or(time);
+    // The roundings of the step, of the product and of the sum.
+    let rounding = 2.0 * f64::EPSILON * (start.abs() + (row * step).abs());
+    if (written - time).abs() <= rounding {
+        written
+    } else {
+        time
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::as_written;
+
+    #[test]
+    fn times_are_those_that_a_person_writes() {
+        for (start, row, step, expected) in [
+            (0.0, 7.0, 0.1, 0.7),
+            (0.3, 3.0, 0.1, 0.6),
+            (-1.0, 9.0, 0.1, -0.1),
+            (0.0, 3.0, 1e-3, 0.003),
+            (1e9, 3.0, 0.1, 1_000_000_000.3),
+        ] {
+            assert_eq!(
+                as_written(start, row, step).to_bits(),
+                f64::to_bits(expected)
+            );
+        }
+        // A step that nobody writes stays as it is.
+        let third = 1.0 / 3.0;
+        assert!((as_written(0.0, 2.0, third) - 2.0 * third).abs() <= f64::EPSILON);
+        assert_eq!(as_written(0.0, 5.0, 1e-300).to_bits(), 5e-300_f64.to_bits());
     }
 }

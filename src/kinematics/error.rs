@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::element::Element;
-use crate::mechanism::ProfileError;
+use crate::mechanism::{ProfileError, show_time, shown, shown_apart};
 
 /// A call of the kinematics that could not do its work.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -49,7 +49,10 @@ pub enum Error {
         what: String,
     },
     /// A parameter that follows from others is outside its limits.
-    #[error("`{name}` = {value} is {beyond} = {limit}; it follows from other parameters")]
+    #[error(
+        "`{name}` = {} is {beyond} = {}; it follows from other parameters",
+        shown_apart(*.value, *.limit)[0], shown_apart(*.value, *.limit)[1]
+    )]
     Limit {
         /// Name of the parameter.
         name: String,
@@ -75,7 +78,7 @@ pub enum Error {
         driver: String,
     },
     /// The target of a distance is not positive.
-    #[error("{what} would hold a distance at {value} m; a distance must be positive")]
+    #[error("{what} would hold a distance at {} m; a distance must be positive", shown(*.value))]
     NotPositive {
         /// The joint, constraint or driver.
         what: String,
@@ -83,7 +86,7 @@ pub enum Error {
         value: f64,
     },
     /// A mass or a moment of inertia has a value that it cannot have.
-    #[error("{what} is {value}; it must {demand}")]
+    #[error("{what} is {}; it must {demand}", shown(*.value))]
     Mass {
         /// The quantity and its body.
         what: String,
@@ -126,6 +129,48 @@ pub enum Error {
         /// The bodies that can move there without any driver; empty if not determined.
         bodies: Vec<String>,
     },
+    /// Values have no limit at a change point, or none that is known.
+    #[error(
+        "{of} have no limit at the change point with driver `{driver}` at {value}, where {}: they \
+         grow without bound next to it, or depend on how inputs go on",
+        in_line(.bodies, "")
+    )]
+    ChangePoint {
+        /// The values.
+        of: NoLimit,
+        /// Name of the driver that moves the mechanism through the point.
+        driver: String,
+        /// Its value there, in words.
+        value: String,
+        /// The bodies that line up there.
+        bodies: Vec<String>,
+    },
+    /// An expression has no finite derivative.
+    #[error("{what} has no finite derivative{} with these values", .by.as_ref().map(|name| format!(" with respect to {name}")).unwrap_or_default())]
+    NoDerivative {
+        /// The quantity that the expression gives.
+        what: String,
+        /// The parameter or variable that changes, if it is known.
+        by: Option<String>,
+    },
+}
+
+/// Values that a change point may leave without a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoLimit {
+    /// Reactions of joints and constraints.
+    Reactions,
+    /// Derivatives along a direction.
+    Derivatives,
+}
+
+impl fmt::Display for NoLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Reactions => "the reactions of joints",
+            Self::Derivatives => "these derivatives",
+        })
+    }
 }
 
 impl Error {
@@ -135,7 +180,7 @@ impl Error {
     pub fn at_start(&self, time: f64) -> String {
         match self {
             Self::NoMotion { .. } | Self::TooFast { .. } | Self::NoForce { .. } => {
-                format!("at t = {time} s: {self}")
+                format!("at t = {} s: {self}", show_time(time))
             }
             _ => self.to_string(),
         }
@@ -196,13 +241,23 @@ impl fmt::Display for Proof {
                 points: [from, to],
                 distance,
                 span: [shortest, longest],
-            } => write!(
-                f,
-                "`{from}` and `{to}` are {} apart, `{a}` and `{b}` together span {} to {}",
-                millimetres(*distance),
-                millimetres(*shortest),
-                millimetres(*longest)
-            ),
+            } => {
+                // As many digits as tell the distance from both ends of the span.
+                let show = |digits| {
+                    [distance, shortest, longest]
+                        .map(|length| format!("{} mm", with_digits(length * 1e3, digits)))
+                };
+                let differ = |[distance, shortest, longest]: &[String; 3]| {
+                    distance != shortest && distance != longest
+                };
+                let shown = (FEW_DIGITS..=17).map(show).find(differ);
+                let [distance, shortest, longest] = shown.unwrap_or_else(|| show(FEW_DIGITS));
+                write!(
+                    f,
+                    "`{from}` and `{to}` are {distance} apart, `{a}` and `{b}` together span \
+                     {shortest} to {longest}"
+                )
+            }
             Self::Line { body } => write!(f, "whatever the angle of `{body}`"),
             Self::Excluded { bodies, .. } => {
                 let bodies: Vec<_> = bodies.iter().map(|body| format!("`{body}`")).collect();
@@ -300,13 +355,21 @@ fn degrees(angle: f64) -> String {
 }
 
 fn four_digits(value: f64) -> String {
+    with_digits(value, FEW_DIGITS)
+}
+
+/// Digits of a length or an angle in a message, if they are enough.
+const FEW_DIGITS: usize = 4;
+
+fn with_digits(value: f64, digits: usize) -> String {
+    let behind_first = digits as i32 - 1;
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
         // A value that rounds up to a power of ten has the digits of that power.
-        let rounded = value.abs().max(1e-3) * (1.0 + 5e-5);
-        let decimals = 3 - rounded.log10().floor() as i32;
+        let rounded = value.abs().max(1e-3) * (1.0 + 0.5 * 10_f64.powi(-behind_first - 1));
+        let decimals = behind_first - rounded.log10().floor() as i32;
         format!("{value:.*}", decimals.max(0) as usize)
     } else {
-        format!("{value:.3e}")
+        format!("{value:.*e}", digits - 1)
     }
 }
 

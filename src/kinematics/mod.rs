@@ -90,7 +90,7 @@ pub use continuation::{Blocked, Progress, Reason};
 pub use element::Element;
 #[cfg(feature = "cli")]
 pub(crate) use error::in_line;
-pub use error::{Error, Fit, OpenJoint, OpenPose, Proof, Verdict};
+pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Verdict};
 pub use forces::{
     ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff, Reported,
 };

@@ -1,5 +1,6 @@
 //! Relative coordinates.
 
+use super::wording::fixed_apart;
 use super::{MarkerId, Mechanism, Unit};
 
 /// Scalar measured from one marker to another.
@@ -126,10 +127,22 @@ impl CoordinateKind {
     /// Returns a value as text with its unit.
     #[must_use]
     pub fn show(self, value: f64) -> String {
+        let [text, _] = self.show_apart(value, value);
+        text
+    }
+
+    /// Returns two values as text with their unit, with as many digits as tell them apart.
+    #[must_use]
+    pub fn show_apart(self, a: f64, b: f64) -> [String; 2] {
+        let [a_si, b_si] = fixed_apart(a, b, 9);
         if self.is_angle() {
-            format!("{value:.9} rad ({:.6} deg)", value.to_degrees())
+            let [a, b] = fixed_apart(a.to_degrees(), b.to_degrees(), 6);
+            [
+                format!("{a_si} rad ({a} deg)"),
+                format!("{b_si} rad ({b} deg)"),
+            ]
         } else {
-            format!("{value:.9} m")
+            [format!("{a_si} m"), format!("{b_si} m")]
         }
     }
 }

@@ -71,7 +71,8 @@ pub(crate) use table::{Separated, comma_hint};
 pub use table::{Table, TableFile};
 #[cfg(any(feature = "drawing", feature = "fmi"))]
 pub(crate) use wording::rounded;
-pub(crate) use wording::shown;
+pub use wording::show_time;
+pub(crate) use wording::{fixed, fixed_apart, shown, shown_apart};
 #[cfg(feature = "cli")]
 pub(crate) use wording::{large_angle, quoted};
 
@@ -339,7 +340,8 @@ impl Driver {
         let exceeded = above.or(below);
         let was_beyond = std::mem::replace(beyond, exceeded.is_some());
         let (key, limit) = exceeded.filter(|_| !was_beyond)?;
-        let [value, limit] = [value, limit].map(|value| self.coordinate.kind.show(value));
+        let [value, limit] = self.coordinate.kind.show_apart(value, limit);
+        let time = show_time(time);
         Some(format!(
             "t = {time} s: driver `{}` is at {value}, beyond its `{key}` = {limit}; the mechanism \
              follows it",

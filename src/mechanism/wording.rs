@@ -28,6 +28,39 @@ pub(crate) fn shown(number: f64) -> String {
     shown_with(number, DIGITS)
 }
 
+/// Returns a time \[s\] without the rounding of a product: 0.7, not 0.7000000000000001.
+#[must_use]
+pub fn show_time(time: f64) -> String {
+    let rounded = rounded(time, 15) + 0.0;
+    if rounded == 0.0 || (1e-6..1e15).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// Returns a number with this many decimals. Zero has no sign; a number of more than nine digits
+/// before the point has a power of ten.
+pub(crate) fn fixed(number: f64, decimals: usize) -> String {
+    if number.abs() >= 1e9 {
+        return format!("{number:.decimals$e}");
+    }
+    let text = format!("{number:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|byte| b"0.".contains(&byte)) => digits.to_owned(),
+        _ => text,
+    }
+}
+
+/// Returns two numbers with as many decimals as tell them apart, at least this many.
+pub(crate) fn fixed_apart(a: f64, b: f64, decimals: usize) -> [String; 2] {
+    let shown = |decimals| [a, b].map(|number| fixed(number, decimals));
+    let mut longer = (decimals..=ALL_DIGITS).map(shown);
+    longer
+        .find(|[a, b]| a != b)
+        .unwrap_or_else(|| shown(decimals))
+}
+
 /// Says that an angle \[rad\] of more than a turn looks like degrees; `None` for any other.
 pub(crate) fn large_angle(angle: f64) -> Option<String> {
     let (number, degrees) = (shown(angle), angle.to_degrees());
@@ -35,7 +68,7 @@ pub(crate) fn large_angle(angle: f64) -> Option<String> {
 }
 
 /// Returns two numbers with as many digits as tell them apart, six if that is enough.
-pub(super) fn shown_apart(a: f64, b: f64) -> [String; 2] {
+pub(crate) fn shown_apart(a: f64, b: f64) -> [String; 2] {
     let shown = |digits| [a, b].map(|number| shown_with(number, digits));
     let different = |digits: &usize| shown(*digits)[0] != shown(*digits)[1];
     let digits = (DIGITS..=ALL_DIGITS).find(different);
@@ -101,6 +134,16 @@ mod tests {
             ]
         );
         assert_eq!([f64::NAN, f64::INFINITY].map(shown), ["NaN", "inf"]);
+    }
+
+    #[test]
+    fn zero_has_no_sign_and_large_numbers_have_no_rows_of_digits() {
+        let numbers = [-0.0, -1e-12, -0.5, 1e300].map(|number| fixed(number, 3));
+        assert_eq!(numbers, ["0.000", "0.000", "-0.500", "1.000e300"]);
+        assert_eq!(
+            [0.1 * 7.0, -0.0, 1.6e9 + 0.25, 1e300].map(show_time),
+            ["0.7", "0", "1600000000.25", "1e300"]
+        );
     }
 
     #[test]

@@ -18,7 +18,7 @@ fn run_writes_exact_rates() {
     ];
     let csv = stdout(&biela(&arguments).success());
     let time = column(&csv, "time");
-    assert_eq!(time, [0.0, 0.3, 0.6, 0.899_999_999_999_999_9, 1.0]);
+    assert_eq!(time, [0.0, 0.3, 0.6, 0.9, 1.0]);
     for (row, t) in time.iter().enumerate() {
         let expected = [
             ("crank.phi", 60_f64.to_radians() + 10.0 * t + t * t),
@@ -389,4 +389,35 @@ fn inputs_keep_inertia_and_bias_however_they_are_moved() {
     same(&own, &run(&[&prescribed, "--input", &values]));
     // The demand of the mass of `b` about P: its inertia there and that of P's acceleration.
     assert!((column(&own, "r.bias")[0] - 0.85).abs() < 1e-12);
+}
+
+/// Ten steps of 0.1 s are written as a person writes them, and all other numbers with all digits.
+#[test]
+fn times_are_those_that_a_person_writes() {
+    let drive = "crank_angle = 60*deg + t/3";
+    let options = ["--drive", drive, "--stop", "1", "--step", "0.1"];
+    let run = biela(&[&["run", "mechanisms/four_bar.toml"][..], &options].concat()).code(0);
+    let table = stdout(&run);
+    let times = table.lines().skip(1).map(|row| row.split(',').next());
+    let expected = [
+        "0.0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1.0",
+    ];
+    assert!(times.eq(expected.map(Some)), "{table}");
+}
+
+/// A limit that is exceeded by less than a nanometre looks different from the value.
+#[test]
+fn an_excursion_tells_the_value_from_its_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let limited = ("start = \"45*deg\"", "start = 0.5, max = 0.6");
+    let file = altered(folder.path(), "slider_crank", &[limited]);
+    let drive = "crank_angle = 0.5 + (0.1 + 1e-12)*t";
+    let arguments = ["run", &file, "--drive", drive, "--stop", "1", "--step", "1"];
+    let told = stderr(&biela(&arguments).success());
+    for words in [
+        "is at 0.600000000001 rad (34.37746770",
+        "its `max` = 0.600000000000 rad (34.37746770",
+    ] {
+        assert!(told.contains(words), "{told}");
+    }
 }

@@ -3,6 +3,7 @@
 use super::{Category, Error, Failure, Instance, Status, check_finite};
 use crate::fmi::model::Model;
 use crate::fmi::state::{Call, Interface, State, Version};
+use crate::mechanism::show_time;
 
 impl<M: Model> Instance<M> {
     /// `fmi2EnterEventMode`, `fmi3EnterEventMode`: commits the model's present point in model
@@ -81,6 +82,7 @@ impl<M: Model> Instance<M> {
                 Ok(())
             }
             Err(Failure::Discarded(reason)) => {
+                let time = show_time(time);
                 let message = format!("t = {time} s: the simulation must end: {reason}");
                 match self.version {
                     Version::Fmi2 => self.logger.write(Status::Error, Category::Error, &message),

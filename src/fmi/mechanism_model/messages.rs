@@ -9,7 +9,7 @@ use crate::fmi::log::{Advice, Category, Logger};
 use crate::fmi::state::Interface;
 use crate::fmi::status::Status;
 use crate::kinematics::{Blocked, Curve, Progress, Reason};
-use crate::mechanism::{Driver, DriverId, Order, RateSource, rounded, shown};
+use crate::mechanism::{Driver, DriverId, Order, RateSource, rounded, show_time, shown};
 
 impl MechanismModel {
     /// Describes why the path was not followed to its end: the drivers that may be the cause, their
@@ -30,15 +30,17 @@ impl MechanismModel {
                     "driver `{}` cannot follow its motion beyond {} at t = {} s",
                     driver.name,
                     show(limit[index]),
-                    start + s * h
+                    show_time(start + s * h)
                 ));
             } else if (asked[index] - self.course.committed.drivers[index]).abs() > 0.0 {
-                parts.push(format!(
-                    "driver `{}` was asked for {} and cannot go beyond {}",
-                    driver.name,
-                    show(asked[index]),
-                    show(limit[index])
-                ));
+                let kind = driver.coordinate.kind;
+                let [asked, limit] = kind.show_apart(asked[index], limit[index]);
+                let name = &driver.name;
+                parts.push(if asked == limit {
+                    format!("driver `{name}` was asked for {asked}, where it cannot go on")
+                } else {
+                    format!("driver `{name}` was asked for {asked} and cannot go beyond {limit}")
+                });
             }
         }
         if self.path.moves_parameters() {
@@ -76,8 +78,10 @@ impl MechanismModel {
             _ => "no continuous motion",
         };
         format!(
-            "{what}, after {:.4} of the step from {start} s over {h} s: {}",
+            "{what}, after {:.4} of the step from {} s over {} s: {}",
             blocked.s,
+            show_time(start),
+            show_time(h),
             parts.join("; ")
         )
     }
@@ -113,7 +117,7 @@ impl MechanismModel {
     /// Reports each approach to a singular position once.
     pub(super) fn report_approach(&mut self, log: &Logger) {
         if let Some(approach) = self.solver.approach(&mut self.course.near_singular) {
-            let time = self.course.time;
+            let time = show_time(self.course.time);
             log.advise(Advice::SingularPosition, || {
                 format!("t = {time} s: {approach}")
             });
@@ -145,7 +149,7 @@ impl MechanismModel {
                         "t = {} s: driver `{name}` jumps by {} rad within one step, which the \
                          mechanism follows turn by turn; if the host wraps the angle, set \
                          `wrapped = true` for the driver in the mechanism file",
-                        self.course.time,
+                        show_time(self.course.time),
                         shown(-jump)
                     )
                 });
@@ -218,7 +222,7 @@ impl MechanismModel {
             };
             let message = format!(
                 "t = {} s: sub-steps {substeps}{checked}, iterations {iterations}, residual {:.1e}",
-                self.course.time,
+                show_time(self.course.time),
                 self.solver.residual()
             );
             log.write(Status::Ok, Category::Solver, &message);
@@ -235,6 +239,7 @@ fn describe_source(driver: &Driver, order: Order, source: Source, time: f64) -> 
     };
     let Driver { name, .. } = driver;
     let rate = order.suffix();
+    let time = show_time(time);
     format!("t = {time} s: the {rate} of driver `{name}` now comes from {source}")
 }
 
@@ -255,6 +260,7 @@ pub(super) fn describe_contradiction(
         actual,
     } = contradiction;
     let Driver { name, .. } = driver;
+    let time = show_time(time);
     let unit = driver.coordinate.kind.units()[order as usize].name;
     // Four digits: differences of positions have rounding.
     let [given, actual] = [given, actual].map(|rate| format!("{} {unit}", shown(rounded(rate, 4))));

@@ -14,7 +14,7 @@ use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
 use crate::mechanism::{
     CamFollower, Expression, Interval, Jet3, JointKind, MarkerId, ProfileInForce, RackSide,
-    WheelSizes,
+    WheelSizes, fixed_apart,
 };
 
 /// A joint that does not fit its own numbers at a pose.
@@ -72,30 +72,42 @@ impl fmt::Display for GeometryWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint `{}`: ", self.joint)?;
         match &self.kind {
-            GeometryWarningKind::GearCentres { distance, expected } => write!(
-                f,
-                "the centres are {distance:.6} m apart; the radii ask for {expected:.6} m"
-            ),
-            GeometryWarningKind::BeltCentres { distance, least } => write!(
-                f,
-                "the centres are {distance:.6} m apart; wheels of these radii need more than \
-                 {least:.6} m"
-            ),
-            GeometryWarningKind::RackDistance { distance, expected } => write!(
-                f,
-                "the pinion's centre is at y = {distance:.6} m of the rack; its radius and side \
-                 ask for {expected:.6} m"
-            ),
+            GeometryWarningKind::GearCentres { distance, expected } => {
+                let [distance, expected] = apart(*distance, *expected);
+                write!(
+                    f,
+                    "the centres are {distance} m apart; the radii ask for {expected} m"
+                )
+            }
+            GeometryWarningKind::BeltCentres { distance, least } => {
+                let [distance, least] = apart(*distance, *least);
+                write!(
+                    f,
+                    "the centres are {distance} m apart; wheels of these radii need more than \
+                     {least} m"
+                )
+            }
+            GeometryWarningKind::RackDistance { distance, expected } => {
+                let [distance, expected] = apart(*distance, *expected);
+                write!(
+                    f,
+                    "the pinion's centre is at y = {distance} m of the rack; its radius and side \
+                     ask for {expected} m"
+                )
+            }
             GeometryWarningKind::NarrowHollow {
                 ranges,
                 curvature,
                 roller,
-            } => write!(
-                f,
-                "a roller of radius {roller:.6} m does not fit into hollows of the contour whose \
-                 radius of curvature goes down to {curvature:.6} m: {}",
-                degrees(ranges)
-            ),
+            } => {
+                let [roller, curvature] = apart(*roller, *curvature);
+                write!(
+                    f,
+                    "a roller of radius {roller} m does not fit into hollows of the contour whose \
+                     radius of curvature goes down to {curvature} m: {}",
+                    degrees(ranges)
+                )
+            }
             GeometryWarningKind::HollowUnderFace { ranges } => write!(
                 f,
                 "a flat face cannot follow the contour where it is hollow: {}",
@@ -103,6 +115,11 @@ impl fmt::Display for GeometryWarning {
             ),
         }
     }
+}
+
+/// Returns two lengths with as many decimals as tell them apart.
+fn apart(a: f64, b: f64) -> [String; 2] {
+    fixed_apart(a, b, 6)
 }
 
 /// Describes the first of some ranges of polar angles.

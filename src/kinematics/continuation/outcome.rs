@@ -4,7 +4,7 @@ use crate::kinematics::Error;
 use crate::kinematics::error::OpenJoint;
 use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::Pose;
-use crate::mechanism::{DriverId, Mechanism};
+use crate::mechanism::{DriverId, Mechanism, fixed};
 
 /// The cause of a stop before the end of a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +110,7 @@ impl Blocked {
             })
             .collect();
         let moving = moving.join(", ");
-        let time = time.map_or_else(String::new, |time| format!(" at t = {time:.9} s"));
+        let time = time.map_or_else(String::new, |time| format!(" at t = {} s", fixed(time, 9)));
         format!("{reason}{time}: the mechanism cannot go on, with {moving}")
     }
 }

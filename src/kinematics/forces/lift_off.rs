@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::solve::Forces;
 use crate::kinematics::state::State;
-use crate::mechanism::shown;
+use crate::mechanism::{show_time, shown};
 
 /// A part of the largest reaction below which a pulling force is rounding.
 const PULLS: f64 = 1e-9;
@@ -25,8 +25,9 @@ impl fmt::Display for LiftOff<'_> {
         let Self { time, joint, pull } = self;
         write!(
             out,
-            "t = {time} s: joint `{joint}` would lift off: its parts would have to pull each other \
+            "t = {} s: joint `{joint}` would lift off: its parts would have to pull each other \
              with {} N; the mechanism keeps them together",
+            show_time(*time),
             shown(*pull)
         )
     }

@@ -9,7 +9,7 @@ use crate::mechanism::names::NameTable;
 use crate::mechanism::syntax::{self, Value};
 use crate::mechanism::wording::quoted;
 use crate::mechanism::{
-    BodyId, Diagnostic, Dimension, MarkerId, ParameterId, Severity, Source, Span, TableFile,
+    BodyId, Diagnostic, Dimension, Label, MarkerId, ParameterId, Severity, Source, Span, TableFile,
 };
 
 /// Most problems that are shown; the others are counted. A file of garbage would make a million.
@@ -113,6 +113,24 @@ impl<'a> Context<'a> {
         message: impl Into<String>,
     ) -> &mut Diagnostic {
         self.report(Diagnostic::warning(code, message).label(span, ""))
+    }
+
+    /// Adds a further place to a warning of this kind, whose help begins in this way, if there is one
+    /// already; of very many only the first.
+    pub(super) fn warn_again(&mut self, code: &'static str, help: &str, span: &Span) -> bool {
+        const MOST_PLACES: usize = 8;
+        let is_alike = |problem: &&mut Diagnostic| {
+            let own = problem.help.as_deref().unwrap_or_default();
+            problem.code == code && own.starts_with(help)
+        };
+        let Some(problem) = self.problems.iter_mut().find(is_alike) else {
+            return false;
+        };
+        if problem.labels.len() < MOST_PLACES {
+            let (span, text) = (span.clone(), "likewise".to_owned());
+            problem.labels.push(Label { span, text });
+        }
+        true
     }
 
     /// Reports a key that a table already has.

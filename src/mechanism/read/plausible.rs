@@ -79,8 +79,11 @@ impl<'a> Context<'a> {
             return;
         };
         if let Some(message) = large_angle(value) {
-            self.warn(code::LARGE_ANGLE, angle.span.clone(), message)
-                .suggest(format!("degrees are written `\"{text}*deg\"`"));
+            let help = "degrees are written";
+            if !self.warn_again(code::LARGE_ANGLE, help, &angle.span) {
+                self.warn(code::LARGE_ANGLE, angle.span.clone(), message)
+                    .suggest(format!("{help} `\"{text}*deg\"`"));
+            }
         }
     }
 
@@ -95,8 +98,11 @@ impl<'a> Context<'a> {
         if is_suspect {
             let (number, shown, name) = (shown(value), shown(value * display.factor), display.name);
             let message = format!("a length of {number} m is {shown} {name}");
-            self.warn(code::LARGE_LENGTH, quantity.span.clone(), message)
-                .suggest(format!("values are SI: `value = \"{text}*{name}\"`"));
+            let help = "values are SI";
+            if !self.warn_again(code::LARGE_LENGTH, help, &quantity.span) {
+                self.warn(code::LARGE_LENGTH, quantity.span.clone(), message)
+                    .suggest(format!("{help}: `value = \"{text}*{name}\"`"));
+            }
         }
         is_suspect
     }
@@ -141,13 +147,17 @@ impl<'a> Context<'a> {
             if let Some(span) = bare
                 && *size >= LARGE
             {
+                let help = "millimetres are written";
+                if self.warn_again(code::LARGE_LENGTH, help, span) {
+                    continue;
+                }
                 let text = self.source.text().get(span.clone()).unwrap_or_default();
                 let message = format!(
                     "a length of {} m beside others of up to {most} m",
                     shown(*size)
                 );
                 self.warn(code::LARGE_LENGTH, span.clone(), message)
-                    .suggest(format!("millimetres are written `\"{text}*mm\"`"));
+                    .suggest(format!("{help} `\"{text}*mm\"`"));
             }
         }
     }
