@@ -93,6 +93,7 @@ fn sensitivities_along_several_directions_are_those_along_each() {
         solver
             .sensitivities(&rates, &[driver], &directions, order, |along| {
                 together.push(along.signal(signal));
+                Ok(())
             })
             .expect("the pose is regular");
         for (one, other) in each.iter().zip(&together) {

@@ -160,3 +160,109 @@ fn accepted_points_of_model_exchange_have_given_rates() {
     other.completed_integrator_step().unwrap();
     assert_eq!(by_inputs(&mut other), truth);
 }
+
+/// An expression `f` of the parameter `p`, and a value of `p` at which it has no derivative.
+const STEEP: [(&str, f64); 7] = [
+    ("sqrt(p)", 0.0),
+    ("p^0.5", 0.0),
+    ("asin(p)", 1.0),
+    ("acos(p)", -1.0),
+    ("hypot(p, 0)", 0.0),
+    ("atan2(p, p)", 0.0),
+    ("abs(p)^0.25", 0.0),
+];
+
+/// A crank with `f` in the place named: a parameter, a marker, a constraint's value, a measure, a
+/// mass, a spring.
+fn steep(f: &str, value: f64, place: &str) -> Instance {
+    let at = |own: &str, usual: &str| {
+        if own == place {
+            format!("\"{usual} + 0.1*({f})\"")
+        } else {
+            usual.to_owned()
+        }
+    };
+    let text = format!(
+        r#"format = 1
+name = "steep"
+[parameters]
+p = {{ value = {value}, unit = "1" }}
+q = {{ value = {}, unit = "1" }}
+[ground.markers]
+O = [0, 0]
+F = [0.5, 1]
+[bodies.crank]
+markers = {{ O = [0, 0], A = [{}, 0] }}
+mass = {}
+center = [0.1, 0]
+[bodies.other.markers]
+O = [0, 0]
+[joints]
+O = {{ type = "revolute", markers = ["ground.O", "crank.O"] }}
+P = {{ type = "revolute", markers = ["ground.F", "other.O"] }}
+[constraints]
+held = {{ coordinate = "angle", markers = ["ground.F", "other.O"], value = {} }}
+[drivers]
+turn = {{ coordinate = "angle", markers = ["ground.O", "crank.O"], start = 0.3 }}
+[forces]
+spring = {{ coordinate = "distance", markers = ["ground.F", "crank.A"], stiffness = {}, free = 0.2 }}
+[outputs]
+markers = ["crank.A"]
+[measures]
+plain = {{ value = "2*crank.phi" }}
+told = {{ value = {} }}
+"#,
+        at("q", "1"),
+        at("marker", "0.4"),
+        at("mass", "2"),
+        at("held", "0.2"),
+        at("spring", "100"),
+        match place {
+            "told" => format!("\"crank.phi + {f}\""),
+            _ => "\"crank.phi\"".to_owned(),
+        },
+    );
+    let mut instance = instance_of(common::parse(&text), Interface::CoSimulation);
+    instance.setup_experiment(0.0, None).unwrap();
+    instance.enter_initialization_mode().unwrap();
+    instance
+}
+
+/// A derivative that does not exist is refused like a rate at a dead point, and the message names
+/// the expression and the parameter; what does not depend on it keeps its derivative.
+#[test]
+fn derivatives_that_do_not_exist_are_refused() {
+    for (f, value) in STEEP {
+        for (place, unknown, named) in [
+            ("q", "q", "parameter `q`"),
+            ("marker", "crank.A.x", "marker `crank.A`"),
+            ("held", "other.phi", "constraint `held`"),
+            ("told", "told", "measure `told`"),
+            ("mass", "turn.effort", "body `crank`"),
+            ("spring", "turn.effort", "force `spring`"),
+        ] {
+            let mut instance = steep(f, value, place);
+            let reference = |name: &str| {
+                let mut variables = instance.variables().iter();
+                variables.position(|v| v.name == name).expect("it is there") as u32
+            };
+            let [p, plain, unknown] = ["p", "plain", unknown].map(reference);
+            let mut by_p = |unknown| instance.directional_derivative(&[unknown], &[p], &[1.0]);
+            let refused = by_p(unknown).expect_err(f).to_string();
+            assert!(
+                refused.contains(named) && refused.contains("`p`"),
+                "{f}: {refused}"
+            );
+            assert_eq!(by_p(plain).expect("it exists"), [0.0], "{f} in {place}");
+        }
+    }
+    // The next power has a derivative.
+    let mut instance = steep("p^1.5", 0.0, "told");
+    let names = ["p", "told"];
+    let [p, told] = names.map(|name| {
+        let mut variables = instance.variables().iter();
+        variables.position(|v| v.name == name).expect("it is there") as u32
+    });
+    let found = instance.directional_derivative(&[told], &[p], &[1.0]);
+    assert_eq!(found.expect("it exists"), [0.0]);
+}

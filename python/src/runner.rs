@@ -6,7 +6,7 @@ use biela::kinematics::{
     Blocked, Carryover, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution,
     Solver, Start,
 };
-use biela::mechanism::{DriverId, Jet, Order};
+use biela::mechanism::{DriverId, Jet, Order, show_time};
 
 use crate::error::Failure;
 use crate::scenario::Scenario;
@@ -93,7 +93,7 @@ impl Runner {
         })?;
         self.solve(row).map_err(|error| {
             let time = self.scenario.times[row];
-            format!("at t = {time} s: {error}")
+            format!("at t = {} s: {error}", show_time(time))
         })
     }
 
@@ -184,7 +184,7 @@ impl Runner {
         let texts = approach.map(|approach| approach.to_string()).into_iter();
         texts
             .chain(crossed)
-            .map(|text| format!("t = {time} s: {text}"))
+            .map(|text| format!("t = {} s: {text}", show_time(time)))
             .collect()
     }
 
@@ -208,7 +208,7 @@ impl Runner {
     ///
     /// # Errors
     ///
-    /// They do not exist at a singular position.
+    /// They do not exist, as at a singular position.
     pub(crate) fn differentiate(
         &mut self,
         columns: &[Output],
@@ -235,7 +235,12 @@ impl Runner {
             &solution.driver_rates,
             directions,
             highest.unwrap_or(Order::Position),
-            |change| derivatives.extend(columns.iter().map(|column| column.change(own, change))),
+            |change| {
+                for column in columns {
+                    derivatives.push(column.source.change(own, change)?);
+                }
+                Ok(())
+            },
         )
     }
 

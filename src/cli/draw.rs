@@ -103,7 +103,7 @@ impl Draw {
         if self.forces {
             let start = solver.pose().time;
             let motion = Motion::from(solver, Signals::default(), start);
-            let motion = motion.and_then(Motion::with_forces);
+            let motion = motion.and_then(|motion| motion.with_forces(true));
             let motion = motion.map_err(|error| input.error(error))?;
             solver = motion.solver;
             let places = ForcePlace::sought(&mut solver, &motion.solution);

@@ -4,7 +4,7 @@ use super::conditions::Scenario;
 use super::message::Message;
 use super::signals::Signals;
 use crate::kinematics::{Blocked, Curve, Error, Output, Path, Solution, Solver};
-use crate::mechanism::DriverId;
+use crate::mechanism::{DriverId, show_time};
 
 /// A mechanism that moves from one time to the next.
 pub(super) struct Motion {
@@ -48,9 +48,12 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Solves forces too, from now on.
-    pub(super) fn with_forces(mut self) -> Result<Self, Error> {
+    /// Solves forces too, from now on, and reactions where they are wanted.
+    pub(super) fn with_forces(mut self, reactions: bool) -> Result<Self, Error> {
         self.solution.seek_forces(&self.solver);
+        if !reactions {
+            self.solution.leave_out_reactions();
+        }
         self.solve()?;
         Ok(self)
     }
@@ -76,7 +79,7 @@ impl Motion {
             }
         }
         self.solve()
-            .map_err(|error| format!("at t = {time} s: {error}"))
+            .map_err(|error| format!("at t = {} s: {error}", show_time(time)))
     }
 
     /// Solves rates and forces at the present time.
@@ -129,12 +132,12 @@ impl Motion {
             return Err(self.describe(&blocked));
         }
         if let Some(approach) = self.solver.approach(&mut self.near_singular) {
-            let notice = format!("t = {time} s: {approach}");
+            let notice = format!("t = {} s: {approach}", show_time(time));
             self.notices.push(Message::Warning(notice));
         }
         for crossing in self.solver.crossed() {
             let passed = self.solver.describe_crossing(crossing);
-            let notice = format!("t = {time} s: {passed}");
+            let notice = format!("t = {} s: {passed}", show_time(time));
             self.notices.push(Message::Note(notice));
         }
         self.watch_limits();

@@ -125,10 +125,15 @@ impl Run {
             (&self.plot, &plotted),
             (&self.animate, &told),
         ];
-        let mut shown = shown.iter().filter(|(path, _)| path.is_some());
-        let asks_forces = self.forces
-            || shown.any(|(_, columns)| columns.iter().any(Output::is_force))
-            || over.as_ref().is_some_and(Output::is_force);
+        let shown = shown.iter().filter(|(path, _)| path.is_some());
+        let asks = |is_asked: fn(&Output) -> bool| {
+            self.forces
+                || shown
+                    .clone()
+                    .any(|(_, columns)| columns.iter().any(is_asked))
+                || over.as_ref().is_some_and(is_asked)
+        };
+        let [asks_forces, asks_reactions] = [Output::is_force, Output::is_reaction].map(asks);
         let home_solver = input.assemble()?;
         let notes = [
             note_of_rest(&input.mechanism, &scenario),
@@ -144,7 +149,7 @@ impl Run {
         }
         let mut motion = Motion::start(home_solver, scenario);
         if asks_forces {
-            motion = motion.and_then(Motion::with_forces);
+            motion = motion.and_then(|motion| motion.with_forces(asks_reactions));
         }
         let mut motion = motion.map_err(|error| input.error_at(times.start, &error))?;
         if let Some(path) = self.animate.clone() {

@@ -64,7 +64,8 @@ impl Tolerance {
         let columns = self.columns(&mechanism)?;
         let mut motion = Motion::start(input.assemble()?, scenario);
         if columns.iter().any(Output::is_force) {
-            motion = motion.and_then(Motion::with_forces);
+            let reactions = columns.iter().any(Output::is_reaction);
+            motion = motion.and_then(|motion| motion.with_forces(reactions));
         }
         let mut motion = motion.map_err(|error| input.error_at(times.start, &error))?;
         let mut deviations = vec![Deviation::default(); columns.len()];
@@ -166,8 +167,7 @@ fn table(
             [deviation.worst, deviation.statistical].map(|value| scientific(value * factor, 3));
         let largest = deviation.parts.iter().enumerate();
         let largest = largest.max_by(|a, b| a.1.total_cmp(b.1));
-        // An infinite derivative has no parts.
-        let largest = largest.filter(|(_, part)| **part > 0.0 && part.is_finite());
+        let largest = largest.filter(|(_, part)| **part > 0.0);
         let largest = largest.map_or_else(String::new, |(index, part)| {
             let name = &mechanism.parameters[tolerances[index].0.index()].name;
             format!("{name} {:.0} %", 100.0 * part / deviation.worst)

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::analysis::Sensitivity;
 use super::element::Element;
+use super::error::Error;
 use super::forces::{ForceQuantity, Reported};
 use super::path::{Path, Rates};
 use super::solver::Solver;
@@ -40,6 +41,50 @@ pub enum OutputSource {
 }
 
 impl OutputSource {
+    /// Returns the change of the value along the direction of a sensitivity of this mechanism
+    /// \[SI\], not a number for a force and for a measure without a value.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoDerivative`] where an expression has none, [`Error::ChangePoint`] where it has no
+    /// limit at a change point.
+    pub fn change(
+        self,
+        mechanism: &Mechanism,
+        sensitivity: &Sensitivity<'_>,
+    ) -> Result<f64, Error> {
+        let change = match self {
+            Self::Signal(signal, order) => order.of(sensitivity.signal(signal)),
+            Self::Derived(index) => {
+                let measure = &mechanism.derived[index];
+                let value = sensitivity.derived_value(measure);
+                if !value.value.is_finite() {
+                    return Ok(f64::NAN);
+                }
+                let mut signals = measure.signals();
+                let exist = |(signal, order): (Signal, Order)| {
+                    order.of(sensitivity.signal(signal)).is_finite()
+                };
+                let mut parameters = measure.value.parameters();
+                if !value.first().is_finite()
+                    && signals.all(exist)
+                    && parameters.all(|p| sensitivity.parameter(p).is_finite())
+                {
+                    let what = format!("measure `{}`", measure.name);
+                    let expressions = std::iter::once(&measure.value);
+                    return Err(sensitivity.no_derivative(what, expressions));
+                }
+                value.first()
+            }
+            Self::Force(_) => return Ok(f64::NAN),
+        };
+        if change.is_finite() {
+            Ok(change)
+        } else {
+            Err(sensitivity.fault())
+        }
+    }
+
     /// Returns whether two outputs belong to one signal.
     #[must_use]
     pub fn is_akin(self, other: Self) -> bool {
@@ -102,17 +147,6 @@ impl Output {
         }
     }
 
-    /// Returns the change of the value along the direction of a sensitivity of this mechanism
-    /// \[SI\], not a number for a force.
-    #[must_use]
-    pub fn change(&self, mechanism: &Mechanism, sensitivity: &Sensitivity<'_>) -> f64 {
-        match self.source {
-            OutputSource::Signal(signal, order) => order.of(sensitivity.signal(signal)),
-            OutputSource::Derived(index) => sensitivity.derived(&mechanism.derived[index]),
-            OutputSource::Force(_) => f64::NAN,
-        }
-    }
-
     /// Returns whether a film tells it in numbers by default: positions of drivers, points of
     /// interest and measures.
     #[must_use]
@@ -122,6 +156,12 @@ impl Output {
             OutputSource::Signal(_, order) => order == Order::Position,
             OutputSource::Derived(_) => true,
         }
+    }
+
+    /// Returns whether it is a reaction of a joint or a constraint.
+    #[must_use]
+    pub fn is_reaction(&self) -> bool {
+        matches!(self.source, OutputSource::Force(quantity) if quantity.needs_reactions())
     }
 
     /// Returns whether it is a force.

@@ -52,6 +52,8 @@ pub struct Solution {
     /// forces are sought.
     pub loads: Vec<f64>,
     forces: Option<Forces>,
+    /// The parts of the forces that are sought.
+    parts: ForceParts,
     /// Whether each contact pulls.
     lifted: Vec<bool>,
 }
@@ -66,6 +68,7 @@ impl Solution {
             driver_rates: pose.drivers.iter().map(|u| Jet::constant(*u)).collect(),
             loads: Vec::new(),
             forces: None,
+            parts: ForceParts::ALL,
             lifted: Vec::new(),
         }
     }
@@ -76,6 +79,11 @@ impl Solution {
         self.loads = vec![0.0; forces.inputs()];
         self.lifted = vec![false; forces.contacts()];
         self.forces = Some(forces);
+    }
+
+    /// Leaves out reactions, unless contacts may pull: efforts exist where reactions have no limit.
+    pub fn leave_out_reactions(&mut self) {
+        self.parts.reactions = !self.lifted.is_empty();
     }
 
     /// Returns the forces, if they are sought.
@@ -101,7 +109,7 @@ impl Solution {
     /// Those of [`Solver::solve_rates`] and [`Solver::solve_forces`].
     pub fn solve(&mut self, solver: &mut Solver) -> Result<(), Error> {
         self.solve_rates(solver)?;
-        self.solve_forces(solver, ForceParts::ALL)
+        self.solve_forces(solver, self.parts)
     }
 
     /// Solves the rates at the pose for the rates of the drivers.
@@ -147,7 +155,7 @@ impl Solution {
     ///
     /// # Errors
     ///
-    /// Those of [`Solver::sensitivity`] and [`Solver::force_sensitivity`].
+    /// Those of [`Solver::sensitivity`], [`Solver::force_sensitivity`] and [`OutputSource::change`].
     pub fn changes(
         &mut self,
         solver: &mut Solver,
@@ -162,9 +170,9 @@ impl Solution {
             .iter()
             .map(|output| match (output.source, &of_forces) {
                 (OutputSource::Force(quantity), Some(forces)) => forces.change(quantity),
-                _ => output.change(&mechanism, &change),
+                (source, _) => source.change(&mechanism, &change),
             });
-        Ok(changes.collect())
+        changes.collect()
     }
 
     /// Returns the changes of forces along a direction, along which the loads change by `loads`;
@@ -198,9 +206,15 @@ impl Solution {
 
     /// Returns the contacts that began to pull since the last call.
     pub fn lift_offs<'a>(&'a mut self, solver: &'a Solver) -> impl Iterator<Item = LiftOff<'a>> {
-        let Self { forces, lifted, .. } = self;
+        let Self {
+            forces,
+            lifted,
+            parts,
+            ..
+        } = self;
         let begun = forces
             .as_ref()
+            .filter(|_| parts.reactions)
             .map(|forces| solver.lift_offs(forces, lifted));
         begun.into_iter().flatten()
     }

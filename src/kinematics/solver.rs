@@ -10,7 +10,7 @@ use super::block::Crossing;
 use super::continuation::{Blocked, PathTracker, Progress};
 use super::element::Element;
 use super::error::Error;
-use super::forces::{self, Along, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff};
+use super::forces::{self, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff};
 use super::initial_pose::{self, Assembly, Start};
 use super::model::Model;
 use super::path::{Curve, Path, Rates};
@@ -352,8 +352,15 @@ impl Solver {
         driver_rates: &[Jet],
         direction: &Direction,
     ) -> Result<Sensitivity<'_>, Error> {
-        self.state
-            .sensitivity(&self.model, rates, driver_rates, direction)
+        let mut found = None;
+        let directions = std::slice::from_ref(direction);
+        let sought = (directions, Order::Acceleration);
+        let Self { model, state, .. } = self;
+        state.sensitivities(model, rates, driver_rates, sought, |along| {
+            found = Some(along);
+            Ok(())
+        })?;
+        Ok(found.expect("there is one direction"))
     }
 
     /// Gives the derivatives of the motion at the present pose along each of some directions to
@@ -362,17 +369,19 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] where the pose is singular.
+    /// [`Error::Singular`] where the pose is singular, and those of `each`.
     pub fn sensitivities(
         &mut self,
         rates: &Rates,
         driver_rates: &[Jet],
         directions: &[Direction],
         order: Order,
-        each: impl FnMut(&Sensitivity<'_>),
+        mut each: impl FnMut(&Sensitivity<'_>) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let Self { model, state, .. } = self;
-        state.sensitivities(model, rates, driver_rates, (directions, order), each)
+        state.sensitivities(model, rates, driver_rates, (directions, order), |along| {
+            each(&along)
+        })
     }
 
     /// Makes the storage for forces of this mechanism.
@@ -382,12 +391,14 @@ impl Solver {
     }
 
     /// Solves the forces at the present pose for a motion that [`solve_rates`](Self::solve_rates)
-    /// gave. Allocates nothing, unless other rows have become redundant.
+    /// gave. Allocates nothing, unless other rows have become redundant or reactions are sought next
+    /// to a change point.
     ///
     /// # Errors
     ///
     /// [`Error::NotFinite`] and [`Error::Mass`] for masses without a meaning, [`Error::NoForce`] for
-    /// a force without direction or size, [`Error::Singular`] where the pose is singular.
+    /// a force without direction or size, [`Error::Singular`] where the pose is singular,
+    /// [`Error::ChangePoint`] where reactions have no limit at a change point.
     pub fn solve_forces(
         &mut self,
         motion: KnownMotion<'_>,
@@ -429,14 +440,7 @@ impl Solver {
         forces: &mut Forces,
     ) -> Result<ForceSensitivity, Error> {
         let Self { model, state, .. } = self;
-        forces.solve(model, state, motion, ForceParts::ALL)?;
-        let along = state.sensitivity(model, motion.rates, motion.driver_rates, direction)?;
-        let along = Along {
-            motion: &along,
-            time: direction.time,
-            inputs,
-        };
-        forces.sensitivity(model, state, motion, &along)
+        forces.sensitivity(model, state, motion, direction, inputs)
     }
 
     /// Returns the joints and constraints whose reactions redundant constraints leave

@@ -50,7 +50,7 @@ impl Pose {
     }
 
     /// Copies all but the crossings.
-    fn copy_place(&mut self, other: &Self) {
+    pub(in crate::kinematics) fn copy_place(&mut self, other: &Self) {
         self.time = other.time;
         self.parameters.copy_from_slice(&other.parameters);
         self.drivers.copy_from_slice(&other.drivers);

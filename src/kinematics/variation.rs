@@ -255,15 +255,29 @@ impl VariedConfiguration {
 
     /// Sets the changes of q (order 0), q̇ (order 1) or q̈ (order 2) along the direction.
     pub(super) fn change(&mut self, order: usize, changes: &[f64]) {
-        for (column, change) in changes.iter().enumerate() {
+        self.take_changes(order, |column| Some(changes[column]));
+    }
+
+    /// Sets those changes that `change` returns for a column.
+    pub(super) fn take_changes(&mut self, order: usize, change: impl Fn(usize) -> Option<f64>) {
+        for column in 0..self.q.len() {
+            let Some(change) = change(column) else {
+                continue;
+            };
             let mut q = self.q[column];
             let coefficient = match order {
                 0 => &mut q.value,
                 _ => &mut q.derivatives[order - 1],
             };
-            coefficient.derivatives = [*change];
+            coefficient.derivatives = [change];
             self.set_coordinate(column, q);
         }
+    }
+
+    /// Returns the change of q\[column\] or of its derivative of this order.
+    pub(super) fn change_of(&self, order: usize, column: usize) -> f64 {
+        let q = &self.q[column];
+        [q.value, q.first(), q.second()][order].first()
     }
 }
 

@@ -421,3 +421,50 @@ fn an_excursion_tells_the_value_from_its_limit() {
         assert!(told.contains(words), "{told}");
     }
 }
+
+/// The last row of a garage door that closes is at a change point, where its arm hangs straight down:
+/// the forces are the limits along the motion, as `tests/forces` derives them.
+#[test]
+fn forces_at_a_change_point_are_limits() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("door.toml");
+    let text = r#"
+        format = 1
+        name = "garage_door"
+        ground.markers = { J = [0, 1.05], track = [0, 2.0] }
+        bodies.door = { markers = { top = [0, 2.0], P = [0, 0.1] }, mass = 60, inertia = 20, center = [0, 1.0] }
+        bodies.arm.markers = { J = [0, 1.05], P = [0, 0.1] }
+        joints.J = { type = "revolute", markers = ["ground.J", "arm.J"] }
+        joints.P = { type = "revolute", markers = ["arm.P", "door.P"] }
+        joints.track = { type = "slot", markers = ["ground.track", "door.top"] }
+        drivers.trolley = { coordinate = "x", markers = ["ground.track", "door.top"], start = 0.05, min = 0, max = 1.9 }
+    "#;
+    std::fs::write(&file, text).unwrap();
+    let file = file.to_str().expect("temporary folders have plain names");
+    let drive = "trolley = 0.05 - 0.05*t";
+    let options = ["--drive", drive, "--stop", "1", "--step", "0.1"];
+    let run = |variables: &str| {
+        let arguments = [&["run", file, "-v", variables][..], &options].concat();
+        biela(&arguments)
+    };
+    let csv = stdout(&run("P.fy,track.fy").success());
+    for (name, expected) in [("P.fy", 128.324_43), ("track.fy", 460.289_82)] {
+        let last = *column(&csv, name).last().expect("there are rows");
+        assert!((last - expected).abs() < 2e-5, "{name}: {last}");
+    }
+    // With its mass off the line of its joints the arm bears a force without bound.
+    std::fs::write(
+        file,
+        text.replace("center = [0, 1.0]", "center = [0.1, 1.0]"),
+    )
+    .unwrap();
+    let refused = stderr(&run("P.fy").code(1));
+    assert!(
+        refused.contains(
+            "at t = 1 s: the reactions of joints have no limit at the change point with driver \
+             `trolley` at 0.000000000 m"
+        ),
+        "{refused}"
+    );
+    run("trolley.effort").success();
+}

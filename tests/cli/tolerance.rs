@@ -116,10 +116,17 @@ fn times_without_a_value_are_passed_over() {
 
 /// The root has an infinite slope at zero.
 #[test]
-fn an_infinite_deviation_has_no_parts() {
+fn a_deviation_without_a_derivative_is_refused() {
     let text = format!("{ARM}\n[measures]\nroot = {{ value = 'sqrt(a - 0.3)', unit = 'm' }}\n");
-    let row = row_of(&text, "root", &["--stop", "0"]);
-    assert_eq!(&row[1..], ["inf", "inf", "mm", "0"]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file.toml");
+    std::fs::write(&file, text).expect("written");
+    let file = file.to_str().expect("UTF-8");
+    let told = stderr(&biela(&["tolerance", file, "--variables", "root", "--stop", "0"]).code(1));
+    assert!(
+        told.contains("measure `root` has no finite derivative with respect to `a`"),
+        "{told}"
+    );
 }
 
 /// A point mass m at the end of an arm that holds it: the effort is m g a cos u.

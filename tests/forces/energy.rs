@@ -37,7 +37,10 @@ fn power_becomes_energy() {
             .force_sensitivity(motion, &direction, &still, &mut forces)
             .expect("it is regular");
         let energies = [ForceQuantity::KineticEnergy, ForceQuantity::PotentialEnergy];
-        let growth: f64 = energies.iter().map(|e| along.change(*e)).sum();
+        let growth: f64 = energies
+            .iter()
+            .map(|e| along.change(*e).expect("it exists"))
+            .sum();
         let powers = (0..mechanism.drivers.len())
             .map(|driver| forces.value(ForceQuantity::Power(DriverId(driver))));
         let mut power: f64 = powers.sum();
@@ -173,10 +176,14 @@ fn the_derivative_of_an_effort_by_an_acceleration_is_the_inertia() {
             let driver = DriverId(index);
             let inertia = forces.value(ForceQuantity::Inertia(driver));
             let limit = 1e-13 / rcond * inertia;
-            let by = along.change(ForceQuantity::Effort(driver));
+            let by = along
+                .change(ForceQuantity::Effort(driver))
+                .expect("it exists");
             assert!(inertia > 0.0, "{name}");
             assert!((by - inertia).abs() <= limit, "{name}: {by} and {inertia}");
-            let by = along.change(ForceQuantity::Bias(driver));
+            let by = along
+                .change(ForceQuantity::Bias(driver))
+                .expect("it exists");
             assert!(by.abs() <= limit, "{name}: the bias changes by {by}");
         }
     }

@@ -8,6 +8,7 @@ mod differences;
 
 mod balance;
 mod cases;
+mod change_points;
 mod energy;
 mod fmu;
 mod invariance;

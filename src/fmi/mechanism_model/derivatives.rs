@@ -15,7 +15,7 @@ impl MechanismModel {
     ///
     /// # Errors
     ///
-    /// The pose is singular, or does not exist for the values set.
+    /// The pose is singular, or does not exist for the values set; a derivative does not exist.
     pub(super) fn derivatives_along(
         &mut self,
         unknowns: &[Quantity],
@@ -64,19 +64,17 @@ impl MechanismModel {
         let sensitivity = self.solver.sensitivity(rates, driver_rates, &direction);
         let sensitivity = sensitivity.map_err(without_value)?;
         let change = |&unknown: &Quantity| match unknown {
-            Quantity::Parameter(parameter) => sensitivity.parameter(parameter),
-            Quantity::Output(OutputSource::Signal(signal, order)) => {
-                order.of(sensitivity.signal(signal))
-            }
-            Quantity::Output(OutputSource::Derived(index)) => {
-                sensitivity.derived(&self.mechanism.derived[index])
-            }
+            Quantity::Parameter(parameter) => Some(sensitivity.parameter(parameter))
+                .filter(|change| change.is_finite())
+                .ok_or_else(|| sensitivity.fault()),
             Quantity::Output(OutputSource::Force(force)) => {
-                of_forces.as_ref().map_or(0.0, |f| f.change(force))
+                of_forces.as_ref().map_or(Ok(0.0), |f| f.change(force))
             }
+            Quantity::Output(source) => source.change(&self.mechanism, &sensitivity),
             _ => unreachable!("unknowns are outputs and parameters"),
         };
-        Ok(unknowns.iter().map(change).collect())
+        let changes: Result<_, _> = unknowns.iter().map(change).collect();
+        changes.map_err(without_value)
     }
 
     /// Returns the derivatives of a driver's value, velocity and acceleration in force by one of its

@@ -13,16 +13,17 @@
 
 use crate::kinematics::block::JacobianFactors;
 use crate::kinematics::constraint::Constraint;
-use crate::kinematics::error::Error;
+use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::model::Model;
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::path::Rates;
+use crate::kinematics::singular::{Kind, NearPoint, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
-use crate::kinematics::system::Target;
+use crate::kinematics::system::{System, Target};
 use crate::kinematics::variation::{Varied, VariedConfiguration, VariedMechanism, evaluate};
 use crate::mechanism::{
-    DerivedMeasure, DriverId, Dual, Jet, Mechanism, MotionInForce, Order, ParameterId,
-    ProfileAlong, Signal,
+    DerivedMeasure, DriverId, Dual, Expression, Jet, MarkerId, Mechanism, Motion, MotionInForce,
+    Order, ParameterId, ProfileAlong, Signal,
 };
 
 /// A direction in the space of drivers and parameters.
@@ -65,6 +66,9 @@ pub struct Sensitivity<'a> {
     drivers: Vec<Varied>,
     parameters: Vec<Varied>,
     measures: &'a [Box<dyn Constraint>],
+    system: &'a System,
+    /// The cause of derivatives that are not numbers, if it is not that of an expression.
+    fault: Option<Error>,
 }
 
 impl Sensitivity<'_> {
@@ -99,6 +103,11 @@ impl Sensitivity<'_> {
     /// Returns the change of a measure that is computed from others.
     #[must_use]
     pub fn derived(&self, measure: &DerivedMeasure) -> f64 {
+        self.derived_value(measure).first()
+    }
+
+    /// Returns a measure that is computed from others, with its change.
+    pub(in crate::kinematics) fn derived_value(&self, measure: &DerivedMeasure) -> Dual {
         let signal = |signal: Signal, order: Order| {
             let varied = self.varied(signal);
             match order {
@@ -108,13 +117,95 @@ impl Sensitivity<'_> {
             }
         };
         let parameter = |id: ParameterId| self.parameter_value(id);
-        measure.evaluate(&parameter, &signal).first()
+        measure.evaluate(&parameter, &signal)
     }
 
     /// Returns the change of a parameter; the change of a derived one follows from the others.
     #[must_use]
     pub fn parameter(&self, parameter: ParameterId) -> f64 {
         self.parameters[parameter.index()].value.first()
+    }
+
+    /// Returns the largest scaled change of q, or of the first of its derivatives that changes.
+    pub(in crate::kinematics) fn largest_change(&self, size: f64) -> f64 {
+        let unknowns = self.system.unknowns();
+        let of_order = |order: usize| {
+            let changes = (0..unknowns).map(|column| {
+                let scale = self.system.column_scale(column, size);
+                (self.at.change_of(order, column) / scale).abs()
+            });
+            changes.fold(0.0, f64::max)
+        };
+        let mut changes = (0..3).map(of_order);
+        changes.find(|change| *change > 0.0).unwrap_or(0.0)
+    }
+
+    /// Returns the cause of a derivative that is not finite.
+    #[must_use]
+    pub fn fault(&self) -> Error {
+        let missing = self.missing_derivative();
+        missing
+            .or_else(|| self.fault.clone())
+            .unwrap_or(SINGULAR_HERE)
+    }
+
+    /// Returns the error of the first expression without a finite derivative.
+    fn missing_derivative(&self) -> Option<Error> {
+        let system = self.system;
+        let mechanism = system.mechanism();
+        let parameters = (mechanism.parameters.iter().zip(&self.parameters))
+            .filter(|(parameter, _)| parameter.derived)
+            .filter(|(parameter, _)| {
+                let mut used = parameter.expression.parameters();
+                used.all(|p| has_change(self.parameters[p.index()]))
+            })
+            .map(|(parameter, value)| {
+                let what = format!("parameter `{}`", parameter.name);
+                (*value, &parameter.expression, what)
+            });
+        let markers = (0..mechanism.markers.len()).map(MarkerId).flat_map(|id| {
+            let marker = &mechanism.markers[id.index()];
+            let ([x, y], angle) = self.at.local(id);
+            let what = format!("marker `{}`", mechanism.marker_path(id));
+            let [of_x, of_y] = &marker.position;
+            [(x, of_x), (y, of_y), (angle, &marker.angle)]
+                .map(|(value, expression)| (value, expression, what.clone()))
+        });
+        let targets = system.equations().iter().filter_map(|equation| {
+            let Target::Constant(expression) = &equation.target else {
+                return None;
+            };
+            let value = evaluate(expression, &self.parameters);
+            Some((value, expression, equation.element.describe(mechanism)))
+        });
+        let motions = mechanism.drivers.iter().zip(&self.drivers).enumerate();
+        let motions = motions.filter_map(|(index, (driver, value))| match driver.motion() {
+            Some(Motion::Expression(expression)) => {
+                let what = format!("the motion of {}", system.describe_driver(DriverId(index)));
+                Some((*value, expression, what))
+            }
+            _ => None,
+        });
+        let mut all = parameters.chain(markers).chain(targets).chain(motions);
+        let (_, expression, what) = all.find(|(value, ..)| !has_change(*value))?;
+        Some(self.no_derivative(what, [expression].into_iter()))
+    }
+
+    /// Returns the error of expressions without a finite derivative.
+    pub(in crate::kinematics) fn no_derivative<'e>(
+        &self,
+        what: String,
+        mut expressions: impl Iterator<Item = &'e Expression>,
+    ) -> Error {
+        let parameters = &self.system.mechanism().parameters;
+        let by = expressions.find_map(|expression| {
+            let mut used = expression.parameters();
+            used.find(|p| self.parameter_value(*p).first() != 0.0)
+        });
+        Error::NoDerivative {
+            what,
+            by: by.map(|p| format!("`{}`", parameters[p.index()].name)),
+        }
     }
 
     fn varied(&self, signal: Signal) -> Varied {
@@ -127,8 +218,14 @@ impl Sensitivity<'_> {
     }
 }
 
+/// Returns whether a number and its derivatives have finite changes along the direction.
+fn has_change(number: Varied) -> bool {
+    let changes = [number.value, number.first(), number.second()];
+    changes.iter().all(|change| change.first().is_finite())
+}
+
 impl State {
-    /// Returns the derivative of the motion at the pose along a direction. See
+    /// Returns the derivative of the motion at the pose along a direction, by the Jacobian there. See
     /// [`Solver::sensitivity`](crate::kinematics::Solver::sensitivity).
     ///
     /// # Errors
@@ -142,10 +239,10 @@ impl State {
         direction: &Direction,
     ) -> Result<Sensitivity<'a>, Error> {
         let mut factors = self.factorised(model)?;
-        let order = Order::Acceleration;
-        let along = self.along(model, &mut factors, rates, driver_rates, direction, order);
+        let mut along = self.unsolved(model, rates, driver_rates, direction);
+        self.solve_changes(model, &mut factors, &mut along, Order::Acceleration);
         self.keep_factors(model, factors);
-        along
+        Ok(along)
     }
 
     /// Gives the derivatives of the motion at the pose along each of some directions to `each`. See
@@ -153,23 +250,115 @@ impl State {
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] where the pose is singular.
-    pub(in crate::kinematics) fn sensitivities(
+    /// [`Error::Singular`] where the pose is singular, and those of `each`.
+    pub(in crate::kinematics) fn sensitivities<'a>(
         &mut self,
-        model: &Model,
+        model: &'a mut Model,
         rates: &Rates,
         driver_rates: &[Jet],
-        (directions, order): (&[Direction], Order),
-        mut each: impl FnMut(&Sensitivity<'_>),
+        sought: (&[Direction], Order),
+        mut each: impl FnMut(Sensitivity<'a>) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let mut factors = self.factorised(model)?;
-        let mut all = directions.iter();
-        let done = all.try_for_each(|direction| {
-            let along = self.along(model, &mut factors, rates, driver_rates, direction, order);
-            along.map(|along| each(&along))
-        });
-        self.keep_factors(model, factors);
+        let (directions, order) = sought;
+        let near = near_point(model, self);
+        let motion = (rates, driver_rates);
+        let found = near
+            .as_ref()
+            .and_then(|point| self.interpolated_changes(point, model, motion, sought));
+        let model: &'a Model = model;
+        let has_all = |found: &Vec<f64>| !found.iter().any(|change| change.is_nan());
+        let is_at = near.as_ref().is_some_and(|point| point.is_at);
+        let is_solved = !is_at && !found.as_ref().is_some_and(has_all);
+        let mut factors = is_solved.then(|| self.factorised(model)).transpose()?;
+        let unknowns = self.pose.q.len();
+        let done = directions
+            .iter()
+            .enumerate()
+            .try_for_each(|(k, direction)| {
+                let mut along = self.unsolved(model, rates, driver_rates, direction);
+                if let Some(factors) = &mut factors {
+                    self.solve_changes(model, factors, &mut along, order);
+                }
+                if let Some(point) = &near {
+                    let orders = order as usize + 1;
+                    for order in 0..orders {
+                        let first = (k * orders + order) * unknowns;
+                        let found = found.as_ref().map(|found| &found[first..first + unknowns]);
+                        along.at.take_changes(order, |column| {
+                            let found = found.map_or(f64::NAN, |found| found[column]);
+                            (is_at || !found.is_nan()).then_some(found)
+                        });
+                    }
+                    if is_at {
+                        along.fault = Some(point.no_limit(model, NoLimit::Derivatives));
+                    }
+                }
+                each(along)
+            });
+        if let Some(factors) = factors {
+            self.keep_factors(model, factors);
+        }
         done
+    }
+
+    /// Returns the changes of q, q̇ and q̈ next to a change point, by direction and order; see
+    /// [`NearPoint::interpolate`].
+    #[cold]
+    fn interpolated_changes(
+        &mut self,
+        point: &NearPoint,
+        model: &mut Model,
+        (rates, driver_rates): (&Rates, &[Jet]),
+        (directions, highest): (&[Direction], Order),
+    ) -> Option<Vec<f64>> {
+        let (unknowns, orders) = (self.pose.q.len(), highest as usize + 1);
+        let size = self.at.size();
+        let scales = (0..unknowns).map(|q| model.system.column_scale(q, size));
+        let scales: Vec<f64> = scales.collect();
+        // Radians per second of the fastest body, or one at rest: with it changes of all orders
+        // compare, and those that are zero up to rounding are seen to be.
+        let largest = |rates: &[f64]| {
+            let scaled = rates.iter().zip(&scales);
+            scaled.fold(0.0, |most: f64, (rate, scale)| {
+                most.max((rate / scale).abs())
+            })
+        };
+        let [first, second] = [rates.velocity(), rates.acceleration()].map(largest);
+        let rate = match first.max(second.sqrt()) {
+            0.0 => 1.0,
+            rate => rate,
+        };
+        let scale = |index: usize| {
+            let order = index / unknowns % orders;
+            scales[index % unknowns] * rate.powi(order as i32)
+        };
+        let scaled = point.interpolate(
+            model,
+            self,
+            driver_rates,
+            |index| Kind {
+                group: index / (unknowns * orders),
+                level: index / unknowns % orders,
+            },
+            |model, state, place, values| {
+                let mut factors = state.factorised(model)?;
+                for direction in directions {
+                    let (rates, drivers) = (place.rates, place.driver_rates);
+                    let mut along = state.unsolved(model, rates, drivers, direction);
+                    state.solve_changes(model, &mut factors, &mut along, highest);
+                    for order in 0..orders {
+                        values.extend((0..unknowns).map(|q| along.at.change_of(order, q)));
+                    }
+                }
+                state.keep_factors(model, factors);
+                for (index, value) in values.iter_mut().enumerate() {
+                    *value /= scale(index);
+                }
+                Ok(())
+            },
+        )?;
+        let changes = scaled.iter().enumerate();
+        Some(changes.map(|(index, value)| value * scale(index)).collect())
     }
 
     /// Factorises the Jacobian at the pose.
@@ -181,16 +370,14 @@ impl State {
         Ok(factors)
     }
 
-    /// Returns the derivative of the motion along a direction, up to an order.
-    fn along<'a>(
+    /// Returns the motion along a direction, on which the bodies have no changes yet.
+    fn unsolved<'a>(
         &self,
         model: &'a Model,
-        factors: &mut JacobianFactors,
         rates: &Rates,
         driver_rates: &[Jet],
         direction: &Direction,
-        highest: Order,
-    ) -> Result<Sensitivity<'a>, Error> {
+    ) -> Sensitivity<'a> {
         let system = &model.system;
         let mechanism = system.mechanism();
         let changes = self.pose.parameters.iter().zip(&direction.parameters);
@@ -238,38 +425,57 @@ impl State {
             .map(|profile| profile.in_force.along(|p| parameter(p).value.first()))
             .collect();
 
+        Sensitivity {
+            at,
+            profiles,
+            drivers,
+            parameters,
+            measures: &model.measures,
+            system,
+            fault: None,
+        }
+    }
+
+    /// Solves the changes of q and of its derivatives up to an order.
+    fn solve_changes(
+        &self,
+        model: &Model,
+        factors: &mut JacobianFactors,
+        along: &mut Sensitivity<'_>,
+        highest: Order,
+    ) {
+        let system = &model.system;
         let targets: Vec<_> = system
             .equations()
             .iter()
             .map(|equation| match &equation.target {
-                Target::Constant(value) => evaluate(value, &parameters),
-                Target::Driver(driver) => drivers[driver.index()],
+                Target::Constant(value) => evaluate(value, &along.parameters),
+                Target::Driver(driver) => along.drivers[driver.index()],
             })
             .collect();
         let mut side = vec![0.0; targets.len()];
         let mut change = vec![0.0; system.unknowns()];
         for order in 0..=highest as usize {
             let rows = system.equations().iter().zip(&targets);
-            let varied = VariedMechanism {
-                bodies: &at,
-                profiles: &profiles,
-            };
+            let varied = along.mechanism();
             for (side, (equation, target)) in side.iter_mut().zip(rows) {
                 let error = *target - equation.constraint.along(&varied);
                 *side = [error.value, error.first(), error.second()][order].first();
             }
+            if along.fault.is_none()
+                && let Some(row) = side.iter().position(|side| !side.is_finite())
+            {
+                let element = system.equations()[row].element;
+                along.fault = Some(Error::NoDerivative {
+                    what: element.describe(system.mechanism()),
+                    by: None,
+                });
+            }
             factors.solve(system, &self.at, &side, &mut change);
-            at.change(order, &change);
+            along.at.change(order, &change);
+            if along.fault.is_none() && !change.iter().all(|change| change.is_finite()) {
+                along.fault = Some(SINGULAR_HERE);
+            }
         }
-        if !change.iter().all(|change| change.is_finite()) {
-            return Err(SINGULAR_HERE);
-        }
-        Ok(Sensitivity {
-            at,
-            profiles,
-            drivers,
-            parameters,
-            measures: &model.measures,
-        })
     }
 }

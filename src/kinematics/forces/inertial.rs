@@ -170,6 +170,11 @@ impl Masses<f64> {
 }
 
 impl<N: Number> MassProperties<N> {
+    /// Returns the numbers that the file gives.
+    pub(super) fn numbers(&self) -> [N; 4] {
+        [self.mass, self.inertia, self.center[0], self.center[1]]
+    }
+
     /// Turns the body to the cosine and sine of phi.
     #[inline]
     pub(super) fn turn(&mut self, [cos, sin]: [N; 2]) {

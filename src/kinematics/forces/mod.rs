@@ -43,7 +43,6 @@ mod wrench;
 pub(super) use indeterminate::indeterminate;
 pub use lift_off::LiftOff;
 pub use quantity::ForceQuantity;
-pub(super) use sensitivity::Along;
 pub use sensitivity::ForceSensitivity;
 pub use solve::{ForceParts, Forces, KnownMotion};
 pub use wrench::Reported;

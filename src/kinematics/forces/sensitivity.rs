@@ -9,27 +9,81 @@ use nalgebra::{DMatrix, DVector};
 use super::applied::{Circumstances, Place, about_origin};
 use super::inertial::Masses;
 use super::quantity::ForceQuantity;
-use super::solve::{Forces, KnownMotion};
+use super::solve::{ForceParts, Forces, KnownMotion, Loads};
 use super::wrench::{Reported, Wrench};
-use crate::kinematics::analysis::Sensitivity;
+use crate::kinematics::analysis::{Direction, Sensitivity};
 use crate::kinematics::constraint::{Constraint, Gradient, partial};
-use crate::kinematics::error::Error;
+use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::model::Model;
 use crate::kinematics::newton::Rejected;
+use crate::kinematics::singular::{Kind, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::kinematics::system::System;
 use crate::kinematics::variation::{Varied, VariedConfiguration};
-use crate::mechanism::{DriverId, Dual, Load, Number, ParameterId, ProfileAlong};
+use crate::mechanism::{DriverId, Dual, Load, Mechanism, Number, ParameterId, ProfileAlong};
 
 /// The derivatives of all forces along a direction.
 #[derive(Debug)]
 pub struct ForceSensitivity {
-    /// Effort, power, inertia and bias of each driver.
-    drivers: Vec<[f64; 4]>,
-    reactions: Vec<[f64; 3]>,
-    held: Vec<f64>,
-    sizes: Vec<[f64; 3]>,
-    energies: [f64; 2],
+    /// Effort, power, inertia and bias of each driver, then the other parts in their order.
+    values: Vec<f64>,
+    places: Places,
+    /// The cause of derivatives that are not numbers.
+    fault: Error,
+    /// Largest scaled change of the motion.
+    change: f64,
+}
+
+/// Index of the first number of each part.
+#[derive(Clone, Copy, Debug)]
+struct Places {
+    reactions: usize,
+    held: usize,
+    sizes: usize,
+    energies: usize,
+}
+
+impl Places {
+    fn new(mechanism: &Mechanism) -> Self {
+        let reactions = 4 * mechanism.drivers.len();
+        let held = reactions + 3 * mechanism.joints.len();
+        let sizes = held + mechanism.constraints.len();
+        Self {
+            reactions,
+            held,
+            sizes,
+            energies: sizes + 3 * mechanism.forces.len(),
+        }
+    }
+
+    /// Returns the index of a quantity.
+    fn of(self, quantity: ForceQuantity) -> usize {
+        match quantity {
+            ForceQuantity::Effort(driver) => 4 * driver.index(),
+            ForceQuantity::Power(driver) => 4 * driver.index() + 1,
+            ForceQuantity::Inertia(driver) => 4 * driver.index() + 2,
+            ForceQuantity::Bias(driver) => 4 * driver.index() + 3,
+            ForceQuantity::Reaction(joint, component) => self.reactions + 3 * joint + component,
+            ForceQuantity::Held(constraint) => self.held + constraint,
+            ForceQuantity::Applied(force, component) => self.sizes + 3 * force + component,
+            ForceQuantity::KineticEnergy => self.energies,
+            ForceQuantity::PotentialEnergy => self.energies + 1,
+        }
+    }
+
+    /// Returns the kind of a number next to a change point. Potential energies and sizes of forces
+    /// depend on positions, kinetic energies and inertias on velocities, efforts on accelerations,
+    /// and reactions have a pole more.
+    fn kind(self, index: usize) -> Kind {
+        let level = match index {
+            _ if index == self.energies => 1,
+            _ if index >= self.sizes => 0,
+            _ if index >= self.reactions => 3,
+            _ if index % 4 == 2 => 1,
+            _ => 2,
+        };
+        Kind { group: 0, level }
+    }
 }
 
 /// Entries of a row of the Jacobian.
@@ -37,18 +91,17 @@ type Entries = Vec<(usize, Dual)>;
 
 impl ForceSensitivity {
     /// Returns the derivative of a quantity.
-    #[must_use]
-    pub fn change(&self, quantity: ForceQuantity) -> f64 {
-        match quantity {
-            ForceQuantity::Effort(driver) => self.drivers[driver.index()][0],
-            ForceQuantity::Power(driver) => self.drivers[driver.index()][1],
-            ForceQuantity::Inertia(driver) => self.drivers[driver.index()][2],
-            ForceQuantity::Bias(driver) => self.drivers[driver.index()][3],
-            ForceQuantity::Reaction(joint, component) => self.reactions[joint][component],
-            ForceQuantity::Held(constraint) => self.held[constraint],
-            ForceQuantity::Applied(force, component) => self.sizes[force][component],
-            ForceQuantity::KineticEnergy => self.energies[0],
-            ForceQuantity::PotentialEnergy => self.energies[1],
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoDerivative`] where an expression has none, [`Error::ChangePoint`] where it has no
+    /// limit at a change point.
+    pub fn change(&self, quantity: ForceQuantity) -> Result<f64, Error> {
+        let value = self.values[self.places.of(quantity)];
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.fault.clone())
         }
     }
 }
@@ -77,12 +130,90 @@ impl Probe<'_> {
 }
 
 impl Forces {
+    /// Returns the derivatives of all forces along a direction, along which their inputs change by
+    /// `inputs`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`solve`](Self::solve) apart from [`Error::ChangePoint`], and [`Error::Singular`]
+    /// where reactions of least norm do not exist.
+    pub(in crate::kinematics) fn sensitivity(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        motion: KnownMotion<'_>,
+        direction: &Direction,
+        inputs: &[f64],
+    ) -> Result<ForceSensitivity, Error> {
+        let Some(point) = near_point(model, state) else {
+            return self.solved_sensitivity(model, state, motion, direction, inputs);
+        };
+        let efforts = ForceParts {
+            efforts: true,
+            reactions: false,
+        };
+        self.solve(model, state, motion, efforts)?;
+        let places = Places::new(&self.mechanism);
+        let mut loads = Loads::new(motion.inputs, &self.results.demand);
+        // Numbers that are zero are rounding of the loads: with one more number, a part of these as far
+        // as the bodies turn, they do not compare with rounding.
+        const ROUNDING: f64 = 1e-3;
+        let found = point.interpolate(
+            model,
+            state,
+            motion.driver_rates,
+            |index| places.kind(index),
+            |model, state, place, values| {
+                let motion = loads.motion(place);
+                let along = self.solved_sensitivity(model, state, motion, direction, inputs)?;
+                values.extend(along.values);
+                values.push(ROUNDING * loads.natural() * along.change);
+                Ok(())
+            },
+        );
+        let mut solved = ForceSensitivity {
+            values: vec![f64::NAN; places.energies + 2],
+            places,
+            fault: point.no_limit(model, NoLimit::Derivatives),
+            change: 0.0,
+        };
+        let is_complete = |found: &Vec<f64>| !found.iter().any(|value| value.is_nan());
+        if !point.is_at && !found.as_ref().is_some_and(is_complete) {
+            solved = self.solved_sensitivity(model, state, motion, direction, inputs)?;
+        }
+        for (value, found) in solved.values.iter_mut().zip(found.iter().flatten()) {
+            if !found.is_nan() {
+                *value = *found;
+            }
+        }
+        Ok(solved)
+    }
+
+    /// Returns the derivatives by the Jacobian at the pose.
+    fn solved_sensitivity(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        motion: KnownMotion<'_>,
+        direction: &Direction,
+        inputs: &[f64],
+    ) -> Result<ForceSensitivity, Error> {
+        self.solve_directly(model, state, motion, ForceParts::ALL)?;
+        let along = state.sensitivity(model, motion.rates, motion.driver_rates, direction)?;
+        let along = Along {
+            motion: &along,
+            time: direction.time,
+            inputs,
+        };
+        self.sensitivity_along(model, state, motion, &along)
+    }
+
     /// Returns the derivatives of all forces along a direction; all are up to date.
     ///
     /// # Errors
     ///
     /// [`Error::Singular`] where reactions of least norm do not exist.
-    pub(in crate::kinematics) fn sensitivity(
+    fn sensitivity_along(
         &mut self,
         model: &Model,
         state: &State,
@@ -136,14 +267,55 @@ impl Forces {
                 .map(|value| value.first())
         });
         let held = self.rows.constraints.iter();
-        let change = |values: [Dual; 3]| values.map(|value| value.first());
+        let mut values: Vec<f64> = drivers.into_iter().flatten().collect();
+        values.extend(reactions.flatten());
+        values.extend(held.map(|&row| multipliers[row].first()));
+        values.extend(sizes.iter().flatten().map(Dual::first));
+        values.extend([kinetic.first(), potential.first()]);
+        let missing = self.missing_derivative(sensitivity.motion, &masses, &sizes);
         Ok(ForceSensitivity {
-            drivers,
-            reactions: reactions.collect(),
-            held: held.map(|&row| multipliers[row].first()).collect(),
-            sizes: sizes.into_iter().map(change).collect(),
-            energies: [kinetic.first(), potential.first()],
+            values,
+            places: Places::new(&mechanism),
+            fault: missing.unwrap_or_else(|| sensitivity.motion.fault()),
+            change: sensitivity.motion.largest_change(state.at.size()),
         })
+    }
+
+    /// Returns the error of the first number of a mass or force without a finite derivative.
+    fn missing_derivative(
+        &self,
+        along: &Sensitivity<'_>,
+        masses: &Masses<Dual>,
+        sizes: &[[Dual; 3]],
+    ) -> Option<Error> {
+        let is_missing = |numbers: &[Dual]| numbers.iter().any(|n| !n.first().is_finite());
+        // Parameters and the motion come first.
+        let is_root = matches!(along.fault(), Error::Singular { .. });
+        let Mechanism {
+            simulation,
+            bodies,
+            forces,
+            ..
+        } = &*self.mechanism;
+        if !is_root {
+            return None;
+        }
+        if is_missing(&masses.gravity) {
+            return Some(along.no_derivative("`gravity`".to_owned(), simulation.gravity.iter()));
+        }
+        let mut of_bodies = masses.bodies.iter().zip(bodies);
+        if let Some((_, body)) = of_bodies.find(|(mass, _)| is_missing(&mass.numbers())) {
+            let numbers = [&body.mass, &body.inertia].into_iter().flatten();
+            let numbers = numbers.chain(body.center.iter().flatten());
+            let what = format!("the mass, inertia or center of body `{}`", body.name);
+            return Some(along.no_derivative(what, numbers));
+        }
+        let (_, force) = sizes
+            .iter()
+            .zip(forces)
+            .find(|(size, _)| is_missing(&size[..]))?;
+        let what = format!("force `{}`", force.name);
+        Some(along.no_derivative(what, force.load.expressions().into_iter()))
     }
 
     /// Returns −Q of the forces, their sizes and the potential energy of springs.
@@ -383,8 +555,8 @@ impl Forces {
 }
 
 /// A direction: the motion along it, and the changes of the time and of the inputs of forces.
-pub(in crate::kinematics) struct Along<'a> {
-    pub(in crate::kinematics) motion: &'a Sensitivity<'a>,
-    pub(in crate::kinematics) time: f64,
-    pub(in crate::kinematics) inputs: &'a [f64],
+struct Along<'a> {
+    motion: &'a Sensitivity<'a>,
+    time: f64,
+    inputs: &'a [f64],
 }

@@ -10,10 +10,11 @@ use super::results::{DriverForces, Results};
 use super::self_stress::SelfStresses;
 use super::wrench::{Contact, ReactionRows};
 use crate::kinematics::block::{BlockState, JacobianFactors};
-use crate::kinematics::error::Error;
+use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::model::Model;
 use crate::kinematics::newton::Rejected;
 use crate::kinematics::path::Rates;
+use crate::kinematics::singular::{Kind, NearPoint, Place, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
 use crate::mechanism::{Driver, DriverId, Indeterminate, Jet, Mechanism, ParameterId};
 
@@ -146,13 +147,36 @@ impl Forces {
         self.contacts.len()
     }
 
-    /// Solves the forces at the pose. Allocates nothing, unless other rows have become redundant.
+    /// Solves the forces at the pose. Allocates nothing, unless other rows have become redundant or
+    /// reactions are sought next to a change point.
     ///
     /// # Errors
     ///
     /// [`Error::NotFinite`] and [`Error::Mass`] for masses without a meaning, [`Error::NoForce`] for
-    /// a force without direction or size, [`Error::Singular`] where the pose is singular.
+    /// a force without direction or size, [`Error::Singular`] where the pose is singular,
+    /// [`Error::ChangePoint`] where reactions have no limit at a change point.
     pub(in crate::kinematics) fn solve(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        motion: KnownMotion<'_>,
+        parts: ForceParts,
+    ) -> Result<(), Error> {
+        if parts.reactions
+            && !state.pose.crossings.is_empty()
+            && let Some(point) = near_point(model, state)
+        {
+            return self.solve_near(&point, model, state, motion);
+        }
+        self.solve_directly(model, state, motion, parts)
+    }
+
+    /// Solves the forces with the Jacobian at the pose.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`solve`](Self::solve).
+    pub(super) fn solve_directly(
         &mut self,
         model: &mut Model,
         state: &mut State,
@@ -172,6 +196,62 @@ impl Forces {
             self.solve_reactions(model, state)?;
         }
         Ok(())
+    }
+
+    /// Solves all forces next to a change point: reactions as limits along the motion.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`solve`](Self::solve).
+    #[cold]
+    fn solve_near(
+        &mut self,
+        point: &NearPoint,
+        model: &mut Model,
+        state: &mut State,
+        motion: KnownMotion<'_>,
+    ) -> Result<(), Error> {
+        let efforts = ForceParts {
+            efforts: true,
+            reactions: false,
+        };
+        self.solve_directly(model, state, motion, efforts)?;
+        let mut loads = Loads::new(motion.inputs, &self.results.demand);
+        let found = point.interpolate(
+            model,
+            state,
+            motion.driver_rates,
+            |_| Kind { group: 0, level: 0 },
+            |model, state, place, values| {
+                let motion = loads.motion(place);
+                self.solve_directly(model, state, motion, ForceParts::ALL)?;
+                let rows = model.system.equations().iter();
+                let scaled = rows
+                    .zip(&self.results.multipliers)
+                    .map(|(row, multiplier)| multiplier / row.row_scale(&state.at));
+                values.extend(scaled);
+                Ok(())
+            },
+        );
+        self.solve_directly(model, state, motion, efforts)?;
+        let none = || {
+            found
+                .as_ref()
+                .is_none_or(|all| all.iter().any(|value| value.is_nan()))
+        };
+        if point.is_at && none() {
+            return Err(point.no_limit(model, NoLimit::Reactions));
+        }
+        if none() {
+            self.solve_multipliers(model, state)?;
+        }
+        let rows = model.system.equations().iter().zip(found.iter().flatten());
+        for (multiplier, (row, value)) in self.results.multipliers.iter_mut().zip(rows) {
+            if !value.is_nan() {
+                *multiplier = value * row.row_scale(&state.at);
+            }
+        }
+        self.write_reactions(model, state)
     }
 
     /// Evaluates the masses, if parameters have changed.
@@ -300,8 +380,14 @@ impl Forces {
         }
     }
 
-    /// Solves Phi_qᵀ λ = w. Uses up w.
+    /// Solves Phi_qᵀ λ = w and the reactions. Uses up w.
     fn solve_reactions(&mut self, model: &Model, state: &State) -> Result<(), Error> {
+        self.solve_multipliers(model, state)?;
+        self.write_reactions(model, state)
+    }
+
+    /// Solves Phi_qᵀ λ = w. Uses up w.
+    fn solve_multipliers(&mut self, model: &Model, state: &State) -> Result<(), Error> {
         let system = &model.system;
         // Item by item: `memcmp` of two empty lists takes as long as a dyad.
         if !self.set_aside.iter().eq(&model.redundant.now) {
@@ -314,7 +400,6 @@ impl Forces {
         let Results {
             demand,
             multipliers,
-            reactions,
             ..
         } = &mut self.results;
         if is_of_least_norm {
@@ -335,10 +420,20 @@ impl Forces {
                 .solve_transposed_at(&model.plan, system, &state.at, demand, multipliers)
                 .map_err(|Rejected| SINGULAR_HERE)?;
         }
+        Ok(())
+    }
+
+    /// Writes the reactions that λ makes.
+    fn write_reactions(&mut self, model: &Model, state: &State) -> Result<(), Error> {
+        let Results {
+            multipliers,
+            reactions,
+            ..
+        } = &mut self.results;
         let mut held = self.rows.constraints.iter();
         let finite = self
             .rows
-            .write_reactions(system, &state.at, multipliers, reactions)
+            .write_reactions(&model.system, &state.at, multipliers, reactions)
             && held.all(|&row| multipliers[row].is_finite());
         if finite { Ok(()) } else { Err(SINGULAR_HERE) }
     }
@@ -359,6 +454,42 @@ impl Forces {
         let mut unit: Vec<f64> = of_driver.flatten().copied().collect();
         unit.truncate(self.results.demand.len());
         unit
+    }
+}
+
+/// The inputs of forces at the places of a motion.
+pub(super) struct Loads<'a> {
+    here: &'a [f64],
+    there: Vec<f64>,
+    /// Natural change per radian: the largest force that bodies demand.
+    change: f64,
+}
+
+impl<'a> Loads<'a> {
+    pub(super) fn new(here: &'a [f64], demand: &[f64]) -> Self {
+        let change = demand.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+        Self {
+            there: here.to_vec(),
+            change: if change > 0.0 { change } else { 1.0 },
+            here,
+        }
+    }
+
+    /// Returns the largest force that bodies demand.
+    pub(super) fn natural(&self) -> f64 {
+        self.change
+    }
+
+    /// Returns the motion at a place.
+    pub(super) fn motion<'b>(&'b mut self, place: &Place<'b>) -> KnownMotion<'b> {
+        for (there, here) in self.there.iter_mut().zip(self.here) {
+            *there = here + place.drift * self.change;
+        }
+        KnownMotion {
+            rates: place.rates,
+            driver_rates: place.driver_rates,
+            inputs: &self.there,
+        }
     }
 }
 

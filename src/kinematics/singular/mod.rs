@@ -19,12 +19,14 @@
 //! | [`locate`] | the singular position near a pose, and its kind |
 //! | [`interpolate`] | the motion through a change point |
 //! | [`crossings`] | the crossings of a pose |
+//! | [`limit`] | reactions and derivatives next to a change point |
 //! | [`obstacle`] | the position that stops the motion along a path |
 //! | [`approach`](mod@approach) | the warning of a singular position |
 
 mod approach;
 mod crossings;
 mod interpolate;
+mod limit;
 mod locate;
 mod near;
 mod obstacle;
@@ -40,5 +42,6 @@ pub(super) use approach::approach;
 pub(super) use crossings::{
     CROSSING_END, admits_crossings, bodies_in_line, describe_crossing, leave_crossings,
 };
+pub(super) use limit::{Kind, NearPoint, Place, near_point};
 pub(super) use near::NEAR;
 pub(super) use obstacle::{DriverLimit, FruitlessSearches, find_end, look_ahead, settle};
