@@ -12,7 +12,10 @@
 //!   another place in the plane change nothing: the same verdict, the same pose, sub-steps within a
 //!   factor of two;
 //! - no call takes more than [`MOST_SUBSTEPS`] sub-steps.
+//!
+//! [`change_points`] has forces at change points.
 
+mod change_points;
 mod kinds;
 mod text;
 
@@ -26,6 +29,7 @@ use biela::mechanism::{Mechanism, Source};
 use crate::mutation::Chance;
 use text::{Law, Text, View};
 
+pub use change_points::{FORCE_KINDS, force_case, run_forces};
 pub use text::Variant;
 
 pub use kinds::{Draw, KINDS};

@@ -50,6 +50,20 @@ fn main() -> ExitCode {
             differ += counts.differ;
         }
     }
+    for (index, (name, _)) in fuzz::attack::FORCE_KINDS.iter().enumerate() {
+        if kind.as_deref().is_some_and(|kind| kind != *name) {
+            continue;
+        }
+        let counts = fuzz::attack::run_forces(index, seed, cases, |case, finding| {
+            println!("{name}, seed {case}: {finding}");
+            if cases == 1 {
+                println!("{}", fuzz::attack::force_case(index, case));
+            }
+        });
+        let last = seed + cases - 1;
+        println!("{name}, seeds {seed} to {last}: {counts:?}");
+        differ += counts.differ;
+    }
     if differ == 0 {
         ExitCode::SUCCESS
     } else {
