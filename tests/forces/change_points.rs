@@ -257,7 +257,7 @@ fn a_parallelogram_without_weight_has_reactions_when_flat() {
     }
 }
 
-/// Where the pins of slider and crank meet, the slider goes on: x = 2 r cos θ. The rod pushes with
+/// The slider goes on where its pin meets that of the crank: x = 2 r cos θ. The rod pushes with
 /// M ẍ / cos θ = −2 r M θ̇², the slide bears the weight and the rod.
 #[test]
 fn a_slider_crank_with_equal_links_has_reactions_where_its_pins_meet() {
