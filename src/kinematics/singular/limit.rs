@@ -273,21 +273,27 @@ impl NearPoint {
         });
         let drivers: Vec<Jet3> = drivers.collect();
         let own = drivers[self.crossing.driver.index()];
-        let times = self.times(own);
-        let is_at_rest = || drivers.iter().all(|u| u.derivatives == [0.0; 3]);
+        let times = self.times(model, state, own);
+        let is_at_rest = || {
+            drivers
+                .iter()
+                .all(|u| u.derivatives.iter().all(|rate| *rate == 0.0))
+        };
         (times.is_some() || !self.is_at || is_at_rest()).then_some(Course { drivers, times })
     }
 
     /// Returns the times at which a driver is at the places; `None` if it does not pass them
     /// steadily.
-    fn times(&self, driver: Jet3) -> Option<[f64; 8]> {
+    fn times(&self, model: &Model, state: &State, driver: Jet3) -> Option<[f64; 8]> {
+        let id = self.crossing.driver;
+        let along = |time: f64| along(model, state, id, driver, time);
         let mut times = [0.0; 8];
         for (time, place) in times.iter_mut().zip(PLACES) {
             let way = (place - self.place) * self.apart;
             let is_steady = |rate: f64| rate / driver.first() >= STEADY;
             let mut close = false;
             for _ in 0..MAX_STEPS {
-                let [value, rate, _] = along(driver, *time);
+                let [value, rate, _] = along(*time);
                 let off = value - driver.value - way;
                 close = off.abs() <= 1e-9 * self.apart;
                 if close || !is_steady(rate) {
@@ -295,7 +301,7 @@ impl NearPoint {
                 }
                 *time -= off / rate;
             }
-            let [_, rate, _] = along(driver, *time);
+            let [_, rate, _] = along(*time);
             if !close || !is_steady(rate) {
                 return None;
             }
@@ -326,13 +332,14 @@ impl NearPoint {
         let mut all = Vec::with_capacity(PLACES.len());
         for (k, place) in PLACES.into_iter().enumerate() {
             let time = course.times.map_or(0.0, |times| times[k]);
-            state.pose.time = home.time + time;
             for (index, driver) in course.drivers.iter().enumerate() {
-                let [value, first, second] = along(*driver, time);
+                let rates = along(model, state, DriverId(index), *driver, time);
+                let [value, first, second] = rates;
                 state.pose.drivers[index] = value;
                 driver_rates[index] = Jet::new(value, [first, second]);
             }
             state.pose.drivers[own] = self.crossing.center + place * self.apart;
+            state.pose.time = home.time + time;
             let mut values_there = |model: &mut Model, state: &mut State| {
                 move_there(model, state)?;
                 let jet = |driver: DriverId| driver_rates[driver.index()];
@@ -400,8 +407,19 @@ fn move_there(model: &mut Model, state: &mut State) -> Option<()> {
     state.refresh(model).ok()
 }
 
-/// Returns value and rates of a driver after a time, by its Taylor polynomial.
-fn along(driver: Jet3, time: f64) -> [f64; 3] {
+/// Returns value and rates of a driver after a time: those of its prescribed motion, or of the Taylor
+/// polynomial of an input. Along a Taylor polynomial of a prescribed motion a limit could have a small
+/// pole.
+fn along(model: &Model, state: &State, id: DriverId, driver: Jet3, time: f64) -> [f64; 3] {
+    if time != 0.0
+        && model.system.mechanism().drivers[id.index()]
+            .motion()
+            .is_some()
+    {
+        let there = Jet::variable(state.pose.time + time);
+        let motion = state.motions.evaluate(id, there);
+        return [motion.value, motion.first(), motion.second()];
+    }
     let [first, second, third] = driver.derivatives;
     [
         driver.value + time * (first + time * (0.5 * second + time * third / 6.0)),
@@ -435,7 +453,7 @@ fn scales(values: &[Vec<f64>], kind: &impl Fn(usize) -> Kind) -> Vec<f64> {
 /// Lagrange.
 fn weights(nodes: &[f64], place: f64) -> Vec<f64> {
     let weight = |node: &f64| {
-        let others = nodes.iter().filter(|other| *other != node);
+        let others = nodes.iter().filter(|other| (*other - node).abs() > 0.5);
         others
             .map(|other| (place - other) / (node - other))
             .product()
