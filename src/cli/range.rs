@@ -27,7 +27,7 @@ use super::picture::Format;
 use super::plot::{MOST_BODIES, axis, panel, varies};
 use super::stdout::is_stdout;
 use crate::drawing::{Axis, Chart, Line, Panel, Sheet};
-use crate::kinematics::{self, End, Extreme, RangeSettings, Reason, Sample, in_line};
+use crate::kinematics::{self, End, Extreme, RangeSettings, Reason, Sample};
 use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounded, shown};
 
 /// Find how far a driver can go.
@@ -226,7 +226,7 @@ fn describe(
             text,
             "  passes a change point at {} where {}",
             value(point.value),
-            in_line(&point.bodies, "")
+            point.geometry
         );
     }
     let mut tell_extremes = |name: &str, [low, high]: [String; 2], places: [f64; 2]| {

@@ -374,7 +374,7 @@ fn with_digits(value: f64, digits: usize) -> String {
 }
 
 /// Lists names for a message, with `last` before the last one; of very many only the first.
-fn list(names: &[String], last: &str) -> String {
+pub(super) fn list(names: &[String], last: &str) -> String {
     const SHOWN: usize = 8;
     if names.len() > SHOWN + 1 {
         let others = names.len() - SHOWN;
@@ -383,14 +383,6 @@ fn list(names: &[String], last: &str) -> String {
     match names {
         [names @ .., name] if !names.is_empty() => format!("{}{last}{name}", names.join(", ")),
         _ => names.concat(),
-    }
-}
-
-/// Says that bodies, and what holds one of them, line up, with `almost` before the verb.
-pub(crate) fn in_line(bodies: &[String], almost: &str) -> String {
-    match bodies {
-        [body] => format!("{body} {almost}lines up with what holds it"),
-        _ => format!("{} {almost}line up", list(bodies, " and ")),
     }
 }
 
@@ -463,19 +455,4 @@ fn structure_message(
         message += &format!("; too many: remove one of {}", list(excess, ", "));
     }
     message
-}
-
-#[cfg(test)]
-mod tests {
-    use super::in_line;
-
-    #[test]
-    fn one_body_lines_up_and_two_line_up() {
-        let bodies = ["body `rod`", "body `crank`"].map(str::to_owned);
-        assert_eq!(
-            in_line(&bodies[..1], "all but "),
-            "body `rod` all but lines up with what holds it"
-        );
-        assert_eq!(in_line(&bodies, ""), "body `rod` and body `crank` line up");
-    }
 }

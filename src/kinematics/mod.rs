@@ -28,7 +28,7 @@
 //! | file or folder | subject |
 //! |---|---|
 //! | `linear` | dense and sparse matrices, condition, rank |
-//! | `element`, `error`, `newton` | names for messages; errors; limits of Newton–Raphson |
+//! | `element`, `error`, `alignment`, `newton` | names for messages; errors; lines that meet; limits of Newton–Raphson |
 //! | `configuration` | the bodies and markers at one q |
 //! | [`constraint`], [`variation`] | one relation per file; its derivatives along a direction |
 //! | `system` | the equations, their scales and their linearisation |
@@ -49,6 +49,7 @@
 //! | `output` | the outputs by name |
 //! | `solution` | rates and forces at a pose |
 
+mod alignment;
 mod analysis;
 mod assembly;
 mod block;
@@ -77,6 +78,7 @@ mod structure;
 mod system;
 pub mod variation;
 
+pub use alignment::{Alignment, Member, Relation};
 pub use analysis::{
     ChangePoint, Direction, End, Extreme, GeometryWarning, GeometryWarningKind, InstantCentre,
     Mode, Modes, Play, Range, RangeSettings, Sample, Sensitivity,
@@ -88,8 +90,6 @@ pub use configuration::{
 };
 pub use continuation::{Blocked, Progress, Reason};
 pub use element::Element;
-#[cfg(feature = "cli")]
-pub(crate) use error::in_line;
 pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Verdict};
 pub use forces::{
     ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff, Reported,

@@ -8,9 +8,10 @@ use crate::fmi::codec::{Codec, Unreadable};
 use crate::fmi::instance::check_value;
 use crate::fmi::variable::Causality;
 use crate::kinematics::{
-    BlockCarryover, Carryover, CheckedSegment, Crossing, PivotOrder, Polynomial, Pose, Progress,
+    Alignment, BlockCarryover, Carryover, CheckedSegment, Crossing, Element, Member, PivotOrder,
+    Polynomial, Pose, Progress, Relation,
 };
-use crate::mechanism::{DriverId, Extrapolation, Jet, RateSource};
+use crate::mechanism::{BodyId, DriverId, Extrapolation, Jet, RateSource};
 
 /// Largest residual of a pose that is read, relative to its largest coordinate in characteristic
 /// lengths and radians. Newton leaves 1e-15; the next step closes a pose within this tolerance.
@@ -257,6 +258,7 @@ fn visit_pose(pose: &mut Pose, codec: &mut impl Codec) -> Result<(), Unreadable>
             half_width: 0.0,
             coefficients: Vec::new(),
             free: Vec::new(),
+            alignment: Alignment::default(),
         })
     })?;
     codec.each(crossings, |codec, crossing| {
@@ -278,6 +280,7 @@ fn visit_crossing(
         half_width,
         coefficients,
         free,
+        alignment,
     } = crossing;
     visit_indices(set_aside, rows, codec)?;
     codec.index(block)?;
@@ -287,5 +290,34 @@ fn visit_crossing(
     codec.resize(coefficients, unknowns, Polynomial::default)?;
     codec.each(coefficients.iter_mut().flatten().flatten(), Codec::finite)?;
     codec.resize(free, unknowns, || 0.0)?;
-    codec.each(free, Codec::finite)
+    codec.each(free, Codec::finite)?;
+    visit_alignment(alignment, rows + unknowns, codec)
+}
+
+fn visit_alignment(
+    alignment: &mut Alignment,
+    most: usize,
+    codec: &mut impl Codec,
+) -> Result<(), Unreadable> {
+    let Alignment { relation, members } = alignment;
+    codec.one_of(relation, &Relation::ALL)?;
+    codec.resize(members, most, || Member::Body(BodyId(0)))?;
+    codec.each(members, |codec, member| {
+        let (mut kind, mut index) = match *member {
+            Member::Body(body) => (0, body.0),
+            Member::Element(Element::Joint(joint)) => (1, joint),
+            Member::Element(Element::Constraint(held)) => (2, held),
+            Member::Element(Element::Driver(driver)) => (3, driver.0),
+        };
+        codec.index(&mut kind)?;
+        codec.index(&mut index)?;
+        *member = match kind {
+            0 => Member::Body(BodyId(index)),
+            1 => Member::Element(Element::Joint(index)),
+            2 => Member::Element(Element::Constraint(index)),
+            3 => Member::Element(Element::Driver(DriverId(index))),
+            _ => return Err(Unreadable),
+        };
+        Ok(())
+    })
 }

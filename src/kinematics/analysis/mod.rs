@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`sensitivity`] | derivatives of a motion by drivers and parameters |
 //! | [`range`](mod@range) | values that a driver can reach |
+//! | [`transmission`](mod@transmission) | how well joints transmit force |
 //! | [`modes`](mod@modes) | other poses for the same values of the drivers |
 //! | [`instant_centre`](mod@instant_centre) | points of bodies that are at rest for an instant |
 //! | [`play`] | the play that constraints need that contradict each other |
@@ -15,6 +16,7 @@ mod modes;
 mod play;
 mod range;
 mod sensitivity;
+mod transmission;
 
 pub(super) use geometry_check::geometry_warnings;
 pub use geometry_check::{GeometryWarning, GeometryWarningKind};

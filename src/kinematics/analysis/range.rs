@@ -2,10 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use super::transmission::Passages;
 use crate::kinematics::continuation::{PathTracker, Reason};
 use crate::kinematics::model::Model;
+use crate::kinematics::newton::Limits;
 use crate::kinematics::path::{Curve, Path, Rates};
-use crate::kinematics::singular::{SingularPoint, bodies_in_line};
+use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::{Pose, State};
 use crate::kinematics::system::System;
 use crate::mechanism::{DriverId, Jet};
@@ -19,8 +21,9 @@ pub struct Range {
     pub upper: End,
     /// The change points passed, by the driver's value, ascending.
     pub crossings: Vec<ChangePoint>,
-    /// The motion, by the driver's value, ascending; one of them is the start, unless the bounds
-    /// leave it out.
+    /// The motion, by the driver's value, ascending; more where bodies move fast. One of them is the
+    /// start, unless the bounds leave it out; others are the change points, and the limits that are
+    /// located.
     pub samples: Vec<Sample>,
     /// The least and the greatest value of each measure, located to rounding where the measure is
     /// smooth.
@@ -68,8 +71,10 @@ pub enum End {
 pub struct ChangePoint {
     /// The driver's value \[m or rad\].
     pub value: f64,
-    /// The bodies that line up.
+    /// Kind and name of the bodies and connections in `geometry`.
     pub bodies: Vec<String>,
+    /// The lines that meet there, in words.
+    pub geometry: String,
 }
 
 /// One pose in the range.
@@ -83,9 +88,10 @@ pub struct Sample {
     pub rcond: f64,
     /// Scaled residual; see [`Solver::residual`](crate::kinematics::Solver::residual).
     pub residual: f64,
-    /// The smallest transmission angle, from 0 at a dead point to π/2 at best \[rad\]: the angle
-    /// between the two links of an RRR dyad, or between a link and the normal of the line along
-    /// which its end slides. `None` if the mechanism has no such pair.
+    /// The smallest transmission angle of all joints, from 0 at a dead point to π/2 at best \[rad\]:
+    /// a unit force on a point of a joint loads the joint with 1/sin of it at most. Between two links
+    /// it is their angle, between a link and a slide the angle of the link and the normal of the
+    /// guide. `None` if the mechanism has no loop.
     pub transmission: Option<f64>,
     /// Values of the measures \[m or rad\].
     pub measures: Vec<f64>,
@@ -95,7 +101,8 @@ pub struct Sample {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeSettings {
     /// Samples per turn of an angle. Samples of a length are two characteristic lengths of the
-    /// mechanism divided by this apart, and farther beyond one length from the start.
+    /// mechanism divided by this apart, and farther beyond one length from the start. Where bodies
+    /// move by several times as much there are more.
     pub samples: u32,
     /// Most turns of an angle after which the mechanism may be at its start again.
     pub turns: u32,
@@ -122,8 +129,18 @@ impl Default for RangeSettings {
 /// some thousand sub-steps, and up to a thousand turns, rounding is below that.
 const SAME_PLACE: f64 = 1e-9;
 
-/// Most steps of Newton–Raphson towards an extreme; from a sample a degree away four are enough.
-const NEWTON_STEPS: usize = 12;
+/// Largest motion between two samples, in turns over the samples per turn: bodies that move as
+/// much turn a little only, so that a measure has one extreme there at most.
+const LARGEST_MOTION: f64 = 4.0;
+/// Most halvings between two samples.
+const MOST_HALVINGS: u32 = 6;
+/// Most samples between the last one and a limit.
+const MOST_BEFORE_LIMIT: f64 = 64.0;
+/// A change point this near to a sample, as part of the step there, is none of its own.
+const AT_SAMPLE: f64 = 1e-6;
+/// Most steps towards an extreme: bisection alone takes one per bit, Newton–Raphson four from a
+/// sample a degree away.
+const MOST_STEPS: usize = 64;
 
 /// Returns whether a value lies within bounds, as far as there are any.
 pub(super) fn is_within(value: f64, [below, above]: [Option<f64>; 2]) -> bool {
@@ -144,18 +161,20 @@ pub(in crate::kinematics) fn range(
     let [from, to] = settings.bounds;
     let mut explorer = Explorer {
         bounds: [from.or(of_driver.min), to.or(of_driver.max)],
-        model,
-        state,
         tracker,
         driver,
         settings,
         start: &start,
+        passages: Passages::new(model),
+        rates: Rates::new(start.q.len()),
+        model,
+        state,
         crossings: Vec::new(),
     };
     let mut up = Vec::new();
     let upper = explorer.explore(1.0, &mut up);
     explorer.restore();
-    let here = explorer.sample();
+    let here = explorer.place();
     let mut samples = Vec::new();
     let lower = if let End::Turns(turns) = upper {
         End::Turns(turns)
@@ -167,7 +186,7 @@ pub(in crate::kinematics) fn range(
     samples.reverse();
     samples.push(here);
     samples.extend(up);
-    samples.retain(|sample| is_within(sample.driver, explorer.bounds));
+    samples.retain(|place| is_within(place.sample.driver, explorer.bounds));
     let measures = explorer.extremes(&samples);
     let mut crossings = explorer.crossings;
     crossings.sort_by(|a, b| a.value.total_cmp(&b.value));
@@ -175,9 +194,16 @@ pub(in crate::kinematics) fn range(
         lower,
         upper,
         crossings,
-        samples,
+        samples: samples.into_iter().map(|place| place.sample).collect(),
         measures,
     }
+}
+
+/// A sample with the derivatives of the measures by the driver's value, not numbers where there are
+/// none. At a limit they are those just in front of it, which have the same signs.
+struct Place {
+    sample: Sample,
+    slopes: Vec<f64>,
 }
 
 /// The exploration of a driver's range.
@@ -190,12 +216,14 @@ struct Explorer<'a> {
     /// Values of the driver that end the range, if there are any.
     bounds: [Option<f64>; 2],
     start: &'a Pose,
+    passages: Passages,
+    rates: Rates,
     crossings: Vec<ChangePoint>,
 }
 
 impl Explorer<'_> {
     /// Moves the driver in one direction from the start, up (1) or down (−1).
-    fn explore(&mut self, sign: f64, samples: &mut Vec<Sample>) -> End {
+    fn explore(&mut self, sign: f64, samples: &mut Vec<Place>) -> End {
         let index = self.driver.index();
         let from = self.start.drivers[index];
         let driver = &self.model.system.mechanism().drivers[index];
@@ -256,24 +284,145 @@ impl Explorer<'_> {
         }
     }
 
-    /// Moves the driver to a value and adds the pose that is reached to the samples. Returns the
-    /// end of the range if it lies before the value.
-    fn move_to(&mut self, value: f64, samples: &mut Vec<Sample>) -> Option<End> {
+    /// Moves the driver to a value and adds the poses on the way to the samples. Returns the end of
+    /// the range if it lies before the value.
+    fn move_to(&mut self, value: f64, samples: &mut Vec<Place>) -> Option<End> {
+        let before = self.state.pose.clone();
         let tracked = self.track(value);
-        let crossed = self.tracker.crossed().iter();
-        self.crossings.extend(crossed.map(|crossing| ChangePoint {
-            value: crossing.center,
-            bodies: bodies_in_line(self.model, crossing),
-        }));
-        samples.push(self.sample());
-        Some(match tracked {
-            Ok(()) => return None,
-            Err(Reason::Singular(point)) => End::Singular(point),
-            Err(reason) => End::Blocked {
-                value: self.state.pose.drivers[self.driver.index()],
+        let reached = self.state.pose.clone();
+        let from = self.pass_crossings(&before, &reached, samples);
+        let end = match tracked {
+            Ok(()) => None,
+            Err(Reason::Singular(point)) => Some(End::Singular(point)),
+            Err(reason) => Some(End::Blocked {
+                value: self.value_of(&reached),
                 reason,
-            },
-        })
+            }),
+        };
+        if let Some(End::Singular(point)) = &end {
+            let limit = point.drivers[self.driver.index()];
+            self.approach_limit(&from, &reached, limit, samples);
+        } else {
+            self.divide(&from, &reached, MOST_HALVINGS, samples);
+        }
+        self.state.restore(self.model, &reached);
+        let place = self.place();
+        let limit = match &end {
+            Some(End::Singular(point)) => self.place_at(point, &place),
+            _ => None,
+        };
+        samples.push(limit.unwrap_or(place));
+        end
+    }
+
+    /// Adds the change points that the last path passed, and samples in front of them. Returns the
+    /// pose of the last one, or that before the path.
+    fn pass_crossings(&mut self, before: &Pose, reached: &Pose, samples: &mut Vec<Place>) -> Pose {
+        let mut from = before.clone();
+        let [start, end] = [before, reached].map(|pose| self.value_of(pose));
+        for crossing in self.tracker.crossed().to_vec() {
+            let mechanism = self.model.system.mechanism();
+            let center = crossing.center;
+            self.crossings.push(ChangePoint {
+                value: center,
+                bodies: crossing.alignment.names(mechanism),
+                geometry: crossing.alignment.describe(mechanism, ""),
+            });
+            let off = AT_SAMPLE * (end - start).abs();
+            let last = self.value_of(&from);
+            if (center - last).abs() <= off || (center - end).abs() <= off {
+                continue;
+            }
+            self.state.restore(self.model, &from);
+            if self.track(center).is_ok() {
+                let (place, pose) = (self.place(), self.state.pose.clone());
+                self.divide(&from, &pose, MOST_HALVINGS, samples);
+                samples.push(place);
+                from = pose;
+            }
+        }
+        from
+    }
+
+    /// Adds samples between two poses until bodies move little from one to the next.
+    fn divide(&mut self, from: &Pose, to: &Pose, halvings: u32, samples: &mut Vec<Place>) {
+        if halvings == 0 || self.motion(from, to) <= 1.0 {
+            return;
+        }
+        self.state.restore(self.model, from);
+        let middle = 0.5 * (self.value_of(from) + self.value_of(to));
+        if self.track(middle).is_ok() {
+            let (place, pose) = (self.place(), self.state.pose.clone());
+            self.divide(from, &pose, halvings - 1, samples);
+            samples.push(place);
+            self.divide(&pose, to, halvings - 1, samples);
+        }
+    }
+
+    /// Adds samples between a pose and a limit, in front of which the motion has stopped. Bodies move
+    /// there as the root of the distance from the limit.
+    fn approach_limit(
+        &mut self,
+        from: &Pose,
+        stopped: &Pose,
+        limit: f64,
+        samples: &mut Vec<Place>,
+    ) {
+        let parts = self
+            .motion(from, stopped)
+            .ceil()
+            .clamp(1.0, MOST_BEFORE_LIMIT);
+        let ahead = limit - self.value_of(from);
+        self.state.restore(self.model, from);
+        let mut part = 1.0;
+        while part < parts {
+            let left = 1.0 - part / parts;
+            if self.track(limit - ahead * (left * left)).is_err() {
+                break;
+            }
+            samples.push(self.place());
+            part += 1.0;
+        }
+    }
+
+    /// Returns the largest motion of an unknown from one pose to another, as part of the largest
+    /// between two samples.
+    fn motion(&self, from: &Pose, to: &Pose) -> f64 {
+        let largest = LARGEST_MOTION * TAU / f64::from(self.settings.samples.max(1));
+        let (system, size) = (&self.model.system, self.state.at.size());
+        let unknowns = from.q.iter().zip(&to.q).enumerate();
+        let moved = unknowns.map(|(column, (from, to))| {
+            (to - from).abs() / (largest * system.column_scale(column, size))
+        });
+        moved.fold(0.0, f64::max)
+    }
+
+    fn value_of(&self, pose: &Pose) -> f64 {
+        pose.drivers[self.driver.index()]
+    }
+
+    /// Returns the limit as a sample, with the slopes of the place where the motion stopped in front
+    /// of it; `None` if other blocks do not close there. The pose stays.
+    fn place_at(&mut self, point: &SingularPoint, stopped: &Place) -> Option<Place> {
+        let mut pose = stopped.sample.pose.clone();
+        pose.q.clone_from(&point.q);
+        pose.drivers.clone_from(&point.drivers);
+        self.state.restore(self.model, &pose);
+        let Self { model, state, .. } = self;
+        let mut block_state = state.block_state(&model.system);
+        // The block itself, and those that it reads, are there.
+        let is_singular = |columns: &[usize]| columns.iter().any(|&k| point.free[k] != 0.0);
+        let blocks = model.plan.blocks.iter_mut();
+        let mut others = blocks.filter(|block| !is_singular(block.columns()));
+        let closed = others.all(|block| block.close(&mut block_state, Limits::STEP).is_ok());
+        state.accept_bodies();
+        let is_near = closed && self.motion(&stopped.sample.pose, &self.state.pose) <= 1.0;
+        let place = is_near.then(|| Place {
+            sample: self.sample(),
+            slopes: stopped.slopes.clone(),
+        });
+        self.state.restore(self.model, &stopped.sample.pose);
+        place
     }
 
     /// Moves the driver to a value.
@@ -285,78 +434,132 @@ impl Explorer<'_> {
         tracked.map(drop).map_err(|blocked| blocked.reason)
     }
 
-    /// Returns the least and the greatest value of each measure: the best of the samples, then the
-    /// place nearby where the derivative by the driver is zero.
-    fn extremes(&mut self, samples: &[Sample]) -> Vec<[Extreme; 2]> {
-        let count = if samples.is_empty() {
+    /// Returns the least and the greatest value of each measure: the best of the samples, and of the
+    /// places between two of them where the derivative by the driver changes its sign.
+    fn extremes(&mut self, places: &[Place]) -> Vec<[Extreme; 2]> {
+        let count = if places.is_empty() {
             0
         } else {
             self.model.measures.len()
         };
-        let mut extremes = Vec::with_capacity(count);
-        for measure in 0..count {
-            extremes.push([1.0, -1.0].map(|sign| {
-                let value = |sample: &Sample| sign * sample.measures[measure];
-                let best = (0..samples.len())
-                    .min_by(|a, b| value(&samples[*a]).total_cmp(&value(&samples[*b])))
-                    .expect("there are samples");
-                let found = Extreme {
-                    value: samples[best].measures[measure],
-                    driver: samples[best].driver,
-                };
-                let interior = best > 0 && best + 1 < samples.len();
-                let refined = interior.then(|| {
-                    let around = [best - 1, best + 1].map(|k| samples[k].driver);
-                    self.refine(measure, sign, &samples[best], around)
-                });
-                let refined = refined.flatten();
-                refined
-                    .filter(|refined| sign * refined.value <= sign * found.value)
-                    .unwrap_or(found)
-            }));
-        }
+        let measures =
+            (0..count).map(|measure| [1.0, -1.0].map(|sign| self.extreme(measure, sign, places)));
+        let extremes = measures.collect();
         self.restore();
         extremes
     }
 
-    /// Finds the minimum (`sign` 1) or maximum (−1) of a measure between two values of the driver
-    /// by Newton–Raphson on its derivative, from a sample. `None` where it is not smooth.
-    fn refine(
-        &mut self,
-        measure: usize,
-        sign: f64,
-        from: &Sample,
-        [low, high]: [f64; 2],
-    ) -> Option<Extreme> {
-        self.state.restore(self.model, &from.pose);
-        let mut rates = Rates::new(self.state.pose.q.len());
-        let mut at = from.driver;
-        for _ in 0..NEWTON_STEPS {
-            self.track(at).ok()?;
-            let unit = |driver| {
-                let rate = f64::from(u8::from(driver == self.driver));
-                Jet::new(0.0, [rate, 0.0])
-            };
-            (self.state.solve_rates(self.model, unit, &mut rates)).ok()?;
-            let jet = (self.state).measure(&*self.model.measures[measure], &rates);
-            let next = (at - jet.first() / jet.second()).clamp(low, high);
-            if next.is_nan() || sign * jet.second() <= 0.0 {
-                return None;
+    /// Returns the minimum (`sign` 1) or maximum (−1) of a measure.
+    fn extreme(&mut self, measure: usize, sign: f64, places: &[Place]) -> Extreme {
+        let value = |place: &Place| sign * place.sample.measures[measure];
+        let mut best = (places.iter())
+            .map(|place| Extreme {
+                value: place.sample.measures[measure],
+                driver: place.sample.driver,
+            })
+            .min_by(|a, b| (sign * a.value).total_cmp(&(sign * b.value)))
+            .expect("there are samples");
+        let pairs = places.windows(2).filter_map(|pair| {
+            let [a, b] = [&pair[0], &pair[1]];
+            let [slope_a, slope_b] = [a, b].map(|place| sign * place.slopes[measure]);
+            let way = b.sample.driver - a.sample.driver;
+            // A measure that bends one way is beyond its tangents.
+            let bound = (value(a) + slope_a * way).max(value(b) - slope_b * way);
+            (slope_a < 0.0 && slope_b > 0.0).then_some((bound, [a, b]))
+        });
+        let mut pairs: Vec<_> = pairs.collect();
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (bound, pair) in pairs {
+            let rounding = 4.0 * f64::EPSILON * best.value.abs();
+            if bound >= sign * best.value - rounding {
+                break;
             }
-            if (next - at).abs() <= f64::EPSILON * at.abs().max(high - low) {
-                return Some(Extreme {
+            if let Some(found) = self.refine(measure, sign, pair)
+                && sign * found.value < sign * best.value
+            {
+                best = found;
+            }
+        }
+        best
+    }
+
+    /// Finds the minimum (`sign` 1) or maximum (−1) of a measure between two places, by
+    /// Newton–Raphson on its derivative and by bisection where that leaves the interval or converges
+    /// slowly.
+    fn refine(&mut self, measure: usize, sign: f64, [a, b]: [&Place; 2]) -> Option<Extreme> {
+        let [mut low, mut high] = [a, b].map(|place| place.sample.driver);
+        let width = high - low;
+        // At most one of them is a limit.
+        let is_limit = a.sample.rcond < b.sample.rcond;
+        let from = if is_limit { b } else { a };
+        self.state.restore(self.model, &from.sample.pose);
+        let mut best: Option<Extreme> = None;
+        let mut at = 0.5 * (low + high);
+        let mut last = [width; 2];
+        for _ in 0..MOST_STEPS {
+            if self.track(at).is_err() || !self.solve_rates() {
+                break;
+            }
+            let jet = (self.state).measure(&*self.model.measures[measure], &self.rates);
+            if best.is_none_or(|best| sign * jet.value <= sign * best.value) {
+                best = Some(Extreme {
                     value: jet.value,
                     driver: at,
                 });
             }
+            if sign * jet.first() < 0.0 {
+                low = at;
+            } else {
+                high = at;
+            }
+            let newton = at - jet.first() / jet.second();
+            let is_fast = (newton - at).abs() <= 0.5 * last[0];
+            let next = if is_fast && (low..=high).contains(&newton) {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+            let step = (next - at).abs();
+            if step <= f64::EPSILON * at.abs().max(width) {
+                break;
+            }
+            last = [last[1], step];
             at = next;
         }
-        None
+        best
+    }
+
+    /// Solves the rates for a unit rate of the driver. Returns false at a singular pose.
+    fn solve_rates(&mut self) -> bool {
+        let of_driver = self.driver;
+        let unit = |driver| {
+            let rate = f64::from(u8::from(driver == of_driver));
+            Jet::new(0.0, [rate, 0.0])
+        };
+        let solved = self.state.solve_rates(self.model, unit, &mut self.rates);
+        solved.is_ok()
     }
 
     /// Returns to the start.
     fn restore(&mut self) {
         self.state.restore(self.model, self.start);
+    }
+
+    /// Returns the present pose as a sample with the slopes of the measures.
+    fn place(&mut self) -> Place {
+        let sample = self.sample();
+        let has_rates = self.solve_rates();
+        let slopes = (self.model.measures.iter()).map(|measure| {
+            if has_rates {
+                self.state.measure(&**measure, &self.rates).first()
+            } else {
+                f64::NAN
+            }
+        });
+        Place {
+            slopes: slopes.collect(),
+            sample,
+        }
     }
 
     /// Returns the present pose as a sample.
@@ -365,7 +568,7 @@ impl Explorer<'_> {
             driver: self.state.pose.drivers[self.driver.index()],
             rcond: self.state.rcond(self.model),
             residual: self.state.residual(&self.model.system),
-            transmission: self.model.plan.transmission(),
+            transmission: self.passages.smallest(self.model, self.state),
             measures: (self.model.measures.iter())
                 .map(|measure| measure.value(&self.state.at))
                 .collect(),

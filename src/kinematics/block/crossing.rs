@@ -1,5 +1,6 @@
 //! The motion of a block through a change point, as polynomials.
 
+use crate::kinematics::alignment::Alignment;
 use crate::mechanism::DriverId;
 
 /// The inner places of a crossing at which the motion is known, beside its ends and its center.
@@ -44,6 +45,8 @@ pub struct Crossing {
     /// The null vector of the Jacobian at the point, one entry per unknown of the block, scaled so
     /// that metres and radians compare and the largest entry is one.
     pub free: Vec<f64>,
+    /// The lines that meet there.
+    pub alignment: Alignment,
 }
 
 impl Crossing {

@@ -188,10 +188,6 @@ impl SolveBlock for InterpolatedBlock {
         }
     }
 
-    fn transmission(&self) -> Option<f64> {
-        self.block.transmission()
-    }
-
     fn keeps_pivots(&self) -> bool {
         self.block.keeps_pivots()
     }

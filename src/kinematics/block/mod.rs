@@ -36,7 +36,6 @@ mod rrr_dyad;
 mod solve;
 mod step;
 
-use std::f64::consts::FRAC_PI_2;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
@@ -300,17 +299,6 @@ impl BlockPlan {
     pub(super) fn regularity(&self) -> f64 {
         let blocks = self.blocks.iter();
         blocks.fold(1.0, |least: f64, block| least.min(block.regularity()))
-    }
-
-    /// Returns the smallest transmission angle of all dyads, which are factorised \[rad\].
-    pub(super) fn transmission(&self) -> Option<f64> {
-        let sines = self.blocks.iter().filter_map(|block| block.transmission());
-        let least = sines.fold(f64::INFINITY, f64::min);
-        // Next to 1 the last digits of a sine are half of the digits of its angle.
-        let right = least > 1.0 - 8.0 * f64::EPSILON;
-        least
-            .is_finite()
-            .then(|| if right { FRAC_PI_2 } else { least.asin() })
     }
 
     /// Returns the smallest scaled reciprocal condition of all blocks, which are factorised.

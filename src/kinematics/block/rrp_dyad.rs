@@ -348,10 +348,6 @@ impl SolveBlock for RrpDyad {
     fn regularity(&self) -> f64 {
         self.slope.abs() / self.scale
     }
-
-    fn transmission(&self) -> Option<f64> {
-        Some(self.regularity())
-    }
 }
 
 /// The result of Newton–Raphson.

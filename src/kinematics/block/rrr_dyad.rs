@@ -459,10 +459,6 @@ impl SolveBlock for RrrDyad {
     fn regularity(&self) -> f64 {
         self.sine()
     }
-
-    fn transmission(&self) -> Option<f64> {
-        Some(self.sine())
-    }
 }
 
 /// Two frames at their angles; their origins are not set.

@@ -151,11 +151,6 @@ pub(in crate::kinematics) trait SolveBlock:
         1.0
     }
 
-    /// Returns the sine of its transmission angle, if it has one.
-    fn transmission(&self) -> Option<f64> {
-        None
-    }
-
     /// Returns whether its matrix keeps pivots from one factorisation to the next.
     fn keeps_pivots(&self) -> bool {
         false

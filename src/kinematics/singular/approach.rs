@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use super::near::{LARGEST_BLOCK, NEAR, block_jacobian, bodies_of};
-use crate::kinematics::error::in_line;
+use super::lines::{NEARBY, all_that_moves, find_lines};
+use super::near::{LARGEST_BLOCK, NEAR, block_jacobian};
+use crate::kinematics::alignment::Alignment;
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
 
@@ -12,8 +13,10 @@ use crate::kinematics::state::State;
 pub struct Approach {
     /// Scaled reciprocal condition.
     pub rcond: f64,
-    /// The bodies that all but line up.
+    /// Kind and name of the bodies and connections in `geometry`.
     pub bodies: Vec<String>,
+    /// The lines that all but meet, in words.
+    pub geometry: String,
 }
 
 /// A reciprocal condition below this is worth a warning: links are in line to less than a tenth
@@ -27,8 +30,7 @@ impl fmt::Display for Approach {
         write!(
             f,
             "near a singular position, with a reciprocal condition of {:.1e}: {}",
-            self.rcond,
-            in_line(&self.bodies, "all but ")
+            self.rcond, self.geometry
         )
     }
 }
@@ -52,15 +54,18 @@ pub(in crate::kinematics) fn approach(
         return None;
     }
     *near = true;
+    let alignment = weakest_alignment(model, state);
+    let mechanism = model.system.mechanism();
     Some(Approach {
         rcond,
-        bodies: weakest_bodies(model, state),
+        bodies: alignment.names(mechanism),
+        geometry: alignment.describe(mechanism, "all but "),
     })
 }
 
-/// Returns the bodies of the block that is nearest to a singular position: those that its weakest
-/// direction moves, if the block is small.
-fn weakest_bodies(model: &mut Model, state: &State) -> Vec<String> {
+/// Returns the lines that all but meet in the block that is nearest to a singular position, for the
+/// motion of its weakest direction; of a large block all that it moves.
+fn weakest_alignment(model: &mut Model, state: &State) -> Alignment {
     let mut weakest = (f64::INFINITY, 0);
     for (index, block) in model.plan.blocks.iter_mut().enumerate() {
         let rcond = block.rcond();
@@ -69,17 +74,17 @@ fn weakest_bodies(model: &mut Model, state: &State) -> Vec<String> {
         }
     }
     let Some(block) = model.plan.blocks.get(weakest.1) else {
-        return Vec::new();
+        return Alignment::default();
     };
     let columns = block.columns();
-    let mut free = vec![1.0; columns.len()];
     if columns.len() <= LARGEST_BLOCK {
         let svd = block_jacobian(model, state, weakest.1).svd(false, true);
         if let Some(right) = svd.v_t {
             let least = right.row(right.nrows() - 1);
             let largest = least.amax();
-            free = least.iter().map(|value| value / largest).collect();
+            let free: Vec<f64> = least.iter().map(|value| value / largest).collect();
+            return find_lines(model, &state.at, (columns, &free), NEARBY);
         }
     }
-    bodies_of(&model.system, columns, &free)
+    all_that_moves(model, &state.at, (columns, &vec![1.0; columns.len()]))
 }

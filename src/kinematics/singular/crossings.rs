@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use super::near::bodies_of;
 use crate::kinematics::block::{BlockPlan, Crossing, SEAM};
-use crate::kinematics::error::in_line;
 use crate::kinematics::model::Model;
 use crate::kinematics::newton::Limits;
 use crate::kinematics::state::{Pose, State};
@@ -19,20 +17,15 @@ const OFF_THE_POSE: f64 = 1e-4;
 /// The part of a crossing next to its end that counts as the end.
 pub(in crate::kinematics) const CROSSING_END: f64 = 1e-6;
 
-/// Returns the bodies that line up at a change point.
-pub(in crate::kinematics) fn bodies_in_line(model: &Model, crossing: &Crossing) -> Vec<String> {
-    let columns = model.plan.blocks[crossing.block].columns();
-    bodies_of(&model.system, columns, &crossing.free)
-}
-
 /// Returns the message for a change point that was passed.
 pub(in crate::kinematics) fn describe_crossing(model: &Model, crossing: &Crossing) -> String {
-    let driver = &model.system.mechanism().drivers[crossing.driver.index()];
+    let mechanism = model.system.mechanism();
+    let driver = &mechanism.drivers[crossing.driver.index()];
     format!(
         "change point passed on the smooth motion, with driver `{}` at {}: {} there",
         driver.name,
         driver.coordinate.kind.show(crossing.center),
-        in_line(&bodies_in_line(model, crossing), "")
+        crossing.alignment.describe(mechanism, "")
     )
 }
 
@@ -68,6 +61,8 @@ pub(in crate::kinematics) fn admits_crossings(
                 && crossing.place(value).abs() <= SEAM
                 && crossing.coefficients.len() == columns.len()
                 && crossing.free.len() == columns.len()
+                && (crossing.alignment.members.iter())
+                    .all(|member| member.is_of(model.system.mechanism()))
                 && columns.iter().enumerate().all(|(local, &column)| {
                     let [there, ..] = crossing.evaluate(local, value);
                     (there - pose.q[column]).abs() <= ON * (1.0 + there.abs())

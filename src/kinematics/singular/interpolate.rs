@@ -2,6 +2,7 @@
 
 use super::locate::Finding;
 use super::reduced::{Place, ReducedEquation};
+use crate::kinematics::alignment::Alignment;
 use crate::kinematics::block::{Crossing, INNER, Polynomial, divided_differences};
 use crate::kinematics::linear::nan_or_larger;
 use crate::mechanism::{DriverId, Jet};
@@ -67,6 +68,7 @@ pub(super) fn crossing_of(
                 half_width,
                 coefficients,
                 free: free.iter().copied().collect(),
+                alignment: Alignment::default(),
             };
             let error = error_between(&crossing, equation, &between, speed);
             let most = INTERPOLATED * equation.extent();

@@ -20,6 +20,7 @@
 //! | [`interpolate`] | the motion through a change point |
 //! | [`crossings`] | the crossings of a pose |
 //! | [`limit`] | reactions and derivatives next to a change point |
+//! | [`lines`] | the lines that meet at a singular position |
 //! | [`obstacle`] | the position that stops the motion along a path |
 //! | [`approach`](mod@approach) | the warning of a singular position |
 
@@ -27,6 +28,7 @@ mod approach;
 mod crossings;
 mod interpolate;
 mod limit;
+mod lines;
 mod locate;
 mod near;
 mod obstacle;
@@ -39,9 +41,7 @@ pub use near::LARGEST_BLOCK;
 pub use obstacle::SingularPoint;
 
 pub(super) use approach::approach;
-pub(super) use crossings::{
-    CROSSING_END, admits_crossings, bodies_in_line, describe_crossing, leave_crossings,
-};
+pub(super) use crossings::{CROSSING_END, admits_crossings, describe_crossing, leave_crossings};
 pub(super) use limit::{Kind, NearPoint, Place, near_point};
 pub(super) use near::NEAR;
 pub(super) use obstacle::{DriverLimit, FruitlessSearches, find_end, look_ahead, settle};

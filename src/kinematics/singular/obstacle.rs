@@ -6,11 +6,12 @@ use nalgebra::DVector;
 
 use super::crossings::enter_crossing;
 use super::interpolate::crossing_of;
+use super::lines::{LOCATED, find_lines};
 use super::locate::{Finding, ROUNDING, SingularKind, find};
-use super::near::{NEAR, block_jacobian, bodies_of, near_singular};
+use super::near::{NEAR, block_jacobian, near_singular};
 use super::reduced::{ReducedEquation, ReducedPoint};
 use super::upstream::{Line, Workspace};
-use crate::kinematics::error::in_line;
+use crate::kinematics::alignment::Alignment;
 use crate::kinematics::model::Model;
 use crate::kinematics::path::Path;
 use crate::kinematics::redundancy::{are_rows_fit, change_rows};
@@ -51,13 +52,15 @@ pub struct SingularPoint {
     /// that metres and radians compare and the largest entry is one: the motion that is free, or
     /// infinitely fast.
     pub free: Vec<f64>,
-    /// The bodies that line up: those that the null vector moves.
+    /// Kind and name of the bodies and connections in `geometry`.
     pub bodies: Vec<String>,
+    /// The lines that meet there, in words.
+    pub geometry: String,
 }
 
 impl fmt::Display for SingularPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, where {}", self.kind, in_line(&self.bodies, ""))
+        write!(f, "{}, where {}", self.kind, self.geometry)
     }
 }
 
@@ -209,10 +212,18 @@ fn enter_near_crossings(
                 is_next: way * equation.speed < STOPPED,
             });
         }
-        if let Some(crossing) = crossing_of(&mut equation, finding, block, driver)
-            && !enter_crossing(model, state, crossing)
-        {
-            fruitless.note(block, regularity);
+        let there = match &finding {
+            Finding::Crossing(point, _) => Some(equation.pose(point)),
+            _ => None,
+        };
+        let crossing = crossing_of(&mut equation, finding, block, driver);
+        if let (Some(mut crossing), Some(q)) = (crossing, there) {
+            let columns = model.plan.blocks[block].columns();
+            let free = (columns, &crossing.free[..]);
+            crossing.alignment = alignment_at(model, state, &q, free, LOCATED);
+            if !enter_crossing(model, state, crossing) {
+                fruitless.note(block, regularity);
+            }
         }
     }
     return_to_regular_pose(model, state);
@@ -293,11 +304,17 @@ fn singular_point(
     let (mut equation, start) = ReducedEquation::new(model, state, block, line, s, work)?;
     let (kind, point) = place_ahead(&mut equation, start)?;
     let (q, drivers) = (equation.pose(&point), equation.drivers().to_vec());
-    Some(SingularPoint {
-        drivers,
-        q,
-        ..point_at_pose(model, state, block, kind, point.tau, &point.tangents[0])
-    })
+    let place = (kind, point.tau);
+    let free = &point.tangents[0];
+    Some(point_at(
+        model,
+        state,
+        block,
+        place,
+        (q, drivers),
+        free,
+        LOCATED,
+    ))
 }
 
 /// Returns a singular position of more than one rank, at which the search for others fails, as the
@@ -311,18 +328,20 @@ fn loss_of_ranks(model: &Model, state: &State, s: f64, block: usize) -> Option<S
         return None;
     }
     let free = svd.v_t?.row(last_but_one + 1).transpose();
-    let kind = SingularKind::HigherRank;
-    Some(point_at_pose(model, state, block, kind, s, &free))
+    let place = (SingularKind::HigherRank, s);
+    let pose = (state.pose.q.clone(), state.pose.drivers.clone());
+    Some(point_at(model, state, block, place, pose, &free, LOST))
 }
 
-/// Returns the singular point at the pose, with a null vector of a block.
-fn point_at_pose(
+/// Returns a singular point with a null vector of a block; its lines meet to `tolerance`.
+fn point_at(
     model: &Model,
     state: &State,
     block: usize,
-    kind: SingularKind,
-    s: f64,
+    (kind, s): (SingularKind, f64),
+    (q, drivers): (Vec<f64>, Vec<f64>),
     free: &DVector<f64>,
+    tolerance: f64,
 ) -> SingularPoint {
     let columns = model.plan.blocks[block].columns();
     let free = free / free[free.icamax()];
@@ -330,14 +349,30 @@ fn point_at_pose(
     for (&column, value) in columns.iter().zip(free.iter()) {
         over_all[column] = *value;
     }
+    let alignment = alignment_at(model, state, &q, (columns, free.as_slice()), tolerance);
+    let mechanism = model.system.mechanism();
     SingularPoint {
         kind,
         s,
-        drivers: state.pose.drivers.clone(),
-        q: state.pose.q.clone(),
-        bodies: bodies_of(&model.system, columns, free.as_slice()),
+        drivers,
+        q,
+        bodies: alignment.names(mechanism),
+        geometry: alignment.describe(mechanism, ""),
         free: over_all,
     }
+}
+
+/// Returns the lines that meet at q, for a null vector in these unknowns.
+fn alignment_at(
+    model: &Model,
+    state: &State,
+    q: &[f64],
+    free: (&[usize], &[f64]),
+    tolerance: f64,
+) -> Alignment {
+    let mut at = state.at.clone();
+    at.set_pose(model.system.mechanism(), q);
+    find_lines(model, &at, free, tolerance)
 }
 
 #[cfg(test)]

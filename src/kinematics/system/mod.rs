@@ -153,11 +153,14 @@ impl System {
     pub fn describe_unknown(&self, column: usize) -> String {
         match self.mechanism.bodies.get(column / 3) {
             Some(body) => format!("body `{}`", body.name),
-            None => {
-                let place = column - 3 * self.mechanism.bodies.len();
-                self.joint_parts.unknowns[place].0.describe(&self.mechanism)
-            }
+            None => self.element_of(column).describe(&self.mechanism),
         }
+    }
+
+    /// Returns the joint that a joint unknown belongs to.
+    pub(in crate::kinematics) fn element_of(&self, column: usize) -> Element {
+        let place = column - 3 * self.mechanism.bodies.len();
+        self.joint_parts.unknowns[place].0
     }
 
     /// Returns the names of the bodies and joints whose unknowns move by more than `least`.

@@ -1,0 +1,421 @@
+//! The lines that meet at a singular position.
+//!
+//! With the drivers held, the null vector of the Jacobian moves some bodies. Those that move alike
+//! and are joined count as one, as do all that rest. A connection with a resting one through which a
+//! force can pass along one line only, such as a link or a slide, has this line pass through the
+//! instant centre of the moving one. Where the lines of three connections, or a pin and a line, do
+//! so, the connections are dependent: the position is singular for that reason.
+
+use nalgebra::Vector2;
+
+use super::near::FREE;
+use crate::kinematics::alignment::{Alignment, Member, Relation};
+use crate::kinematics::configuration::{Configuration, perp};
+use crate::kinematics::constraint::Gradient;
+use crate::kinematics::element::Element;
+use crate::kinematics::model::Model;
+use crate::kinematics::system::System;
+use crate::mechanism::{BodyId, Coordinate, CoordinateKind, DriverId, JointKind, MarkerId};
+
+/// Largest distance of a line from a point that it passes through, as part of the mechanism's size,
+/// and largest angle between parallel lines \[rad\], at a position that is located: the unknowns there
+/// have half of the digits.
+pub(super) const LOCATED: f64 = 1e-6;
+/// The same near a singular position.
+pub(super) const NEARBY: f64 = 0.02;
+
+/// A line along which a connection transmits force.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    point: Vector2<f64>,
+    direction: Vector2<f64>,
+    of: Member,
+}
+
+/// The way in which an element connects two groups of bodies.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    Pin(Vector2<f64>),
+    Line(Line),
+    Other,
+}
+
+/// A connection of two groups of bodies.
+#[derive(Clone, Copy, Debug)]
+struct Connection {
+    element: Element,
+    way: Way,
+    /// The groups, by one of their bodies; the last is that of all bodies at rest.
+    groups: [usize; 2],
+}
+
+/// Bodies and their motion by a null vector.
+struct Moving<'a> {
+    system: &'a System,
+    at: &'a Configuration,
+    /// Velocity at each body's origin, in sizes, and angular velocity.
+    twists: Vec<[f64; 3]>,
+    /// Whether its place is found by the block or those before it. What comes behind follows.
+    is_known: Vec<bool>,
+    /// The group of each body, and of ground.
+    groups: Vec<usize>,
+    tolerance: f64,
+}
+
+/// Finds the lines that meet at a singular position, where the bodies are; `free` has the entries of
+/// the null vector for these unknowns, scaled, the largest of them one. What it returns holds to
+/// `tolerance`; without any such lines the members are all that moves.
+pub(super) fn find_lines(
+    model: &Model,
+    at: &Configuration,
+    free: (&[usize], &[f64]),
+    tolerance: f64,
+) -> Alignment {
+    let moving = Moving::new(model, at, free, tolerance);
+    let connections = moving.connections();
+    let groups = moving.groups.iter().enumerate();
+    let groups: Vec<usize> = groups
+        .filter(|(body, group)| *body == **group && *body != moving.rest())
+        .map(|(group, _)| group)
+        .collect();
+    let on_pin = |group: &usize| moving.on_pin(*group, &connections);
+    let without_pin = |group: &usize| moving.without_pin(*group, &connections);
+    let found = groups.iter().find_map(on_pin);
+    found
+        .or_else(|| groups.iter().find_map(without_pin))
+        .unwrap_or_else(|| moving.free(free, &connections))
+}
+
+/// Returns all that a null vector moves.
+pub(super) fn all_that_moves(
+    model: &Model,
+    at: &Configuration,
+    free: (&[usize], &[f64]),
+) -> Alignment {
+    let moving = Moving::new(model, at, free, 0.0);
+    moving.free(free, &moving.connections())
+}
+
+impl<'a> Moving<'a> {
+    fn new(
+        model: &'a Model,
+        at: &'a Configuration,
+        (columns, free): (&[usize], &[f64]),
+        tolerance: f64,
+    ) -> Self {
+        let system = &model.system;
+        let bodies = system.mechanism().bodies.len();
+        let size = at.size();
+        let mut twists = vec![[0.0; 3]; bodies + 1];
+        for (&column, value) in columns.iter().zip(free) {
+            if column < 3 * bodies {
+                let scale = system.column_scale(column, size);
+                let per_size = if column % 3 == 2 { 1.0 } else { 1.0 / size };
+                twists[column / 3][column % 3] = value * scale * per_size;
+            }
+        }
+        let mut known = vec![0; bodies];
+        // Joint unknowns come behind those of the bodies.
+        for column in model
+            .columns_behind(columns)
+            .filter(|column| *column < 3 * bodies)
+        {
+            known[column / 3] += 1;
+        }
+        let mut is_known: Vec<bool> = known.into_iter().map(|count| count == 3).collect();
+        is_known.push(true);
+        let mut moving = Self {
+            system,
+            at,
+            twists,
+            is_known,
+            groups: (0..=bodies).collect(),
+            tolerance,
+        };
+        moving.group();
+        moving
+    }
+
+    /// Returns the group of all that rests: that of ground.
+    fn rest(&self) -> usize {
+        self.groups[self.groups.len() - 1]
+    }
+
+    /// Returns the index of a marker's body, that of ground behind all others.
+    fn body(&self, marker: MarkerId) -> usize {
+        let body = self.system.mechanism().markers[marker.index()].body;
+        body.map_or(self.twists.len() - 1, BodyId::index)
+    }
+
+    /// Returns the velocity of a body at a point, in sizes.
+    fn velocity(&self, body: usize, point: Vector2<f64>) -> Vector2<f64> {
+        let [x, y, omega] = self.twists[body];
+        let origin = (self.at.frames().get(body)).map_or(point, |frame| frame.origin);
+        Vector2::new(x, y) + perp(point - origin) * (omega / self.at.size())
+    }
+
+    /// Puts bodies into groups: those that rest, and those that are joined and move alike.
+    fn group(&mut self) {
+        let ground = self.twists.len() - 1;
+        for body in 0..ground {
+            if self.twists[body].iter().all(|part| part.abs() <= FREE) {
+                self.groups[body] = ground;
+            }
+        }
+        let mechanism = self.system.mechanism();
+        for joint in &mechanism.joints {
+            let [a, b] = [joint.from, joint.to].map(|marker| self.body(marker));
+            let point = self.at.marker(joint.to).point;
+            let apart = self.velocity(a, point) - self.velocity(b, point);
+            let turn = self.twists[a][2] - self.twists[b][2];
+            let [a, b] = [a, b].map(|body| self.groups[body]);
+            if apart.norm().max(turn.abs()) <= FREE && a != b {
+                // The group of what rests has the largest number.
+                let [from, to] = [a.min(b), a.max(b)];
+                let members = self.groups.iter_mut().filter(|group| **group == from);
+                members.for_each(|group| *group = to);
+            }
+        }
+    }
+
+    /// Returns all connections of different groups.
+    fn connections(&self) -> Vec<Connection> {
+        let mechanism = self.system.mechanism();
+        let joints = mechanism.joints.iter().enumerate().map(|(index, joint)| {
+            let element = Element::Joint(index);
+            let (from, to) = (joint.from, joint.to);
+            let way = match joint.kind {
+                JointKind::Revolute => Way::Pin(self.at.marker(to).point),
+                JointKind::Link { .. } => self.bar(element, from, to),
+                JointKind::Slot
+                | JointKind::Translational
+                | JointKind::RevoluteTranslational { .. } => Way::Line(Line {
+                    point: self.at.marker(to).point,
+                    direction: perp(self.at.marker(from).axis),
+                    of: Member::Element(element),
+                }),
+                JointKind::Cam { .. } => self.contact(element, to),
+                _ => Way::Other,
+            };
+            (element, way, from, to)
+        });
+        let of_coordinate = |element: Element, coordinate: &Coordinate| {
+            let Coordinate { kind, from, to, .. } = *coordinate;
+            let way = match kind {
+                CoordinateKind::Distance => self.bar(element, from, to),
+                _ => Way::Other,
+            };
+            (element, way, from, to)
+        };
+        let constraints = mechanism.constraints.iter().enumerate();
+        let constraints =
+            constraints.map(|(k, held)| of_coordinate(Element::Constraint(k), &held.coordinate));
+        let drivers = mechanism.drivers.iter().enumerate();
+        let drivers = drivers
+            .map(|(k, driver)| of_coordinate(Element::Driver(DriverId(k)), &driver.coordinate));
+        joints
+            .chain(constraints)
+            .chain(drivers)
+            .filter(|(.., from, to)| [from, to].map(|m| self.is_known[self.body(*m)]) == [true; 2])
+            .map(|(element, way, from, to)| Connection {
+                element,
+                way,
+                groups: [from, to].map(|marker| self.groups[self.body(marker)]),
+            })
+            .filter(|connection| connection.groups[0] != connection.groups[1])
+            .collect()
+    }
+
+    /// Returns the line of a massless link or a cylinder.
+    fn bar(&self, element: Element, from: MarkerId, to: MarkerId) -> Way {
+        let [from, to] = [from, to].map(|marker| self.at.marker(marker).point);
+        line_between(from, to, Member::Element(element)).map_or(Way::Other, Way::Line)
+    }
+
+    /// Returns the normal of a contact on a cam: the line of the force of its last row.
+    fn contact(&self, element: Element, follower: MarkerId) -> Way {
+        let rows = self.system.equations().iter();
+        let Some(row) = rows.rev().find(|row| row.element == element) else {
+            return Way::Other;
+        };
+        let mut gradient = Gradient::new();
+        row.constraint.gradient(self.at, &mut gradient);
+        let marker = self.at.marker(follower).point;
+        let forces = gradient.bodies().iter();
+        let mut lines = forces.filter_map(|&(body, [x, y, moment])| {
+            let force = Vector2::new(x, y);
+            let arm = marker - self.at.frames()[body].origin;
+            let torque = moment - arm.perp(&force);
+            let square = force.norm_squared();
+            (square > 0.0).then(|| Line {
+                point: marker - perp(force) * (torque / square),
+                direction: force / square.sqrt(),
+                of: Member::Element(element),
+            })
+        });
+        lines.next().map_or(Way::Other, Way::Line)
+    }
+
+    /// Returns the lines of connections from a group to what rests, and the pins there: direct ones,
+    /// and those by way of a group that has two connections.
+    fn supports(&self, group: usize, connections: &[Connection]) -> Vec<(Element, Way)> {
+        let of_group = |group: usize| {
+            let own = connections.iter();
+            own.filter(move |connection| connection.groups.contains(&group))
+        };
+        let other = |connection: &Connection, group: usize| {
+            let [a, b] = connection.groups;
+            if a == group { b } else { a }
+        };
+        let support = |connection: &Connection| {
+            let next = other(connection, group);
+            if next == self.rest() {
+                return Some((connection.element, connection.way));
+            }
+            let mut others = of_group(next).filter(|own| own.element != connection.element);
+            let (behind, more) = (others.next()?, others.next());
+            if more.is_some() || other(behind, next) != self.rest() {
+                return None;
+            }
+            let line = match (connection.way, behind.way) {
+                (Way::Pin(point), Way::Pin(end)) => line_between(point, end, self.member(next)?)?,
+                (Way::Pin(point), Way::Line(line)) => Line { point, ..line },
+                _ => return None,
+            };
+            Some((connection.element, Way::Line(line)))
+        };
+        of_group(group).filter_map(support).collect()
+    }
+
+    /// Returns the body of a group, if it is the only one.
+    fn member(&self, group: usize) -> Option<Member> {
+        let bodies = self.groups.iter().enumerate();
+        let mut bodies = bodies.filter(|(_, own)| **own == group);
+        let (body, _) = bodies.next()?;
+        bodies
+            .next()
+            .is_none()
+            .then_some(Member::Body(BodyId(body)))
+    }
+
+    /// Returns whether a line passes through a point.
+    fn passes(&self, line: &Line, point: Vector2<f64>) -> bool {
+        let off = line.direction.perp(&(point - line.point)).abs();
+        off <= self.tolerance * self.at.size()
+    }
+
+    /// Finds lines that pass through the pin on which a group turns.
+    fn on_pin(&self, group: usize, connections: &[Connection]) -> Option<Alignment> {
+        let supports = self.supports(group, connections);
+        let (pin, center) = supports.iter().find_map(|(element, way)| match way {
+            Way::Pin(point) => Some((*element, *point)),
+            _ => None,
+        })?;
+        let lines = lines_of(&supports);
+        let through: Vec<_> = lines.filter(|line| self.passes(line, center)).collect();
+        if let [line] = through[..]
+            && !self.is_contact(line.of)
+            && let Some(own) = self.member(group)
+        {
+            return Some(Alignment {
+                relation: Relation::InLine,
+                members: self.ordered(vec![own, line.of]),
+            });
+        }
+        let mut members: Vec<_> = through.iter().map(|line| line.of).collect();
+        if members.is_empty() {
+            return None;
+        }
+        members.push(Member::Element(pin));
+        Some(Alignment {
+            relation: Relation::ThroughPin,
+            members,
+        })
+    }
+
+    /// Finds three lines or more that meet in the instant centre of a group, or are parallel.
+    fn without_pin(&self, group: usize, connections: &[Connection]) -> Option<Alignment> {
+        let supports = self.supports(group, connections);
+        let lines: Vec<_> = lines_of(&supports).collect();
+        let (first, rest) = lines.split_first()?;
+        if rest.len() < 2 {
+            return None;
+        }
+        let members = || lines.iter().map(|line| line.of).collect();
+        let across = |line: &Line| line.direction.perp(&first.direction);
+        if rest.iter().all(|line| across(line).abs() <= self.tolerance) {
+            return Some(Alignment {
+                relation: Relation::Parallel,
+                members: members(),
+            });
+        }
+        let [x, y, omega] = self.twists[group];
+        let origin = self.at.frames()[group].origin;
+        // v + ω × (P − r) = 0.
+        let center = origin + Vector2::new(-y, x) * (self.at.size() / omega);
+        let meet = center.iter().all(|part| part.is_finite())
+            && lines.iter().all(|line| self.passes(line, center));
+        meet.then(|| Alignment {
+            relation: Relation::Concurrent,
+            members: members(),
+        })
+    }
+
+    fn is_contact(&self, member: Member) -> bool {
+        member.is_contact(self.system.mechanism())
+    }
+
+    /// Returns bodies in their order, then all else.
+    fn ordered(&self, mut members: Vec<Member>) -> Vec<Member> {
+        members.sort_by_key(|member| match member {
+            Member::Body(body) => body.index(),
+            Member::Element(_) => self.twists.len(),
+        });
+        members
+    }
+
+    /// Returns all bodies, joints and massless links that move.
+    fn free(&self, (columns, free): (&[usize], &[f64]), connections: &[Connection]) -> Alignment {
+        let bodies = self.twists.len() - 1;
+        let moved = columns.iter().zip(free);
+        let moved = moved.filter(|(_, value)| value.abs() > FREE);
+        let mut unknowns: Vec<usize> = moved.map(|(column, _)| *column).collect();
+        unknowns.sort_unstable();
+        let of_unknown = |column: usize| match column / 3 {
+            body if body < bodies => Member::Body(BodyId(body)),
+            _ => Member::Element(self.system.element_of(column)),
+        };
+        let mut members: Vec<_> = unknowns.into_iter().map(of_unknown).collect();
+        // The unknowns of a body are next to each other.
+        members.dedup();
+        let links = connections
+            .iter()
+            .filter_map(|connection| match connection.way {
+                Way::Line(line) if !self.is_contact(line.of) => Some(line.of),
+                _ => None,
+            });
+        members.extend(links);
+        Alignment {
+            relation: Relation::Free,
+            members,
+        }
+    }
+}
+
+/// Returns the lines among supports.
+fn lines_of(supports: &[(Element, Way)]) -> impl Iterator<Item = Line> {
+    supports.iter().filter_map(|(_, way)| match way {
+        Way::Line(line) => Some(*line),
+        _ => None,
+    })
+}
+
+/// Returns the line through two points, if they are apart.
+fn line_between(from: Vector2<f64>, to: Vector2<f64>, of: Member) -> Option<Line> {
+    let direction = (to - from).try_normalize(0.0)?;
+    Some(Line {
+        point: from,
+        direction,
+        of,
+    })
+}
