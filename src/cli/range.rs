@@ -275,7 +275,11 @@ fn describe(
         tell_extremes("transmission angle", angles, [at, best_at]);
     }
     if let Some(((worst, at), (best, _))) = extreme(|sample| Some(sample.rcond)) {
-        let [worst, best] = [worst, best].map(|rcond| scientific(rcond, 2));
+        // Less is the rounding of a singular pose.
+        let [worst, best] = [worst, best].map(|rcond| {
+            let rcond = if rcond < f64::EPSILON { 0.0 } else { rcond };
+            scientific(rcond, 2)
+        });
         let _ = if worst == best {
             writeln!(text, "  reciprocal condition {worst} everywhere")
         } else {

@@ -111,14 +111,8 @@ impl Model {
         rows.filter(depends).collect()
     }
 
-    /// Returns all unknowns of the blocks that find these ones, and of all that they read.
-    pub(super) fn columns_behind(&self, columns: &[usize]) -> impl Iterator<Item = usize> {
-        let blocks = self.blocks_behind(columns).into_iter();
-        blocks.flat_map(|block| block.columns.iter().copied())
-    }
-
     /// Returns the blocks that find these unknowns, and all that they read.
-    fn blocks_behind(&self, columns: &[usize]) -> Vec<&Block> {
+    pub(super) fn blocks_behind(&self, columns: &[usize]) -> Vec<&Block> {
         let blocks = self.structure.blocks();
         let mut seen = vec![false; blocks.len()];
         let mut open: Vec<_> = columns

@@ -6,9 +6,9 @@
 //! instant centre of the moving one. Where the lines of three connections, or a pin and a line, do
 //! so, the connections are dependent: the position is singular for that reason.
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 
-use super::near::FREE;
+use super::near::{FREE, LARGEST_BLOCK};
 use crate::kinematics::alignment::{Alignment, Member, Relation};
 use crate::kinematics::configuration::{Configuration, perp};
 use crate::kinematics::constraint::Gradient;
@@ -45,8 +45,23 @@ enum Way {
 struct Connection {
     element: Element,
     way: Way,
+    bodies: [usize; 2],
     /// The groups, by one of their bodies; the last is that of all bodies at rest.
     groups: [usize; 2],
+}
+
+impl Connection {
+    /// Returns the group on the other side.
+    fn other(&self, group: usize) -> usize {
+        let [a, b] = self.groups;
+        if a == group { b } else { a }
+    }
+
+    /// Returns the body of a group in the connection.
+    fn body_of(&self, group: usize) -> Member {
+        let [a, b] = self.bodies;
+        Member::Body(BodyId(if self.groups[0] == group { a } else { b }))
+    }
 }
 
 /// Bodies and their motion by a null vector.
@@ -55,8 +70,9 @@ struct Moving<'a> {
     at: &'a Configuration,
     /// Velocity at each body's origin, in sizes, and angular velocity.
     twists: Vec<[f64; 3]>,
-    /// Whether its place is found by the block or those before it. What comes behind follows.
-    is_known: Vec<bool>,
+    /// Whether each row is one of the block or of those that it reads; those that read it bear no
+    /// force.
+    acts: Vec<bool>,
     /// The group of each body, and of ground.
     groups: Vec<usize>,
     tolerance: f64,
@@ -106,29 +122,20 @@ impl<'a> Moving<'a> {
         let system = &model.system;
         let bodies = system.mechanism().bodies.len();
         let size = at.size();
-        let mut twists = vec![[0.0; 3]; bodies + 1];
+        let mut motion = vec![0.0; system.unknowns()];
         for (&column, value) in columns.iter().zip(free) {
-            if column < 3 * bodies {
-                let scale = system.column_scale(column, size);
-                let per_size = if column % 3 == 2 { 1.0 } else { 1.0 / size };
-                twists[column / 3][column % 3] = value * scale * per_size;
-            }
+            motion[column] = value * system.column_scale(column, size);
         }
-        let mut known = vec![0; bodies];
-        // Joint unknowns come behind those of the bodies.
-        for column in model
-            .columns_behind(columns)
-            .filter(|column| *column < 3 * bodies)
-        {
-            known[column / 3] += 1;
+        let acts = follow(model, at, columns, &mut motion);
+        let mut twists = vec![[0.0; 3]; bodies + 1];
+        for (twist, motion) in twists.iter_mut().zip(motion.chunks(3)).take(bodies) {
+            *twist = [motion[0] / size, motion[1] / size, motion[2]];
         }
-        let mut is_known: Vec<bool> = known.into_iter().map(|count| count == 3).collect();
-        is_known.push(true);
         let mut moving = Self {
             system,
             at,
             twists,
-            is_known,
+            acts,
             groups: (0..=bodies).collect(),
             tolerance,
         };
@@ -200,9 +207,27 @@ impl<'a> Moving<'a> {
             (element, way, from, to)
         });
         let of_coordinate = |element: Element, coordinate: &Coordinate| {
-            let Coordinate { kind, from, to, .. } = *coordinate;
+            let Coordinate {
+                kind,
+                from,
+                to,
+                axes,
+            } = *coordinate;
+            let axis = self.at.marker(axes).axis;
+            let along = |direction| {
+                let point = self.at.marker(to).point;
+                let of = Member::Element(element);
+                Way::Line(Line {
+                    point,
+                    direction,
+                    of,
+                })
+            };
+            let is_of_two = self.body(axes) == self.body(from);
             let way = match kind {
                 CoordinateKind::Distance => self.bar(element, from, to),
+                CoordinateKind::X if is_of_two => along(axis),
+                CoordinateKind::Y if is_of_two => along(perp(axis)),
                 _ => Way::Other,
             };
             (element, way, from, to)
@@ -213,17 +238,46 @@ impl<'a> Moving<'a> {
         let drivers = mechanism.drivers.iter().enumerate();
         let drivers = drivers
             .map(|(k, driver)| of_coordinate(Element::Driver(DriverId(k)), &driver.coordinate));
-        joints
-            .chain(constraints)
-            .chain(drivers)
-            .filter(|(.., from, to)| [from, to].map(|m| self.is_known[self.body(*m)]) == [true; 2])
-            .map(|(element, way, from, to)| Connection {
+        let all = joints.chain(constraints).chain(drivers);
+        let all = all.filter(|(element, ..)| self.bears_force(*element));
+        let all = all.map(|(element, way, from, to)| {
+            let bodies = [from, to].map(|marker| self.body(marker));
+            Connection {
                 element,
                 way,
-                groups: [from, to].map(|marker| self.groups[self.body(marker)]),
-            })
-            .filter(|connection| connection.groups[0] != connection.groups[1])
-            .collect()
+                bodies,
+                groups: bodies.map(|body| self.groups[body]),
+            }
+        });
+        let mut connections = Vec::new();
+        for connection in all.filter(|own| own.groups[0] != own.groups[1]) {
+            self.add(connection, &mut connections);
+        }
+        connections
+    }
+
+    /// Adds a connection. Two lines through one point are a pin.
+    fn add(&self, connection: Connection, connections: &mut Vec<Connection>) {
+        let same = connections.iter_mut().find(|other| {
+            let (Way::Line(a), Way::Line(b)) = (connection.way, other.way) else {
+                return false;
+            };
+            let apart = (a.point - b.point).norm();
+            connection.other(other.groups[0]) == other.groups[1]
+                && connection.groups.contains(&other.groups[0])
+                && apart <= self.tolerance * self.at.size()
+                && a.direction.perp(&b.direction).abs() > NEARBY
+        });
+        match (same, connection.way) {
+            (Some(other), Way::Line(line)) => other.way = Way::Pin(line.point),
+            _ => connections.push(connection),
+        }
+    }
+
+    /// Returns whether rows of an element belong to the block or to those that it reads.
+    fn bears_force(&self, element: Element) -> bool {
+        let mut rows = self.system.equations().iter().zip(&self.acts);
+        rows.any(|(row, acts)| *acts && row.element == element)
     }
 
     /// Returns the line of a massless link or a cylinder.
@@ -258,44 +312,31 @@ impl<'a> Moving<'a> {
 
     /// Returns the lines of connections from a group to what rests, and the pins there: direct ones,
     /// and those by way of a group that has two connections.
-    fn supports(&self, group: usize, connections: &[Connection]) -> Vec<(Element, Way)> {
+    fn supports(&self, group: usize, connections: &[Connection]) -> Vec<(Connection, Way)> {
         let of_group = |group: usize| {
             let own = connections.iter();
             own.filter(move |connection| connection.groups.contains(&group))
         };
-        let other = |connection: &Connection, group: usize| {
-            let [a, b] = connection.groups;
-            if a == group { b } else { a }
-        };
         let support = |connection: &Connection| {
-            let next = other(connection, group);
+            let next = connection.other(group);
             if next == self.rest() {
-                return Some((connection.element, connection.way));
+                return Some((*connection, connection.way));
             }
             let mut others = of_group(next).filter(|own| own.element != connection.element);
             let (behind, more) = (others.next()?, others.next());
-            if more.is_some() || other(behind, next) != self.rest() {
+            if more.is_some() || behind.other(next) != self.rest() {
                 return None;
             }
             let line = match (connection.way, behind.way) {
-                (Way::Pin(point), Way::Pin(end)) => line_between(point, end, self.member(next)?)?,
+                (Way::Pin(point), Way::Pin(end)) => {
+                    line_between(point, end, connection.body_of(next))?
+                }
                 (Way::Pin(point), Way::Line(line)) => Line { point, ..line },
                 _ => return None,
             };
-            Some((connection.element, Way::Line(line)))
+            Some((*connection, Way::Line(line)))
         };
         of_group(group).filter_map(support).collect()
-    }
-
-    /// Returns the body of a group, if it is the only one.
-    fn member(&self, group: usize) -> Option<Member> {
-        let bodies = self.groups.iter().enumerate();
-        let mut bodies = bodies.filter(|(_, own)| **own == group);
-        let (body, _) = bodies.next()?;
-        bodies
-            .next()
-            .is_none()
-            .then_some(Member::Body(BodyId(body)))
     }
 
     /// Returns whether a line passes through a point.
@@ -307,26 +348,25 @@ impl<'a> Moving<'a> {
     /// Finds lines that pass through the pin on which a group turns.
     fn on_pin(&self, group: usize, connections: &[Connection]) -> Option<Alignment> {
         let supports = self.supports(group, connections);
-        let (pin, center) = supports.iter().find_map(|(element, way)| match way {
-            Way::Pin(point) => Some((*element, *point)),
+        let (pin, center) = supports.iter().find_map(|(connection, way)| match way {
+            Way::Pin(point) => Some((*connection, *point)),
             _ => None,
         })?;
         let lines = lines_of(&supports);
         let through: Vec<_> = lines.filter(|line| self.passes(line, center)).collect();
         if let [line] = through[..]
             && !self.is_contact(line.of)
-            && let Some(own) = self.member(group)
         {
             return Some(Alignment {
                 relation: Relation::InLine,
-                members: self.ordered(vec![own, line.of]),
+                members: self.ordered(vec![pin.body_of(group), line.of]),
             });
         }
         let mut members: Vec<_> = through.iter().map(|line| line.of).collect();
         if members.is_empty() {
             return None;
         }
-        members.push(Member::Element(pin));
+        members.push(Member::Element(pin.element));
         Some(Alignment {
             relation: Relation::ThroughPin,
             members,
@@ -403,7 +443,7 @@ impl<'a> Moving<'a> {
 }
 
 /// Returns the lines among supports.
-fn lines_of(supports: &[(Element, Way)]) -> impl Iterator<Item = Line> {
+fn lines_of(supports: &[(Connection, Way)]) -> impl Iterator<Item = Line> {
     supports.iter().filter_map(|(_, way)| match way {
         Way::Line(line) => Some(*line),
         _ => None,
@@ -418,4 +458,54 @@ fn line_between(from: Vector2<f64>, to: Vector2<f64>, of: Member) -> Option<Line
         direction,
         of,
     })
+}
+
+/// Extends the motion of a block's unknowns to those of blocks that read it. Returns for each row
+/// whether it belongs to the block or to those that it reads, or is set aside.
+fn follow(model: &Model, at: &Configuration, columns: &[usize], motion: &mut [f64]) -> Vec<bool> {
+    let system = &model.system;
+    let mut acts = vec![false; system.equations().len()];
+    let mut is_known = vec![false; motion.len()];
+    for &row in &model.redundant.now {
+        acts[row] = true;
+    }
+    for block in model.blocks_behind(columns) {
+        block.rows.iter().for_each(|&row| acts[row] = true);
+        block
+            .columns
+            .iter()
+            .for_each(|&column| is_known[column] = true);
+    }
+    let size = at.size();
+    for block in model.structure.blocks() {
+        let order = block.columns.len();
+        if is_known[block.columns[0]] || order > LARGEST_BLOCK {
+            continue;
+        }
+        let mut jacobian = DMatrix::<f64>::zeros(order, order);
+        let mut side = DVector::<f64>::zeros(order);
+        for (local, &row) in block.rows.iter().enumerate() {
+            let equation = &system.equations()[row];
+            let mut gradient = Gradient::new();
+            equation.constraint.gradient(at, &mut gradient);
+            let scale = equation.row_scale(at);
+            for (column, partial) in gradient.entries() {
+                match block.columns.iter().position(|&own| own == column) {
+                    Some(own) => {
+                        jacobian[(local, own)] +=
+                            partial * scale * system.column_scale(column, size);
+                    }
+                    None => side[local] -= partial * scale * motion[column],
+                }
+            }
+        }
+        if side.amax() > 0.0
+            && let Some(found) = jacobian.lu().solve(&side)
+        {
+            for (&column, value) in block.columns.iter().zip(found.iter()) {
+                motion[column] = value * system.column_scale(column, size);
+            }
+        }
+    }
+    acts
 }
