@@ -167,3 +167,230 @@ fn one_of_several_drivers_is_blocked_where_the_bars_line_up() {
         assert_eq!(point.bodies, ["body `fixed_bar`", "body `tracer_bar`"]);
     }
 }
+
+/// A four-bar whose crank rocks, with a coupler point.
+const ROCKING: &str = include_str!("range/rocking.toml");
+/// A plate on three massless bars, one of them on the pin of a crank.
+const PLATE: &str = include_str!("range/plate.toml");
+
+/// Returns the coupler point's height and the angle between coupler and rocker at a crank angle, by
+/// the law of cosines; `None` where the links do not reach.
+fn rocking(crank: f64) -> Option<(f64, f64)> {
+    let [a, b, c, base] = [0.81, 0.74, 0.85, 0.91];
+    let (x, y) = (a * crank.cos(), a * crank.sin());
+    let (far, along) = ((base - x).hypot(y), (-y).atan2(base - x));
+    let cosine = (b * b + far * far - c * c) / (2.0 * b * far);
+    let between = (b * b + c * c - far * far) / (2.0 * b * c);
+    // The coupler is right of the line from the crank's pin to the rocker's.
+    let coupler = along - (cosine.abs() <= 1.0).then(|| cosine.acos())?;
+    let point = y - 0.7 * coupler.sin() - 0.73 * coupler.cos();
+    Some((point, between.clamp(-1.0, 1.0).acos()))
+}
+
+/// The coupler point turns back 0.5 deg in front of the dead point, where the coupler runs as the
+/// root of the distance. The closed form is scanned in steps of that root: near a maximum a step of
+/// 1e-5 of it misses less than 1e-9.
+#[test]
+fn extremes_in_front_of_a_limit_are_found() {
+    let mut solver = assembled(&parse(ROCKING)).0;
+    let range = solver.range(DriverId(0), &RangeSettings::default());
+    let [End::Singular(lower), End::Singular(upper)] = [&range.lower, &range.upper] else {
+        panic!("{range:?}")
+    };
+    let start = solver.pose().drivers[0];
+    let [mut least, mut greatest] = [f64::INFINITY, f64::NEG_INFINITY];
+    for limit in [lower.drivers[0], upper.drivers[0]] {
+        for place in 0..100_000 {
+            let left = 1.0 - f64::from(place) / 1e5;
+            if let Some((height, _)) = rocking(limit - (limit - start) * left * left) {
+                least = least.min(height);
+                greatest = greatest.max(height);
+            }
+        }
+    }
+    let [found_least, found_greatest] = range.measures[0].map(|extreme| extreme.value);
+    assert!((found_least - least).abs() < 1e-9, "{found_least} {least}");
+    assert!(
+        (found_greatest - greatest).abs() < 1e-9,
+        "{found_greatest} {greatest}"
+    );
+    // The extreme lies between the last degree and the limit.
+    let off = range.measures[0].map(|extreme| (extreme.driver - upper.drivers[0]).abs());
+    assert!(
+        off.into_iter()
+            .any(|off| 1e-4 < off && off < 1_f64.to_radians()),
+        "{off:?}"
+    );
+}
+
+/// sin μ is that of the angle between the links, at all samples, with the
+/// bodies in any order.
+#[test]
+fn the_transmission_angle_of_a_dyad_is_that_between_its_links() {
+    let reordered = |text: &str| {
+        let (head, rest) = text.split_once("[bodies.crank]").expect("it is there");
+        let (crank, rest) = rest.split_once("[bodies.coupler]").expect("it is there");
+        let (coupler, rest) = rest.split_once("[bodies.rocker]").expect("it is there");
+        let (rocker, tail) = rest.split_once("[joints]").expect("it is there");
+        format!(
+            "{head}[bodies.rocker]{rocker}[bodies.coupler]{coupler}[bodies.crank]{crank}[joints]{tail}"
+        )
+    };
+    let reversed = reordered(ROCKING);
+    for text in [ROCKING, &reversed] {
+        let mut solver = assembled(&parse(text)).0;
+        let range = solver.range(DriverId(0), &RangeSettings::default());
+        for sample in &range.samples {
+            let (_, between) = rocking(sample.driver).unwrap_or((0.0, 0.0));
+            let expected = between.min(PI - between);
+            let found = sample.transmission.expect("there is a dyad");
+            // At a limit the cosine has all digits and the angle half of them.
+            assert!(
+                (found - expected).abs() < 3e-8,
+                "{} {expected}",
+                sample.driver
+            );
+        }
+        let ends = [range.samples.first(), range.samples.last()];
+        for end in ends.into_iter().flatten() {
+            assert!(end.transmission < Some(1e-7), "{end:?}");
+        }
+    }
+}
+
+/// Returns a slider-crank with this radius and rod; a marker far away makes it large.
+fn slider_crank(radius: f64, rod: f64) -> String {
+    let text = "format = 1\nname = 'short'\n[ground.markers]\nO = [0, 0]\n[bodies.crank]\n\
+        markers = { O = [0, 0], A = [RADIUS, 0], far = [0, 3] }\n[bodies.rod]\n\
+        markers = { A = [0, 0], B = [ROD, 0] }\nestimate = [RADIUS, 0, -0.3]\n[bodies.slide]\n\
+        markers = { B = [0, 0] }\nestimate = [RADIUS, 0, 0]\n[joints]\n\
+        O = { type = 'revolute', markers = ['ground.O', 'crank.O'] }\n\
+        A = { type = 'revolute', markers = ['crank.A', 'rod.A'] }\n\
+        B = { type = 'revolute', markers = ['rod.B', 'slide.B'] }\n\
+        guide = { type = 'translational', markers = ['ground.O', 'slide.B'] }\n[drivers]\n\
+        turn = { coordinate = 'angle', markers = ['ground.O', 'crank.O'], start = 0.3 }\n";
+    text.replace("RADIUS", &radius.to_string())
+        .replace("ROD", &rod.to_string())
+}
+
+/// The angle is that between the rod and the normal of the guide, however small the rod is beside
+/// the mechanism.
+#[test]
+fn the_transmission_angle_of_a_slide_is_that_of_its_rod() {
+    let mut solver = assembled(&parse(&slider_crank(0.05, 0.2))).0;
+    let range = solver.range(DriverId(0), &RangeSettings::default());
+    for sample in &range.samples {
+        let expected = FRAC_PI_2 - (0.05 * sample.driver.sin() / 0.2).asin().abs();
+        let found = sample.transmission.expect("there is a dyad");
+        assert!(
+            (found - expected).abs() < 1e-6,
+            "{} {expected}",
+            sample.driver
+        );
+    }
+}
+
+/// A rod that is shorter than the crank jams where it stands at right angles to the guide.
+#[test]
+fn a_rod_at_right_angles_to_its_guide_is_not_in_line_with_anything() {
+    let mut solver = assembled(&parse(&slider_crank(0.3, 0.2))).0;
+    let range = solver.range(DriverId(0), &RangeSettings::default());
+    let End::Singular(point) = &range.upper else {
+        panic!("{:?}", range.upper)
+    };
+    assert!(
+        (point.drivers[0] - (2.0_f64 / 3.0).asin()).abs() < 1e-12,
+        "{point:?}"
+    );
+    assert_eq!(
+        point.geometry,
+        "the normal of joint `guide` passes through joint `A`"
+    );
+}
+
+/// Three bars hold the plate as long as their lines do not meet in one point.
+#[test]
+fn a_plate_on_three_bars_jams_where_their_lines_meet() {
+    let (mut solver, mechanism) = {
+        let mechanism = parse(PLATE);
+        (assembled(&mechanism).0, mechanism)
+    };
+    let range = solver.range(DriverId(0), &RangeSettings::default());
+    let End::Singular(point) = &range.upper else {
+        panic!("{:?}", range.upper)
+    };
+    assert!(
+        (point.drivers[0].to_degrees() - 92.089_000_1).abs() < 1e-6,
+        "{point:?}"
+    );
+    assert_eq!(
+        point.bodies,
+        ["joint `bar1`", "joint `bar2`", "joint `bar3`"]
+    );
+    assert_eq!(
+        point.geometry,
+        "joint `bar1`, joint `bar2` and joint `bar3` meet in one point"
+    );
+    let at = |marker: &str| {
+        let (body, marker) = marker.split_once('.').expect("it is a path");
+        let id = mechanism.body_id(body).expect("it is there").index();
+        let [x, y, phi] = [0, 1, 2].map(|k| point.q[3 * id + k]);
+        let [u, v] = match marker {
+            "A" => [0.5, 0.0],
+            "P" => [1.2, 1.4],
+            "Q" => [2.2, 0.9],
+            _ => [2.0, 2.0],
+        };
+        let (sin, cos) = phi.sin_cos();
+        [x + cos * u - sin * v, y + sin * u + cos * v]
+    };
+    // A line through two points: direction, and moment about the origin.
+    let line = |[x, y]: [f64; 2], [u, v]: [f64; 2]| {
+        let length = (u - x).hypot(v - y);
+        [(u - x) / length, (v - y) / length, (x * v - y * u) / length]
+    };
+    let lines = [
+        line(at("crank.A"), at("plate.P")),
+        line([3.0, 0.0], at("plate.Q")),
+        line([3.5, 2.0], at("plate.R")),
+    ];
+    let [a, b, c] = lines;
+    let cross = [
+        b[1] * c[2] - b[2] * c[1],
+        b[2] * c[0] - b[0] * c[2],
+        b[0] * c[1] - b[1] * c[0],
+    ];
+    let determinant = a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2];
+    assert!(determinant.abs() < 1e-7, "{determinant}");
+    // The smallest angle falls to zero there, continuously: as the root of the distance.
+    let last = range.samples.last().expect("there are some");
+    assert!(
+        last.driver >= point.drivers[0] && last.transmission < Some(1e-6),
+        "{last:?}"
+    );
+    let angles = range
+        .samples
+        .iter()
+        .filter_map(|sample| sample.transmission);
+    assert_eq!(angles.clone().count(), range.samples.len());
+    assert!(
+        angles.clone().fold(0.0, f64::max) > 0.2,
+        "it is regular in between"
+    );
+}
+
+#[test]
+fn change_points_are_samples() {
+    let (_, range) = range("parallelogram");
+    for center in [PI, TAU] {
+        let at = range
+            .samples
+            .iter()
+            .filter(|s| (s.driver - center).abs() < 1e-7);
+        let angles: Vec<_> = at.filter_map(|sample| sample.transmission).collect();
+        assert!(
+            !angles.is_empty() && angles.iter().all(|angle| *angle < 1e-6),
+            "{angles:?}"
+        );
+    }
+}

@@ -24,7 +24,7 @@ from .errors import (
     diagnostics,
 )
 from .rates import differentiate
-from .results import ChangePoint, Drawing, End, Mode, Modes, Range, Report, Result, Sweep
+from .results import ChangePoint, Drawing, End, Extreme, Mode, Modes, Range, Report, Result, Sweep
 
 Drive = Mapping[str, Any]
 """Motions by the drivers' names: an expression in `t`, such as `"60*deg + 2*pi*t"`; positions; or
@@ -294,16 +294,21 @@ class Mechanism:
         'no limit'
         """
         found = self._inner.range(driver, self._start(drive), _given(parameters))
-        lower, upper, crossings, values, transmission, rcond, poses = found
+        lower, upper, crossings, values, transmission, rcond, poses, measures, extremes = found
         return Range(
             driver,
             End(*lower),
             End(*upper),
-            tuple(ChangePoint(value, tuple(bodies)) for value, bodies in crossings),
+            tuple(ChangePoint(value, tuple(bodies), text) for value, bodies, text in crossings),
             values,
             transmission,
             rcond,
             dict(zip(self.bodies, np.moveaxis(poses.reshape(len(values), -1, 3), 0, 1))),
+            {name: measures[place :: len(extremes)] for place, (name, _) in enumerate(extremes)},
+            {
+                name: tuple(Extreme(value, at) for value, at in both)
+                for name, both in extremes
+            },
         )
 
     def modes(self, drive: Drive | None = None, parameters: Parameters | None = None) -> Modes:

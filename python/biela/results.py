@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -206,7 +206,19 @@ class ChangePoint:
     value: float
     """Value of the driver [m or rad]."""
     bodies: tuple[str, ...]
-    """Bodies that line up."""
+    """Bodies and connections in `text`."""
+    text: str = ""
+    """Lines that meet there, as `biela range` prints them."""
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """Least or greatest value of a measure in a range."""
+
+    value: float
+    """Value of the measure [m or rad]."""
+    at: float
+    """Value of the driver there [m or rad]."""
 
 
 @dataclass(frozen=True)
@@ -218,13 +230,17 @@ class Range:
     upper: End
     crossings: tuple[ChangePoint, ...]
     values: NDArray
-    """Values of the driver [m or rad]."""
+    """Values of the driver [m or rad], those at change points and located limits among them."""
     transmission: NDArray
-    """Smallest transmission angle at each sample [rad]; not a number without links."""
+    """Smallest transmission angle at each sample [rad]; not a number without a loop."""
     rcond: NDArray
     """Reciprocal condition at each sample."""
     poses: dict[str, NDArray]
     """Poses of each body: x, y, phi by sample."""
+    measures: dict[str, NDArray] = field(default_factory=dict)
+    """Values of each measure with a coordinate [m or rad]."""
+    extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict)
+    """Least and greatest value of each of them, located to rounding."""
 
     @property
     def turns(self) -> bool:

@@ -60,16 +60,22 @@ type DriverRow = (
 /// An end of a range: its kind, the driver's value, its text, the number of turns.
 type EndRow = (&'static str, Option<f64>, String, Option<u32>);
 
-/// A range: both ends, then the change points with the bodies that line up, then by sample the
-/// driver's value, the transmission angle, the reciprocal condition, and the poses of the bodies.
+/// The least or the greatest value of a measure, and the driver's value there.
+type ExtremeRow = (f64, f64);
+
+/// A range: both ends, then the change points with the bodies and connections that are dependent
+/// there, listed and in words, then by sample the driver's value, the transmission angle, the
+/// reciprocal condition, the poses of the bodies and the measures, then the extremes of these.
 type RangeRow<'py> = (
     EndRow,
     EndRow,
-    Vec<(f64, Vec<String>)>,
+    Vec<(f64, Vec<String>, String)>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Vec<(String, [ExtremeRow; 2])>,
 );
 
 /// Assembly modes: the coordinates of the bodies and the reciprocal condition of each, and whether
@@ -355,7 +361,9 @@ impl Mechanism {
         Ok((
             self.end(id, &range.lower),
             self.end(id, &range.upper),
-            crossings.map(|c| (c.value, c.bodies.clone())).collect(),
+            crossings
+                .map(|c| (c.value, c.bodies.clone(), c.geometry.clone()))
+                .collect(),
             column(samples().map(|s| s.driver).collect()),
             column(
                 samples()
@@ -368,6 +376,13 @@ impl Mechanism {
                     .flat_map(|s| s.pose.q[..poses].iter().copied())
                     .collect(),
             ),
+            column(samples().flat_map(|s| s.measures.iter().copied()).collect()),
+            (self.model.measures.iter().zip(&range.measures))
+                .map(|(measure, extremes)| {
+                    let extremes = extremes.map(|extreme| (extreme.value, extreme.driver));
+                    (measure.name.clone(), extremes)
+                })
+                .collect(),
         ))
     }
 

@@ -33,12 +33,12 @@ use crate::mechanism::{CoordinateKind, Driver, DriverId, Mechanism, Unit, rounde
 /// Find how far a driver can go.
 ///
 /// biela follows the driver both ways from the start, and holds the others, until the mechanism
-/// returns to its pose or meets a limit. A dead point is located to rounding, and the bodies that
-/// line up there are named. A driver's `min` and `max` are limits too, unless --from and --to say
-/// otherwise. The least and the greatest value of each measure are told with their places; one
-/// computed from velocities has those of a driver that moves at 1 m/s or 1 rad/s, or at --speed. The
-/// transmission angle is that of the worst pair of links, from 0 deg at a dead point to 90 deg at
-/// best; the reciprocal condition is that of `check`.
+/// returns to its pose or meets a limit. A dead point is located to rounding, and named by
+/// the links that line up there or the lines that meet. A driver's `min` and `max` are limits too,
+/// unless --from and --to say otherwise. The least and the greatest value of each measure are told
+/// with their places; one computed from velocities has those of a driver that moves at 1 m/s or
+/// 1 rad/s, or at --speed. The transmission angle is that of the worst joint, from 0 deg at a dead
+/// point to 90 deg at best; the reciprocal condition is that of `check`.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: biela range tlv.toml --driver side_length --plot range.svg")]
 pub(super) struct Range {
@@ -478,7 +478,7 @@ fn chart(
                 label: "transmission angle".to_owned(),
                 unit: "deg".to_owned(),
             },
-            lines: vec![line("worst pair of links", 0, angle, &|s| {
+            lines: vec![line("worst joint", 0, angle, &|s| {
                 s.transmission.unwrap_or(f64::NAN)
             })],
         });

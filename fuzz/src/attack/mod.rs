@@ -11,11 +11,13 @@
 //! - lengths times a thousand or a thousandth, other names, another order of bodies and joints, and
 //!   another place in the plane change nothing: the same verdict, the same pose, sub-steps within a
 //!   factor of two;
+//! - the extremes of measures over the range of a driver are those of a dense scan; see [`try_extremes`];
 //! - no call takes more than [`MOST_SUBSTEPS`] sub-steps.
 //!
 //! [`change_points`] has forces at change points.
 
 mod change_points;
+mod extremes;
 mod kinds;
 mod text;
 
@@ -32,6 +34,7 @@ use text::{Law, Text, View};
 pub use change_points::{FORCE_KINDS, force_case, run_forces};
 pub use text::Variant;
 
+pub use extremes::try_extremes;
 pub use kinds::{Draw, KINDS};
 
 /// Most sub-steps of a call.
@@ -156,6 +159,20 @@ pub struct Counts {
     pub substeps: u32,
 }
 
+impl Counts {
+    /// Counts a finding, and reports a difference.
+    fn note(&mut self, finding: Finding, found: impl FnOnce(&str)) {
+        match finding {
+            Finding::Agrees => self.agree += 1,
+            Finding::NotAssembled => self.not_assembled += 1,
+            Finding::Differs(words) => {
+                self.differ += 1;
+                found(&words);
+            }
+        }
+    }
+}
+
 /// A kind of mechanisms, as its place in [`KINDS`], in one of the variants.
 pub type Kind = (usize, Variant);
 
@@ -170,14 +187,17 @@ pub fn run(kind: Kind, seed: u64, cases: u64, mut found: impl FnMut(u64, &str)) 
             counts.stopped += u32::from(jump.stop.is_some());
             counts.slow += u32::from(jump.slowest > SLOW);
         }
-        match finding {
-            Finding::Agrees => counts.agree += 1,
-            Finding::NotAssembled => counts.not_assembled += 1,
-            Finding::Differs(words) => {
-                counts.differ += 1;
-                found(case, &words);
-            }
-        }
+        counts.note(finding, |words| found(case, words));
+    }
+    counts
+}
+
+/// Runs a number of cases of [`try_extremes`], and reports each difference to `found`, with the seed of
+/// its case.
+pub fn run_extremes(kind: Kind, seed: u64, cases: u64, mut found: impl FnMut(u64, &str)) -> Counts {
+    let mut counts = Counts::default();
+    for case in seed..seed + cases {
+        counts.note(try_extremes(kind, case), |words| found(case, words));
     }
     counts
 }

@@ -1,4 +1,5 @@
-//! Attacks the solver with generated mechanisms: `attack [CASES [SEED [KIND [fixed|moving|rough|none]]]]`.
+//! Attacks the solver with generated mechanisms:
+//! `attack [CASES [SEED [KIND [fixed|moving|rough|none|extremes]]]]`.
 
 #![allow(
     clippy::print_stdout,
@@ -17,7 +18,7 @@ fn main() -> ExitCode {
         given.map_or(Ok(default), |text| text.parse())
     };
     let (Ok(cases), Ok(seed)) = (number(1000), number(1)) else {
-        eprintln!("usage: attack [CASES [SEED [KIND [fixed|moving|rough|none]]]]");
+        eprintln!("usage: attack [CASES [SEED [KIND [fixed|moving|rough|none|extremes]]]]");
         return ExitCode::from(2);
     };
     let kind = arguments.next();
@@ -47,6 +48,14 @@ fn main() -> ExitCode {
             });
             let last = seed + cases - 1;
             println!("{name}, {words}, seeds {seed} to {last}: {counts:?}");
+            differ += counts.differ;
+        }
+        if only.as_deref().is_none_or(|only| only == "extremes") {
+            let kind = (index, Variant::Fixed);
+            let counts = fuzz::attack::run_extremes(kind, seed, cases, |case, finding| {
+                println!("{name}, extremes, seed {case}: {finding}");
+            });
+            println!("{name}, extremes, seed {seed} on: {counts:?}");
             differ += counts.differ;
         }
     }

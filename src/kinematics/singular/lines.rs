@@ -176,7 +176,7 @@ impl<'a> Moving<'a> {
             let apart = self.velocity(a, point) - self.velocity(b, point);
             let turn = self.twists[a][2] - self.twists[b][2];
             let [a, b] = [a, b].map(|body| self.groups[body]);
-            if apart.norm().max(turn.abs()) <= FREE && a != b {
+            if apart.norm().max(turn.abs()) <= FREE.max(self.tolerance) && a != b {
                 // The group of what rests has the largest number.
                 let [from, to] = [a.min(b), a.max(b)];
                 let members = self.groups.iter_mut().filter(|group| **group == from);
