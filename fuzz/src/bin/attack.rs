@@ -54,6 +54,9 @@ fn main() -> ExitCode {
             let kind = (index, Variant::Fixed);
             let counts = fuzz::attack::run_extremes(kind, seed, cases, |case, finding| {
                 println!("{name}, extremes, seed {case}: {finding}");
+                if cases == 1 {
+                    println!("{:#?}", fuzz::attack::plain_case(kind, case));
+                }
             });
             println!("{name}, extremes, seed {seed} on: {counts:?}");
             differ += counts.differ;
