@@ -48,6 +48,7 @@ const RANGE: RangeSettings = RangeSettings {
     turns: 8,
     lengths: 3.0,
     bounds: [None; 2],
+    transmission: false,
 };
 /// Part of the range that a motion between two limits leaves out at each end: at a dead point
 /// there is no velocity.

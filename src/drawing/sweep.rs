@@ -86,6 +86,7 @@ pub(super) fn follow(
         turns: turns as u32,
         lengths: SEARCHED,
         bounds,
+        transmission: false,
     };
     let start = solver.pose().drivers[driver.index()];
     let range = solver.range(driver, &settings);

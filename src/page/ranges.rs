@@ -13,6 +13,7 @@ const RANGE: RangeSettings = RangeSettings {
     turns: 1,
     lengths: 1.0,
     bounds: [None; 2],
+    transmission: false,
 };
 /// Time that a driver takes for a turn, or from one end of its range to the other \[s\].
 const PERIOD: [f64; 2] = [4.0, 2.0];

@@ -5,6 +5,10 @@ use std::sync::Arc;
 use crate::kinematics::{Curve, Error, Path, Pose, Range, Sample, Solution, Solver};
 use crate::mechanism::{DriverId, Jet, Mechanism, shown};
 
+/// Reciprocal condition of a limit that is located to rounding. A pose in front of one, where the
+/// tracker stops, has the root of it.
+const SINGULAR: f64 = 1e-10;
+
 /// A solver that visits places in the range of a driver; the others are at rest.
 pub(super) struct Follower<'a> {
     pub(super) solver: &'a mut Solver,
@@ -49,9 +53,15 @@ impl<'a> Follower<'a> {
     ///
     /// # Errors
     ///
-    /// The mechanism has no velocities there, or no forces where they are sought.
+    /// The mechanism has no velocities there, as at a limit, or no forces where they are sought.
     pub(super) fn visit(&mut self, sample: &Sample) -> Result<(), Error> {
         self.solver.restore(&sample.pose);
+        if sample.rcond < SINGULAR && sample.pose.crossings.is_empty() {
+            return Err(Error::Singular {
+                rcond: sample.rcond,
+                bodies: Vec::new(),
+            });
+        }
         self.solution.solve(self.solver)
     }
 

@@ -91,7 +91,7 @@ pub struct Sample {
     /// The smallest transmission angle of all joints, from 0 at a dead point to π/2 at best \[rad\]:
     /// a unit force on a point of a joint loads the joint with 1/sin of it at most. Between two links
     /// it is their angle, between a link and a slide the angle of the link and the normal of the
-    /// guide. `None` if the mechanism has no loop.
+    /// guide. `None` if the mechanism has no loop, and unless the settings ask for it.
     pub transmission: Option<f64>,
     /// Values of the measures \[m or rad\].
     pub measures: Vec<f64>,
@@ -111,6 +111,8 @@ pub struct RangeSettings {
     /// Values of the driver between which the range is sought \[m or rad\]; in place of one left
     /// out the driver's own `min` or `max` bounds it, if it has one.
     pub bounds: [Option<f64>; 2],
+    /// Whether samples have their transmission angles: each takes a solution per row.
+    pub transmission: bool,
 }
 
 impl Default for RangeSettings {
@@ -121,6 +123,7 @@ impl Default for RangeSettings {
             turns: 64,
             lengths: 100.0,
             bounds: [None; 2],
+            transmission: true,
         }
     }
 }
@@ -568,7 +571,9 @@ impl Explorer<'_> {
             driver: self.state.pose.drivers[self.driver.index()],
             rcond: self.state.rcond(self.model),
             residual: self.state.residual(&self.model.system),
-            transmission: self.passages.smallest(self.model, self.state),
+            transmission: (self.settings.transmission)
+                .then(|| self.passages.smallest(self.model, self.state))
+                .flatten(),
             measures: (self.model.measures.iter())
                 .map(|measure| measure.value(&self.state.at))
                 .collect(),
