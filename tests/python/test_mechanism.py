@@ -83,6 +83,23 @@ def test_the_range_of_a_triangle_ends_at_dead_points(mechanism):
     assert found.lower.value < found.values[0] + 1e-6
     assert found.poses[triangle.bodies[0]].shape == (len(found.values), 3)
     assert report.ok and len(sides) == 2
+    # The ends are samples: there the transmission angle is zero.
+    assert [found.values[0], found.values[-1]] == [found.lower.value, found.upper.value]
+    assert_allclose(found.transmission[[0, -1]], 0, atol=1e-7)
+    assert "body `arm` and body `rod` line up" in found.lower.text
+
+
+def test_a_range_has_the_extremes_of_measures(four_bar):
+    """Coupler and rocker span 0.3 m or 0.5 m where the crank lies along the base."""
+    found = four_bar.range("crank_angle")
+    least, greatest = found.extremes["transmission"]
+    a, b = 0.25, 0.3
+    angle = lambda d: np.arccos((a**2 + b**2 - d**2) / (2 * a * b))
+    assert_allclose([least.value, greatest.value], [angle(0.3), angle(0.5)], rtol=1e-14)
+    assert_allclose(greatest.at, np.pi, rtol=1e-13)
+    sampled = found.measures["transmission"]
+    assert len(sampled) == len(found.values)
+    assert least.value <= sampled.min() and sampled.max() <= greatest.value
 
 
 def test_a_crank_turns_fully(four_bar):

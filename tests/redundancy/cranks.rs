@@ -224,7 +224,14 @@ fn rows_are_not_changed_in_a_circle() {
         [range.lower, range.upper].map(|end| match end {
             End::Singular(point) => {
                 assert_eq!(point.kind, SingularKind::DeadPoint);
-                assert_eq!(point.bodies, ["body `P`"]);
+                // Two links from the rocker and one from ground hold the plate.
+                let links = ["joint `L0`", "joint `L1`", "joint `L2`"];
+                assert_eq!(point.bodies, links, "{}", point.geometry);
+                assert!(
+                    point.geometry.ends_with("meet in one point"),
+                    "{}",
+                    point.geometry
+                );
                 point.drivers[0]
             }
             end => panic!("{end:?}"),
