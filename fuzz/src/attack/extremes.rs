@@ -29,6 +29,8 @@ const NEAR_LIMIT: f64 = 1e-6;
 const SAME: f64 = 1e-7;
 /// Largest transmission angle at a limit \[rad\]: the root of rounding, in mechanisms of some size.
 const ZERO: f64 = 1e-5;
+/// Least reciprocal condition of a sample from which the driver can go on.
+const REGULAR: f64 = 1e-10;
 /// Turns of a scan.
 const MOST_TURNS: u32 = 4;
 
@@ -118,7 +120,9 @@ fn differences(solver: &mut Solver) -> Result<(), String> {
                 continue;
             }
             // Not from the start, from which another sub-step may lead there.
-            let samples = range.samples.iter().map(|sample: &Sample| &sample.pose);
+            let regular = |sample: &&Sample| sample.rcond > REGULAR;
+            let samples = range.samples.iter().filter(regular);
+            let samples = samples.map(|sample| &sample.pose);
             let near = samples.min_by(|a, b| {
                 let off = |pose: &Pose| (pose.drivers[0] - extreme.driver).abs();
                 off(a).total_cmp(&off(b))

@@ -70,7 +70,7 @@ struct Moving<'a> {
     at: &'a Configuration,
     /// Velocity at each body's origin, in sizes, and angular velocity.
     twists: Vec<[f64; 3]>,
-    /// Whether each row is one of the block or of those that it reads; those that read it bear no
+    /// Whether each row is one of the block or of those that it reads; those that read it transmit no
     /// force.
     acts: Vec<bool>,
     /// The group of each body, and of ground.
@@ -239,7 +239,7 @@ impl<'a> Moving<'a> {
         let drivers = drivers
             .map(|(k, driver)| of_coordinate(Element::Driver(DriverId(k)), &driver.coordinate));
         let all = joints.chain(constraints).chain(drivers);
-        let all = all.filter(|(element, ..)| self.bears_force(*element));
+        let all = all.filter(|(element, ..)| self.transmits(*element));
         let all = all.map(|(element, way, from, to)| {
             let bodies = [from, to].map(|marker| self.body(marker));
             Connection {
@@ -275,7 +275,7 @@ impl<'a> Moving<'a> {
     }
 
     /// Returns whether rows of an element belong to the block or to those that it reads.
-    fn bears_force(&self, element: Element) -> bool {
+    fn transmits(&self, element: Element) -> bool {
         let mut rows = self.system.equations().iter().zip(&self.acts);
         rows.any(|(row, acts)| *acts && row.element == element)
     }
