@@ -126,7 +126,6 @@ class Run:
 class Sweep:
     rows: list[int]
     reasons: list[tuple[int, str]]
-    reassembled: list[int]
     def take_values(self) -> _Floats: ...
 
 class Targets:

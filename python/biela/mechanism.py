@@ -254,7 +254,6 @@ class Mechanism:
         values = np.empty((count, len(names), len(motions[0])))
         rows = np.empty(count, dtype=int)
         reasons: dict[int, str] = {}
-        reassembled = np.zeros(count, dtype=bool)
         bar = _progress_bar(count) if progress else None
         size = max(1, -(-count // CHUNKS)) if bar is not None else max(1, count)
         for first in range(0, count, size):
@@ -269,7 +268,6 @@ class Mechanism:
             values[part] = raw.take_values().reshape(part.stop - first, *values.shape[1:])
             rows[part] = raw.rows
             reasons.update((first + index, reason) for index, reason in raw.reasons)
-            reassembled[first + np.asarray(raw.reassembled, dtype=int)] = True
             if bar is not None:
                 bar.update(part.stop - first)
         if bar is not None:
@@ -282,7 +280,6 @@ class Mechanism:
             values,
             rows,
             reasons,
-            reassembled,
         )
 
     def range(

@@ -132,7 +132,7 @@ class Sweep(Mapping):
     Each array has the shape of the swept parameters, then one axis over time.
     """
 
-    def __init__(self, t, units, parameters, shape, values, rows, reasons, reassembled):
+    def __init__(self, t, units, parameters, shape, values, rows, reasons):
         self.t: NDArray = t
         """Times [s]."""
         self.units: dict[str, str] = units
@@ -146,9 +146,6 @@ class Sweep(Mapping):
         self.rows: NDArray = rows.reshape(shape)
         """Number of rows that each variant reached."""
         self._reasons = reasons
-        self.reassembled: NDArray = reassembled.reshape(shape)
-        """Whether a variant was assembled from the estimates, possibly in another assembly mode:
-        no continuous motion leads there from the file's own pose."""
 
     @property
     def ok(self) -> NDArray:

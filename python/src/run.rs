@@ -28,7 +28,7 @@ pub(crate) struct Run {
     /// Cause of a stop before the last row.
     #[pyo3(get)]
     stop: Option<String>,
-    /// Singular positions that were near or were passed, and a start in another assembly mode.
+    /// Singular positions that were near or were passed, and contacts that begin to pull.
     #[pyo3(get)]
     notices: Vec<String>,
 }
@@ -62,7 +62,7 @@ impl Run {
 ///
 /// # Errors
 ///
-/// The mechanism does not assemble at the start.
+/// The start cannot be reached from the file's own pose.
 pub(crate) fn run(
     scenario: &Scenario,
     parameters: &[f64],
@@ -72,7 +72,7 @@ pub(crate) fn run(
 ) -> Result<Run, Failure> {
     let mut runner = Runner::new(scenario, columns)?;
     let rows = scenario.times.len();
-    let began = runner.start(parameters)?;
+    runner.start(parameters)?;
     let arrows = ForcePlace::sought(&mut runner.solver, &runner.solution);
     let mut result = Run {
         mechanism: scenario.driven.clone(),
@@ -81,7 +81,7 @@ pub(crate) fn run(
         film: Film::new(told, arrows, rows, parameters),
         rows: 0,
         stop: None,
-        notices: began.warning().map(str::to_owned).into_iter().collect(),
+        notices: Vec::new(),
     };
     let directions: Vec<_> = by
         .iter()

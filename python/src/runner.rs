@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use biela::kinematics::{
-    Blocked, Carryover, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution,
-    Solver, Start,
+    Blocked, Carryover, Curve, Direction, Error, Output, OutputSource, Path, Pose, Solution, Solver,
 };
 use biela::mechanism::{DriverId, Jet, Order, show_time};
 
@@ -54,27 +53,26 @@ impl Runner {
     ///
     /// # Errors
     ///
-    /// The mechanism does not assemble there.
-    pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<Start, Failure> {
+    /// No continuous motion leads there, or the mechanism does not close there.
+    pub(crate) fn start(&mut self, parameters: &[f64]) -> Result<(), Failure> {
         let time = self.scenario.times[0];
         self.begin(parameters)
             .map_err(|error| Failure::Assembly(error.at_start(time)))
     }
 
-    fn begin(&mut self, parameters: &[f64]) -> Result<Start, Error> {
+    fn begin(&mut self, parameters: &[f64]) -> Result<(), Error> {
         let Scenario { driven, home, .. } = &self.scenario;
         self.home.resume(&home.0, &home.1);
         let home = &home.0;
         let value = |driver| Some(self.sample(driver, 0)?.value);
         let path = (self.home).path_to_start(driven, parameters, self.scenario.times[0], value);
-        let began = self.home.start(home, &path)?;
+        self.home.start(home, &path)?;
         self.home.carry_over(&mut self.carryover);
         self.solver.resume(self.home.pose(), &self.carryover);
         self.path.from.copy_from_slice(parameters);
         self.path.to.copy_from_slice(parameters);
         self.near_singular = false;
-        self.solve(0)?;
-        Ok(began)
+        self.solve(0)
     }
 
     /// Moves on to a row's time.

@@ -1,7 +1,7 @@
 //! The same motion of many variants, on all cores.
 
 use biela::cli::check_parameter;
-use biela::kinematics::{Output, Start};
+use biela::kinematics::Output;
 use biela::mechanism::ParameterId;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
@@ -22,9 +22,6 @@ pub(crate) struct Sweep {
     /// Reasons of the variants that stopped, by their index.
     #[pyo3(get)]
     reasons: Vec<(usize, String)>,
-    /// Variants that were assembled from the estimates, possibly in another assembly mode.
-    #[pyo3(get)]
-    reassembled: Vec<usize>,
 }
 
 #[pymethods]
@@ -39,11 +36,10 @@ impl Sweep {
 struct Outcome {
     rows: usize,
     reason: Option<String>,
-    reassembled: bool,
 }
 
 /// Runs the variants, whose parameters \[SI\] are by parameter, then by variant. A variant that
-/// does not assemble or stops has a reason and no values from there on.
+/// does not reach its start or stops has a reason and no values from there on.
 ///
 /// # Errors
 ///
@@ -64,7 +60,6 @@ pub(crate) fn sweep(
         let mut outcome = Outcome {
             rows: 0,
             reason: None,
-            reassembled: false,
         };
         let mut own = parameters.to_vec();
         for (parameter, series) in swept {
@@ -76,12 +71,11 @@ pub(crate) fn sweep(
             own[parameter.index()] = value;
         }
         scenario.own.derive_parameters(&mut own);
-        match runner.start(&own) {
-            Ok(began) => outcome.reassembled = matches!(began, Start::Reassembled(_)),
-            Err(Failure::Assembly(reason) | Failure::Usage(reason) | Failure::File(reason)) => {
-                outcome.reason = Some(reason);
-                return outcome;
-            }
+        if let Err(Failure::Assembly(reason) | Failure::Usage(reason) | Failure::File(reason)) =
+            runner.start(&own)
+        {
+            outcome.reason = Some(reason);
+            return outcome;
         }
         for row in 0..rows {
             if row > 0
@@ -111,16 +105,12 @@ pub(crate) fn sweep(
         values,
         rows: Vec::with_capacity(variants),
         reasons: Vec::new(),
-        reassembled: Vec::new(),
     };
     for (variant, outcome) in outcomes.into_iter().flatten().enumerate() {
         result.rows.push(outcome.rows);
         result
             .reasons
             .extend(outcome.reason.map(|reason| (variant, reason)));
-        if outcome.reassembled {
-            result.reassembled.push(variant);
-        }
     }
     Ok(result)
 }

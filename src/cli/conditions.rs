@@ -218,14 +218,12 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// The values at the start cannot be reached and give no assembly either.
+    /// Those of [`Solver::start`].
     pub(super) fn solver(&self, mut home_solver: Solver) -> Result<Solver, kinematics::Error> {
         let home = home_solver.pose().clone();
         let value = |driver| Some(self.signals.at(driver, self.start)?.value);
         let path = home_solver.path_to_start(&self.mechanism, &self.parameters, self.start, value);
-        if let Some(warning) = home_solver.start(&home, &path)?.warning() {
-            Message::Warning(warning.to_owned()).show();
-        }
+        home_solver.start(&home, &path)?;
         let mut solver = Solver::new(Arc::clone(&self.mechanism))?;
         solver.restore(home_solver.pose());
         warn_of_misfits(&solver);

@@ -121,6 +121,19 @@ pub enum Error {
         /// q of that pose.
         nearest: Vec<f64>,
     },
+    /// No continuous motion was found from a known pose to values at which the mechanism closes.
+    #[error(
+        "the mechanism closes at the start values, but the motion that leads there from the file's \
+         own pose stops{}: {reason}; if the pose at the start values is meant, give the file \
+         `start` values and estimates from which a motion leads there",
+        stopped_with(.values)
+    )]
+    NoWay {
+        /// The cause of the stop.
+        reason: String,
+        /// The drivers and parameters that move, with their values there.
+        values: Vec<String>,
+    },
     /// The equations can be satisfied, but the Jacobian is singular there.
     #[error("{}", singular_message(*.rcond, .bodies))]
     Singular {
@@ -384,6 +397,14 @@ pub(super) fn list(names: &[String], last: &str) -> String {
         [names @ .., name] if !names.is_empty() => format!("{}{last}{name}", names.join(", ")),
         _ => names.concat(),
     }
+}
+
+/// Returns the values with which a motion stops, to stand behind "stops".
+fn stopped_with(values: &[String]) -> String {
+    if values.is_empty() {
+        return String::new();
+    }
+    format!(" with {}", list(values, " and "))
 }
 
 fn not_assembled_message(verdict: &Verdict, open: &[OpenJoint]) -> String {

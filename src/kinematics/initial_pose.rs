@@ -1,41 +1,16 @@
-//! The first pose, from the estimates in the file (Eq. 3.6.9) or by continuous motion from a known
-//! pose.
+//! The first pose, from the estimates in the file (Eq. 3.6.9).
 
 use super::assembly::estimate::{distance, go_to_estimate};
 use super::assembly::nearest::search_at_once;
 use super::assembly::search::search;
 use super::assembly::turns::choose_turns;
-use super::continuation::{PathTracker, Progress};
 use super::error::Error;
 use super::model::Model;
 use super::newton::SINGULAR;
 use super::path::Path;
 use super::redundancy::{assemble_on_all, choose_rows};
 use super::singular::settle;
-use super::state::{Pose, State};
-
-/// The method that found the first pose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Start {
-    /// Continuous motion: the assembly mode is that of the pose at the start.
-    Continuous(Progress),
-    /// Assembly from the estimates, because the motion was blocked; possibly another assembly mode.
-    Reassembled(Assembly),
-}
-
-impl Start {
-    /// Returns the warning of a start that may be in another assembly mode than the file's pose.
-    #[must_use]
-    pub fn warning(&self) -> Option<&'static str> {
-        match self {
-            Self::Continuous(_) => None,
-            Self::Reassembled(_) => Some(
-                "no continuous motion leads from the file's own pose to these values: assembled \
-                 there from the estimates, possibly in another assembly mode",
-            ),
-        }
-    }
-}
+use super::state::State;
 
 /// The outcome of an assembly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,24 +75,4 @@ fn assemble_rows(
         iterations,
         distance: distance(&model.system, state, &estimate),
     })
-}
-
-/// Finds the pose at the end of `path`: tracks the path from `home`, which is at its start, or
-/// assembles at its end if the motion is blocked.
-///
-/// # Errors
-///
-/// Those of [`assemble`].
-pub(super) fn start(
-    model: &mut Model,
-    state: &mut State,
-    tracker: &mut PathTracker,
-    home: &Pose,
-    path: &Path,
-) -> Result<Start, Error> {
-    state.restore(model, home);
-    match tracker.track(model, state, path, false) {
-        Ok(progress) => Ok(Start::Continuous(progress)),
-        Err(_) => assemble(model, state, path).map(Start::Reassembled),
-    }
 }

@@ -41,7 +41,7 @@
 //! | `redundancy` | rows that follow from others, and those that are solved |
 //! | `singular` | dead points and change points |
 //! | `continuation` | sub-steps along a path |
-//! | `initial_pose` | the first pose |
+//! | `initial_pose`, `start` | the first pose; the motion from there to the values of a start |
 //! | `analysis` | sensitivity, range, modes, instant centres, checks of the geometry |
 //! | `forces` | efforts of drivers, reactions of joints, energies |
 //! | `solver` | the facade |
@@ -73,6 +73,7 @@ mod signals;
 mod singular;
 mod solution;
 mod solver;
+mod start;
 mod state;
 mod structure;
 mod system;
@@ -94,7 +95,7 @@ pub use error::{Error, Fit, NoLimit, OpenJoint, OpenPose, Proof, Verdict};
 pub use forces::{
     ForceParts, ForceQuantity, ForceSensitivity, Forces, KnownMotion, LiftOff, Reported,
 };
-pub use initial_pose::{Assembly, Start};
+pub use initial_pose::Assembly;
 pub use linear::PivotOrder;
 pub use output::{Output, OutputSource, omitted_reactions};
 pub use path::{Curve, Path, Rates};

@@ -11,11 +11,12 @@ use super::continuation::{Blocked, PathTracker, Progress};
 use super::element::Element;
 use super::error::Error;
 use super::forces::{self, ForceParts, ForceSensitivity, Forces, KnownMotion, LiftOff};
-use super::initial_pose::{self, Assembly, Start};
+use super::initial_pose::{self, Assembly};
 use super::model::Model;
 use super::path::{Curve, Path, Rates};
 use super::redundancy::{self, Redundancy};
 use super::singular::{self, Approach};
+use super::start;
 use super::state::{Carryover, Pose, State};
 use super::structure::Structure;
 use super::system::System;
@@ -159,14 +160,18 @@ impl Solver {
         path
     }
 
-    /// Finds the pose at the end of `path`: moves there continuously from `home`, which is at its
-    /// start, or assembles there from the estimates if the motion is blocked.
+    /// Moves the mechanism from `home` to the values at the end of `path`, which starts there. Drivers
+    /// and parameters go straight to these values, and whole turns of drivers last; where they
+    /// bring the mechanism back to its pose they are counted, not followed. Where that way is
+    /// blocked, `path` itself is followed.
     ///
     /// # Errors
     ///
-    /// Those of [`assemble`](Self::assemble).
-    pub fn start(&mut self, home: &Pose, path: &Path) -> Result<Start, Error> {
-        initial_pose::start(
+    /// [`Error::NoWay`] if no continuous motion leads there, and those of
+    /// [`assemble`](Self::assemble) if the mechanism does not close there. The solver is then
+    /// without the pose asked for until it is [restored](Self::restore).
+    pub fn start(&mut self, home: &Pose, path: &Path) -> Result<Progress, Error> {
+        start::start(
             &mut self.model,
             &mut self.state,
             &mut self.tracker,

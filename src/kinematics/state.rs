@@ -1,5 +1,6 @@
 //! The state of a mechanism: the pose, and all that is derived from it.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::block::{BlockCarryover, BlockState, Crossing, JacobianFactors};
@@ -119,6 +120,10 @@ pub(super) const SINGULAR_HERE: Error = Error::Singular {
 /// A driver with a larger velocity, or an acceleration above the square of it, may make rates of
 /// bodies overflow far from any singular position \[SI\].
 const TOO_FAST: f64 = 1e100;
+
+/// Two poses are the same if no unknown differs by more, scaled and whole turns apart: after some
+/// thousand sub-steps, and up to a thousand turns, rounding is below that.
+const SAME_PLACE: f64 = 1e-9;
 
 /// The rates of a single driver with respect to its own value.
 pub(super) const UNIT_RATE: [Jet; 1] = [Jet::new(0.0, [1.0, 0.0])];
@@ -342,6 +347,23 @@ impl State {
         while let Some(crossing) = self.pose.crossings.pop() {
             model.plan.release(crossing.block);
         }
+    }
+
+    /// Returns the whole turns of each unknown from a pose to the present one, zero for places;
+    /// `None` unless the poses are the same apart from whole turns.
+    pub(super) fn whole_turns_since(&self, system: &System, before: &Pose) -> Option<Vec<f64>> {
+        let size = self.at.size();
+        let unknowns = self.pose.q.iter().zip(&before.q).enumerate();
+        let turns = unknowns.map(|(column, (&now, &before))| {
+            let difference = system.difference(column, size, now, before);
+            let turns = if system.is_angle(column) {
+                ((now - before) / TAU).round()
+            } else {
+                0.0
+            };
+            (difference.abs() < SAME_PLACE).then_some(turns)
+        });
+        turns.collect()
     }
 
     /// Returns the numbers in the equations at the present places of the bodies.

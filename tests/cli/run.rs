@@ -150,6 +150,27 @@ fn run_keeps_the_assembly_mode_however_far_the_start_is() {
     assert_eq!(column(&csv, "time").len(), 201);
 }
 
+/// The rocker swings; one turn further the mechanism closes again, and no motion leads there.
+#[test]
+fn a_start_beyond_a_dead_point_is_refused_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = altered(
+        folder.path(),
+        "four_bar",
+        &[(
+            r#"markers = ["ground.O2", "crank.O"], start = "60*deg""#,
+            r#"markers = ["ground.O4", "rocker.O"], start = "140*deg""#,
+        )],
+    );
+    for command in ["run", "draw", "range"] {
+        let refused = biela(&[command, &file, "--drive", "crank_angle = 500*deg"]);
+        let message = stderr(&refused.code(1));
+        for words in ["dead point", "stops with driver `crank_angle` at", "deg"] {
+            assert!(message.contains(words), "{command}: {message}");
+        }
+    }
+}
+
 #[test]
 fn run_stops_at_a_dead_point_and_keeps_the_rows_before() {
     let drive = "side_length = 0.35 + 0.1*t";

@@ -46,6 +46,18 @@ def test_too_long_to_assemble(slave, name, values, joints):
     instance.step(0.1)
 
 
+def test_a_start_beyond_a_dead_point(slave):
+    """The crank of Peaucellier's linkage swings. One turn further it closes, but no motion leads
+    there: initialization tells where the motion stops."""
+    instance = slave("peaucellier")
+    with pytest.raises(FMICallException) as failed:
+        instance.start({"crank_angle.position": np.radians(30) + 2 * np.pi})
+    assert failed.value.function == "fmi2ExitInitializationMode"
+    assert failed.value.status == ERROR
+    errors = instance.messages.texts(ERROR)
+    assert any("stops with driver `crank_angle` at" in text for text in errors), errors
+
+
 @pytest.mark.parametrize(("name", "values", "joints"), TOO_LONG)
 def test_too_long_for_an_early_reader(slave, name, values, joints):
     """A getter in initialization mode fails for the same reason, and says so."""

@@ -73,6 +73,29 @@ def test_refused_variants_have_their_reasons(four_bar):
     assert np.isnan(sweep["rocker.phi"][1, reached:]).all()
 
 
+def rocker_driven(four_bar):
+    """The four-bar driven at its rocker, which swings between 122.1° and 161.4°."""
+    text = four_bar.text.replace(
+        'markers = ["ground.O2", "crank.O"], start = "60*deg"',
+        'markers = ["ground.O4", "rocker.O"], start = "140*deg"',
+    )
+    assert text != four_bar.text
+    return biela.loads(text)
+
+
+def test_variants_beyond_a_dead_point_have_their_reasons(four_bar):
+    """One turn of the rocker further the mechanism closes, but no motion leads there."""
+    driven = rocker_driven(four_bar)
+    beyond = np.full(3, np.radians(140) + 2 * np.pi)
+    with pytest.raises(biela.AssemblyError, match="stops with driver `crank_angle` at"):
+        driven.run(drive={"crank_angle": beyond})
+    sweep = driven.sweep({"base": [0.4, 0.41]}, drive={"crank_angle": beyond}, variables="rocker.phi")
+    assert not sweep.ok.any() and not sweep.rows.any()
+    assert np.isnan(sweep["rocker.phi"]).all()
+    for variant in range(2):
+        assert "dead point" in sweep.reason(variant)
+
+
 def test_the_number_of_cores_has_no_effect(tmp_path):
     code = (
         "import sys; sys.path.insert(0, sys.argv[1])\n"

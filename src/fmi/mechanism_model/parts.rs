@@ -229,11 +229,7 @@ impl MechanismModel {
     fn follow(&mut self, log: &Logger) -> Result<(), Failure> {
         match self.solver.track(&self.path) {
             Ok(progress) => {
-                let total = &mut self.course.path_progress;
-                total.iterations += progress.iterations;
-                total.substeps += progress.substeps;
-                total.crossings += progress.crossings;
-                total.checked += progress.checked;
+                self.course.path_progress.add(&progress);
                 Ok(())
             }
             Err(blocked) => Err(self.fail_step(&blocked, log)),

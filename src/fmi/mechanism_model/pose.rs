@@ -8,7 +8,7 @@ use super::{Freshness, MechanismModel, failed, without_value};
 use crate::fmi::error::Failure;
 use crate::fmi::log::{Advice, Logger};
 use crate::fmi::state::{Interface, Phase};
-use crate::kinematics::{Blocked, Curve, Progress, Start};
+use crate::kinematics::{Blocked, Curve};
 use crate::mechanism::{DriverId, DriverSource, RateSource};
 
 /// Gap between two polynomials of an input, relative to its travel in the step, below which the
@@ -355,12 +355,11 @@ impl MechanismModel {
         Ok(())
     }
 
-    /// Finds the start pose: moves from the file's own pose to the values set or, if a dead point
-    /// lies between, assembles at these values from the estimates.
+    /// Finds the start pose: moves from the file's own pose to the values set.
     ///
     /// # Errors
     ///
-    /// The mechanism does not assemble.
+    /// No continuous motion leads there, or the mechanism does not close there.
     fn initialize(&mut self, log: &Logger) -> Result<(), Failure> {
         let start_pose = Arc::clone(&self.course.start_pose);
         self.course.committed.clone_from(&start_pose);
@@ -379,27 +378,9 @@ impl MechanismModel {
         (self.course.committed_carryover).clone_from(&self.file_carryover);
         self.return_to_committed();
         self.course.at_committed = false;
-        let start = self.solver.start(&start_pose, &self.path);
-        match start.map_err(failed)? {
-            Start::Continuous(progress) => {
-                self.course.path_progress = progress;
-                self.log_crossings(log);
-            }
-            Start::Reassembled(assembly) => {
-                self.course.path_progress = Progress {
-                    iterations: assembly.iterations,
-                    substeps: 1,
-                    crossings: 0,
-                    checked: 0,
-                };
-                log.remark(|| {
-                    "no continuous motion leads from the mechanism file's own pose to the start \
-                     values: assembled at the start values from the estimates instead, possibly \
-                     in another assembly mode"
-                        .to_owned()
-                });
-            }
-        }
+        let started = self.solver.start(&start_pose, &self.path);
+        self.course.path_progress = started.map_err(failed)?;
+        self.log_crossings(log);
         self.set_driver_rates(self.course.time, 0.0, 0.0);
         Ok(())
     }

@@ -9,7 +9,6 @@ use crate::kinematics::newton::Limits;
 use crate::kinematics::path::{Curve, Path, Rates};
 use crate::kinematics::singular::SingularPoint;
 use crate::kinematics::state::{Pose, State};
-use crate::kinematics::system::System;
 use crate::mechanism::{DriverId, Jet};
 
 /// The range of a driver from one pose, in both directions.
@@ -127,10 +126,6 @@ impl Default for RangeSettings {
         }
     }
 }
-
-/// A mechanism is at its start if no unknown differs by more, scaled and whole turns apart: after
-/// some thousand sub-steps, and up to a thousand turns, rounding is below that.
-const SAME_PLACE: f64 = 1e-9;
 
 /// Largest motion between two samples, in turns over the samples per turn: bodies that move as
 /// much turn a little only, so that a measure has one extreme there at most.
@@ -277,7 +272,9 @@ impl Explorer<'_> {
                 }
             } else if count.is_multiple_of(per_turn) {
                 let turns = count / per_turn;
-                if end.is_none() && is_same_place(&self.model.system, self.state, self.start) {
+                let system = &self.model.system;
+                let turned = self.state.whole_turns_since(system, self.start);
+                if end.is_none() && turned.is_some() {
                     return End::Turns(turns);
                 }
                 if turns >= self.settings.turns {
@@ -592,13 +589,4 @@ fn held_path(pose: &Pose) -> Path {
         to: pose.parameters.clone(),
         curves: drivers.map(|&value| Curve::held(value, value)).collect(),
     }
-}
-
-/// Returns whether all bodies are where they were at a pose, whole turns apart.
-fn is_same_place(system: &System, state: &State, before: &Pose) -> bool {
-    let size = state.at.size();
-    let unknowns = state.pose.q.iter().zip(&before.q).enumerate();
-    let mut differences =
-        unknowns.map(|(column, (&now, &before))| system.difference(column, size, now, before));
-    differences.all(|difference| difference.abs() < SAME_PLACE)
 }

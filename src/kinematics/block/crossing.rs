@@ -70,6 +70,21 @@ impl Crossing {
         ]
     }
 
+    /// Returns the same motion after the driver and the unknowns have turned by these angles
+    /// \[rad\].
+    pub(in crate::kinematics) fn turned(
+        &self,
+        driver: f64,
+        unknowns: impl Iterator<Item = f64>,
+    ) -> Self {
+        let mut turned = self.clone();
+        turned.center += driver;
+        for ([even, _], turn) in turned.coefficients.iter_mut().zip(unknowns) {
+            even[0] += turn;
+        }
+        turned
+    }
+
     /// Bounds the magnitudes of an unknown's first and second derivative in the driver's value.
     pub(in crate::kinematics) fn steepest(&self, local: usize) -> [f64; 2] {
         let width = self.half_width;

@@ -10,4 +10,4 @@ mod outcome;
 mod tracker;
 
 pub use outcome::{Blocked, Progress, Reason};
-pub(super) use tracker::PathTracker;
+pub(super) use tracker::{PathTracker, most_substeps};

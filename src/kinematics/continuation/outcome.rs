@@ -44,6 +44,22 @@ pub struct Progress {
     pub checked: u32,
 }
 
+impl Progress {
+    /// Adds the work spent on another part of a path.
+    pub(crate) fn add(&mut self, other: &Self) {
+        let Self {
+            iterations,
+            substeps,
+            crossings,
+            checked,
+        } = self;
+        *iterations = iterations.saturating_add(other.iterations);
+        *substeps = substeps.saturating_add(other.substeps);
+        *crossings = crossings.saturating_add(other.crossings);
+        *checked = checked.saturating_add(other.checked);
+    }
+}
+
 /// The tracker did not reach the end of the path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blocked {
@@ -72,17 +88,18 @@ impl Blocked {
         }
     }
 
-    /// Returns the cause of the stop, its `time` \[s\] if the motion takes time, and the values of
-    /// the drivers that move; `pose` is the last one reached.
-    #[must_use]
-    pub fn describe(
-        &self,
-        mechanism: &Mechanism,
-        pose: &Pose,
-        time: Option<f64>,
-        moves: impl Fn(DriverId) -> bool,
-    ) -> String {
-        let reason = match &self.reason {
+    /// Returns the values of the drivers at the place where the motion ends; `pose` is the last one
+    /// reached.
+    pub(in crate::kinematics) fn drivers<'a>(&'a self, pose: &'a Pose) -> &'a [f64] {
+        match &self.reason {
+            Reason::Singular(point) => &point.drivers,
+            _ => &pose.drivers,
+        }
+    }
+
+    /// Returns the cause of the stop in words.
+    pub(in crate::kinematics) fn reason_in_words(&self, mechanism: &Mechanism) -> String {
+        match &self.reason {
             Reason::Value(error) => error.to_string(),
             Reason::Contradiction(open) => format!("beyond, {open}, redundant up to here"),
             Reason::TooLong => "the motion needs more sub-steps than the solver takes".to_owned(),
@@ -96,12 +113,22 @@ impl Blocked {
                 format!("the motion of driver `{}` jumps", driver.name)
             }
             Reason::Lost => "no continuous motion".to_owned(),
-        };
-        let values = match &self.reason {
-            Reason::Singular(point) => &point.drivers,
-            _ => &pose.drivers,
-        };
-        let drivers = (0..).map(DriverId).zip(&mechanism.drivers).zip(values);
+        }
+    }
+
+    /// Returns the cause of the stop, its `time` \[s\] if the motion takes time, and the values of
+    /// the drivers that move; `pose` is the last one reached.
+    #[must_use]
+    pub fn describe(
+        &self,
+        mechanism: &Mechanism,
+        pose: &Pose,
+        time: Option<f64>,
+        moves: impl Fn(DriverId) -> bool,
+    ) -> String {
+        let reason = self.reason_in_words(mechanism);
+        let drivers = (0..).map(DriverId).zip(&mechanism.drivers);
+        let drivers = drivers.zip(self.drivers(pose));
         let moving: Vec<String> = drivers
             .filter(|((id, _), _)| moves(*id))
             .map(|((_, driver), value)| {

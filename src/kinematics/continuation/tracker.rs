@@ -6,7 +6,8 @@ mod pace;
 use std::sync::Arc;
 
 use length::HALF;
-use pace::{Pace, Verdict, most_substeps};
+pub(in crate::kinematics) use pace::most_substeps;
+use pace::{Pace, Verdict};
 
 use super::driver_bounds::bound_drivers;
 use super::outcome::{Blocked, Progress, Reason};
@@ -53,6 +54,11 @@ impl PathTracker {
     /// Returns the change points that the last path passed, in order.
     pub(in crate::kinematics) fn crossed(&self) -> &[Arc<Crossing>] {
         &self.crossed
+    }
+
+    /// Sets the change points that the last path passed, for a path in several parts.
+    pub(in crate::kinematics) fn set_crossed(&mut self, crossed: Vec<Arc<Crossing>>) {
+        self.crossed = crossed;
     }
 
     /// Moves the mechanism along `path`, at whose start its pose is. Allocates nothing, unless a

@@ -59,7 +59,7 @@ impl Pace {
 
 /// Returns the most sub-steps of a path: fewer where one takes more work, in that of one row in
 /// closed form. `moved` are the numbers of rows and of profiles of cams, if parameters move.
-pub(super) fn most_substeps(work: f64, moved: Option<[usize; 2]>) -> f64 {
+pub(in crate::kinematics) fn most_substeps(work: f64, moved: Option<[usize; 2]>) -> f64 {
     let of_moved = moved.map_or(0.0, |[rows, profiles]| {
         WORK_OF_NUMBERS * rows as f64 + WORK_OF_PROFILE * profiles as f64
     });
