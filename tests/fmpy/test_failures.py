@@ -5,7 +5,7 @@ import pytest
 from closed_form import CLOSED_FORMS, FourBar, Tlv, largest_errors
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2LastSuccessfulTime, fmi2Terminated
-from harness import DISCARD, ERROR, OK, WARNING, numbers_in, signals, simulate
+from harness import DISCARD, ERROR, WARNING, numbers_in, signals, simulate
 
 NAN, INFINITY = float("nan"), float("inf")
 
@@ -78,23 +78,19 @@ def test_too_long_in_simulate_fmu(fmu, messages):
     assert names_an_open_joint(messages.texts(ERROR), {"O2", "A", "B", "O4"}), messages
 
 
-def test_start_behind_a_dead_point_is_assembled_with_a_warning(slave):
-    """With a crank of 0.25 m the way from 60° to 300° is blocked at 180°, where A–O4 is too long.
+def test_start_behind_a_dead_point_by_parameters(slave):
+    """With a crank of 0.25 m the way from 60° to 300° is blocked near 180°, where A–O4 is too long.
 
-    At 300° the linkage closes all the same: it is assembled there, and a warning says so.
+    At 300° the linkage closes all the same, possibly in another mode: it is refused.
     """
-    u, crank_length = np.radians(300), 0.25
-    instance = slave("four_bar", logging=True)
-    instance.start({"crank_length": crank_length, "crank_angle.position": u})
-    advice = [message for message in instance.messages if message.category == "logStatusWarning"]
-    # The call succeeds, and so does its message.
-    assert [message.status for message in advice] == [OK], instance.messages
-    outputs = instance.outputs()
-    assert outputs["crank.phi"] == pytest.approx(u, rel=1e-12)
-    pin = crank_length * np.exp(1j * u)
-    coupler = 0.25 * np.exp(1j * outputs["coupler.phi"])
-    rocker = 0.30 * np.exp(1j * outputs["rocker.phi"])
-    assert abs(pin + coupler - 0.40 - rocker) < 1e-14
+    instance = slave("four_bar")
+    values = {"crank_length": 0.25, "crank_angle.position": np.radians(300)}
+    with pytest.raises(FMICallException) as failed:
+        instance.start(values)
+    assert failed.value.status == ERROR
+    (error,) = instance.messages.texts(ERROR)
+    assert "stops with driver `crank_angle` at" in error
+    assert "and parameter `crank_length` at" in error
 
 
 # ---------------------------------------------------------------------------------------------
