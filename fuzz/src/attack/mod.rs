@@ -12,12 +12,15 @@
 //!   another place in the plane change nothing: the same verdict, the same pose, sub-steps within a
 //!   factor of two;
 //! - the extremes of measures over the range of a driver are those of a dense scan; see [`try_extremes`];
+//! - a start many turns away, with parameters at other values, ends where tiny steps on the same way
+//!   end, or is refused where these are blocked;
 //! - no call takes more than [`MOST_SUBSTEPS`] sub-steps.
 //!
 //! [`change_points`] has forces at change points.
 
 mod change_points;
 mod extremes;
+mod far;
 mod kinds;
 mod text;
 
@@ -251,6 +254,7 @@ fn differences(kind: Kind, seed: u64, plain: &Case, jump: &End) -> Result<(), St
         return differs("the way back leads elsewhere", &tiny);
     }
     let mut chance = Chance::new(seed.wrapping_mul(0xd1b5_4a32_d192_ed03));
+    far::difference(plain, &mut chance)?;
     let turn = text::angle(&mut chance);
     let away = text::angle(&mut chance);
     let [x, y] = text::end([0.0; 2], FAR, away);
