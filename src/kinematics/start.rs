@@ -132,9 +132,16 @@ impl Journey<'_> {
         self.progress = Progress::default();
         self.crossed.clear();
         let mut missing = turns.to_vec();
-        self.move_to(&self.values_without(&missing))?;
+        let goals = self.goal.iter().zip(turns);
+        let without = goals.map(|(goal, turns)| goal - TAU * *turns as f64);
+        self.move_to(&without.collect::<Vec<_>>())?;
         while let Some(&turns) = missing.iter().find(|turns| **turns != 0) {
-            self.turn(turns, &mut missing)?;
+            let together: Vec<bool> = missing.iter().map(|missing| *missing == turns).collect();
+            self.turn(turns, &together)?;
+            let turned = missing.iter_mut().zip(&together);
+            turned
+                .filter(|(_, is)| **is)
+                .for_each(|(missing, _)| *missing = 0);
         }
         Ok(())
     }
@@ -143,14 +150,6 @@ impl Journey<'_> {
     fn arrive(self) -> Progress {
         self.tracker.set_crossed(self.crossed);
         self.progress
-    }
-
-    /// Returns the drivers' values at the end without these turns.
-    fn values_without(&self, turns: &[i64]) -> Vec<f64> {
-        let values = self.goal.iter().zip(turns);
-        values
-            .map(|(goal, turns)| goal - TAU * *turns as f64)
-            .collect()
     }
 
     /// Moves parameters and drivers straight to these values.
@@ -175,54 +174,55 @@ impl Journey<'_> {
         tracked
     }
 
-    /// Turns the drivers that miss this number of turns, and no other, by these turns.
-    fn turn(&mut self, turns: i64, missing: &mut [i64]) -> Result<(), Blocked> {
-        let together: Vec<bool> = missing.iter().map(|missing| *missing == turns).collect();
-        let miss = |missing: &mut [i64], left: i64| {
-            for (missing, _) in missing.iter_mut().zip(&together).filter(|(_, is)| **is) {
-                *missing = left * turns.signum();
-            }
+    /// Turns the drivers marked in `together`, and no other, by these turns, to their values at the
+    /// end.
+    fn turn(&mut self, turns: i64, together: &[bool]) -> Result<(), Blocked> {
+        let from = self.state.pose.drivers.clone();
+        // Counted from the start of the turns: near the end of very many, angles are rounded.
+        let after = |done: i64| -> Vec<f64> {
+            let turned = TAU * (turns.signum() * done) as f64;
+            let drivers = from.iter().zip(together);
+            drivers
+                .map(|(from, is)| if *is { from + turned } else { *from })
+                .collect()
         };
         let most = most_substeps(self.model.plan.work(), None);
-        let mut before = self.state.pose.clone();
+        let (mut before, mut begun) = (self.state.pose.clone(), 0);
         let (mut done, mut left, mut stride) = (0, turns.abs(), 1_i64);
         let mut repeated = None;
-        let mut kept = 0;
         while left > 0 {
             // After many sub-steps the tracker judges the whole rest of the way.
             let few = f64::from(self.progress.substeps) < most;
             let next = if few { stride.min(left) } else { left };
             (done, left) = (done + next, left - next);
-            miss(missing, left + kept);
-            let progress = self.move_to(&self.values_without(missing))?;
+            let progress = self.move_to(&after(done))?;
             if progress.substeps == 1 {
                 // Linear relations take one sub-step, however long it is.
                 stride = stride.saturating_mul(2);
             }
             if self.state.pose.crossings.len() != before.crossings.len() {
                 // A change point counts once it is approached on the turn.
-                before = self.state.pose.clone();
-                done = 0;
+                (before, begun) = (self.state.pose.clone(), done);
                 continue;
             }
-            let times = left / done;
+            let period = done - begun;
+            let times = left / period;
             if repeated.is_none() && times > 0 {
-                miss(missing, left - times * done);
-                repeated = self.repeat(&before, times, &self.values_without(missing));
+                repeated = self.repeat(&before, times, &after(done + times * period));
                 if repeated.is_some() {
-                    kept = times * done;
-                    left -= kept;
+                    left -= times * period;
                 }
             }
         }
-        miss(missing, 0);
+        let goals = self.goal.iter().zip(&from).zip(together);
+        let there: Vec<f64> = goals
+            .map(|((goal, from), is)| if *is { *goal } else { *from })
+            .collect();
         if let Some(turns) = repeated {
-            let there = self.values_without(missing);
             self.add_turns(&turns, &there);
-            // Newton–Raphson at the rounded angles.
-            self.move_to(&there)?;
         }
-        Ok(())
+        // Newton–Raphson at the rounded angles.
+        self.move_to(&there).map(|_| ())
     }
 
     /// Returns the turns of all unknowns when the motion from the pose `before` to the present one is
