@@ -11,8 +11,10 @@ use crate::mutation::Chance;
 pub enum Variant {
     /// None: all lengths stay, all bodies are estimated where they are.
     Fixed,
-    /// Some lengths are parameters that jump.
+    /// Some lengths, and angles of contours, are parameters that jump.
     Moving,
+    /// Some lengths, and angles of contours, are functions of parameters that jump over their corners.
+    Cornered,
     /// Estimates are up to 0.2 lengths and 0.7 rad off.
     Rough,
     /// All estimates are at the origin.
@@ -93,6 +95,20 @@ pub fn frame(name: &str, place: Point, angle: f64) -> Mark<'_> {
     Mark(name, place, Some(angle))
 }
 
+/// Functions of P with a corner or a join at C, zero where P is.
+const CORNERS: [&str; 10] = [
+    "abs(P - C) - C",
+    "max(P, C) - C",
+    "min(P, C)",
+    "max(0, P - C)^3",
+    "max(0, P - C)^1.5",
+    "hypot(P - C, 0) - C",
+    "sqrt((P - C)^2) - C",
+    "sign(P - C)*(P - C) - C",
+    "abs(mod(P + C, 1) - 0.5) - abs(C - 0.5)",
+    "abs(sin(3*P - 3*C)) - abs(sin(3*C))",
+];
+
 /// The text of a mechanism. All places and angles are those in the plane in which the mechanism
 /// begins.
 pub struct Text<'a> {
@@ -127,17 +143,45 @@ impl<'a> Text<'a> {
     /// jumps.
     pub fn length(&mut self, chance: &mut Chance, value: f64) -> String {
         let length = value * self.view.scale;
-        if self.variant != Variant::Moving || chance.between(0.0, 1.0) > 0.3 {
-            return format!("{length:?}");
+        let by = length * chance.between(-0.3, 0.4);
+        self.moving(chance, length, by)
+    }
+
+    /// Returns an angle of a contour \[rad\] likewise.
+    pub fn turning(&mut self, chance: &mut Chance, value: f64) -> String {
+        let by = chance.between(-1.0, 1.0);
+        self.moving(chance, value, by)
+    }
+
+    /// Returns a number as it is written in the file: as it is, the name of a parameter that changes
+    /// it by `by`, or a function with a corner of such a parameter.
+    fn moving(&mut self, chance: &mut Chance, value: f64, by: f64) -> String {
+        let is_moving = matches!(self.variant, Variant::Moving | Variant::Cornered);
+        if !is_moving || chance.between(0.0, 1.0) > 0.3 {
+            return format!("{value:?}");
         }
         let name = format!("{}p{}", self.view.prefix, self.parameters.len());
+        let is_cornered = self.variant == Variant::Cornered;
+        let [start, end] = if is_cornered {
+            [0.0, 1.0]
+        } else {
+            [value, value + by]
+        };
         let _ = writeln!(
             self.head,
-            "{name} = {{ value = {length:?}, tunable = true }}"
+            "{name} = {{ value = {start:?}, tunable = true }}"
         );
-        let to = length * chance.between(0.7, 1.4);
-        self.parameters.push((name.clone(), to));
-        format!("'{name}'")
+        self.parameters.push((name.clone(), end));
+        if !is_cornered {
+            return format!("'{name}'");
+        }
+        let corner = chance.between(0.0, 1.0);
+        let shape = CORNERS[chance.below(CORNERS.len())];
+        let shape = shape.replace('C', &format!("{corner:?}"));
+        let shape = shape.replace('P', &name);
+        let derived = format!("{}d{}", self.view.prefix, self.parameters.len());
+        let _ = writeln!(self.head, "{derived} = '{shape}'");
+        format!("'{value:?} + ({by:?})*{derived}'")
     }
 
     /// Returns a length as a number.
@@ -196,7 +240,7 @@ impl<'a> Text<'a> {
     /// Adds a body with markers as they are written in the file.
     pub fn body(&mut self, name: &str, markers: &str, pose: [f64; 3]) {
         let [x, y, phi] = match self.variant {
-            Variant::Fixed | Variant::Moving => pose,
+            Variant::Fixed | Variant::Moving | Variant::Cornered => pose,
             Variant::Rough => near(name, pose),
             Variant::LeftOut => [0.0; 3],
         };

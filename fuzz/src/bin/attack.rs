@@ -1,5 +1,5 @@
 //! Attacks the solver with generated mechanisms:
-//! `attack [CASES [SEED [KIND [fixed|moving|rough|none|extremes]]]]`.
+//! `attack [CASES [SEED [KIND [fixed|moving|corners|rough|none|extremes]]]]`.
 
 #![allow(
     clippy::print_stdout,
@@ -18,7 +18,7 @@ fn main() -> ExitCode {
         given.map_or(Ok(default), |text| text.parse())
     };
     let (Ok(cases), Ok(seed)) = (number(1000), number(1)) else {
-        eprintln!("usage: attack [CASES [SEED [KIND [fixed|moving|rough|none|extremes]]]]");
+        eprintln!("usage: attack [CASES [SEED [KIND [fixed|moving|corners|rough|none|extremes]]]]");
         return ExitCode::from(2);
     };
     let kind = arguments.next();
@@ -31,6 +31,7 @@ fn main() -> ExitCode {
         for (variant, word, words) in [
             (Variant::Fixed, "fixed", "fixed lengths"),
             (Variant::Moving, "moving", "moving lengths"),
+            (Variant::Cornered, "corners", "lengths with corners"),
             (Variant::Rough, "rough", "rough estimates"),
             (Variant::LeftOut, "none", "no estimates"),
         ] {

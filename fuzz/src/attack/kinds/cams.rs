@@ -47,22 +47,24 @@ impl Contour {
     /// Returns the profile as it is written in the file: an expression, or a table of a few points
     /// of it.
     fn profile(&self, chance: &mut Chance, text: &mut Text<'_>) -> String {
+        let [base, lift, lobe] = [self.base, self.lift, self.lobe]
+            .map(|length| text.length(chance, length))
+            .map(|length| length.trim_matches('\'').to_owned());
         if self.lobe == 0.0 && chance.between(0.0, 1.0) < 0.3 {
             let mut points = String::new();
             for k in 0..24 {
                 let theta = f64::from(k) * PI / 12.0;
-                let radius = text.number(self.radius(theta));
-                let _ = write!(points, "[{theta:?}, {radius}], ");
+                let wave = (self.waves * theta).cos();
+                let _ = write!(points, "[{theta:?}, '{base} + ({lift})*({wave:?})'], ");
             }
             return format!("{{ table = [{}] }}", points.trim_end_matches(", "));
         }
-        let [base, lift, lobe] = [self.base, self.lift, self.lobe]
-            .map(|length| text.length(chance, length))
-            .map(|length| length.trim_matches('\'').to_owned());
-        let (waves, place, square) = (self.waves, self.place, self.width * self.width);
+        let place = text.turning(chance, self.place);
+        let place = place.trim_matches('\'');
+        let (waves, square) = (self.waves, self.width * self.width);
         format!(
             "'{base} + ({lift})*cos({waves}*theta) \
-             + ({lobe})*exp((cos(theta - ({place:?})) - 1)/{square:?})'"
+             + ({lobe})*exp((cos(theta - ({place})) - 1)/{square:?})'"
         )
     }
 }
