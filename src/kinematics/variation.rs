@@ -9,7 +9,8 @@
 
 use super::configuration::{CamProfile, Coefficient, CoefficientId, JointUnknownId, ProfileId};
 use crate::mechanism::{
-    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, Number, ProfileAlong, Taylor,
+    BodyId, Dual, Expression, Interval, Jet3, MarkerId, Mechanism, MovingProfile, Number,
+    ProfileAlong, Taylor,
 };
 
 /// A quantity with its first two derivatives in time, each with its change along a direction.
@@ -20,30 +21,43 @@ pub type Enclosed = Jet3<Interval>;
 
 /// A number that the quantities of a moving mechanism are made of.
 pub trait Moving: Number {
-    /// The profile of a cam.
-    type Profile: std::fmt::Debug;
+    /// The profiles of all cams.
+    type Profiles<'a>: Copy + std::fmt::Debug;
 
     /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ). Derivatives that do not
     /// exist are not finite.
-    fn radius(profile: &Self::Profile, theta: Self) -> [Self; 2];
+    fn radius(profiles: Self::Profiles<'_>, profile: ProfileId, theta: Self) -> [Self; 2];
 }
 
 impl Moving for Varied {
-    type Profile = ProfileAlong;
+    type Profiles<'a> = &'a [ProfileAlong];
 
-    fn radius(profile: &ProfileAlong, theta: Self) -> [Self; 2] {
-        of_contour(profile.radius(theta.value), theta)
+    fn radius(profiles: &[ProfileAlong], profile: ProfileId, theta: Self) -> [Self; 2] {
+        of_contour(profiles[profile.0].radius(theta.value), theta)
     }
 }
 
-impl Moving for Enclosed {
-    /// A profile that no parameter moves.
-    type Profile = CamProfile;
+/// The profiles of all cams along a sub-step.
+#[derive(Clone, Copy, Debug)]
+pub struct EnclosedProfiles<'a> {
+    /// With the parameters in force at its end.
+    pub in_force: &'a [CamProfile],
+    /// The same with parameters that may move; empty if none does.
+    pub moving: &'a [MovingProfile],
+}
 
-    fn radius(profile: &CamProfile, theta: Self) -> [Self; 2] {
+impl Moving for Enclosed {
+    type Profiles<'a> = EnclosedProfiles<'a>;
+
+    fn radius(profiles: EnclosedProfiles<'_>, profile: ProfileId, theta: Self) -> [Self; 2] {
+        let EnclosedProfiles { in_force, moving } = profiles;
+        let in_force = &in_force[profile.0].in_force;
+        if let Some(moving) = moving.get(profile.0).filter(|profile| profile.moves()) {
+            return (moving.radius(in_force, theta)).unwrap_or([Self::unknown(); 2]);
+        }
         let middle = theta.value.midpoint();
         let reach = (theta.value - Interval::point(middle)).magnitude();
-        let Some(bounds) = profile.in_force.bounds(middle, reach) else {
+        let Some(bounds) = in_force.bounds(middle, reach) else {
             return [Self::unknown(); 2];
         };
         let mut radius = bounds.radius;
@@ -51,6 +65,19 @@ impl Moving for Enclosed {
             radius.derivatives[2] = Interval::unknown();
         }
         of_contour(radius, theta)
+    }
+}
+
+/// Bounds eight times the distance of a quantity along a sub-step from its chord: by its second
+/// derivative, at a corner by the range of the first one, at a jump by its own range.
+pub(super) fn bend(quantity: &Enclosed) -> f64 {
+    let width = |range: Interval| range.high - range.low;
+    if quantity.second().is_finite() {
+        quantity.second().magnitude()
+    } else if quantity.first().is_finite() {
+        2.0 * width(quantity.first())
+    } else {
+        8.0 * width(quantity.value)
     }
 }
 
@@ -100,11 +127,11 @@ pub struct VariedConfiguration<N = Varied> {
 
 /// A moving mechanism, as relations read it.
 #[derive(Debug)]
-pub struct VariedMechanism<'a, N: Moving = Varied> {
+pub struct VariedMechanism<'a, 'p, N: Moving = Varied> {
     /// Its bodies.
     pub bodies: &'a VariedConfiguration<N>,
     /// The profiles of its cams.
-    pub profiles: &'a [N::Profile],
+    pub profiles: N::Profiles<'p>,
 }
 
 impl<N> Default for VariedConfiguration<N> {
@@ -144,38 +171,33 @@ impl<N: Number> VariedConfiguration<N> {
             axes: vec![axis; bodies],
         };
         let parameters = vec![zero; mechanism.parameters.len()];
-        origin.set_parameters(mechanism, coefficients, &parameters, None);
+        let at_zero = |expression: &Expression| Some(evaluate(expression, &parameters));
+        origin.set_numbers(mechanism, coefficients, &at_zero);
         origin
     }
 
-    /// Evaluates the numbers in the relations for these parameters, or only those numbers that use
-    /// parameters which have `changed`. Allocates nothing.
-    pub(super) fn set_parameters(
+    /// Sets the numbers in the relations to those that `value` gives; the others stay. Allocates
+    /// nothing.
+    pub(super) fn set_numbers(
         &mut self,
         mechanism: &Mechanism,
         coefficients: &[Coefficient],
-        parameters: &[N],
-        changed: Option<&[bool]>,
+        value: &dyn Fn(&Expression) -> Option<N>,
     ) {
-        let evaluated = |expression: &Expression| {
-            let mut used = expression.parameters();
-            let is_stale = changed.is_none_or(|changed| used.any(|p| changed[p.index()]));
-            is_stale.then(|| evaluate(expression, parameters))
-        };
         for (frame, marker) in self.frames.iter_mut().zip(&mechanism.markers) {
             for (s, expression) in frame.position.iter_mut().zip(&marker.position) {
-                if let Some(value) = evaluated(expression) {
+                if let Some(value) = value(expression) {
                     *s = value;
                 }
             }
-            if let Some(angle) = evaluated(&marker.angle) {
+            if let Some(angle) = value(&marker.angle) {
                 frame.angle = angle;
                 frame.axis = direction(angle);
             }
         }
-        for (value, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
-            if let Some(now) = evaluated(&coefficient.expression) {
-                *value = now;
+        for (number, coefficient) in self.coefficients.iter_mut().zip(coefficients) {
+            if let Some(value) = value(&coefficient.expression) {
+                *number = value;
             }
         }
     }
@@ -243,6 +265,22 @@ impl<N: Number> VariedConfiguration<N> {
     }
 }
 
+impl VariedConfiguration<Enclosed> {
+    /// Sets the numbers in the relations to those of another mechanism, at rest anywhere in their
+    /// ranges. Allocates nothing.
+    pub(super) fn rest_at_numbers_of(&mut self, other: &Self) {
+        let still = |number: Enclosed| Enclosed::fixed(number.value);
+        for (frame, from) in self.frames.iter_mut().zip(&other.frames) {
+            frame.position = from.position.map(still);
+            frame.angle = still(from.angle);
+            frame.axis = from.axis.map(still);
+        }
+        for (number, from) in self.coefficients.iter_mut().zip(&other.coefficients) {
+            *number = still(*from);
+        }
+    }
+}
+
 impl VariedConfiguration {
     /// Returns the mechanism at rest, with the values that it has.
     pub(super) fn at_rest(&self) -> Self {
@@ -281,7 +319,7 @@ impl VariedConfiguration {
     }
 }
 
-impl<N: Moving> std::ops::Deref for VariedMechanism<'_, N> {
+impl<N: Moving> std::ops::Deref for VariedMechanism<'_, '_, N> {
     type Target = VariedConfiguration<N>;
 
     fn deref(&self) -> &Self::Target {
@@ -289,11 +327,11 @@ impl<N: Moving> std::ops::Deref for VariedMechanism<'_, N> {
     }
 }
 
-impl<N: Moving> VariedMechanism<'_, N> {
+impl<N: Moving> VariedMechanism<'_, '_, N> {
     /// Returns the radius R of a cam at a moving polar angle θ, and R′(θ).
     #[must_use]
     pub fn radius(&self, profile: ProfileId, theta: N) -> [N; 2] {
-        N::radius(&self.profiles[profile.0], theta)
+        N::radius(self.profiles, profile, theta)
     }
 }
 

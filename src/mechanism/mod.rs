@@ -59,7 +59,7 @@ pub use names::{is_identifier, similar_identifier};
 pub use number::{Dual, Interval, Jet, Jet3, Number, Taylor};
 pub use parameter::{DerivedParameter, Parameter};
 pub use profile::{
-    ContourPoint, Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce,
+    ContourPoint, MovingProfile, Profile, ProfileAlong, ProfileBounds, ProfileError, ProfileInForce,
 };
 pub use setting::{Extrapolation, RateSource};
 pub(crate) use signal::{COMPONENTS, SUFFIXES};

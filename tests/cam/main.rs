@@ -6,6 +6,7 @@ mod common;
 mod contact;
 mod contours;
 mod misfits;
+mod moving;
 
 use biela::kinematics::Solver;
 use biela::mechanism::Mechanism;

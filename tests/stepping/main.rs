@@ -7,6 +7,7 @@ mod common;
 mod generated;
 
 mod accuracy;
+mod corners;
 mod large_steps;
 mod motions;
 mod parameters;

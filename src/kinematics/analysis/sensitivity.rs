@@ -83,7 +83,7 @@ impl Sensitivity<'_> {
     }
 
     /// Returns the mechanism along the direction.
-    pub(in crate::kinematics) fn mechanism(&self) -> VariedMechanism<'_> {
+    pub(in crate::kinematics) fn mechanism(&self) -> VariedMechanism<'_, '_> {
         VariedMechanism {
             bodies: &self.at,
             profiles: &self.profiles,
@@ -415,7 +415,7 @@ impl State {
             .zip(rates.acceleration())
             .map(|((&q, &velocity), &acceleration)| [q, velocity, acceleration]);
         let mut at = system.varied();
-        system.vary_parameters(&mut at, &parameters, None);
+        system.vary_numbers(&mut at, &|number| Some(evaluate(number, &parameters)));
         for (column, motion) in motion.enumerate() {
             let [value, first, second] = motion.map(Dual::constant);
             at.set_coordinate(column, Varied::new(value, [first, second]));

@@ -21,8 +21,8 @@
 //! of both ends is part of η.
 //!
 //! A test is *proved* unless [`StepBounds::checked`] says that some bound in it was an estimate:
-//! the norm of an inverse that is too large to be written down, or the effect of moving
-//! parameters on the equations of a block without straight code or on a linear row.
+//! the norm of an inverse that is too large to be written down, or a row set aside that depends on a
+//! contour where pieces of this meet.
 
 mod parameters;
 #[cfg(test)]
@@ -30,7 +30,7 @@ mod tests;
 
 use nalgebra::Vector2;
 
-pub(super) use parameters::{Change, ParameterBounds};
+pub(super) use parameters::{Change, LARGEST_JUMP, ParameterBounds};
 
 use super::newton::Rejected;
 use super::system::System;

@@ -3,29 +3,46 @@
 //! Parameters run straight along the path. Each number in the equations is enclosed over a
 //! sub-step as a function of the place on it, 0 at its start and 1 at its end, with two
 //! derivatives. So numbers bend the equations as unknowns do: by an eighth of a second derivative
-//! between ends at which the equations hold.
+//! between ends at which the equations hold. A number with a corner deviates from its chord by no
+//! more than a quarter of the range of its first derivative. One that is as steep as a root at zero,
+//! or made of parts that jump together, does so by no more than its own range; over a sub-step of
+//! the smallest length this lies between its values at both ends.
 
 use std::ops::Add;
 
 use nalgebra::Vector2;
 
 use crate::kinematics::configuration::{CamProfile, Configuration};
-use crate::kinematics::constraint::partial;
+use crate::kinematics::constraint::{Dimension, partial};
 use crate::kinematics::path::Path;
 use crate::kinematics::system::{Equation, System, Target, Targets};
-use crate::kinematics::variation::{Enclosed, VariedConfiguration, VariedMechanism, evaluate};
-use crate::mechanism::{Expression, Interval, Marker, MarkerId, Number, ParameterId};
+use crate::kinematics::variation::{
+    Enclosed, EnclosedProfiles, VariedConfiguration, VariedMechanism, bend, evaluate,
+};
+use crate::mechanism::{
+    DriverId, Expression, Interval, Marker, MarkerId, Mechanism, MotionInForce, MovingProfile,
+    Number, ParameterId,
+};
+
+/// Largest deviation of a number or a prescribed motion that is not known to be continuous, in
+/// radians and characteristic lengths; a motion that jumps by more is refused where it jumps.
+pub(in crate::kinematics) const LARGEST_JUMP: f64 = 0.1;
+/// Part of a path in which a number that is not known to be continuous counts as lying between its
+/// values at both ends: the smallest sub-steps are less than twice 1e-12.
+const NARROW: f64 = 2e-12;
 
 /// Bounds of the numbers in the equations over a sub-step.
 #[derive(Debug, Default)]
 pub(in crate::kinematics) struct ParameterBounds {
     /// Whether parameters move.
     pub(in crate::kinematics) moving: bool,
-    /// All parameters as functions of the place on the path.
-    pub(in crate::kinematics) parameters: Vec<Enclosed>,
-    /// The same as functions of the place on the sub-step, and at rest anywhere on it.
+    /// All parameters as functions of the place on the sub-step, and space for the next ones.
     local: Vec<Enclosed>,
-    resting: Vec<Enclosed>,
+    next: Vec<Enclosed>,
+    /// The motions with these parameters; `None` for an input.
+    motions: Vec<Option<MotionInForce<Enclosed>>>,
+    /// The profiles along the sub-step, and at rest anywhere on it.
+    profiles: [Vec<MovingProfile>; 2],
     /// Those that move, or that differ from the sub-step before: numbers without them stay as they
     /// are.
     changed: Vec<bool>,
@@ -46,6 +63,8 @@ struct MarkerChange {
     start: Vector2<f64>,
     position: Change,
     angle: Change,
+    /// Whether an equation contains the marker.
+    is_used: bool,
 }
 
 /// A row and the numbers in it.
@@ -57,10 +76,13 @@ struct Row {
     moves: bool,
     /// Change of its target, zero for drivers \[m or rad\].
     target: Change,
+    /// Largest deviation of its value if that is not known to be continuous \[m or rad\].
+    largest_jump: f64,
 }
 
 /// Bounds of the difference of a number or vector from its value at the end of a sub-step, and of
-/// its first two derivatives with respect to the place on the sub-step.
+/// its first two derivatives with respect to the place on the sub-step; at a corner, of those of its
+/// chord, and eight times the distance from there.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::kinematics) struct Change {
     pub(in crate::kinematics) value: f64,
@@ -69,14 +91,26 @@ pub(in crate::kinematics) struct Change {
 }
 
 impl Change {
-    /// Bounds the change of components in quadrature.
-    fn of<const N: usize>(components: [Enclosed; N], in_force: [f64; N]) -> Self {
+    /// Bounds the change of components in quadrature; infinite if one of them may jump by more than
+    /// `largest_jump`.
+    fn of<const N: usize>(
+        components: [Enclosed; N],
+        in_force: [f64; N],
+        largest_jump: f64,
+    ) -> Self {
         let mut change = Self::default();
         for (component, in_force) in components.into_iter().zip(in_force) {
             let value = (component.value - Interval::point(in_force)).magnitude();
+            let first = component.first().magnitude();
+            // The slope of the chord.
+            let first = if first.is_finite() {
+                first
+            } else {
+                2.0 * value
+            };
             change.value = change.value.hypot(value);
-            change.first = change.first.hypot(component.first().magnitude());
-            change.second = change.second.hypot(component.second().magnitude());
+            change.first = change.first.hypot(first);
+            change.second = (change.second).hypot(bend_within(&component, largest_jump));
         }
         change
     }
@@ -130,6 +164,46 @@ impl Add for Change {
     }
 }
 
+/// Returns the [bend](bend()) of a quantity, infinite if it may jump by more than `largest_jump`.
+fn bend_within(quantity: &Enclosed, largest_jump: f64) -> f64 {
+    let Interval { low, high } = quantity.value;
+    if quantity.first().is_finite() || high - low <= largest_jump {
+        bend(quantity)
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Returns the bounds of a number over a narrow part of the path: between its values at both ends,
+/// unless it is known to be continuous. Those of a wider part stay.
+fn between_ends(
+    number: Enclosed,
+    [start, end]: [f64; 2],
+    ends: impl FnOnce() -> [f64; 2],
+) -> Enclosed {
+    if end - start > NARROW || number.first().is_finite() {
+        return number;
+    }
+    let [from, to] = ends().map(Enclosed::constant);
+    from.either(to)
+}
+
+/// Returns whether each marker is in an equation.
+fn used_markers(mechanism: &Mechanism) -> Vec<bool> {
+    let mut used = vec![false; mechanism.markers.len()];
+    let held = mechanism.constraints.iter().map(|held| &held.coordinate);
+    let driven = mechanism.drivers.iter().map(|driver| &driver.coordinate);
+    let coordinates = held.chain(driven).flat_map(|c| [c.from, c.to, c.axes]);
+    let joints = mechanism
+        .joints
+        .iter()
+        .flat_map(|joint| [joint.from, joint.to]);
+    for marker in coordinates.chain(joints) {
+        used[marker.index()] = true;
+    }
+    used
+}
+
 /// Returns s of a marker for these parameters.
 fn evaluated(marker: &Marker, parameters: &[f64]) -> Vector2<f64> {
     let [x, y] = marker.position.each_ref().map(|s| s.value(parameters));
@@ -159,17 +233,27 @@ impl ParameterBounds {
                 parameters,
                 moves: false,
                 target: Change::default(),
+                largest_jump: 0.0,
             }
         });
+        let markers = used_markers(mechanism)
+            .into_iter()
+            .map(|is_used| MarkerChange {
+                is_used,
+                ..MarkerChange::default()
+            });
+        let drivers = mechanism.drivers.iter();
+        let motions = drivers.map(|driver| Some(MotionInForce::new(driver.motion()?, parameters)));
         Self {
             moving: false,
-            parameters: vec![Enclosed::constant(0.0); parameters],
             local: vec![Enclosed::constant(0.0); parameters],
-            resting: vec![Enclosed::constant(0.0); parameters],
+            next: vec![Enclosed::constant(0.0); parameters],
+            motions: motions.collect(),
+            profiles: [(); 2].map(|()| system.moving_profiles()),
             changed: vec![false; parameters],
             along: system.varied(),
             around: system.varied(),
-            markers: vec![MarkerChange::default(); mechanism.markers.len()],
+            markers: markers.collect(),
             rows: rows.collect(),
             drivers_before,
         }
@@ -202,73 +286,116 @@ impl ParameterBounds {
     }
 
     /// Bounds all numbers over a part of `path`, at whose start the parameters are `before` and at
-    /// whose end those in `at` and `targets`. Returns false if a number is not bounded. Allocates nothing.
+    /// whose end they are `now`, in force in `at` and `targets`. Returns false if a number is not
+    /// bounded. Allocates nothing.
     #[inline(never)]
     pub(in crate::kinematics) fn bound(
         &mut self,
         system: &System,
         (at, targets): (&Configuration, &Targets),
-        before: &[f64],
+        [before, now]: [&[f64]; 2],
         path: &Path,
-        [start, end]: [f64; 2],
+        part: [f64; 2],
     ) -> bool {
         let mechanism = system.mechanism();
-        let value = |s: f64, from: f64, to: f64| if s < 1.0 { from + s * (to - from) } else { to };
-        let branches = path.from.iter().zip(&path.to);
-        for (parameter, (&from, &to)) in self.parameters.iter_mut().zip(branches) {
-            let ends = [value(start, from, to), value(end, from, to)];
-            let range = Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
-            *parameter = Enclosed::linear(range, Interval::point(to) - Interval::point(from));
-        }
-        mechanism.derive_parameters(&mut self.parameters);
-        let h = Interval::point(end) - Interval::point(start);
-        let locals = self.local.iter_mut().zip(&mut self.resting);
-        let locals = locals.zip(&mut self.changed).zip(&self.parameters);
-        for (((local, resting), changed), parameter) in locals {
-            let now = Enclosed::new(
-                parameter.value,
-                [
-                    parameter.first() * h,
-                    parameter.second() * h.square(),
-                    parameter.third() * h.cube(),
-                ],
-            );
-            *changed = now.varies() || now != *local;
-            *local = now;
-            *resting = Enclosed::fixed(now.value);
-        }
-        system.vary_parameters(&mut self.along, &self.local, Some(&self.changed));
-        system.vary_parameters(&mut self.around, &self.resting, Some(&self.changed));
-        let local = &self.local;
-        let changed = |p: ParameterId| self.changed[p.index()];
+        self.move_parameters(mechanism, [before, now], path, part);
+        let Self {
+            local,
+            changed,
+            along,
+            around,
+            markers,
+            rows,
+            ..
+        } = self;
+        let changed = |p: ParameterId| changed[p.index()];
+        let number = |expression: &Expression| {
+            let ends = || [before, now].map(|end| expression.value(end));
+            between_ends(evaluate(expression, local), part, ends)
+        };
+        let changed_number = |expression: &Expression| {
+            let mut used = expression.parameters();
+            used.any(changed).then(|| number(expression))
+        };
+        system.vary_numbers(along, &changed_number);
+        around.rest_at_numbers_of(along);
+        let largest_move = LARGEST_JUMP * at.size();
         let mut finite = true;
-        for (index, change) in self.markers.iter_mut().enumerate() {
+        for (index, change) in markers.iter_mut().enumerate() {
             let marker = &mechanism.markers[index];
             let mut used = marker.numbers().flat_map(Expression::parameters);
-            if used.any(changed) {
+            if change.is_used && used.any(changed) {
                 let id = MarkerId(index);
                 let (point, turned) = at.local(id);
-                let (position, angle) = self.along.local(id);
-                *change = MarkerChange {
-                    start: evaluated(marker, before) - point,
-                    position: Change::of(position, [point.x, point.y]),
-                    angle: Change::of([angle], [turned]),
-                };
+                let (position, angle) = along.local(id);
+                change.start = evaluated(marker, before) - point;
+                change.position = Change::of(position, [point.x, point.y], largest_move);
+                change.angle = Change::of([angle], [turned], LARGEST_JUMP);
             }
             finite &= change.position.is_finite() && change.angle.is_finite();
         }
-        let rows = self.rows.iter_mut().zip(system.equations());
+        let rows = rows.iter_mut().zip(system.equations());
         for (index, (row, equation)) in rows.enumerate() {
             row.moves = row.parameters.iter().any(|p| local[p.index()].varies());
+            row.largest_jump = match equation.constraint.dimension() {
+                Dimension::Length => LARGEST_JUMP * equation.size(at),
+                Dimension::Angle => LARGEST_JUMP,
+            };
             if let Target::Constant(target) = &equation.target
                 && target.parameters().any(changed)
             {
-                let target = evaluate(target, local);
-                row.target = Change::of([target], [targets.constant(index)]);
+                let in_force = [targets.constant(index)];
+                row.target = Change::of([number(target)], in_force, row.largest_jump);
             }
             finite &= row.target.is_finite();
         }
         finite
+    }
+
+    /// Lets parameters, motions and profiles move along a part of `path`, from one list of values
+    /// to the other.
+    fn move_parameters(
+        &mut self,
+        mechanism: &Mechanism,
+        [before, after]: [&[f64]; 2],
+        path: &Path,
+        [start, end]: [f64; 2],
+    ) {
+        let value = |s: f64, from: f64, to: f64| if s < 1.0 { from + s * (to - from) } else { to };
+        let h = Interval::point(end) - Interval::point(start);
+        let mut now = std::mem::take(&mut self.next);
+        let branches = path.from.iter().zip(&path.to);
+        for (parameter, (&from, &to)) in now.iter_mut().zip(branches) {
+            let ends = [value(start, from, to), value(end, from, to)];
+            let range = Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
+            let slope = (Interval::point(to) - Interval::point(from)) * h;
+            *parameter = Enclosed::linear(range, slope);
+        }
+        mechanism.derive_parameters(&mut now);
+        for (now, (from, to)) in now.iter_mut().zip(before.iter().zip(after)) {
+            *now = between_ends(*now, [start, end], || [*from, *to]);
+        }
+        for ((local, changed), now) in self.local.iter_mut().zip(&mut self.changed).zip(&now) {
+            *changed = now.varies() || now != local;
+            *local = *now;
+        }
+        self.next = now;
+        let local = |p: ParameterId| self.local[p.index()];
+        for motion in self.motions.iter_mut().flatten() {
+            motion.set_parameters(local);
+        }
+        let [along, around] = &mut self.profiles;
+        for (along, around) in along.iter_mut().zip(around) {
+            along.set_parameters(local);
+            around.set_parameters(|p| Enclosed::fixed(local(p).value));
+        }
+    }
+
+    /// Encloses a driver's prescribed motion over the sub-step, on which time runs as `t`; see
+    /// [`MotionInForce::enclose`].
+    pub(in crate::kinematics) fn motion(&self, driver: DriverId, t: Enclosed) -> Option<Enclosed> {
+        let motion = self.motions[driver.index()].as_ref();
+        motion.and_then(|motion| motion.enclose(t))
     }
 
     /// Lets an unknown run straight between these values; in the region it deviates from there by
@@ -283,24 +410,24 @@ impl ParameterBounds {
         self.around.set_coordinate(column, Enclosed::fixed(region));
     }
 
-    /// Bounds the second derivative of c − target of a row along the chords of its unknowns. `None`
-    /// without a bound, as for a contour that parameters move. A linear row needs no chords.
+    /// Bounds the [bend](bend()) of c − target of a row along the chords of its unknowns. `None`
+    /// without a bound. A linear row needs no chords.
     pub(in crate::kinematics) fn bend(
         &self,
         row: usize,
         equation: &Equation,
         profiles: &[CamProfile],
     ) -> Option<f64> {
-        let moves = |p: &ParameterId| self.local[p.index()].varies();
-        if equation.constraint.has_contour() && equation.parameters.iter().any(moves) {
-            return None;
-        }
         let mechanism = VariedMechanism {
             bodies: &self.along,
-            profiles,
+            profiles: EnclosedProfiles {
+                in_force: profiles,
+                moving: &self.profiles[0],
+            },
         };
+        let row = &self.rows[row];
         let enclosed: Enclosed = equation.constraint.along(&mechanism);
-        let bend = enclosed.second().magnitude() + self.rows[row].target.second;
+        let bend = bend_within(&enclosed, row.largest_jump) + row.target.second;
         bend.is_finite().then_some(bend)
     }
 
@@ -311,6 +438,10 @@ impl ParameterBounds {
         profiles: &[CamProfile],
         column: usize,
     ) -> Interval {
+        let profiles = EnclosedProfiles {
+            in_force: profiles,
+            moving: &self.profiles[1],
+        };
         partial(&*equation.constraint, &mut self.around, profiles, column)
     }
 }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use crate::kinematics::reference::generated::{BAR, Ground, chain, lift_from_below, scissor_lift};
 use crate::kinematics::reference::{assembled, grown, part};
 use crate::kinematics::{Curve, Path, Pose, Progress, Solver};
-use crate::mechanism::{DriverId, JointKind, MarkerId, Mechanism, Motion, ParameterId, Source};
+use crate::mechanism::{DriverId, MarkerId, Mechanism, Source};
 
 /// Number of places of a sub-step at which the true motion is compared with the bounds.
 const SAMPLES: u32 = 12;
@@ -404,23 +404,6 @@ proptest! {
     }
 }
 
-/// Returns whether a parameter is in the profile of a cam or in the table of a motion, which have no
-/// bounds while it moves.
-fn has_no_bounds(mechanism: &Mechanism, parameter: ParameterId) -> bool {
-    let profiles = mechanism.joints.iter().any(|joint| match &joint.kind {
-        JointKind::Cam { profile, .. } => profile.parameters().any(|p| p == parameter),
-        _ => false,
-    });
-    let tables = mechanism
-        .drivers
-        .iter()
-        .any(|driver| match driver.motion() {
-            Some(motion @ Motion::Table(_)) => motion.parameters().any(|p| p == parameter),
-            _ => false,
-        });
-    profiles || tables
-}
-
 /// Moving parameters are real variables of the path: their steps are proved, in as few sub-steps
 /// as those of drivers.
 #[test]
@@ -431,7 +414,7 @@ fn steps_of_moving_parameters_are_proved() {
         let mechanism = std::sync::Arc::clone(solver.mechanism());
         let home = solver.pose().clone();
         for (index, parameter) in mechanism.parameters.iter().enumerate() {
-            if parameter.derived || has_no_bounds(&mechanism, ParameterId(index)) {
+            if parameter.derived {
                 continue;
             }
             solver.restore(&home);

@@ -17,7 +17,7 @@ pub struct Angle {
 }
 
 impl Formula for Angle {
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         at.marker(self.to).theta - at.marker(self.from).theta
     }
 }

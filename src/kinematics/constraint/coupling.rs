@@ -33,7 +33,7 @@ impl Coupling {
 }
 
 impl Formula for Coupling {
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let phi = at.phi(self.carrier);
         let [first, second] = [self.from, self.to].map(|marker| at.marker(marker).theta - phi);
         let [i, j] = self.sizes.map(|size| at.coefficient(size));

@@ -62,17 +62,17 @@ pub enum TurnEffect {
 /// A relation as a formula on the numbers of a moving mechanism.
 pub trait Formula {
     /// Returns c and its derivatives for a motion.
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N;
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N;
 }
 
 /// A [`Formula`] on one type of numbers.
 pub trait Along<N: Moving> {
     /// Returns c and its derivatives for a motion.
-    fn along(&self, at: &VariedMechanism<'_, N>) -> N;
+    fn along(&self, at: &VariedMechanism<'_, '_, N>) -> N;
 }
 
 impl<N: Moving, F: Formula> Along<N> for F {
-    fn along(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn along(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         self.evaluate(at)
     }
 }
@@ -81,7 +81,7 @@ impl<N: Moving, F: Formula> Along<N> for F {
 pub(in crate::kinematics) fn partial<S: Number, const N: usize>(
     relation: &(impl Along<Taylor<S, N>> + ?Sized),
     bodies: &mut VariedConfiguration<Taylor<S, N>>,
-    profiles: &[<Taylor<S, N> as Moving>::Profile],
+    profiles: <Taylor<S, N> as Moving>::Profiles<'_>,
     column: usize,
 ) -> S
 where

@@ -36,7 +36,7 @@ impl Distance {
 }
 
 impl Formula for Distance {
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let [x, y] = subtract(at.marker(self.to).point, at.marker(self.from).point);
         x.hypot(y)
     }

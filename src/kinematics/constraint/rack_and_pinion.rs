@@ -44,7 +44,7 @@ impl RackAndPinion {
 }
 
 impl Formula for RackAndPinion {
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let turn = at.marker(self.pinion).theta - at.marker(self.rack).theta;
         let arc = at.coefficient(self.radius) * turn;
         match self.side {

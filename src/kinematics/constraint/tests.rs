@@ -3,7 +3,9 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::kinematics::variation::{Enclosed, Varied, VariedConfiguration, VariedMechanism};
+use crate::kinematics::variation::{
+    Enclosed, EnclosedProfiles, Varied, VariedConfiguration, VariedMechanism,
+};
 use crate::kinematics::{
     CamProfile, Coefficient, CoefficientId, Configuration, JointUnknownId, ProfileId,
 };
@@ -341,12 +343,13 @@ proptest! {
             around.set_coordinate(k, Enclosed::fixed(wider));
         }
         let profiles = at.profiles().to_vec();
-        let chord = VariedMechanism { bodies: &chord, profiles: &profiles };
+        let profiles = EnclosedProfiles { in_force: &profiles, moving: &[] };
+        let chord = VariedMechanism { bodies: &chord, profiles };
         for constraint in samples(&mechanism) {
             let on_chord = constraint.along(&chord);
             let motion = [on_chord.value, on_chord.first(), on_chord.second()];
             let gradient: Vec<_> = (0..UNKNOWNS)
-                .map(|k| partial(&*constraint, &mut around, &profiles, k))
+                .map(|k| partial(&*constraint, &mut around, profiles, k))
                 .collect();
             for (place, s) in places.iter().zip(&along) {
                 let here = moved(&q, &v, *s);

@@ -1,14 +1,11 @@
 //! Bounds of the deviation of drivers from their chords during a sub-step.
 
-use crate::kinematics::certificate::StepBounds;
+use crate::kinematics::certificate::{LARGEST_JUMP, ParameterBounds, StepBounds};
 use crate::kinematics::path::{Curve, Path, PathDrivers};
 use crate::kinematics::state::State;
 use crate::kinematics::system::{Equation, System};
-use crate::mechanism::{DriverId, Interval, Jet3, ParameterId};
-
-/// Largest deviation of a prescribed motion that is not smooth, in radians and characteristic
-/// lengths; a motion that jumps by more is refused where it jumps.
-const LARGEST_JUMP: f64 = 0.1;
+use crate::kinematics::variation::bend;
+use crate::mechanism::{DriverId, Interval, Jet3, Number, ParameterId};
 
 /// Bounds drivers and parameters over a part of `path`, at whose end the drivers ahead and the
 /// parameters in force are.
@@ -33,7 +30,7 @@ pub(super) fn bound_drivers(
         if !parameters.bound(
             system,
             (&state.at, &state.targets),
-            &state.pose.parameters,
+            [&state.pose.parameters, &drivers.parameters],
             path,
             part,
         ) {
@@ -55,11 +52,9 @@ pub(super) fn bound_drivers(
                 let motion = Motion {
                     driver,
                     ends,
-                    second: [drivers.here[index].second(), drivers.ahead[index].second()],
-                    moves: drivers.parameters_move,
                     row: system.driver_row(driver),
                 };
-                motion.deviation(state, path, part, bounds)
+                motion.deviation(state, path, part, bounds.moving_parameters())
             }
         };
         let deviation = deviation.ok_or(Some(DriverId(index)))?;
@@ -73,16 +68,12 @@ struct Motion<'a> {
     driver: DriverId,
     /// Its values at both ends.
     ends: [f64; 2],
-    /// Its second derivatives with respect to s there.
-    second: [f64; 2],
-    /// Whether parameters move.
-    moves: bool,
     /// Its row, which has the unit of its values.
     row: &'a Equation,
 }
 
 impl Motion<'_> {
-    /// Bounds the deviation from the straight line between the ends.
+    /// Bounds the deviation from the straight line between the ends, for parameters that may move.
     // Its stack of operands is no part of steps without motions.
     #[inline(never)]
     fn deviation(
@@ -90,22 +81,19 @@ impl Motion<'_> {
         state: &State,
         path: &Path,
         [start, end]: [f64; 2],
-        bounds: &mut StepBounds,
+        moving: Option<&ParameterBounds>,
     ) -> Option<f64> {
         let motions = &state.motions;
         let [begin, stop] = [path.time(start), path.time(end)];
         let duration = stop - begin;
-        let range = if self.moves {
-            let t = Jet3::linear(Interval::new(begin, stop), Interval::point(path.duration));
-            let parameters = &bounds.parameters.parameters;
-            let range = motions.enclose(self.driver, t, &|p: ParameterId| parameters[p.index()]);
-            if range.is_none() {
-                // A table whose points move; its second derivative is known at both ends.
-                bounds.checked = true;
-                let most = 2.0 * self.second[1].abs().max(self.second[0].abs());
-                return Some(0.125 * (end - start).powi(2) * most);
+        let range = if let Some(moving) = moving {
+            let way = Interval::point(stop) - Interval::point(begin);
+            let range =
+                moving.motion(self.driver, Jet3::linear(Interval::new(begin, stop), way))?;
+            if range.first().is_finite() {
+                return Some(0.125 * bend(&range));
             }
-            range?
+            range
         } else {
             if duration == 0.0 {
                 return Some(0.0);
@@ -118,10 +106,6 @@ impl Motion<'_> {
             let parameter = |p: ParameterId| Jet3::constant(parameters[p.index()]);
             motions.enclose(self.driver, t, &parameter)?
         };
-        let second = range.second().magnitude();
-        if self.moves && second.is_finite() {
-            return Some(0.125 * (end - start).powi(2) * second);
-        }
         // Not smooth: between the least and the largest value.
         let [from, to] = self.ends;
         let Interval { low, high } = range.value;

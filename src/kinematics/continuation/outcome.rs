@@ -40,7 +40,7 @@ pub struct Progress {
     pub crossings: u32,
     /// Accepted sub-steps that are *checked*, not proved: an estimate tells that one continuous
     /// motion joins their ends. It takes the place of the proof for blocks of more than 32 torn
-    /// unknowns, and while parameters move relations without straight code or a motion's table.
+    /// unknowns, and for redundant rows where pieces of a contour meet.
     pub checked: u32,
 }
 

@@ -17,8 +17,7 @@ const OPEN_BETWEEN: f64 = 1e-4;
 const NARROW: f64 = 1e-3;
 
 /// Bounds the rows set aside that depend on a contour over a sub-step, at whose end the mechanism
-/// is and whose blocks are bounded. Allocates nothing. While parameters move it is bounded for
-/// those at the end, and the sub-step is checked.
+/// is and whose blocks are bounded. Allocates nothing.
 ///
 /// # Errors
 ///
@@ -30,7 +29,6 @@ pub(in crate::kinematics) fn watch_between(
 ) -> Result<(), Rejected> {
     let mut rows = model.redundant.contour_rows.iter();
     rows.try_for_each(|row| {
-        bounds.checked |= bounds.parameters.moving;
         let step_ratio = match open_between(model, state, row, bounds) {
             Ok(open) => open / OPEN_BETWEEN,
             Err(largest_move) if largest_move <= NARROW => {
@@ -66,6 +64,14 @@ fn open_between(
         largest_move = largest_move.max(bounds.region[column] / scale);
     }
     let equation = &system.equations()[row.row];
+    if bounds.parameters.moves(row.row) {
+        let open = open_while_moving(model, state, row, bounds);
+        for &column in &row.columns {
+            bounds.region[column] = 0.0;
+            bounds.chord[column] = 0.0;
+        }
+        return open.ok_or(largest_move);
+    }
     let constraint = &equation.constraint;
     let (mut gradient, mut change) = (Gradient::new(), Gradient::new());
     constraint.gradient(at, &mut gradient);
@@ -83,4 +89,30 @@ fn open_between(
     }
     let open = along.map(|along| (0.125 * along + off_chord) * equation.row_scale(at));
     open.ok_or(largest_move)
+}
+
+/// Bounds a row over a sub-step on which parameters move its numbers, scaled; `None` without a bound.
+#[cold]
+fn open_while_moving(
+    model: &Model,
+    state: &State,
+    row: &ContourRow,
+    bounds: &mut StepBounds,
+) -> Option<f64> {
+    let Model { system, plan, .. } = model;
+    let at = &state.at;
+    let equation = &system.equations()[row.row];
+    let deviation = |bounds: &StepBounds, column| bounds.deviation(column, &plan.pivots);
+    for &column in &row.columns {
+        let ends = [state.pose.q[column], at.coordinate(column)];
+        let radius = deviation(bounds, column);
+        bounds.parameters.set_chord(column, ends, radius);
+    }
+    let mut open = 0.125 * bounds.parameters.bend(row.row, equation, at.profiles())?;
+    for &column in &row.columns {
+        let radius = deviation(bounds, column);
+        let slope = (bounds.parameters).partial(equation, at.profiles(), column);
+        open += slope.magnitude() * radius;
+    }
+    open.is_finite().then(|| open * equation.row_scale(at))
 }

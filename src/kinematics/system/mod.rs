@@ -18,7 +18,9 @@ use crate::kinematics::constraint::{self, Constraint, Dimension, Incidence, Turn
 use crate::kinematics::linear::nan_or_larger;
 use crate::kinematics::variation::VariedConfiguration;
 use crate::kinematics::{Element, Error};
-use crate::mechanism::{DriverId, Expression, Jet, Mechanism, Motion, Number, ParameterId};
+use crate::mechanism::{
+    DriverId, Expression, Jet, Mechanism, Motion, MovingProfile, Number, ParameterId,
+};
 
 /// The target of c(q).
 #[derive(Clone, Debug)]
@@ -234,16 +236,20 @@ impl System {
         VariedConfiguration::new(&self.mechanism, coefficients, self.unknowns())
     }
 
-    /// Evaluates the numbers in the relations for these parameters, or only those numbers that use
-    /// parameters which have `changed`. Allocates nothing.
-    pub(in crate::kinematics) fn vary_parameters<N: Number>(
+    /// Sets the numbers in the relations to those that `value` gives; the others stay. Allocates
+    /// nothing.
+    pub(in crate::kinematics) fn vary_numbers<N: Number>(
         &self,
         at: &mut VariedConfiguration<N>,
-        parameters: &[N],
-        changed: Option<&[bool]>,
+        value: &dyn Fn(&Expression) -> Option<N>,
     ) {
-        let coefficients = &self.joint_parts.coefficients;
-        at.set_parameters(&self.mechanism, coefficients, parameters, changed);
+        at.set_numbers(&self.mechanism, &self.joint_parts.coefficients, value);
+    }
+
+    /// Returns the profiles of all cams, for parameters that move.
+    pub(in crate::kinematics) fn moving_profiles(&self) -> Vec<MovingProfile> {
+        let profiles = self.joint_parts.profiles.iter();
+        profiles.map(|profile| profile.in_force.moving()).collect()
     }
 
     /// Makes targets; [`set_parameters`](Self::set_parameters) gives them their values.

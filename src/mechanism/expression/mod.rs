@@ -27,6 +27,7 @@ pub(super) use function::CONSTANTS;
 pub(crate) use function::constant;
 pub(super) use in_force::ExpressionInForce;
 pub(super) use parse::{Scope, SignalNames};
+pub(super) use pieces::MOST_SWITCHES;
 pub(super) use reserved::is_taken;
 #[cfg(feature = "cli")]
 pub(super) use reserved::taken;

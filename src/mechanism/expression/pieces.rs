@@ -8,11 +8,11 @@
 use super::function::Binary;
 use super::{Expression, MAX_STACK, Operation};
 use crate::mechanism::ParameterId;
-use crate::mechanism::number::{Interval, Jet3, Number, Unary};
+use crate::mechanism::number::{Interval, Jet3, Number, Taylor, Unary};
 
 /// Most switches of an expression in one range whose pieces are taken in turn, as each doubles the
 /// work.
-const MOST_SWITCHES: u32 = 6;
+pub(in crate::mechanism) const MOST_SWITCHES: u32 = 6;
 /// Number of parts of a range: the excess of the bounds is proportional to their width.
 const PARTS: u32 = 8;
 
@@ -38,33 +38,95 @@ impl Expression {
         };
         let mut parts = (0..PARTS).map(|part| {
             let variable = Jet3::variable(Interval::new(end(part), end(part + 1)));
-            let stack = [Jet3::constant(0.0); MAX_STACK];
-            run_pieces(
-                &self.program,
-                (stack, 0),
-                &parameter,
-                variable,
-                MOST_SWITCHES,
-            )
+            self.hull_of_pieces(&parameter, variable, Some(MOST_SWITCHES))
         });
         let first = parts.next().flatten();
         parts.fold(first, |hull, part| Some(hull?.hull(part?)))
+    }
+
+    /// Encloses the result for these numbers on each piece that may be in force, of the first
+    /// `switches` that meet in turn. `None` where a piece has no bounds, pieces jump by more than
+    /// one step, or pieces meet without any `switches`. Allocates nothing.
+    pub(in crate::mechanism) fn hull_of_pieces<N: Piece>(
+        &self,
+        parameter: &impl Fn(ParameterId) -> N,
+        variable: N,
+        switches: Option<u32>,
+    ) -> Option<N> {
+        let stack = [N::constant(0.0); MAX_STACK];
+        run_pieces(&self.program, (stack, 0), parameter, variable, switches)
+    }
+}
+
+/// An enclosed number with derivatives, on one of the pieces of an expression.
+pub(in crate::mechanism) trait Piece: Number {
+    /// Returns the range of the value.
+    fn range(&self) -> Interval;
+
+    /// Returns the number with another range of its value.
+    fn with_range(self, range: Interval) -> Self;
+
+    /// Returns the bounds of both, order by order.
+    fn hull(self, other: Self) -> Self;
+
+    /// Returns whether the derivatives that are needed have bounds.
+    fn is_bounded(&self) -> bool;
+}
+
+impl Piece for Jet3<Interval> {
+    fn range(&self) -> Interval {
+        self.value
+    }
+
+    fn with_range(self, range: Interval) -> Self {
+        Self::new(range, self.derivatives)
+    }
+
+    fn hull(self, other: Self) -> Self {
+        Self::hull(self, other)
+    }
+
+    fn is_bounded(&self) -> bool {
+        let [first, second, _] = self.derivatives;
+        let needed = [self.value, first, second];
+        needed.iter().all(|bound| bound.is_finite())
+    }
+}
+
+/// A number along a sub-step, with its derivative with respect to the variable.
+impl Piece for Taylor<Jet3<Interval>, 1> {
+    fn range(&self) -> Interval {
+        self.value.value
+    }
+
+    fn with_range(self, range: Interval) -> Self {
+        Self::new(self.value.with_range(range), self.derivatives)
+    }
+
+    fn hull(self, other: Self) -> Self {
+        let slope = self.first().hull(other.first());
+        Self::new(self.value.hull(other.value), [slope])
+    }
+
+    fn is_bounded(&self) -> bool {
+        let slope = self.first();
+        self.value.value.is_finite() && slope.value.is_finite()
     }
 }
 
 /// Runs the rest of a program on a stack of some height. Returns the hull of the results for both
 /// pieces of each of the first `switches` operations that switch.
-fn run_pieces(
+fn run_pieces<N: Piece>(
     program: &[Operation],
-    (mut stack, mut height): ([Jet3<Interval>; MAX_STACK], usize),
-    parameter: &impl Fn(ParameterId) -> Jet3<Interval>,
-    variable: Jet3<Interval>,
-    switches: u32,
-) -> Option<Jet3<Interval>> {
+    (mut stack, mut height): ([N; MAX_STACK], usize),
+    parameter: &impl Fn(ParameterId) -> N,
+    variable: N,
+    switches: Option<u32>,
+) -> Option<N> {
     for (index, operation) in program.iter().enumerate() {
         let first = height - operation.arity();
         if let Some(pieces) = operation.switch(&stack[first..height]) {
-            let Some(switches) = switches.checked_sub(1) else {
+            let Some(switches) = switches?.checked_sub(1) else {
                 let [one, other] = pieces;
                 stack[first] = one.hull(other);
                 height = first + 1;
@@ -73,39 +135,37 @@ fn run_pieces(
             let [one, other] = pieces.map(|piece| {
                 stack[first] = piece;
                 let rest = &program[index + 1..];
-                run_pieces(rest, (stack, first + 1), parameter, variable, switches)
+                let state = (stack, first + 1);
+                run_pieces(rest, state, parameter, variable, Some(switches))
             });
             return Some(one?.hull(other?));
         }
         operation.apply(&mut stack, &mut height, parameter, &|_| variable);
     }
-    let [first, second, _] = stack[0].derivatives;
-    let needed = [stack[0].value, first, second];
-    let is_finite = needed.iter().all(|bound| bound.is_finite());
-    is_finite.then_some(stack[0])
+    stack[0].is_bounded().then_some(stack[0])
 }
 
 impl Operation {
     /// Returns both pieces of an operation that switches in the range of its operands; `None` if
     /// it does not, or between more than two pieces. The value of a piece is bounded to where it is
     /// in force.
-    fn switch(self, operands: &[Jet3<Interval>]) -> Option<[Jet3<Interval>; 2]> {
+    fn switch<N: Piece>(self, operands: &[N]) -> Option<[N; 2]> {
         match (self, operands) {
             (Self::Binary(Binary::Min), &[x, y]) => {
-                is_undecided(x, y).then(|| [below(x, y.value.high), below(y, x.value.high)])
+                is_undecided(x, y).then(|| [below(x, y.range().high), below(y, x.range().high)])
             }
             (Self::Binary(Binary::Max), &[x, y]) => {
-                is_undecided(x, y).then(|| [above(x, y.value.low), above(y, x.value.low)])
+                is_undecided(x, y).then(|| [above(x, y.range().low), above(y, x.range().low)])
             }
             (Self::Unary(Unary::Abs), &[x]) => {
-                let zero = Jet3::constant(0.0);
+                let zero = N::constant(0.0);
                 is_undecided(x, zero).then(|| [above(x, 0.0), above(-x, 0.0)])
             }
             (Self::Unary(step @ (Unary::Sign | Unary::Floor | Unary::Ceil)), &[x]) => {
-                steps(x.value.apply(step))
+                steps(x.range().apply(step))
             }
             (Self::Binary(Binary::Mod), &[x, y]) => {
-                let pieces = steps((x / y).value.floor())?;
+                let pieces = steps::<N>((x / y).range().floor())?;
                 Some(pieces.map(|whole| x - y * whole))
             }
             _ => None,
@@ -114,27 +174,27 @@ impl Operation {
 }
 
 /// Returns whether the larger of two numbers changes in the range.
-fn is_undecided(x: Jet3<Interval>, y: Jet3<Interval>) -> bool {
+fn is_undecided<N: Piece>(x: N, y: N) -> bool {
     !x.is_undefined() && !y.is_undefined() && x.at_most(y).is_none()
 }
 
 /// Returns a piece that is in force where it is at most `high`.
-fn below(piece: Jet3<Interval>, high: f64) -> Jet3<Interval> {
-    let value = Interval::new(piece.value.low, piece.value.high.min(high));
-    Jet3::new(value, piece.derivatives)
+fn below<N: Piece>(piece: N, high: f64) -> N {
+    let range = piece.range();
+    piece.with_range(Interval::new(range.low, range.high.min(high)))
 }
 
 /// Returns a piece that is in force where it is at least `low`.
-fn above(piece: Jet3<Interval>, low: f64) -> Jet3<Interval> {
-    let value = Interval::new(piece.value.low.max(low), piece.value.high);
-    Jet3::new(value, piece.derivatives)
+fn above<N: Piece>(piece: N, low: f64) -> N {
+    let range = piece.range();
+    piece.with_range(Interval::new(range.low.max(low), range.high))
 }
 
 /// Returns the two values of a step function that jumps once in the range: from one integer to the
 /// next, or from −1 to 1.
-fn steps(range: Interval) -> Option<[Jet3<Interval>; 2]> {
+fn steps<N: Piece>(range: Interval) -> Option<[N; 2]> {
     // Both ends are integers.
     let jump = range.high - range.low;
     let once = (0.5..1.5).contains(&jump) || range == Interval::new(-1.0, 1.0);
-    once.then(|| [range.low, range.high].map(Jet3::constant))
+    once.then(|| [range.low, range.high].map(N::constant))
 }

@@ -1,6 +1,7 @@
 //! Prescribed motions: a driver's value as a function of time and the parameters.
 
 mod law;
+mod moving;
 
 pub use law::Law;
 

@@ -48,6 +48,8 @@ impl Unary {
     }
 
     /// Returns f′, f″ and f‴ at x from x and f(x), those of the piece in force: `abs` rises at 0.
+    /// Where x may be at a corner, f′ has the bounds of both sides; where f may be infinitely steep
+    /// within its domain, nothing is known of its derivatives.
     pub(super) fn derivatives<S: Number>(self, x: S, value: S) -> [S; 3] {
         let [zero, one, two] = [0.0, 1.0, 2.0].map(S::constant);
         match self {
@@ -66,7 +68,11 @@ impl Unary {
                 [slope, value * 2.0 * slope, third]
             }
             Self::Asin => {
-                let slope = one / x.one_minus_square().sqrt();
+                let square = x.one_minus_square();
+                let slope = one / square.sqrt();
+                if slope.is_undefined() && zero.at_most(square) == Some(true) {
+                    return [S::unknown(); 3];
+                }
                 let third = slope.cube() * (one + (x * slope).square() * 3.0);
                 [slope, x * slope * slope * slope, third]
             }
@@ -95,6 +101,9 @@ impl Unary {
             }
             Self::Sqrt => {
                 let slope = S::constant(0.5) / value;
+                if slope.is_undefined() && zero.at_most(x) == Some(true) {
+                    return [S::unknown(); 3];
+                }
                 let second = slope * -0.5 / x;
                 [slope, second, second * -1.5 / x]
             }
@@ -107,7 +116,7 @@ impl Unary {
             Self::Abs => match zero.at_most(x) {
                 Some(true) => [one, zero, zero],
                 Some(false) => [-one, zero, zero],
-                None => [S::unknown(); 3],
+                None => [one.either(-one), S::unknown(), S::unknown()],
             },
             // Across a jump.
             Self::Sign | Self::Floor | Self::Ceil => [S::unknown(); 3],

@@ -99,6 +99,10 @@ pub trait Number:
     /// Returns the smaller number, point by point; the first at a tie.
     fn smaller(self, other: Self) -> Self;
 
+    /// Returns bounds of a number that is this one or `other`, whichever it is at a point.
+    /// Derivatives are not known, as it may jump from one to the other.
+    fn either(self, other: Self) -> Self;
+
     /// Returns `function` of this number.
     fn apply(self, function: Unary) -> Self;
 

@@ -47,6 +47,10 @@ impl Number for f64 {
         }
     }
 
+    fn either(self, other: Self) -> Self {
+        if self == other { self } else { Self::NAN }
+    }
+
     fn apply(self, function: Unary) -> Self {
         match function {
             Unary::Sin => self.sin(),

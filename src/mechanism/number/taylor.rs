@@ -69,6 +69,13 @@ impl<S: Number, const N: usize> Taylor<S, N> {
         Self::new(value, [S::unknown(); N])
     }
 
+    /// Makes a continuous number with a corner: only its first derivative has bounds.
+    fn cornered(value: S, first: S) -> Self {
+        let mut number = Self::undecided(value);
+        number.derivatives[0] = first;
+        number
+    }
+
     /// Makes the number whose derivative of each order is `of` that order.
     fn by_order(of: impl Fn(usize) -> S) -> Self {
         Self::new(of(0), array::from_fn(|k| of(k + 1)))
@@ -221,9 +228,15 @@ impl<S: Number, const N: usize> Number for Taylor<S, N> {
         match self.at_most(other) {
             Some(true) => self,
             Some(false) => other,
-            None if self.varies() || other.varies() => Self::undecided(value()),
+            None if self.varies() || other.varies() => {
+                Self::cornered(value(), self.first().either(other.first()))
+            }
             None => Self::fixed(value()),
         }
+    }
+
+    fn either(self, other: Self) -> Self {
+        Self::undecided(self.value.either(other.value))
     }
 
     fn apply(self, function: Unary) -> Self {
@@ -244,8 +257,13 @@ impl<S: Number, const N: usize> Number for Taylor<S, N> {
         }
         self.chain(value, |x| {
             let [y_1, y_2, y_3] = [1.0, 2.0, 3.0].map(|k| y - S::constant(k));
+            let slope = falling(y, x, y_1);
+            // The value has bounds within the domain only.
+            if slope.is_undefined() && !value.is_undefined() {
+                return [S::unknown(); 3];
+            }
             [
-                falling(y, x, y_1),
+                slope,
                 falling(y * y_1, x, y_2),
                 falling(y * y_1 * y_2, x, y_3),
             ]
@@ -253,8 +271,14 @@ impl<S: Number, const N: usize> Number for Taylor<S, N> {
     }
 
     fn hypot(self, y: Self) -> Self {
+        let r = self.value.hypot(y.value);
+        if (self.value / r).is_undefined() && (self.varies() || y.varies()) {
+            // Where the point passes the origin, the radius changes by no more than the point.
+            let speed = self.first().hypot(y.first());
+            return Self::cornered(r, speed.either(-speed));
+        }
         // The angle's derivatives are needed, its value is not.
-        let [r, _] = Self::polar(self, y, self.value.hypot(y.value), S::constant(0.0));
+        let [r, _] = Self::polar(self, y, r, S::constant(0.0));
         r
     }
 

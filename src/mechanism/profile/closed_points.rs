@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::ProfileError;
+use super::moving::parts_of_turn;
 use crate::mechanism::{
     Dual, Ends, Interpolation, Interval, Jet3, Law, Number, ParameterId, Spline, Table,
 };
@@ -71,6 +72,11 @@ impl ClosedPoints<f64> {
         along.write(table, parameter);
         along.fit();
         along
+    }
+
+    /// Makes the contour for points that move, which are set later.
+    pub(super) fn moving(&self) -> ClosedPoints<Jet3<Interval>> {
+        ClosedPoints::new(self.spline.knots().len() - 1, self.interpolation)
     }
 
     /// Returns whether the second derivative may jump.
@@ -186,6 +192,29 @@ impl ClosedPoints<f64> {
         let second = around(middle.second(), third);
         let first = around(middle.first(), second);
         Jet3::new(around(middle.value, first), [first, second, third])
+    }
+}
+
+impl ClosedPoints<Jet3<Interval>> {
+    /// Takes over the points of a table whose parameters move.
+    pub(super) fn set_moving(
+        &mut self,
+        table: &Table,
+        parameter: &impl Fn(ParameterId) -> Jet3<Interval>,
+    ) {
+        self.write(table, parameter);
+        self.fit();
+    }
+
+    /// Encloses R and R′ for a moving polar angle; `None` where the points may not rise.
+    pub(super) fn enclose(&self, theta: Jet3<Interval>) -> Option<[Jet3<Interval>; 2]> {
+        if !self.spline.rises() {
+            return None;
+        }
+        let start = self.spline.knots()[0].value;
+        let parts = parts_of_turn(theta, start).into_iter();
+        let parts = parts.filter_map(|theta| self.interpolation.enclose(&self.spline, theta));
+        parts.reduce(|found, part| self.interpolation.join(found, part))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Profiles of cams: the polar radius of a contour as a function of the polar angle.
 
 mod closed_points;
+mod moving;
 mod sectors;
 
 use std::cell::Cell;
@@ -9,6 +10,7 @@ use std::f64::consts::TAU;
 use super::expression::ExpressionInForce;
 use super::{Dual, Expression, Interpolation, Interval, Jet3, ParameterId, Table};
 use closed_points::ClosedPoints;
+pub use moving::MovingProfile;
 use sectors::{Contour, Sectors, overlapping};
 
 /// A closed contour R(θ), θ counter-clockwise from the cam marker's x-axis \[rad, m\].

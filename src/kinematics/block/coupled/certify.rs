@@ -13,9 +13,7 @@
 //!
 //! While parameters move, rows with their numbers are enclosed as functions of the place on the
 //! sub-step ([`ParameterBounds`]): the second derivative along the chord and the gradients around
-//! it include all that the numbers do. Where the contour of a cam has no such enclosure, the row's
-//! value at the start of the sub-step for the numbers at its end replaces it, and the sub-step is
-//! checked.
+//! it include all that the numbers do.
 //!
 //! [`ParameterBounds`]: crate::kinematics::certificate::ParameterBounds
 //!
@@ -38,8 +36,8 @@ const SMALLER_RADIUS: f64 = 2.0;
 const GOOD_CONTRACTION: f64 = 0.6;
 
 impl CoupledBlock {
-    /// Notes residuals and angles at the start of the sub-step, and what moving parameters do to rows
-    /// without bounds. The block was evaluated last at the start; its unknowns are there, earlier
+    /// Notes residuals and angles at the start of the sub-step, and what moving parameters do to the
+    /// rows of a block without an inverse. The block was evaluated last at the start; its unknowns are there, earlier
     /// ones at their ends.
     pub(super) fn note_start(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.start_excess = self.excess;
@@ -55,15 +53,13 @@ impl CoupledBlock {
         let test = &mut *self.test;
         test.slack.fill(0.0);
         test.moves = rows.iter().any(|&row| step.bounds.parameters.moves(row));
-        if test.moves {
+        test.moved.fill(0.0);
+        if test.moves && test.inverse.is_empty() {
             self.note_moved(state, step);
-        } else {
-            test.moved.fill(0.0);
         }
     }
 
-    /// Notes twice the values that rows have at the start for the numbers at the end, where they
-    /// may have no bounds.
+    /// Notes twice the values that rows have at the start for the numbers at the end.
     #[cold]
     fn note_moved(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.test.note_ends(state);
@@ -73,9 +69,7 @@ impl CoupledBlock {
         let test = &mut *self.test;
         for (moved, &row) in test.moved.iter_mut().zip(&self.equations.rows) {
             let equation = &state.system.equations()[row];
-            *moved = 0.0;
-            let moves = step.bounds.parameters.moves(row);
-            if moves && (test.inverse.is_empty() || equation.constraint.has_contour()) {
+            if step.bounds.parameters.moves(row) {
                 // A driver's chord begins at its value at the start.
                 let drivers = &step.bounds.parameters.drivers_before;
                 let target = state.system.target(row, state.targets, drivers);
@@ -275,10 +269,6 @@ impl CoupledBlock {
         for (local, &row) in equations.rows.iter().enumerate() {
             let bend = equations.bend_on_chord(local, state, bounds)?;
             let mut open = 0.125 * bend.along;
-            if bend.is_estimate {
-                bounds.checked = true;
-                open += test.moved[local];
-            }
             if let Target::Driver(driver) = state.system.equations()[row].target {
                 open += bounds.drivers[driver.index()] * bend.row_scale;
             }

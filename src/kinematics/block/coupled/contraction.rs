@@ -44,7 +44,7 @@ pub(super) struct ContractionTest {
     pub(super) slack: Vec<f64>,
     /// Whether parameters move numbers in the rows.
     pub(super) moves: bool,
-    /// Estimate of the values of rows without bounds while parameters move.
+    /// Estimate of the values of rows of a block without an inverse while parameters move.
     pub(super) moved: Vec<f64>,
     /// Bounds of the change of the Jacobian's entries: row, column, scaled value.
     pub(super) changes: Vec<(usize, usize, f64)>,

@@ -85,8 +85,6 @@ pub(super) struct Bend {
     /// Scale factor of the row.
     pub(super) row_scale: f64,
     change: Gradient,
-    /// Whether it is that for the numbers at the end of the sub-step, while parameters move them.
-    pub(super) is_estimate: bool,
 }
 
 impl BlockEquations {
@@ -181,7 +179,6 @@ impl BlockEquations {
             along: along * row_scale,
             row_scale,
             change,
-            is_estimate: false,
         })
     }
 
@@ -197,16 +194,7 @@ impl BlockEquations {
         if !bounds.parameters.moves(row) {
             return self.bend(local, state, bounds, true);
         }
-        let enclosed = self.enclosed_bend(local, state, &mut bounds.parameters);
-        let constraint = &state.system.equations()[row].constraint;
-        if enclosed.is_some() || !constraint.has_contour() {
-            return enclosed;
-        }
-        let resting = self.bend(local, state, bounds, true)?;
-        Some(Bend {
-            is_estimate: true,
-            ..resting
-        })
+        self.enclosed_bend(local, state, &mut bounds.parameters)
     }
 
     /// Bounds the bend of a row while parameters move its numbers. `None` if it has no enclosure.
@@ -233,7 +221,6 @@ impl BlockEquations {
             along,
             row_scale,
             change,
-            is_estimate: false,
         })
     }
 }

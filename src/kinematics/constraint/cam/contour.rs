@@ -105,7 +105,7 @@ impl Contour {
     /// Returns the moving cam's marker, the vector from its point to the contact, and the tangent.
     pub(super) fn along<N: Moving>(
         &self,
-        at: &VariedMechanism<'_, N>,
+        at: &VariedMechanism<'_, '_, N>,
     ) -> (VariedMarker<N>, [N; 2], [N; 2]) {
         let cam = at.marker(self.cam);
         let theta = at.joint_unknown(self.contact);

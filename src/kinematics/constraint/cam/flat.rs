@@ -44,7 +44,7 @@ fn lean(follower: MarkerPose, contact: &Shape) -> (f64, f64) {
 }
 
 impl Formula for FlatContact {
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let (_, _, [x, y]) = self.contour.along(at);
         let face = at.marker(self.follower).axis;
         face[0] * y - face[1] * x
@@ -145,7 +145,7 @@ impl FlatFace {
 }
 
 impl Formula for FlatFace {
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let (cam, arm, _) = self.contour.along(at);
         let follower = at.marker(self.follower);
         let g = subtract(add(cam.point, arm), follower.point);

@@ -7,7 +7,7 @@ use super::super::gradient::Gradient;
 use super::super::point::{angular_velocity, centripetal, point_velocity};
 use super::super::region::{Region, centripetal_bound, chord, speed_bound};
 use crate::kinematics::configuration::{Configuration, ProfileId, perp};
-use crate::kinematics::variation::{Moving, VariedMechanism, subtract};
+use crate::kinematics::variation::{Moving, VariedMechanism, direction, subtract};
 use crate::mechanism::{Jet3, MarkerId, Mechanism};
 
 /// c = ρ − R(θ) with the polar coordinates ρ and θ of the edge in the cam marker's frame.
@@ -70,11 +70,22 @@ impl KnifeEdge {
     }
 }
 
+/// Returns the angle of a point that may pass the half-line on which `atan2` jumps: an enclosed
+/// point is turned away from there.
+fn angle<N: Moving>(x: N, y: N) -> N {
+    if !y.angle_jumps(x) {
+        return y.atan2(x);
+    }
+    let turn = y.real().atan2(x.real());
+    let [cos, sin] = direction(N::constant(turn));
+    (cos * y - sin * x).atan2(cos * x + sin * y) + N::constant(turn)
+}
+
 impl Formula for KnifeEdge {
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let cam = at.marker(self.cam);
         let [x, y] = subtract(at.marker(self.follower).point, cam.point);
-        let theta = y.atan2(x) - cam.theta;
+        let theta = angle(x, y) - cam.theta;
         let [radius, _] = at.radius(self.profile, theta);
         x.hypot(y) - radius
     }

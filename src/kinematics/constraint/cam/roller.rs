@@ -65,7 +65,7 @@ impl Roller {
 }
 
 impl Formula for Roller {
-    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, N>) -> N {
+    fn evaluate<N: Moving>(&self, at: &VariedMechanism<'_, '_, N>) -> N {
         let (cam, arm, tangent) = self.contour.along(at);
         let centre = at.marker(self.follower).point;
         let e = subtract(centre, add(cam.point, arm));

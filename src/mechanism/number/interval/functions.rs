@@ -163,6 +163,10 @@ impl Number for Interval {
         Self::new(self.low.min(other.low), self.high.min(other.high))
     }
 
+    fn either(self, other: Self) -> Self {
+        Self::hull([self, other])
+    }
+
     fn apply(self, function: Unary) -> Self {
         let from_minus_one_to_one = || self.intersection(Self::new(-1.0, 1.0));
         match function {
