@@ -144,7 +144,8 @@ fn a_path_without_end_is_given_up_soon() {
     straight_to(&solver, &mut path, 1e9);
     let blocked = solver.track(&path).expect_err("it is too long");
     assert_eq!(blocked.reason, Reason::TooLong);
-    assert!(blocked.progress.substeps < 2_100, "{blocked:?}");
+    // Two fiftieths of the most sub-steps.
+    assert!(blocked.progress.substeps < 4_100, "{blocked:?}");
     // A thousand turns are none.
     let (mut solver, mut path) = assembled(&shipped("cam_knife"));
     straight_to(&solver, &mut path, 1e3 * TAU);

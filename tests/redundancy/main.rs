@@ -12,6 +12,7 @@ mod cranks;
 mod endings;
 mod mechanisms;
 mod play;
+mod rings;
 mod twins;
 mod verdicts;
 mod warning;

@@ -19,7 +19,7 @@ use crate::kinematics::model::Model;
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::kinematics::path::{Path, PathDrivers};
 use crate::kinematics::redundancy;
-use crate::kinematics::singular::{self, DriverLimit, FruitlessSearches, NEAR};
+use crate::kinematics::singular::{self, DriverLimit, FruitlessSearches, NEAR, SingularPoint};
 use crate::kinematics::state::{State, UNIT_RATE};
 use crate::kinematics::system::System;
 use crate::mechanism::{DriverId, Jet};
@@ -29,6 +29,8 @@ use crate::mechanism::{DriverId, Jet};
 const LARGEST_LAST_MOVE: f64 = 1e-6;
 /// An invalid value within this part of the path ahead is reported as the cause of a stop.
 const JUST_AHEAD: f64 = 1e-9;
+/// Places of singular positions on the path that differ by less are the same.
+const ONE_PLACE: f64 = 1e-9;
 
 /// The storage for tracking paths.
 #[derive(Debug)]
@@ -92,6 +94,7 @@ impl PathTracker {
             is_last_attempt: false,
             gives_up,
             pace: Pace::default(),
+            expected: None,
             searched: 0.0,
             progress: Progress::default(),
         };
@@ -130,6 +133,9 @@ struct Run<'a> {
     /// Whether it stops in front of singular positions without looking for them.
     gives_up: bool,
     pace: Pace,
+    /// The place on the path of the singular position that slowed the motion down when its pace was
+    /// judged last.
+    expected: Option<f64>,
     /// The regularity at which no fitter rows were found last; zero at first.
     searched: f64,
     progress: Progress,
@@ -248,13 +254,7 @@ impl Run<'_> {
             singular::leave_crossings(self.model, self.state, &self.drivers.here);
         }
         self.solve_tangent();
-        if self.is_too_long() {
-            return Err(if self.state.regularity < NEAR {
-                Reason::NearSingular
-            } else {
-                Reason::TooLong
-            });
-        }
+        self.judge_pace()?;
         let too_small = self.length < smallest;
         if too_small {
             let reason = self.reason_to_stop();
@@ -267,29 +267,51 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Returns whether the path takes too many sub-steps, or would at the pace of the last ones.
-    fn is_too_long(&mut self) -> bool {
+    /// Judges the number of sub-steps that the path takes.
+    ///
+    /// # Errors
+    ///
+    /// The cause of a stop if they are too many, or would be at the pace of the last ones.
+    fn judge_pace(&mut self) -> Result<(), Reason> {
         let most = || {
             let Model { system, plan, .. } = &*self.model;
             let moved = || [system.equations().len(), self.state.at.profiles().len()];
             most_substeps(plan.work(), self.drivers.parameters_move.then(moved))
         };
         match self.pace.judge(self.progress.substeps, self.s, most) {
-            Verdict::Fair => false,
-            Verdict::Slow => !self.nears_end(),
-            Verdict::Exhausted => true,
+            Verdict::Fair => Ok(()),
+            verdict => self.slow_down(verdict),
         }
     }
 
-    /// Returns whether a singular position lies ahead on the path: the motion slows down in front of
-    /// it.
+    /// Decides whether the motion may go on at a slow pace. Next to a singular position that pace
+    /// says nothing of the way behind it; if the position lies on the path and the motion still runs
+    /// into the same one when its pace is judged again, it ends there.
+    ///
+    /// # Errors
+    ///
+    /// The cause of a stop otherwise.
     #[cold]
-    fn nears_end(&mut self) -> bool {
-        let may_end =
-            self.state.regularity < NEAR && !self.drivers.parameters_move && !self.gives_up;
-        may_end
-            && singular::find_end(self.model, self.state, self.path, self.s)
-                .is_some_and(|end| self.s < end.s && end.s <= 1.0)
+    fn slow_down(&mut self, verdict: Verdict) -> Result<(), Reason> {
+        if self.state.regularity >= NEAR {
+            return Err(Reason::TooLong);
+        }
+        if self.gives_up {
+            return Err(Reason::NearSingular);
+        }
+        let may_end = !self.drivers.parameters_move;
+        let end = may_end.then(|| singular::find_end(self.model, self.state, self.path, self.s));
+        let end = end.flatten().filter(|end| self.s < end.s && end.s <= 1.0);
+        let expected = std::mem::replace(&mut self.expected, end.as_ref().map(|end| end.s));
+        let is_known = |end: &SingularPoint| {
+            expected.is_some_and(|expected| (end.s - expected).abs() <= ONE_PLACE)
+        };
+        match (verdict, end) {
+            (Verdict::Exhausted, None) => Err(Reason::NearSingular),
+            (Verdict::Exhausted, Some(end)) => Err(Reason::Singular(end)),
+            (_, Some(end)) if is_known(&end) => Err(Reason::Singular(end)),
+            _ => Ok(()),
+        }
     }
 
     /// Takes one sub-step: predicts, corrects and certifies its end, then accepts it or tries a

@@ -17,6 +17,7 @@
 //! | [`upstream`] | the blocks that a block reads, moved along a line |
 //! | [`reduced`] | the reduced equation of a block |
 //! | [`locate`] | the singular position near a pose, and its kind |
+//! | [`fold`] | the dead point at which a block loses several ranks |
 //! | [`interpolate`] | the motion through a change point |
 //! | [`crossings`] | the crossings of a pose |
 //! | [`limit`] | reactions and derivatives next to a change point |
@@ -26,6 +27,7 @@
 
 mod approach;
 mod crossings;
+mod fold;
 mod interpolate;
 mod limit;
 mod lines;

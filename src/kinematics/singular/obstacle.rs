@@ -5,6 +5,7 @@ use std::fmt;
 use nalgebra::DVector;
 
 use super::crossings::enter_crossing;
+use super::fold::find_fold;
 use super::interpolate::crossing_of;
 use super::lines::{LOCATED, find_lines};
 use super::locate::{Finding, ROUNDING, SingularKind, find};
@@ -271,14 +272,27 @@ pub(in crate::kinematics) fn find_end(
         near.iter()
             .find_map(|&block| loss_of_ranks(model, state, s, block))
     });
-    found.map(Box::new)
+    if found.is_some() {
+        return found.map(Box::new);
+    }
+    let fold = near
+        .iter()
+        .find_map(|&block| located_point(model, state, (path, s), block, &mut work, fold_ahead));
+    return_to_regular_pose(model, state);
+    fold.map(Box::new)
+}
+
+/// The kind and the place of a singular position.
+type Located = (SingularKind, Box<ReducedPoint>);
+
+/// Returns the dead point ahead of the start on a path at which a block loses several ranks.
+fn fold_ahead(equation: &mut ReducedEquation<'_>, start: ReducedPoint) -> Option<Located> {
+    let point = find_fold(equation, start, REACH_TO_END)?;
+    Some((SingularKind::DeadPoint, Box::new(point)))
 }
 
 /// Returns the kind and the place of the singular position ahead of the start on a path.
-fn place_ahead(
-    equation: &mut ReducedEquation<'_>,
-    start: ReducedPoint,
-) -> Option<(SingularKind, Box<ReducedPoint>)> {
+fn place_ahead(equation: &mut ReducedEquation<'_>, start: ReducedPoint) -> Option<Located> {
     let s = start.tau;
     let (kind, point) = match find(equation, start, REACH_TO_END) {
         Finding::End(kind, point) => (kind, point),
@@ -300,9 +314,21 @@ fn singular_point(
     block: usize,
     work: &mut Workspace,
 ) -> Option<SingularPoint> {
+    located_point(model, state, (path, s), block, work, place_ahead)
+}
+
+/// Returns the singular position of a block ahead on a path that `locate` finds.
+fn located_point(
+    model: &mut Model,
+    state: &State,
+    (path, s): (&Path, f64),
+    block: usize,
+    work: &mut Workspace,
+    locate: fn(&mut ReducedEquation<'_>, ReducedPoint) -> Option<Located>,
+) -> Option<SingularPoint> {
     let line = Line::Path(path);
     let (mut equation, start) = ReducedEquation::new(model, state, block, line, s, work)?;
-    let (kind, point) = place_ahead(&mut equation, start)?;
+    let (kind, point) = locate(&mut equation, start)?;
     let (q, drivers) = (equation.pose(&point), equation.drivers().to_vec());
     let place = (kind, point.tau);
     let free = &point.tangents[0];

@@ -62,6 +62,17 @@ pub(super) struct Place {
     pub(super) unknowns: Vec<Jet>,
 }
 
+/// The motion of a block as a function of α: its unknowns and τ, and their derivatives in α.
+pub(super) struct Along {
+    pub(super) alpha: f64,
+    pub(super) tau: f64,
+    pub(super) z: Vec<f64>,
+    /// dτ/dα.
+    pub(super) slope: f64,
+    /// dz/dα, scaled.
+    pub(super) tangent: Vec<f64>,
+}
+
 /// The reduced equation at one place.
 #[derive(Clone)]
 pub(super) struct ReducedPoint {
@@ -346,6 +357,58 @@ impl<'a> ReducedEquation<'a> {
             }
             last = length;
             for ((z, scale), step) in point.z.iter_mut().zip(&self.scales).zip(&self.side) {
+                *z += step * scale;
+            }
+        }
+        None
+    }
+
+    /// Finds the motion at a value of α from a place near there, as z and τ of F = 0 with
+    /// c · (z − z⁰) = α: unlike its own solver this does not mind that the motion turns back.
+    pub(super) fn at_alpha(&mut self, near: &Along, alpha: f64) -> Option<Along> {
+        let order = self.rows.len();
+        let off = alpha - near.alpha;
+        let mut tau = near.tau + off * near.slope;
+        let unknowns = near.z.iter().zip(&self.scales).zip(&near.tangent);
+        let ahead = unknowns.map(|((z, scale), tangent)| z + off * tangent * scale);
+        let mut z: Vec<_> = ahead.collect();
+        let mut last = f64::INFINITY;
+        for _ in 0..MAX_CORRECTIONS {
+            self.upstream.move_to(tau)?;
+            for (&column, z) in self.columns.iter().zip(&z) {
+                self.upstream.work.at.set_coordinate(column, *z);
+            }
+            self.evaluate();
+            for k in 0..order {
+                self.bordered.add(k, order, self.read_rates[0][k]);
+                self.bordered.add(order, k, self.c[k]);
+                self.side[k] = -self.residual[k];
+            }
+            self.side[order] = alpha - self.alpha(z.iter().copied());
+            self.bordered.factorise(0.0).ok()?;
+            self.bordered.solve(&mut self.side);
+            let length = self.side[..order]
+                .iter()
+                .fold(0.0, |most, step| nan_or_larger(most, step.abs()));
+            if length.is_nan() || length > LARGEST_STEP {
+                return None;
+            }
+            let is_last = length < 1e-9 && length >= 0.5 * last;
+            last = length;
+            if is_last {
+                self.side.fill(0.0);
+                self.side[order] = 1.0;
+                self.bordered.solve(&mut self.side);
+                return Some(Along {
+                    alpha,
+                    tau,
+                    z,
+                    slope: self.side[order],
+                    tangent: self.side[..order].to_vec(),
+                });
+            }
+            tau += self.side[order];
+            for ((z, scale), step) in z.iter_mut().zip(&self.scales).zip(&self.side) {
                 *z += step * scale;
             }
         }

@@ -11,8 +11,10 @@ const WORK_OF_NUMBERS: f64 = 10.0;
 /// The work of checking a cam's profile at each sub-step, while parameters move it.
 const WORK_OF_PROFILE: f64 = 5e4;
 /// A path is given up if, at the pace of this part of the most sub-steps, twice the most would be
-/// needed ahead.
+/// needed ahead, unless it is faster than that of the part before by this factor: one place says
+/// little of the whole path.
 const PART_TO_JUDGE: f64 = 0.02;
+const FASTER: f64 = 1.5;
 /// Fewest sub-steps that a pace is judged by.
 const ENOUGH_TO_JUDGE: u32 = 200;
 
@@ -21,6 +23,8 @@ const ENOUGH_TO_JUDGE: u32 = 200;
 pub(super) struct Pace {
     /// The number of sub-steps at that time, and the place on the path.
     judged: (u32, f64),
+    /// The pace up to that time.
+    before: f64,
 }
 
 /// The verdict on a pace.
@@ -47,9 +51,10 @@ impl Pace {
         }
         self.judged = (substeps, s);
         let pace = (s - from) / since;
+        let before = std::mem::replace(&mut self.before, pace);
         if f64::from(substeps) >= most {
             Verdict::Exhausted
-        } else if pace * 2.0 * most < 1.0 - s {
+        } else if pace * 2.0 * most < 1.0 - s && pace <= FASTER * before {
             Verdict::Slow
         } else {
             Verdict::Fair
