@@ -582,3 +582,53 @@ fn random_four_bars(count: usize) {
 fn random_four_bars_are_assembled_or_proved_impossible() {
     random_four_bars(10_000);
 }
+
+/// A belt from a wheel, which a rod holds at one of two angles, to a wheel on the coupler of a four-bar.
+const BELT_ON_COUPLER: &str = r#"
+format = 1
+name = "belt_on_coupler"
+[ground.markers]
+O = [0.0, 0.0, 0.0]
+D = [0.38594992650190496, 0.0, 0.0]
+G = [0.1315224448515666, -0.22659539428996406, -0.7735187006958495]
+[bodies.crank]
+markers = { a = [0, 0], b = [0.18874190485752187, 0] }
+estimate = [-0.05934795991805433, -0.1451574210273714, 2.2147717778313702]
+[bodies.coupler]
+markers = { a = [0, 0], b = [0.4663722597724724, 0], w = [0, 0, 2.674002420991302] }
+estimate = [-0.2580791628660719, 0.2572330547570323, -0.7210971819941532]
+[bodies.rocker]
+markers = { a = [0, 0], b = [0.0861779043301373, 0] }
+estimate = [0.32777665146131485, -0.12020740376703604, -2.477058917432659]
+[bodies.wheel]
+markers = { a = [0.0, 0.0, 0.0], b = [0.11138596836302196, 1.734723475976807e-18, 0.0], w = [0.0, 0.0, 3.7326525929192136] }
+estimate = [-0.0594110349793526, 0.14926622992390332, -0.7728577927603897]
+[bodies.rod]
+markers = { a = [0, 0], b = [0.16580457565895382, 0] }
+estimate = [0.1550850060452913, -0.2690794942597517, -1.3313167040969924]
+[joints]
+O = { type = "revolute", markers = ["ground.O", "crank.a"] }
+W = { type = "revolute", markers = ["ground.O", "wheel.a"] }
+A = { type = "revolute", markers = ["crank.b", "coupler.a"] }
+B = { type = "revolute", markers = ["coupler.b", "rocker.b"] }
+D = { type = "revolute", markers = ["ground.D", "rocker.a"] }
+H = { type = "revolute", markers = ["wheel.b", "rod.a"] }
+G = { type = "slot", markers = ["ground.G", "rod.b"] }
+mesh = { type = "belt", markers = ["coupler.w", "wheel.w"], teeth = [25, 53], carrier = "crank" }
+[drivers]
+u = { coordinate = "x", markers = ["ground.G", "rod.b"], start = 0.0 }
+"#;
+
+/// The coupler turns with the crank in a ratio, so that the four-bar closes at single angles: behind
+/// the angle of the wheel that is nearest its estimate some turns away, behind the other one near the
+/// estimates.
+#[test]
+fn a_loop_that_counts_turns_closes_near_its_estimates() {
+    let mechanism = parse(BELT_ON_COUPLER);
+    let (solver, _) = assembled(&mechanism);
+    assert!(solver.residual() < 1e-14);
+    for (body, q) in mechanism.bodies.iter().zip(solver.pose().q.chunks_exact(3)) {
+        let estimate = body.estimate[2].literal().expect("it is a number");
+        assert!((q[2] - estimate).abs() < 1.0, "{}: {}", body.name, q[2]);
+    }
+}

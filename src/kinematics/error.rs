@@ -144,9 +144,8 @@ pub enum Error {
     },
     /// Values have no limit at a change point, or none that is known.
     #[error(
-        "{of} have no limit at the change point with driver `{driver}` at {value}, where {}: they \
-         grow without bound next to it, or depend on how inputs go on",
-        in_line(.bodies, "")
+        "{of} have no limit at the change point with driver `{driver}` at {value}, where {geometry}: \
+         they grow without bound next to it, or depend on how inputs go on"
     )]
     ChangePoint {
         /// The values.
@@ -155,8 +154,8 @@ pub enum Error {
         driver: String,
         /// Its value there, in words.
         value: String,
-        /// The bodies that line up there.
-        bodies: Vec<String>,
+        /// The lines that meet there, in words.
+        geometry: String,
     },
     /// An expression has no finite derivative.
     #[error("{what} has no finite derivative{} with these values", .by.as_ref().map(|name| format!(" with respect to {name}")).unwrap_or_default())]

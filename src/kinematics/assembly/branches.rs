@@ -1,10 +1,11 @@
 //! The branches of one block: the ways in which it closes behind the blocks before it.
 
+use std::f64::consts::TAU;
+
 use super::least_squares::LeastSquares;
 use super::loops::{AllBranches, all_branches};
 use super::part::{Distance, STARTS};
 use crate::kinematics::block::{BlockBranches, BlockState, ClosureGap, SolveBlock};
-use crate::kinematics::constraint::{Gradient, Region, TurnEffect};
 use crate::kinematics::newton::{Correction, Limits, Rejected};
 
 /// Starts anywhere for a small block whose branches bounds do not list.
@@ -14,6 +15,8 @@ const FEW_UNKNOWNS: usize = 12;
 /// Largest difference of an unknown from its estimate, in radians and characteristic lengths, at
 /// which a branch found from the estimates is taken for the nearest one.
 const NEAR: f64 = 0.25;
+/// The same of a branch that is given where turns count, unless any turn will do.
+const FARTHEST: f64 = TAU;
 /// Branches whose squared distances from the estimates differ by less than this part are equally
 /// far.
 const EQUALLY_FAR: f64 = 1e-9;
@@ -23,8 +26,11 @@ const EQUALLY_FAR: f64 = 1e-9;
 pub(in crate::kinematics) enum SearchEffort {
     /// Starts at and near the estimates, without bounds.
     Quick,
-    /// Bounds, or starts at and near the estimates and a few anywhere.
+    /// Bounds, or starts at and near the estimates and a few anywhere; where turns are counted
+    /// branches within a turn of the estimates.
     Near,
+    /// The same, on any turn.
+    AnyTurn,
     /// Bounds, or starts at and near the estimates and this many anywhere.
     Anywhere(usize),
 }
@@ -62,8 +68,6 @@ struct Starts {
     estimate: Vec<f64>,
     /// Whether it has so few unknowns that starts anywhere find all of its branches, as a rule.
     is_small: bool,
-    /// Whether its rows count turns: each is another branch.
-    counts_turns: bool,
     effort: SearchEffort,
     /// The starts to be tried next.
     next: Option<Stage>,
@@ -73,6 +77,8 @@ struct Starts {
     found: Vec<Branch>,
     /// The branches that bounds list, once they are asked.
     all: Option<AllBranches>,
+    /// Whether a branch was left out because it is some turns away.
+    leaves_out: bool,
 }
 
 /// A branch that was found.
@@ -133,17 +139,25 @@ impl Branches {
             Source::Gap(gap) => gap.certain,
             Source::Starts(starts) => {
                 let all = starts.all.as_ref();
+                if starts.leaves_out {
+                    return false;
+                }
                 let listed = all.is_some_and(|all| all.branches.is_some());
                 starts.is_linear == Some(true) || listed && self.failures == 0
             }
         }
     }
 
-    /// Returns the number of boxes into which bounds divided the angles.
-    pub(super) fn boxes(&self) -> usize {
+    /// Returns whether a branch was left out because it is some turns away.
+    pub(super) fn leaves_out(&self) -> bool {
+        matches!(&self.source, Source::Starts(starts) if starts.leaves_out)
+    }
+
+    /// Returns the branches that bounds list, if they were asked.
+    pub(super) fn listed(&self) -> Option<&AllBranches> {
         match &self.source {
-            Source::Starts(starts) => starts.all.as_ref().map_or(0, |all| all.boxes),
-            _ => 0,
+            Source::Starts(starts) => starts.all.as_ref(),
+            _ => None,
         }
     }
 
@@ -209,23 +223,18 @@ impl Starts {
         estimate: &[f64],
         effort: SearchEffort,
     ) -> Self {
-        let system = state.system;
-        let counts_turns = |row: &usize| {
-            let constraint = &system.equations()[*row].constraint;
-            constraint.turn_effect() == TurnEffect::Proportional
-        };
         let (rows, columns) = (block.rows(), block.columns());
-        let part = LeastSquares::new(system, rows, columns);
+        let part = LeastSquares::new(state.system, rows, columns);
         Self {
             estimate: part.estimate(state, estimate),
             part,
             is_small: columns.len() <= FEW_UNKNOWNS,
-            counts_turns: rows.iter().any(counts_turns),
             effort,
             next: Some(Stage::Newton),
             is_linear: None,
             found: Vec::new(),
             all: None,
+            leaves_out: false,
         }
     }
 
@@ -243,7 +252,13 @@ impl Starts {
             Some(Stage::Near | Stage::Anywhere) => self.is_small,
             None => false,
         };
-        if may_find_nearer && self.found[place].distance.largest > NEAR {
+        let distance = self.found[place].distance.largest;
+        if may_find_nearer && distance > NEAR {
+            return None;
+        }
+        let counts = matches!(self.effort, SearchEffort::Near) && self.part.counts_turns;
+        if counts && distance > FARTHEST && !self.is_linear(state) {
+            self.leaves_out = true;
             return None;
         }
         let branch = &mut self.found[place];
@@ -336,7 +351,7 @@ impl Starts {
         if !found.any(|known| self.part.is_same(state, &known.unknowns, &unknowns)) {
             let ends = [&self.estimate[..], &unknowns];
             self.found.push(Branch {
-                distance: self.part.distance(state, ends, self.counts_turns),
+                distance: self.part.distance(state, ends),
                 unknowns,
                 correction,
                 is_given: false,
@@ -346,21 +361,8 @@ impl Starts {
 
     /// Returns whether the rows are linear in the unknowns, so that there is one branch at most.
     fn is_linear(&mut self, state: &BlockState<'_>) -> bool {
-        let problem = &self.part;
-        *self.is_linear.get_or_insert_with(|| {
-            let size = state.at.size();
-            let unknowns = state.system.unknowns();
-            let (mut radii, mut direction) = (vec![0.0; unknowns], vec![0.0; unknowns]);
-            for &column in &problem.columns {
-                let scale = state.system.column_scale(column, size);
-                (radii[column], direction[column]) = (scale, scale);
-            }
-            let region = Region::around(&radii);
-            problem.rows.iter().all(|&row| {
-                let constraint = &state.system.equations()[row].constraint;
-                let bend = constraint.bend(state.at, &region, &direction, &mut Gradient::new());
-                bend.is_some_and(|bend| bend <= 0.0)
-            })
-        })
+        *self
+            .is_linear
+            .get_or_insert_with(|| self.part.is_linear(state))
     }
 }

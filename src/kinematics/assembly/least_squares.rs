@@ -1,7 +1,9 @@
 //! Damped least squares (Levenberg–Marquardt) on rows of Phi, for mechanisms of any size.
 
+use std::f64::consts::PI;
+
 use crate::kinematics::block::BlockState;
-use crate::kinematics::constraint::Relation;
+use crate::kinematics::constraint::{Gradient, Region, Relation, TurnEffect};
 use crate::kinematics::linear::{Factors, Row, SparseLu, nan_or_larger};
 use crate::kinematics::newton::{AT_ROUNDING, STALLED};
 use crate::kinematics::system::{RowValue, System};
@@ -11,6 +13,8 @@ use crate::kinematics::system::{RowValue, System};
 const GAP: f64 = 1e-9;
 /// Most steps to close some rows; they converge quadratically to a regular pose that exists.
 const STEPS_TO_CLOSE: usize = 60;
+/// Largest step of an angle \[rad\] beyond which rows that are curved along it say nothing.
+const LARGEST_TURN: f64 = PI;
 
 /// Returns whether a row counts as satisfied.
 pub(in crate::kinematics) fn holds(row: RowValue) -> bool {
@@ -35,6 +39,8 @@ pub(in crate::kinematics) struct LeastSquares {
     pub(in crate::kinematics) rows: Vec<usize>,
     /// Ascending.
     pub(in crate::kinematics) columns: Vec<usize>,
+    /// Whether a row counts turns: then a pose some turns away is another one.
+    pub(in crate::kinematics) counts_turns: bool,
     lu: SparseLu,
     /// The rows of J, their columns as indices into `columns`.
     jacobian: Vec<Row>,
@@ -83,7 +89,12 @@ impl LeastSquares {
                 }
             }
         }
+        let counts_turns = |row: &usize| {
+            let constraint = &system.equations()[*row].constraint;
+            constraint.turn_effect() == TurnEffect::Proportional
+        };
         Self {
+            counts_turns: rows.iter().any(counts_turns),
             lu: SparseLu::new(pattern),
             jacobian: vec![Row::new(); count],
             phi: vec![0.0; count],
@@ -147,7 +158,7 @@ impl LeastSquares {
                 break;
             }
             let improved = loop {
-                if self.solve(pull, damping, &q, &scales) {
+                if self.solve(pull, damping, &q, &scales) && !self.loses_turns(state) {
                     let step = &self.step[self.rows.len()..];
                     for (k, next) in next.iter_mut().enumerate() {
                         *next = q[k] + step[k] * scales[k];
@@ -174,6 +185,38 @@ impl LeastSquares {
             }
         }
         now
+    }
+
+    /// Returns whether the step, from where the rows were evaluated last, leads to another turn by
+    /// chance: where turns count, a body turns by more than [`LARGEST_TURN`], a row is curved along
+    /// that turn, and no linear row asks for it.
+    fn loses_turns(&self, state: &BlockState<'_>) -> bool {
+        if !self.counts_turns {
+            return false;
+        }
+        let steps = self.columns.iter().zip(&self.step[self.rows.len()..]);
+        let mut turns = steps.enumerate().filter(|(_, (column, step))| {
+            state.system.is_angle(**column) && step.abs() > LARGEST_TURN
+        });
+        turns.any(|(own, (&column, step))| {
+            let (mut is_curved, mut is_asked_for) = (false, false);
+            for ((entries, &row), phi) in self.jacobian.iter().zip(&self.rows).zip(&self.phi) {
+                let own_entries = entries.iter().filter(|(other, _)| *other == own);
+                let entry: f64 = own_entries.map(|(_, value)| value).sum();
+                if !is_straight(state, row, &[column]) {
+                    is_curved = true;
+                } else if entry.abs() > 0.0 {
+                    is_asked_for |= phi.abs() >= 0.5 * (entry * step).abs();
+                }
+            }
+            is_curved && !is_asked_for
+        })
+    }
+
+    /// Returns whether all rows are linear in the unknowns.
+    pub(in crate::kinematics) fn is_linear(&self, state: &BlockState<'_>) -> bool {
+        let mut rows = self.rows.iter();
+        rows.all(|&row| is_straight(state, row, &self.columns))
     }
 
     /// Evaluates the rows and their gradients at the present values.
@@ -250,6 +293,20 @@ impl LeastSquares {
         self.lu.solve(&mut self.step);
         self.step.iter().all(|step| step.is_finite())
     }
+}
+
+/// Returns whether a row is linear along these unknowns within a radian and a characteristic length
+/// of the present place.
+fn is_straight(state: &BlockState<'_>, row: usize, columns: &[usize]) -> bool {
+    let size = state.at.size();
+    let mut extents = vec![0.0; state.system.unknowns()];
+    for &column in columns {
+        extents[column] = state.system.column_scale(column, size);
+    }
+    let constraint = &state.system.equations()[row].constraint;
+    let region = Region::around(&extents);
+    let bend = constraint.bend(state.at, &region, &extents, &mut Gradient::new());
+    bend.is_some_and(|bend| bend <= 0.0)
 }
 
 /// Returns ‖d‖/u for the row of a distance u, one for other rows.

@@ -143,7 +143,7 @@ fn explain_gap(
     for (index, block) in plan.blocks.iter_mut().enumerate().skip(nearest.block) {
         let block = &mut **block;
         if index > nearest.block {
-            let effort = SearchEffort::Near;
+            let effort = SearchEffort::AnyTurn;
             let mut branches = Branches::new(block, &mut block_state, estimate, effort);
             if branches.next(block, &mut block_state, estimate).is_some() {
                 continue;

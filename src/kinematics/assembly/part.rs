@@ -49,17 +49,16 @@ impl LeastSquares {
         columns.all(|((&column, &a), &b)| is_same(state.system, size, column, a, b))
     }
 
-    /// Returns the distance between two places, of angles with whole turns or without.
+    /// Returns the distance between two places, of angles with whole turns where rows count them.
     pub(in crate::kinematics) fn distance(
         &self,
         state: &BlockState<'_>,
         [a, b]: [&[f64]; 2],
-        counts_turns: bool,
     ) -> Distance {
         let (system, size) = (state.system, state.at.size());
         let mut distance = Distance::default();
         for ((&column, &a), &b) in self.columns.iter().zip(a).zip(b) {
-            let off = if counts_turns {
+            let off = if self.counts_turns {
                 (a - b) / system.column_scale(column, size)
             } else {
                 system.difference(column, size, a, b)

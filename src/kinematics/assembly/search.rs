@@ -19,8 +19,8 @@ const WELL_CONDITIONED: f64 = 1e-5;
 const MOST_WORK: f64 = 2_000.0;
 /// Number of unknowns of a block whose minimisation from one start counts one.
 const UNIT_OF_WORK: f64 = 9.0;
-/// Number of boxes of angles that count one.
-const BOXES_PER_WORK: f64 = 20.0;
+/// Number of terms of bounds over intervals that count one.
+const TERMS_PER_WORK: f64 = 5_000.0;
 
 /// The failure of a search.
 #[derive(Debug)]
@@ -72,6 +72,8 @@ pub(in crate::kinematics) struct BranchSearch<'a> {
     reads: &'a [Vec<usize>],
     /// Whether a block has not closed.
     goes_back: bool,
+    /// Whether a branch was left out because it is some turns away.
+    leaves_out: bool,
     work_left: f64,
     failure: NoBranch,
     /// Whether the blocks given up have no other branches than those tried.
@@ -80,7 +82,9 @@ pub(in crate::kinematics) struct BranchSearch<'a> {
     pub(in crate::kinematics) starts: usize,
 }
 
-/// Assembles block by block, each behind those before it. Returns the most corrections of a block.
+/// Assembles block by block, each behind those before it: within a turn of the estimates where turns
+/// are counted, or, if that does not fit together, on any turn. Returns the most corrections of a
+/// block.
 ///
 /// # Errors
 ///
@@ -91,7 +95,13 @@ pub(in crate::kinematics) fn search(
     estimate: &[f64],
 ) -> Result<u32, NoBranch> {
     let mut search = BranchSearch::new(model, state, estimate, SearchEffort::Near, MOST_WORK);
-    if !search.next() {
+    let mut found = search.next();
+    if !found && search.leaves_out {
+        state.at.set_pose(model.system.mechanism(), estimate);
+        search = BranchSearch::new(model, state, estimate, SearchEffort::AnyTurn, MOST_WORK);
+        found = search.next();
+    }
+    if !found {
         return Err(search.failure);
     }
     let iterations = search.levels.iter().map(|level| level.iterations).max();
@@ -117,6 +127,7 @@ impl<'a> BranchSearch<'a> {
             effort,
             reads: &plan.reads,
             goes_back: false,
+            leaves_out: false,
             work_left: most_work,
             failure: NoBranch {
                 block: 0,
@@ -186,6 +197,7 @@ impl<'a> BranchSearch<'a> {
                 level.in_doubt |= block.is_closed_form() && block.rcond() < WELL_CONDITIONED;
                 return true;
             }
+            self.leaves_out |= level.branches.leaves_out();
             let in_doubt = level.in_doubt || !level.branches.is_complete();
             if !level.branches.is_complete() {
                 self.is_complete = false;
@@ -214,8 +226,10 @@ impl<'a> BranchSearch<'a> {
     fn note_dead_end(&mut self, index: usize) {
         let branches = &self.levels[index].branches;
         let failure = &mut self.failure;
-        failure.boxes = failure.boxes.max(branches.boxes());
-        self.work_left -= branches.boxes() as f64 / BOXES_PER_WORK;
+        if let Some(all) = branches.listed() {
+            failure.boxes = failure.boxes.max(all.boxes);
+            self.work_left -= all.terms as f64 / TERMS_PER_WORK;
+        }
         if branches.given > 0 {
             return;
         }

@@ -13,7 +13,6 @@
 
 use std::sync::Arc;
 
-use super::crossings::bodies_in_line;
 use crate::kinematics::block::{BlockCarryover, Crossing};
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::linear::nan_or_larger;
@@ -157,7 +156,7 @@ impl NearPoint {
             of,
             driver: driver.name.clone(),
             value: driver.coordinate.kind.show(self.crossing.center),
-            bodies: bodies_in_line(model, &self.crossing),
+            geometry: self.crossing.alignment.describe(mechanism, ""),
         }
     }
 

@@ -24,6 +24,9 @@ use crate::mechanism::{Interval, Number};
 const MOST_UNKNOWNS: usize = 60;
 /// Most boxes of angles.
 const MOST_BOXES: usize = 10_000;
+/// Most terms of bounds of a block, some tens of nanoseconds each: as many as that many boxes of six
+/// angles have.
+const MOST_TERMS: usize = 4_000_000;
 /// Width of a box that is not divided \[rad\]: there the block nearly closes, or closes in a nearly
 /// singular position.
 const NARROWEST: f64 = 1e-6;
@@ -44,6 +47,8 @@ pub(super) struct AllBranches {
     pub(super) branches: Option<Vec<Vec<f64>>>,
     /// Number of boxes into which the angles were divided.
     pub(super) boxes: usize,
+    /// Number of terms of the bounds in these boxes.
+    pub(super) terms: usize,
 }
 
 /// Finds all branches of the rows in the unknowns `columns`. All other unknowns are known in
@@ -57,6 +62,7 @@ pub(super) fn all_branches(
     let unknown = AllBranches {
         branches: None,
         boxes: 0,
+        terms: 0,
     };
     let bodies = state.system.mechanism().bodies.len();
     let from_joints = columns.iter().any(|&column| column >= 3 * bodies);
@@ -68,11 +74,16 @@ pub(super) fn all_branches(
         return unknown;
     };
     let (solutions, boxes) = loops.solve();
+    let terms = boxes * loops.terms_per_box();
     let branches = solutions.and_then(|solutions| {
         let at = |angles: &Vec<f64>| builder.unknowns(columns, &loops.kept, angles, estimate);
         solutions.iter().map(at).collect()
     });
-    AllBranches { branches, boxes }
+    AllBranches {
+        branches,
+        boxes,
+        terms,
+    }
 }
 
 /// The equations of a block in its torn angles.
@@ -95,6 +106,13 @@ enum Content {
 }
 
 impl Loops {
+    /// Returns the number of terms of the bounds in a box: values and slopes of the rows, and the
+    /// products of Krawczyk's test.
+    fn terms_per_box(&self) -> usize {
+        let (rows, angles) = (self.closures.len(), self.kept.len());
+        4 * rows * angles + angles.pow(3)
+    }
+
     /// Returns all solutions in the angles kept, or `None` if some box could not be decided, and
     /// the number of boxes.
     fn solve(&self) -> (Option<Vec<Vec<f64>>>, usize) {
@@ -102,6 +120,7 @@ impl Loops {
         let mut boxes = vec![vec![Interval::new(-half_turn, half_turn); self.kept.len()]];
         let mut solutions: Vec<Vec<f64>> = Vec::new();
         let mut count = 0;
+        let most = MOST_BOXES.min(MOST_TERMS / self.terms_per_box().max(1));
         let width = |angle: &Interval| angle.high - angle.low;
         while let Some(angles) = boxes.pop() {
             count += 1;
@@ -124,7 +143,7 @@ impl Loops {
                 widths[0].total_cmp(&widths[1]).then(b.cmp(&a))
             });
             let widest = widest.filter(|&k| width(&angles[k]) > NARROWEST);
-            let Some(widest) = widest.filter(|_| count + boxes.len() < MOST_BOXES) else {
+            let Some(widest) = widest.filter(|_| count + boxes.len() < most) else {
                 return (None, count);
             };
             let middle = angles[widest].midpoint();
@@ -219,5 +238,37 @@ impl Loops {
             .iter()
             .all(|x| x.is_finite())
             .then_some(contracted)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::form::Form;
+    use super::{Closure, Interval, Loops, MOST_TERMS};
+
+    /// Returns rows Σ cos φ = 0 in this number of angles, which have solutions everywhere.
+    fn undecided(angles: usize) -> Loops {
+        let [zero, one] = [0.0, 1.0].map(Interval::point);
+        let row = || Form {
+            constant: zero,
+            waves: vec![[one, zero]; angles],
+        };
+        Loops {
+            kept: (0..angles).collect(),
+            closures: (0..angles).map(|_| Closure::Sum(row())).collect(),
+            margin: 1e-10,
+        }
+    }
+
+    /// The bounds of a box in many angles have more terms: fewer boxes are looked at.
+    #[test]
+    fn many_angles_take_no_longer_than_few() {
+        for angles in [3, 6, 12, 24] {
+            let loops = undecided(angles);
+            let (solutions, boxes) = loops.solve();
+            assert!(solutions.is_none(), "{angles}");
+            let terms = boxes * loops.terms_per_box();
+            assert!(terms <= MOST_TERMS, "{angles}: {boxes} boxes");
+        }
     }
 }
