@@ -143,7 +143,7 @@ fn accepted_points_of_model_exchange_have_given_rates() {
     let omega = variables.position(|v| v.name == "rod.omega");
     let omega = value_reference(omega.unwrap());
     let by_inputs = |instance: &mut Instance| {
-        [0, 1, 2].map(|known| {
+        [1, 2, 3].map(|known| {
             let values = instance.directional_derivative(&[omega], &[known], &[1.0]);
             values.unwrap()
         })
@@ -244,7 +244,7 @@ fn derivatives_that_do_not_exist_are_refused() {
             let mut instance = steep(f, value, place);
             let reference = |name: &str| {
                 let mut variables = instance.variables().iter();
-                variables.position(|v| v.name == name).expect("it is there") as u32
+                value_reference(variables.position(|v| v.name == name).expect("it is there"))
             };
             let [p, plain, unknown] = ["p", "plain", unknown].map(reference);
             let mut by_p = |unknown| instance.directional_derivative(&[unknown], &[p], &[1.0]);
@@ -261,7 +261,7 @@ fn derivatives_that_do_not_exist_are_refused() {
     let names = ["p", "told"];
     let [p, told] = names.map(|name| {
         let mut variables = instance.variables().iter();
-        variables.position(|v| v.name == name).expect("it is there") as u32
+        value_reference(variables.position(|v| v.name == name).expect("it is there"))
     });
     let found = instance.directional_derivative(&[told], &[p], &[1.0]);
     assert_eq!(found.expect("it exists"), [0.0]);

@@ -6,7 +6,7 @@ mod common;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use biela::fmi::{Interface, State};
+use biela::fmi::{Interface, State, value_reference};
 use biela::kinematics::{Curve, Error, Path, Pose, Progress, Rates, Solver};
 use biela::mechanism::{DriverId, Jet, Mechanism};
 use common::{EXACT, Exact, Instance, assembled, instance_of, parse, shipped, stems};
@@ -380,10 +380,10 @@ fn prescribed(motion: &str) -> Arc<Mechanism> {
 /// Value of an output.
 fn value(instance: &mut Instance, name: &str) -> f64 {
     let list = instance.variables();
-    let reference = list.iter().position(|v| v.name == name).expect("an output");
+    let place = list.iter().position(|v| v.name == name).expect("an output");
     let mut values = [0.0];
     instance
-        .get_real(&[reference as u32], &mut values)
+        .get_real(&[value_reference(place)], &mut values)
         .expect("readable");
     values[0]
 }
@@ -426,7 +426,7 @@ fn a_start_beyond_a_dead_point_is_refused_with_the_reason() {
         instance.setup_experiment(0.0, None).expect("legal");
         instance.enter_initialization_mode().expect("legal");
         let beyond = 140_f64.to_radians() + TAU;
-        instance.set_real(&[0], &[beyond]).expect("legal");
+        instance.set_real(&[1], &[beyond]).expect("legal");
         let error = instance
             .exit_initialization_mode()
             .expect_err("a dead point lies between");

@@ -121,11 +121,12 @@ struct cycle *cycle_open(const char *library, int version, const char *token,
 }
 
 /* The same calls in both versions. */
+/* The acceleration contradicts the motion, which the first turn is warned of. */
 static int step2(struct cycle *cycle, double time, double size)
 {
     static const fmi2ValueReference in[INPUTS] = {1, 2, 3};
     return cycle->SetReal2(cycle->component, in, INPUTS, cycle->inputs) == fmi2OK &&
-           cycle->DoStep2(cycle->component, time, size, fmi2True) == fmi2OK &&
+           cycle->DoStep2(cycle->component, time, size, fmi2True) <= fmi2Warning &&
            cycle->GetReal2(cycle->component, cycle->order, OUTPUTS, cycle->outputs) == fmi2OK;
 }
 

@@ -110,7 +110,7 @@ fn attempt(data: &mut Unstructured<'_>) -> arbitrary::Result<()> {
 
 /// Chooses what an FMI 3.0 host and the instance agree on.
 fn agreements(instance: &Instance, data: &mut Unstructured<'_>) -> arbitrary::Result<CoSimulation> {
-    let crossing: Vec<u32> = (0..)
+    let crossing: Vec<u32> = (1..)
         .zip(instance.variables())
         .filter(|(_, variable)| {
             let crosses = matches!(variable.causality, Causality::Input | Causality::Output);

@@ -146,7 +146,7 @@ fn advice_on_wrong_use_reaches_a_host_with_default_settings() {
         host.initialize(A);
         // To within a nanometre of the dead point, and back.
         for (step, length) in [0.65 - 1e-9, 0.5, 0.65 - 1e-9, 0.5].into_iter().enumerate() {
-            host.set_real(A, "0", length);
+            host.set_real(A, "1", length);
             let answer = host.do_step(A, step as f64, 1.0);
             assert_advice(&answer, step == 0, "near a singular position");
         }
@@ -165,7 +165,7 @@ fn advice_on_wrong_use_reaches_a_host_with_default_settings() {
     host.ok(&["EnterContinuousTimeMode", B]);
     for step in 1..20 {
         host.ok(&["SetTime", B, &(0.1 * f64::from(step)).to_string()]);
-        host.set_real(B, "0", f64::from(step));
+        host.set_real(B, "1", f64::from(step));
         let answer = host.call(&["CompletedIntegratorStep", B, "room", "room"]);
         // The sixth sample ends the fifth step that contradicts.
         assert_advice(&answer, step == 6, "connect `crank_angle.velocity`");

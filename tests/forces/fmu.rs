@@ -87,7 +87,7 @@ fn a_contact_that_pulls_is_reported_once_per_excursion() {
         let model = MechanismModel::new(mechanism, Interface::CoSimulation).expect("it closes");
         let mut instance = Instance::new(model, Box::new(warnings.clone()), true);
         instance.setup_experiment(0.0, None).expect("legal");
-        instance.set_real(&[0, 1], &[-0.8, omega]).expect("legal");
+        instance.set_real(&[1, 2], &[-0.8, omega]).expect("legal");
         instance.enter_initialization_mode().expect("legal");
         instance.exit_initialization_mode().expect("legal");
         // From before the top, over two of them.
@@ -96,7 +96,7 @@ fn a_contact_that_pulls_is_reported_once_per_excursion() {
         for step in 0..steps {
             let t = h * f64::from(step);
             let angle = -0.8 + omega * (t + h);
-            instance.set_real(&[0, 1], &[angle, omega]).expect("legal");
+            instance.set_real(&[1, 2], &[angle, omega]).expect("legal");
             instance.do_step(t, h).expect("the way is free");
         }
         let found = warnings.0.lock().expect("one thread");
@@ -169,7 +169,7 @@ fn inputs_of_forces_are_held_saved_and_extrapolated() {
         ]
     );
     instance.setup_experiment(0.0, None).expect("legal");
-    instance.set_real(&[1, 2], &[0.5, 2.0]).expect("legal");
+    instance.set_real(&[2, 3], &[0.5, 2.0]).expect("legal");
     instance.enter_initialization_mode().expect("legal");
     instance.exit_initialization_mode().expect("legal");
     let effort = OutputSource::Force(ForceQuantity::Effort(DriverId(0)));
@@ -177,13 +177,13 @@ fn inputs_of_forces_are_held_saved_and_extrapolated() {
     let base = 4.0 * (2.0 + 9.81) + 3.0 * 0.5;
     let near = |value: f64, expected: f64| (value - expected).abs() < 1e-13 * base;
     assert!(near(value(&mut instance, effort), base));
-    instance.set_real(&[4], &[7.0]).expect("legal");
+    instance.set_real(&[5], &[7.0]).expect("legal");
     assert!(near(value(&mut instance, effort), base - 7.0));
     let state = instance.fmu_state().expect("it can be saved");
     instance
-        .set_real_input_derivatives(&[4], &[1], &[10.0])
+        .set_real_input_derivatives(&[5], &[1], &[10.0])
         .expect("legal");
-    instance.set_real(&[1, 2], &[0.5, 2.0]).expect("legal");
+    instance.set_real(&[2, 3], &[0.5, 2.0]).expect("legal");
     instance.do_step(0.0, 0.1).expect("the way is free");
     assert!(near(value(&mut instance, effort), base - 8.0));
     assert_eq!(instance.reals(&[4]).expect("it is set").next(), Some(7.0));

@@ -33,7 +33,7 @@ fn the_log_advises_once() {
     let mut saved = None;
     for step in 0..25 {
         let angle = TAU / 6.0 + TAU / 24.0 * f64::from(step + 1);
-        instance.set_real(&[0], &[angle]).expect("an input");
+        instance.set_real(&[1], &[angle]).expect("an input");
         instance
             .do_step(f64::from(step), 1.0)
             .expect("nothing is in the way");
@@ -42,7 +42,7 @@ fn the_log_advises_once() {
             saved = Some(instance.fmu_state().expect("legal"));
         }
     }
-    let outputs: Vec<u32> = (5..14).collect();
+    let outputs: Vec<u32> = (6..15).collect();
     let mut values = [vec![0.0; 9], vec![0.0; 9]];
     instance
         .get_real(&outputs, &mut values[0])
@@ -52,7 +52,7 @@ fn the_log_advises_once() {
         .expect("its own");
     for step in 8..25 {
         let angle = TAU / 6.0 + TAU / 24.0 * f64::from(step + 1);
-        instance.set_real(&[0], &[angle]).expect("an input");
+        instance.set_real(&[1], &[angle]).expect("an input");
         instance
             .do_step(f64::from(step), 1.0)
             .expect("nothing is in the way");

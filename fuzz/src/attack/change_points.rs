@@ -72,7 +72,7 @@ struct Run {
 }
 
 impl Run {
-    fn to_time(&mut self, time: f64) -> Result<(), String> {
+    fn go_to(&mut self, time: f64) -> Result<(), String> {
         self.solver.pose().set_path(&mut self.path);
         self.path.duration = time - self.path.start;
         let tracked = self.solver.track(&self.path);
@@ -139,7 +139,7 @@ fn try_forces(text: &str) -> Result<(Finding, bool), String> {
     let mut at = None;
     for (k, place) in PLACES.into_iter().enumerate() {
         if k == 3 {
-            run.to_time(0.0)?;
+            run.go_to(0.0)?;
             let efforts = ForceParts {
                 efforts: true,
                 reactions: false,
@@ -150,7 +150,7 @@ fn try_forces(text: &str) -> Result<(Finding, bool), String> {
             let reactions = run.solve(ForceParts::ALL);
             at = Some((reactions, run.forces(), slope));
         }
-        run.to_time(place * APART)?;
+        run.go_to(place * APART)?;
         let solved = run.solve(ForceParts::ALL);
         solved.map_err(|error| format!("no forces at {place}: {error}"))?;
         around.push(run.forces());

@@ -296,7 +296,7 @@ impl<M: Model> Instance<M> {
         let variables = self.variables();
         variables
             .get(place(value_reference))
-            .ok_or_else(|| Error::ValueReference {
+            .ok_or(Error::ValueReference {
                 value_reference,
                 last: variables.len(),
             })

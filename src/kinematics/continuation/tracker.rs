@@ -19,7 +19,9 @@ use crate::kinematics::model::Model;
 use crate::kinematics::newton::{Correction, Rejected};
 use crate::kinematics::path::{Path, PathDrivers};
 use crate::kinematics::redundancy;
-use crate::kinematics::singular::{self, DriverLimit, FruitlessSearches, NEAR, SingularPoint};
+use crate::kinematics::singular::{
+    self, DriverLimit, FruitlessSearches, NEAR, SingularKind, SingularPoint,
+};
 use crate::kinematics::state::{State, UNIT_RATE};
 use crate::kinematics::system::System;
 use crate::mechanism::{DriverId, Jet};
@@ -303,8 +305,10 @@ impl Run<'_> {
         let end = may_end.then(|| singular::find_end(self.model, self.state, self.path, self.s));
         let end = end.flatten().filter(|end| self.s < end.s && end.s <= 1.0);
         let expected = std::mem::replace(&mut self.expected, end.as_ref().map(|end| end.s));
+        // A loss of several ranks is found where the motion is, not located.
         let is_known = |end: &SingularPoint| {
-            expected.is_some_and(|expected| (end.s - expected).abs() <= ONE_PLACE)
+            end.kind == SingularKind::DeadPoint
+                && expected.is_some_and(|expected| (end.s - expected).abs() <= ONE_PLACE)
         };
         match (verdict, end) {
             (Verdict::Exhausted, None) => Err(Reason::NearSingular),

@@ -34,8 +34,8 @@ impl MotionTable {
             let before = t.value.low < start.value.high;
             let after = t.value.high >= end.value.low;
             let beyond = [(before, 0), (after, last)].into_iter();
-            let beyond =
-                beyond.filter_map(|(meets, point)| meets.then(|| self.beyond(spline, point, t)));
+            let beyond = beyond.filter(|(meets, _)| *meets);
+            let beyond = beyond.map(|(_, point)| self.beyond(spline, point, t));
             let inside = self
                 .interpolation
                 .enclose(spline, t)

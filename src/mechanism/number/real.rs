@@ -47,6 +47,7 @@ impl Number for f64 {
         }
     }
 
+    #[allow(clippy::float_cmp, reason = "one value or none")]
     fn either(self, other: Self) -> Self {
         if self == other { self } else { Self::NAN }
     }

@@ -273,7 +273,7 @@ impl<S: Number, const N: usize> Number for Taylor<S, N> {
     fn hypot(self, y: Self) -> Self {
         let r = self.value.hypot(y.value);
         if (self.value / r).is_undefined() && (self.varies() || y.varies()) {
-            // Where the point passes the origin, the radius changes by no more than the point.
+            // The radius changes by no more than the point, which passes the origin.
             let speed = self.first().hypot(y.first());
             return Self::cornered(r, speed.either(-speed));
         }

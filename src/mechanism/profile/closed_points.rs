@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use super::ProfileError;
-use super::moving::parts_of_turn;
 use crate::mechanism::{
     Dual, Ends, Interpolation, Interval, Jet3, Law, Number, ParameterId, Spline, Table,
 };
@@ -232,4 +231,11 @@ impl ClosedPoints<Jet3<Dual>> {
             Interpolation::Law(law) => law.between(spline.knots(), spline.values(), segment, theta),
         }
     }
+}
+
+/// Returns an angle in the turn that begins at `start`, and a turn before and after that.
+pub(super) fn parts_of_turn(theta: Jet3<Interval>, start: Interval) -> [Jet3<Interval>; 3] {
+    let turn = |turns: f64| Jet3::constant(turns * TAU);
+    let turns = ((theta.value.low - start.low) / TAU).floor();
+    [turns - 1.0, turns, turns + 1.0].map(|turns| theta - turn(turns))
 }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use super::closed_points::ClosedPoints;
+use super::closed_points::{ClosedPoints, parts_of_turn};
 use super::{Curve, Joint, ProfileInForce};
 use crate::mechanism::expression::MOST_SWITCHES;
 use crate::mechanism::{Expression, Interval, Jet3, Number, ParameterId, Table, Taylor};
@@ -126,11 +126,4 @@ impl MovingProfile {
         }
         Some([radius, slope])
     }
-}
-
-/// Returns an angle in the turn that begins at `start`, and a turn before and after that.
-pub(super) fn parts_of_turn(theta: Enclosed, start: Interval) -> [Enclosed; 3] {
-    let turn = |turns: f64| Enclosed::constant(turns * TAU);
-    let turns = ((theta.value.low - start.low) / TAU).floor();
-    [turns - 1.0, turns, turns + 1.0].map(|turns| theta - turn(turns))
 }
