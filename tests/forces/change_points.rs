@@ -105,7 +105,7 @@ impl Run {
     }
 
     /// Follows the prescribed motion to a time.
-    fn to_time(&mut self, time: f64) -> &mut Self {
+    fn go_to(&mut self, time: f64) -> &mut Self {
         self.solver.pose().set_path(&mut self.path);
         self.path.duration = time - self.path.start;
         self.solver.track(&self.path).expect("it moves there");
@@ -114,7 +114,7 @@ impl Run {
     }
 
     /// Moves the input to a value, with these rates there.
-    fn to_value(&mut self, value: f64, rates: [f64; 2]) -> &mut Self {
+    fn set_value(&mut self, value: f64, rates: [f64; 2]) -> &mut Self {
         self.solver.pose().set_path(&mut self.path);
         let now = self.solver.pose().drivers[0];
         self.path.curves[0] = biela::kinematics::Curve::held(value, now);
@@ -150,9 +150,7 @@ fn a_garage_door_bears_the_limit_where_its_arm_hangs_straight_down() {
     let expected = garage_forces(-0.05, 0.0);
     // Even functions of u: the forces change by some (u/a)² of the weight.
     for u in [1e-5, 1e-7, 1e-12, 1e-16, 0.0, -1e-9, -1e-6] {
-        run.to_time(1.0 - u / 0.05)
-            .solve()
-            .expect("there is a limit");
+        run.go_to(1.0 - u / 0.05).solve().expect("there is a limit");
         let found = [run.reaction(1)[1], run.reaction(2)[1]];
         assert_near(&found, &expected, LIMIT);
         // Along the track both forces of the arm and of the driver are odd.
@@ -168,7 +166,7 @@ fn a_garage_door_bears_the_limit_where_its_arm_hangs_straight_down() {
 #[test]
 fn the_limit_is_that_of_the_motion_in_time() {
     let mut run = Run::new(GARAGE, r#"motion = "0.05*cos(2*t)""#);
-    run.to_time(PI / 4.0).solve().expect("there is a limit");
+    run.go_to(PI / 4.0).solve().expect("there is a limit");
     let found = [run.reaction(1)[1], run.reaction(2)[1]];
     assert_near(&found, &garage_forces(-0.1, -4.0), LIMIT);
 }
@@ -178,20 +176,20 @@ fn the_limit_is_that_of_the_motion_in_time() {
 fn a_limit_that_depends_on_what_inputs_do_not_tell_is_refused() {
     let mut run = Run::new(GARAGE, "start = 0.05");
     let refused = run
-        .to_value(0.0, [-0.05, 0.0])
+        .set_value(0.0, [-0.05, 0.0])
         .solve()
         .expect_err("it is not known");
     let Error::ChangePoint { driver, value, .. } = &refused else {
         panic!("{refused}");
     };
     assert_eq!((&**driver, &**value), ("trolley", "0.000000000 m"));
-    run.to_value(0.0, [0.0, 0.0])
+    run.set_value(0.0, [0.0, 0.0])
         .solve()
         .expect("it is at rest");
     let found = [run.reaction(1)[1], run.reaction(2)[1]];
     assert_near(&found, &garage_forces(0.0, 0.0), LIMIT);
     // Next to the point the forces are those of these rates.
-    run.to_value(1e-5, [-0.05, 0.0])
+    run.set_value(1e-5, [-0.05, 0.0])
         .solve()
         .expect("it is regular");
     let found = [run.reaction(1)[1], run.reaction(2)[1]];
@@ -205,7 +203,7 @@ fn a_parallelogram_has_efforts_when_flat_and_refuses_reactions_that_grow_without
     let mut run = Run::new(PARALLELOGRAM, r#"motion = "1 + 2*t""#);
     let (a, rate) = (0.1, 2.0);
     for off in [-2e-3, -1e-6, 1e-4, 3e-3, 1e-2] {
-        run.to_time((PI + off - 1.0) / rate)
+        run.go_to((PI + off - 1.0) / rate)
             .solve()
             .expect("it is regular");
         let phi = run.solver.pose().drivers[0];
@@ -220,7 +218,7 @@ fn a_parallelogram_has_efforts_when_flat_and_refuses_reactions_that_grow_without
     }
     let mut run = Run::new(PARALLELOGRAM, r#"motion = "1 + 2*t""#);
     let refused = run
-        .to_time((PI - 1.0) / rate)
+        .go_to((PI - 1.0) / rate)
         .solve()
         .expect_err("they are infinite");
     assert!(matches!(refused, Error::ChangePoint { .. }), "{refused}");
@@ -244,7 +242,7 @@ fn a_parallelogram_without_weight_has_reactions_when_flat() {
     let text = PARALLELOGRAM.replace("value = 9.81", "value = 0");
     let mut run = Run::new(&text, r#"motion = "1 + 2*t""#);
     for off in [-1e-3, -1e-8, 0.0, 1e-12, 1e-5, 4e-3] {
-        run.to_time((PI + off - 1.0) / 2.0)
+        run.go_to((PI + off - 1.0) / 2.0)
             .solve()
             .expect("they are bounded");
         let phi = run.solver.pose().drivers[0];
@@ -264,7 +262,7 @@ fn a_slider_crank_with_equal_links_has_reactions_where_its_pins_meet() {
     let mut run = Run::new(EQUAL, r#"motion = "0.5 + 3*t""#);
     let (r, mass, rate) = (0.2, 2.0, 3.0);
     for off in [-3e-3, -1e-7, -1e-13, 0.0, 1e-10, 2e-4] {
-        run.to_time((FRAC_PI_2 + off - 0.5) / rate)
+        run.go_to((FRAC_PI_2 + off - 0.5) / rate)
             .solve()
             .expect("they are bounded");
         let theta = run.solver.pose().drivers[0];
@@ -286,7 +284,7 @@ fn derivatives_at_a_change_point_are_limits_or_refused() {
     let mut run = Run::new(PARALLELOGRAM, r#"motion = "1 + 2*t + 0*t^3""#);
     let a = 0.1;
     for off in [-4e-3, -1e-8, 0.0, 1e-13, 1e-4] {
-        run.to_time((PI + off - 1.0) / 2.0);
+        run.go_to((PI + off - 1.0) / 2.0);
         let rates = run.solution.solve_rates(&mut run.solver);
         rates.expect("there are rates");
         let phi = run.solver.pose().drivers[0];

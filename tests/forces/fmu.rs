@@ -186,7 +186,7 @@ fn inputs_of_forces_are_held_saved_and_extrapolated() {
     instance.set_real(&[2, 3], &[0.5, 2.0]).expect("legal");
     instance.do_step(0.0, 0.1).expect("the way is free");
     assert!(near(value(&mut instance, effort), base - 8.0));
-    assert_eq!(instance.reals(&[4]).expect("it is set").next(), Some(7.0));
+    assert_eq!(instance.reals(&[5]).expect("it is set").next(), Some(7.0));
     instance
         .set_fmu_state(&state)
         .expect("it is one of this instance");
@@ -194,7 +194,7 @@ fn inputs_of_forces_are_held_saved_and_extrapolated() {
     let by = instance
         .directional_derivative(
             &references(&instance, |v| v.quantity == effort),
-            &[2, 4],
+            &[3, 5],
             &[1.0, 0.0],
         )
         .expect("it is regular");

@@ -303,12 +303,14 @@ impl Run<'_> {
         }
         let may_end = !self.drivers.parameters_move;
         let end = may_end.then(|| singular::find_end(self.model, self.state, self.path, self.s));
-        let end = end.flatten().filter(|end| self.s < end.s && end.s <= 1.0);
+        // A loss of several ranks is told where the motion is, its place is not known.
+        let is_located = |end: &Box<SingularPoint>| {
+            end.kind == SingularKind::DeadPoint && self.s < end.s && end.s <= 1.0
+        };
+        let end = end.flatten().filter(is_located);
         let expected = std::mem::replace(&mut self.expected, end.as_ref().map(|end| end.s));
-        // A loss of several ranks is found where the motion is, not located.
         let is_known = |end: &SingularPoint| {
-            end.kind == SingularKind::DeadPoint
-                && expected.is_some_and(|expected| (end.s - expected).abs() <= ONE_PLACE)
+            expected.is_some_and(|expected| (end.s - expected).abs() <= ONE_PLACE)
         };
         match (verdict, end) {
             (Verdict::Exhausted, None) => Err(Reason::NearSingular),
