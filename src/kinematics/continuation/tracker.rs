@@ -303,11 +303,13 @@ impl Run<'_> {
         }
         let may_end = !self.drivers.parameters_move;
         let end = may_end.then(|| singular::find_end(self.model, self.state, self.path, self.s));
-        // A loss of several ranks is told where the motion is, its place is not known.
-        let is_located = |end: &Box<SingularPoint>| {
-            end.kind == SingularKind::DeadPoint && self.s < end.s && end.s <= 1.0
-        };
-        let end = end.flatten().filter(is_located);
+        let end = end.flatten();
+        let loses_ranks = |end: &SingularPoint| end.kind == SingularKind::HigherRank;
+        if end.as_deref().is_some_and(loses_ranks) {
+            // The motion is there already, and its end has no place of its own.
+            return Err(Reason::NearSingular);
+        }
+        let end = end.filter(|end| self.s < end.s && end.s <= 1.0);
         let expected = std::mem::replace(&mut self.expected, end.as_ref().map(|end| end.s));
         let is_known = |end: &SingularPoint| {
             expected.is_some_and(|expected| (end.s - expected).abs() <= ONE_PLACE)
