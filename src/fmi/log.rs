@@ -107,8 +107,8 @@ pub struct Logger {
     insistent: bool,
     /// Kinds of advice that the host got in this run, one bit each.
     advised: Cell<u8>,
-    /// Whether advice was given since [`take_warning`](Self::take_warning).
-    warned: Cell<bool>,
+    /// Kinds of advice given since [`take_warning`](Self::take_warning), one bit each.
+    warned: Cell<u8>,
 }
 
 impl std::fmt::Debug for Logger {
@@ -127,7 +127,7 @@ impl Logger {
             enabled,
             insistent: version == Version::Fmi2,
             advised: Cell::new(0),
-            warned: Cell::new(false),
+            warned: Cell::new(0),
         }
     }
 
@@ -142,24 +142,26 @@ impl Logger {
         self.enabled != 0
     }
 
-    /// Returns whether the host gets advice of this kind now. Callers ask before they look for what
-    /// deserves it.
+    /// Returns whether advice of this kind would reach the host. Callers ask before they search for a
+    /// cause.
     #[inline]
     #[must_use]
     pub fn wants_advice(&self, kind: Advice) -> bool {
         self.insistent && self.advised.get() & kind.bit() == 0 || self.wants(Category::Warning)
     }
 
-    /// Gives advice on wrong use. The first of its kind in a run has the status `fmi2Warning`, which
-    /// the call returns, and reaches an FMI 2.0 host with any settings; all others are
-    /// [remarks](Self::remark). In FMI 3.0 nothing is logged while the category is off (2.3.1), and the
+    /// Gives advice on wrong use. That of the first call in a run which gives this kind has the status
+    /// `fmi2Warning`, which the call returns, and reaches an FMI 2.0 host with any settings; all other
+    /// advice is [remarks](Self::remark). In FMI 3.0 nothing is logged while the category is off (2.3.1), and the
     /// call then returns `fmi3OK`: a status without its reason helps nobody.
     pub fn advise(&self, kind: Advice, message: impl FnOnce() -> String) {
-        if self.advised.get() & kind.bit() != 0 {
+        if self.warned.get() & kind.bit() != 0 {
+            self.warn(&message());
+        } else if self.advised.get() & kind.bit() != 0 {
             self.remark(message);
         } else if self.wants_advice(kind) {
             self.advised.set(self.advised.get() | kind.bit());
-            self.warned.set(true);
+            self.warned.set(self.warned.get() | kind.bit());
             self.warn(&message());
         }
     }
@@ -167,7 +169,7 @@ impl Logger {
     /// Returns whether advice was given since the last question.
     #[inline]
     pub(super) fn take_warning(&self) -> bool {
-        self.warned.get() && self.warned.replace(false)
+        self.warned.replace(0) != 0
     }
 
     /// Begins a run, in which each kind of advice is given anew.

@@ -398,7 +398,7 @@ pub(super) fn list(names: &[String], last: &str) -> String {
     }
 }
 
-/// Returns the values with which a motion stops, to stand behind "stops".
+/// Returns "with" and the values at which a motion stops, empty without values.
 fn stopped_with(values: &[String]) -> String {
     if values.is_empty() {
         return String::new();

@@ -23,8 +23,7 @@ const ROUNDINGS: f64 = 4.0;
 /// Largest relative difference of the velocities of one motion at a change point that is found
 /// twice: those of the two motions there differ by more than their errors.
 const SAME_VELOCITY: f64 = 1e-6;
-/// Most whole turns that are taken off: more cannot be told apart, as angles have the rounding of a
-/// turn then.
+/// Most whole turns of a driver: beyond them the rounding of an angle is as large as a turn.
 const MOST_TURNS: i64 = 1 << 50;
 
 /// Moves from `home` to the end of `path`, which starts there.
@@ -58,7 +57,7 @@ pub(super) fn start(
     for turns in ways {
         match journey.go(&turns) {
             Ok(()) => return Ok(journey.arrive()),
-            Err(blocked) => stop = stop.or(Some(journey.describe(&blocked))),
+            Err(blocked) => stop = stop.or_else(|| Some(journey.describe(&blocked))),
         }
     }
     // Motions are followed forwards in time only.

@@ -169,9 +169,6 @@ impl MechanismModel {
 
     /// Reports excursions of drivers beyond their limits at `time`.
     pub(super) fn report_excursions(&mut self, time: f64, log: &Logger) {
-        if !log.wants_advice(Advice::Limits) {
-            return;
-        }
         let values = &self.solver.pose().drivers;
         let monitors = self.course.monitors.iter_mut().zip(values);
         for (driver, (monitor, value)) in self.mechanism.drivers.iter().zip(monitors) {

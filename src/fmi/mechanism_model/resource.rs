@@ -16,19 +16,15 @@ use crate::mechanism::{Mechanism, Severity, Source};
 pub const RESOURCE: &str = "mechanism.toml";
 
 /// Name of the file in `resources/` that lists the joints and constraints whose reactions are no
-/// variables, one name per line. A rank has decided about them at export, which another processor may
-/// decide otherwise: value references would shift.
+/// variables, one name per line. The export decides by a numerical rank. Another processor might
+/// decide otherwise, and value references would shift.
 const OMITTED_REACTIONS: &str = "omitted_reactions.txt";
 
 /// Reads the mechanism from the folder of resources, and the joints and constraints whose reactions it
 /// omits.
 pub(super) fn read(resources: &Path) -> Result<(Arc<Mechanism>, Vec<Element>), Failure> {
     let mechanism = Arc::new(read_mechanism(resources)?);
-    let omitted = match read_omitted(resources, &mechanism)? {
-        Some(omitted) => omitted,
-        // The GUID tells whether the export has found the same.
-        None => omitted_reactions(&mechanism).unwrap_or_default(),
-    };
+    let omitted = read_omitted(resources, &mechanism)?.unwrap_or_default();
     Ok((mechanism, omitted))
 }
 
@@ -118,6 +114,7 @@ mod tests {
     use super::*;
     use crate::fmi::mechanism_model::MechanismModel;
     use crate::fmi::mechanism_model::description::{describe, describe_without};
+    use crate::fmi::mechanism_model::guid::guid_without;
     use crate::fmi::model::Model as _;
     use crate::fmi::state::{Interface, Version};
     use crate::kinematics::Solver;
@@ -225,11 +222,12 @@ angle = { coordinate = "angle", markers = ["ground.A", "one.O"], start = "60*deg
         guids.dedup();
         assert_eq!(guids.len(), count);
 
-        // The GUID alone tells of an FMU without the list.
+        // A list that is lost stands for none, which the GUID tells.
         let mut without = files.clone();
         without.remove(place);
         let guid = load(&without).unwrap().guid().to_owned();
-        assert_eq!(guid, super::super::guid(&mechanism));
+        assert_eq!(guid, guid_without(&mechanism, &[]));
+        assert_ne!(guid, super::super::guid(&mechanism));
     }
 
     #[test]

@@ -15,7 +15,6 @@ use crate::kinematics::block::JacobianFactors;
 use crate::kinematics::constraint::Constraint;
 use crate::kinematics::error::{Error, NoLimit};
 use crate::kinematics::model::Model;
-use crate::kinematics::newton::Rejected;
 use crate::kinematics::path::Rates;
 use crate::kinematics::singular::{Kind, NearPoint, near_point};
 use crate::kinematics::state::{SINGULAR_HERE, State};
@@ -98,12 +97,6 @@ impl Sensitivity<'_> {
     /// Returns a parameter with its change.
     pub(in crate::kinematics) fn parameter_value(&self, parameter: ParameterId) -> Dual {
         self.parameters[parameter.index()].value
-    }
-
-    /// Returns the change of a measure that is computed from others.
-    #[must_use]
-    pub fn derived(&self, measure: &DerivedMeasure) -> f64 {
-        self.derived_value(measure).first()
     }
 
     /// Returns a measure that is computed from others, with its change.
@@ -364,9 +357,11 @@ impl State {
     /// Factorises the Jacobian at the pose.
     fn factorised(&mut self, model: &Model) -> Result<JacobianFactors, Error> {
         let mut factors = self.take_factors(model);
-        factors
-            .factorise(&model.system, &self.at)
-            .map_err(|Rejected| SINGULAR_HERE)?;
+        let factorised = factors.factorise(&model.system, &self.at);
+        if factorised.is_err() {
+            self.keep_factors(model, factors);
+            return Err(SINGULAR_HERE);
+        }
         Ok(factors)
     }
 

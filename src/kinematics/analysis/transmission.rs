@@ -11,7 +11,7 @@
 //! the derivative of its point by q, and Φ_q⁺ the inverse of the Jacobian or, with redundant rows,
 //! its pseudo-inverse. For a dyad of two links μ is the angle between them, for a link that pushes a
 //! slide the angle between the link and the normal of the guide, for a cam the complement of the
-//! pressure angle. At a dead point μ = 0: its null vector moves the point of a joint that bears force
+//! pressure angle. At a dead point μ = 0: its null vector moves the point of a joint that transmits force
 //! there, because otherwise no force would do work on the bend of the motion.
 
 use std::f64::consts::FRAC_PI_2;

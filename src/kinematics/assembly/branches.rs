@@ -15,7 +15,7 @@ const FEW_UNKNOWNS: usize = 12;
 /// Largest difference of an unknown from its estimate, in radians and characteristic lengths, at
 /// which a branch found from the estimates is taken for the nearest one.
 const NEAR: f64 = 0.25;
-/// The same of a branch that is given where turns count, unless any turn will do.
+/// Largest such difference of a branch where rows count turns; [`SearchEffort::AnyTurn`] has none.
 const FARTHEST: f64 = TAU;
 /// Branches whose squared distances from the estimates differ by less than this part are equally
 /// far.
@@ -29,7 +29,7 @@ pub(in crate::kinematics) enum SearchEffort {
     /// Bounds, or starts at and near the estimates and a few anywhere; where turns are counted
     /// branches within a turn of the estimates.
     Near,
-    /// The same, on any turn.
+    /// As `Near`, on any turn.
     AnyTurn,
     /// Bounds, or starts at and near the estimates and this many anywhere.
     Anywhere(usize),

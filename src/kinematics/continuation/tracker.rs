@@ -286,8 +286,8 @@ impl Run<'_> {
         }
     }
 
-    /// Decides whether the motion may go on at a slow pace. Next to a singular position that pace
-    /// says nothing of the way behind it; if the position lies on the path and the motion still runs
+    /// Decides whether the motion may go on at a slow pace. Next to a singular position the pace does
+    /// not predict the pace beyond it; if the position lies on the path and the motion still runs
     /// into the same one when its pace is judged again, it ends there.
     ///
     /// # Errors

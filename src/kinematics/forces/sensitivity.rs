@@ -290,14 +290,14 @@ impl Forces {
     ) -> Option<Error> {
         let is_missing = |numbers: &[Dual]| numbers.iter().any(|n| !n.first().is_finite());
         // Parameters and the motion come first.
-        let is_root = matches!(along.fault(), Error::Singular { .. });
+        let motion_has_derivatives = matches!(along.fault(), Error::Singular { .. });
         let Mechanism {
             simulation,
             bodies,
             forces,
             ..
         } = &*self.mechanism;
-        if !is_root {
+        if !motion_has_derivatives {
             return None;
         }
         if is_missing(&masses.gravity) {

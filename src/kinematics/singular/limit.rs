@@ -8,8 +8,8 @@
 //! value is not smooth and has no limit.
 //!
 //! The motion through the present state is the one in time, with the third derivatives of prescribed
-//! motions. An input does not tell its third derivative, a load that is an input not its rate: a
-//! limit that depends on these is not known. At rest the motion is that along the driver's value.
+//! motions. The third derivative of an input and the rate of a load that is an input are unknown: a
+//! limit that depends on them is refused. At rest the motion is that along the driver's value.
 
 use std::sync::Arc;
 
@@ -36,8 +36,7 @@ const WITHIN: f64 = 0.9;
 const COMPARED: [f64; 2] = [-0.5, 0.5];
 /// Largest difference of the polynomials, as part of the largest value of its kind.
 const SMOOTH: f64 = 1e-6;
-/// The same with which no nearer places are tried: the polynomial of higher degree is better by more
-/// than a digit, and in nearer ones there is more rounding.
+/// Difference of the polynomials below which no nearer places are tried, which have more rounding.
 const GOOD: f64 = 1e-8;
 /// Distance from the point, in ways of the fastest body, up to which a pose is at the point: a
 /// direct solution has half the digits there at best.
@@ -221,7 +220,8 @@ impl NearPoint {
             let others = self.values_here(&others, kind);
             for (index, (found, other)) in found.iter_mut().zip(others).enumerate() {
                 let scale = scales[kind(index).index()];
-                if (found.value - other.value).abs() > SMOOTH * scale {
+                let is_same = (found.value - other.value).abs() <= SMOOTH * scale;
+                if !(is_same && other.difference <= SMOOTH) {
                     found.difference = f64::INFINITY;
                 }
             }

@@ -21,7 +21,7 @@ use crate::mechanism::{BodyId, Coordinate, CoordinateKind, DriverId, JointKind, 
 /// and largest angle between parallel lines \[rad\], at a position that is located: the unknowns there
 /// have half of the digits.
 pub(super) const LOCATED: f64 = 1e-6;
-/// The same near a singular position.
+/// Largest such distance and angle near a singular position.
 pub(super) const NEARBY: f64 = 0.02;
 
 /// A line along which a connection transmits force.

@@ -1,8 +1,7 @@
 //! Bounds of an expression over ranges in which pieces of it meet.
 //!
-//! Each piece between which `min`, `max`, `abs`, `mod` and the like switch is
-//! taken over the whole range in turn; where more than a few switch, the hull of both pieces stands
-//! for those of the rest. The hull of all choices bounds value and derivatives on both sides of the
+//! Each piece between which `min`, `max`, `abs`, `mod` and the like switch is taken over the whole
+//! range in turn; where more than a few switch, the hull of both pieces stands for those of the rest. The hull of all choices bounds value and derivatives on both sides of the
 //! switch; whether the pieces join smoothly is not examined here.
 
 use super::function::Binary;

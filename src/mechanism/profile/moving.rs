@@ -77,7 +77,7 @@ impl MovingProfile {
     }
 
     /// Encloses R and R′ for a polar angle along the sub-step. `None` without bounds, as where
-    /// pieces of the contour may meet with a corner; `in_force` tells how they meet at its end.
+    /// pieces of the contour may meet with a corner; `in_force` is the profile at its end.
     #[must_use]
     pub fn radius(&self, in_force: &ProfileInForce, theta: Enclosed) -> Option<[Enclosed; 2]> {
         let radius = match &self.curve {
@@ -119,7 +119,11 @@ impl MovingProfile {
         if on_one.is_some() || joint == Joint::Kink {
             return on_one;
         }
-        let [radius, mut slope] = hull(Some(MOST_SWITCHES))?;
+        let [mut radius, mut slope] = hull(Some(MOST_SWITCHES))?;
+        if self.moves() {
+            // Pieces that join smoothly at the end may have a corner in between.
+            radius.derivatives[1] = Interval::unknown();
+        }
         if joint == Joint::Slope {
             // It has a corner.
             slope.derivatives[1] = Interval::unknown();

@@ -36,9 +36,9 @@ const SMALLER_RADIUS: f64 = 2.0;
 const GOOD_CONTRACTION: f64 = 0.6;
 
 impl CoupledBlock {
-    /// Notes residuals and angles at the start of the sub-step, and what moving parameters do to the
-    /// rows of a block without an inverse. The block was evaluated last at the start; its unknowns are there, earlier
-    /// ones at their ends.
+    /// Notes residuals and angles at the start of the sub-step and, for a block without an inverse,
+    /// the effect of moving parameters on its rows. The block was evaluated last at the start; its
+    /// unknowns are there, earlier ones at their ends.
     pub(super) fn note_start(&mut self, state: &mut BlockState<'_>, step: &mut Step<'_>) {
         self.start_excess = self.excess;
         let bodies = 3 * state.system.mechanism().bodies.len();

@@ -12,7 +12,7 @@ const WORK_OF_NUMBERS: f64 = 10.0;
 const WORK_OF_PROFILE: f64 = 5e4;
 /// A path is given up if, at the pace of this part of the most sub-steps, twice the most would be
 /// needed ahead, unless it is faster than that of the part before by this factor: one place says
-/// little of the whole path.
+/// little of the whole path. The first part is not judged.
 const PART_TO_JUDGE: f64 = 0.02;
 const FASTER: f64 = 1.5;
 /// Fewest sub-steps that a pace is judged by.
