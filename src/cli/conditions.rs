@@ -87,7 +87,8 @@ impl Conditions {
         if let Some(driver) = driven_by_option.iter().find(|d| signals.has(**d)) {
             let name = &mechanism.drivers[driver.index()].name;
             return Err(Error::Usage(format!(
-                "both --drive and --input say how `{name}` moves"
+                "both --drive and --input say how `{name}` moves; \
+                 leave out the columns of `{name}`"
             )));
         }
         signals.make_inputs(&mut driven);

@@ -20,8 +20,8 @@ impl Message {
         tell(format_args!("{style}{kind}{style:#}: {text}"));
     }
 
-    /// Returns the message with another text about the same.
-    pub(super) fn about(self, text: impl FnOnce(String) -> String) -> Self {
+    /// Returns the message with its text changed.
+    pub(super) fn map_text(self, text: impl FnOnce(String) -> String) -> Self {
         match self {
             Self::Error(inner) => Self::Error(text(inner)),
             Self::Warning(inner) => Self::Warning(text(inner)),

@@ -142,6 +142,11 @@ fn run_follows_the_values_of_a_file() {
             &[],
             "line 3: time goes back to 0",
         ),
+        (
+            "time,side_length\n1600000001,0.3\n1600000000.25,0.3\n",
+            &[],
+            "line 3: time goes back to 1600000000.25",
+        ),
         ("time,side_length\n", &[], "no rows"),
         (
             "time,side_length.velocity\n0,1\n",
@@ -161,7 +166,8 @@ fn run_follows_the_values_of_a_file() {
         (
             "time,side_length\n0,0.3\n",
             &["--drive", "side_length=1"],
-            "both --drive and --input",
+            "both --drive and --input say how `side_length` moves; leave out the columns of \
+             `side_length`",
         ),
     ] {
         let message = stderr(&run(content, more).code(2));
@@ -216,8 +222,9 @@ fn run_reads_its_own_output() {
     let again = stdout(&again);
     let names = first.lines().next().unwrap().split(',');
     for name in names {
-        let pairs = column(&first, name).into_iter().zip(column(&again, name));
-        for (a, b) in pairs {
+        let [first, again] = [&first, &again].map(|csv| column(csv, name));
+        assert_eq!(first.len(), again.len(), "{name}");
+        for (a, b) in first.into_iter().zip(again) {
             // The same inputs to the last bit, on another way from point to point: some roundings of
             // rates up to ten.
             assert!((a - b).abs() < 1e-12, "{name}: {a} {b}");
@@ -236,6 +243,9 @@ fn run_reads_what_other_programs_write() {
         "t;crank_angle\n0;1\n1;2\n".to_owned(),
         "time [s],crank_angle.position [rad]\n0,1\n1,2\n".to_owned(),
         "TIME (s),crank_angle (rad)\n0,1\n1,2\n".to_owned(),
+        // With blanks between the columns and before the units.
+        "TIME (s) crank_angle (rad)\n0 1\n1 2\n".to_owned(),
+        format!("time [s] crank_angle [deg]\n0 {from:?}\n1 {to:?}\n"),
         // With units below the names, or without where there is none.
         "time,crank_angle\ns,rad\n0,1\n1,2\n".to_owned(),
         "time,crank_angle\n[s],[-]\n0,1\n1,2\n".to_owned(),
@@ -254,10 +264,9 @@ fn run_reads_what_other_programs_write() {
             usize::from(is_told),
             "{content}{told}"
         );
-        for (found, expected) in column(&stdout(&run), "crank_angle.position")
-            .iter()
-            .zip(expected)
-        {
+        let position = column(&stdout(&run), "crank_angle.position");
+        assert_eq!(position.len(), expected.len(), "{content}");
+        for (found, expected) in position.iter().zip(expected) {
             assert!(
                 (found - expected).abs() < 1e-14,
                 "{content}: {found} {expected}"
@@ -273,6 +282,31 @@ fn run_reads_what_other_programs_write() {
         told.ends_with("`remark` is no input and is ignored\n"),
         "{told}"
     );
+}
+
+#[test]
+fn run_ignores_a_column_like_an_input_that_has_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = altered(
+        folder.path(),
+        "five_bar_robot",
+        &[("right_angle = {", "x1 = {")],
+    );
+    let path = folder.path().join("angles.csv");
+    let run = |content: &str| {
+        std::fs::write(&path, content).unwrap();
+        let input = ["--input", path.to_str().unwrap()];
+        let span = ["--stop", "1", "--step", "0.5"];
+        biela(&[&["run", &file][..], &input, &span].concat())
+    };
+    let told = run("time,left_angle,x1,right_angle\n0,2.3,0.8,0\n1,2.4,0.9,0\n").success();
+    let told = stderr(&told);
+    assert!(
+        told.ends_with("`right_angle` is no input and is ignored\n"),
+        "{told}"
+    );
+    let told = stderr(&run("time,x1,right_angle\n0,0.8,0\n").code(2));
+    assert!(told.contains("did you mean `left_angle`?"), "{told}");
 }
 
 #[test]

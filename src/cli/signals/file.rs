@@ -8,7 +8,8 @@ use crate::cli::error::Error;
 use crate::cli::message::Message;
 use crate::kinematics::Output;
 use crate::mechanism::{
-    Mechanism, Order, Separated, Unit, comma_hint, did_you_mean, help, large_angle, quoted, shown,
+    Mechanism, Order, Separated, Unit, comma_hint, did_you_mean, help, large_angle, quoted,
+    show_time,
 };
 
 /// Most names of columns in a notice.
@@ -22,7 +23,8 @@ impl Signals {
     ///
     /// # Errors
     ///
-    /// The file has no input, a name near that of one, or an input among those that --drive gives.
+    /// The file has no input, a name near that of an input without a column, or an input among those
+    /// that --drive gives.
     pub(in crate::cli) fn read(
         path: &Path,
         mechanism: &Mechanism,
@@ -33,7 +35,7 @@ impl Signals {
         let (signals, notices) = Self::parse(&text, mechanism, driven)
             .map_err(|message| Error::Usage(about(message)))?;
         for notice in notices {
-            notice.about(about).show();
+            notice.map_text(about).show();
         }
         Ok(signals)
     }
@@ -48,6 +50,7 @@ impl Signals {
         let Some((_, header)) = rows.next() else {
             return Err("it is empty; expected a line of column names with `time`".to_owned());
         };
+        let header = separated.names(&header);
         let names = without_empty_end(&header, 0);
         let mut header = Header::read(&names, mechanism, driven)?;
         let is_units = |(line, record): &(u64, csv::StringRecord)| {
@@ -81,7 +84,10 @@ impl Signals {
             };
             let time = number(header.time)?;
             if times.last().is_some_and(|last| time < *last) {
-                return Err(format!("line {line}: time goes back to {}", shown(time)));
+                return Err(format!(
+                    "line {line}: time goes back to {}",
+                    show_time(time)
+                ));
             }
             times.push(time);
             for (values, column) in values.iter_mut().zip(&header.columns) {
@@ -173,7 +179,9 @@ impl<'a> Header<'a> {
             return Err("it has no column besides `time`".to_owned());
         }
         let outputs = Output::all(&Arc::new(mechanism.clone()));
-        // The first column that nothing of the mechanism is called by.
+        let targets = others().filter_map(|(_, (name, _))| Target::named(name, mechanism));
+        let given: Vec<Target> = targets.collect();
+        // Message on the first column that is neither an input nor an output.
         let mut foreign = None;
         for (place, &(name, unit)) in others() {
             if driven.contains(&name) {
@@ -184,7 +192,7 @@ impl<'a> Header<'a> {
                 continue;
             }
             if outputs.iter().all(|output| output.name != name) {
-                let unknown = Unknown::new(name, mechanism);
+                let unknown = Unknown::new(name, mechanism, &given);
                 if unknown.is_near_an_input {
                     return Err(unknown.message);
                 }
@@ -197,7 +205,7 @@ impl<'a> Header<'a> {
         }
         if header.columns.is_empty() {
             let (_, (name, _)) = others().next().expect("there is one");
-            return Err(foreign.unwrap_or_else(|| Unknown::new(name, mechanism).message));
+            return Err(foreign.unwrap_or_else(|| Unknown::new(name, mechanism, &given).message));
         }
         Ok(header)
     }
@@ -360,13 +368,15 @@ fn check_time_unit(unit: &str) -> Result<(), String> {
 struct Unknown {
     /// Says so, and which input may be meant.
     message: String,
+    /// Whether the name is near that of an input without a column.
     is_near_an_input: bool,
 }
 
 impl Unknown {
-    fn new(name: &str, mechanism: &Mechanism) -> Self {
-        let given = mechanism.given_forces();
-        if let Some(given) = given.iter().find(|given| given.name == name) {
+    /// Describes a column of a file whose columns give the inputs `given`.
+    fn new(name: &str, mechanism: &Mechanism, given: &[Target]) -> Self {
+        let forces = mechanism.given_forces();
+        if let Some(given) = forces.iter().find(|given| given.name == name) {
             let force = &mechanism.forces[given.force].name;
             let message = format!(
                 "column `{name}` is no input: the file or --drive gives `{force}` its size"
@@ -379,14 +389,19 @@ impl Unknown {
         let drivers = || mechanism.drivers.iter().map(|driver| driver.name.as_str());
         let inputs = mechanism.force_inputs();
         let variables = |order: Order| drivers().map(move |d| format!("{d}.{}", order.suffix()));
+        let is_left = |name: &&str| {
+            let target = Target::named(name, mechanism);
+            target.is_none_or(|target| !given.contains(&target))
+        };
         let positions: Vec<String> = variables(Order::Position).collect();
         let main = positions
             .iter()
             .chain(inputs.iter().map(|input| &input.name));
-        let main: Vec<&str> = main.map(String::as_str).collect();
+        let main: Vec<&str> = main.map(String::as_str).filter(is_left).collect();
         let rates = [Order::Velocity, Order::Acceleration];
         let rates: Vec<String> = rates.into_iter().flat_map(variables).collect();
-        let further: Vec<&str> = drivers().chain(rates.iter().map(String::as_str)).collect();
+        let further = drivers().chain(rates.iter().map(String::as_str));
+        let further: Vec<&str> = further.filter(is_left).collect();
         let near = did_you_mean(name, &[&main[..], &further].concat());
         let is_near_an_input = near.is_some();
         let help = near.or_else(|| help(name, &main, &further));

@@ -8,6 +8,8 @@ use std::borrow::Cow;
 pub(crate) struct Separated<'a> {
     text: Cow<'a, str>,
     delimiter: u8,
+    /// Whether blanks separate the columns of the original text.
+    has_blanks: bool,
 }
 
 impl<'a> Separated<'a> {
@@ -20,8 +22,11 @@ impl<'a> Separated<'a> {
             .unwrap_or_default();
         let mut delimiters = [b'\t', b';', b','].into_iter();
         if let Some(delimiter) = delimiters.find(|delimiter| first.as_bytes().contains(delimiter)) {
-            let text = text.into();
-            return Self { text, delimiter };
+            return Self {
+                text: text.into(),
+                delimiter,
+                has_blanks: false,
+            };
         }
         // Commas for blanks leave the lines where they are.
         let lines = text.lines().map(|line| {
@@ -34,6 +39,7 @@ impl<'a> Separated<'a> {
         Self {
             text: lines.collect::<Vec<_>>().join("\n").into(),
             delimiter: b',',
+            has_blanks: true,
         }
     }
 
@@ -56,6 +62,22 @@ impl<'a> Separated<'a> {
         })
     }
 
+    /// Returns a row of names. Where blanks separate the columns, a unit in brackets belongs to the
+    /// name before it: `time [s]`.
+    pub(crate) fn names(&self, row: &csv::StringRecord) -> csv::StringRecord {
+        let mut names: Vec<String> = Vec::new();
+        for field in row {
+            match names.last_mut() {
+                Some(name) if self.has_blanks && is_bracketed(field) => {
+                    name.push(' ');
+                    name.push_str(field);
+                }
+                _ => names.push(field.to_owned()),
+            }
+        }
+        names.into()
+    }
+
     /// Returns the line of a record. The reader gives a place before the lines that it skipped.
     fn line(&self, place: &csv::Position) -> u64 {
         let rest =
@@ -70,6 +92,11 @@ impl<'a> Separated<'a> {
 
 fn is_comment(line: &str) -> bool {
     line.starts_with('#')
+}
+
+fn is_bracketed(field: &str) -> bool {
+    let mut pairs = [('[', ']'), ('(', ')')].into_iter();
+    pairs.any(|(open, close)| field.starts_with(open) && field.ends_with(close))
 }
 
 /// Returns a hint for a field that is no number.
