@@ -120,8 +120,8 @@ struct cycle *cycle_open(const char *library, int version, const char *token,
     return cycle;
 }
 
-/* The same calls in both versions. */
-/* The acceleration contradicts the motion, which the first turn is warned of. */
+/* The same calls in both versions. The given acceleration contradicts the motion, of which FMI 2.0
+   warns once. */
 static int step2(struct cycle *cycle, double time, double size)
 {
     static const fmi2ValueReference in[INPUTS] = {1, 2, 3};

@@ -22,8 +22,9 @@ pub fn check(source: &Source, modes: bool) -> Value {
     report_on(source, modes)
 }
 
-/// Returns the FMU that `biela export` writes, of the version `2` or `3` of FMI, with or without
-/// `terminals` if it is 2, for these platforms; for all without any. The libraries come from the folder `runtime`, or are those of this program.
+/// Returns the FMU that `biela export` writes for version `2` or `3` of FMI and these platforms, all
+/// without any; `terminals` adds terminals to FMI 2.0. The libraries come from the folder `runtime`,
+/// or are those of this program.
 ///
 /// # Errors
 ///

@@ -125,7 +125,7 @@ impl MechanismModel {
     }
 
     /// Reports once an angle that falls by more than half a turn on the path, as an angle does that
-    /// the host wraps. Observes nothing for a host that does not get to know.
+    /// the host wraps. Observes nothing if the message would not reach the host.
     #[inline]
     pub(super) fn report_falls(&mut self, log: &Logger) {
         if log.wants_advice(Advice::WrappedAngle) {

@@ -476,7 +476,7 @@ fn write_unknown(
 ) -> io::Result<()> {
     let mut dependencies = unknown.dependencies.clone();
     let attribute = match standard {
-        // Which counts from 1, as value references do.
+        // Indices count from 1, as value references do.
         Version::Fmi2 => "index",
         Version::Fmi3 => {
             dependencies.extend(&unknown.parameters);
