@@ -30,7 +30,7 @@ const MOST_TURNS: i64 = 1 << 50;
 ///
 /// # Errors
 ///
-/// [`Error::NoWay`] if no continuous motion was found, and those of
+/// [`Error::NoWay`] if no continuous motion was found, and [`Error::NotAssembled`] of
 /// [`assemble`] if the mechanism does not close at the end.
 pub(super) fn start(
     model: &mut Model,
@@ -70,8 +70,10 @@ pub(super) fn start(
             return Ok(progress);
         }
     }
-    assemble(model, state, path)?;
-    Err(stop.expect("the first way was tried"))
+    match assemble(model, state, path) {
+        Err(open @ Error::NotAssembled { .. }) => Err(open),
+        _ => Err(stop.expect("the first way was tried")),
+    }
 }
 
 /// Returns the whole turns from a pose to the values `goal` of the drivers; those of lengths are

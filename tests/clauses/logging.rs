@@ -98,6 +98,26 @@ fn a_message_of_a_call_that_returns_ok_is_ok_and_silent_without_logging() {
     assert_eq!(remarks, 1);
 }
 
+/// Two rods on ground, each driven up to 2 rad.
+const TWO_RODS: &str = r#"
+format = 1
+name = "two_rods"
+[ground.markers]
+O = [0, 0]
+P = [1, 0]
+[bodies.one]
+markers = { O = [0, 0] }
+[bodies.other]
+markers = { P = [0, 0] }
+estimate = [1, 0, 0]
+[joints]
+O = { type = "revolute", markers = ["ground.O", "one.O"] }
+P = { type = "revolute", markers = ["ground.P", "other.P"] }
+[drivers]
+left = { coordinate = "angle", markers = ["ground.O", "one.O"], start = 0, max = 2 }
+right = { coordinate = "angle", markers = ["ground.P", "other.P"], start = 0, max = 2 }
+"#;
+
 /// A rod on a pivot: its stroke ends at 3 rad.
 const ROD: &str = r#"
 format = 1
@@ -256,9 +276,28 @@ fn advice_is_not_repeated_by_a_host_that_goes_back() {
     for repeat in 0..3 {
         set(&mut instance, [("angle.position", 3.1)]);
         instance.do_step(0.0, 1.0).expect("limits are no walls");
+        assert_eq!(instance.succeeded() == Status::Warning, repeat == 0);
         assert_eq!(heard.take_all().len(), usize::from(repeat == 0));
         instance.set_fmu_state(&before).expect("its own");
     }
+}
+
+/// All drivers that one call finds beyond their limits are named, whatever the settings.
+#[test]
+fn advice_names_all_drivers_of_a_call() {
+    let heard = Heard::default();
+    let mut instance = started(heard.instance(parse(TWO_RODS), Interface::CoSimulation, false));
+    set(
+        &mut instance,
+        [("left.position", 3.0), ("right.position", 3.0)],
+    );
+    instance.do_step(0.0, 1.0).expect("limits are no walls");
+    let messages = heard.take_all();
+    let texts: Vec<_> = messages.iter().map(|message| &message.text).collect();
+    assert!(
+        matches!(&texts[..], [left, right] if left.contains("`left`") && right.contains("`right`")),
+        "{texts:?}"
+    );
 }
 
 /// FMI 3.0, 2.3.1: nothing is logged while `loggingOn` is false. A status has its message with it
@@ -311,11 +350,12 @@ fn categories_have_the_names_of_the_standard() {
 fn repeated_advice_is_switched_by_its_category() {
     let heard = Heard::default();
     let mut instance = started(heard.instance(shipped("tlv"), Interface::CoSimulation, false));
-    let mut time = 0.0;
+    let (mut time, mut warnings) = (0.0, 0);
     let mut approach = |instance: &mut Instance| {
         for length in [0.65 - 1e-9, 0.5] {
             set(instance, [(LENGTH, length)]);
             instance.do_step(time, 1.0).expect("just within reach");
+            warnings += u32::from(instance.succeeded() == Status::Warning);
             time += 1.0;
         }
         heard.take_all()
@@ -334,6 +374,7 @@ fn repeated_advice_is_switched_by_its_category() {
         (Status::Ok, Category::Warning)
     );
     assert!(message.text.contains("near a singular position"));
+    assert_eq!(warnings, 1);
 }
 
 /// A host follows two slashes (RFC 3986, 3.2); a drive follows three.

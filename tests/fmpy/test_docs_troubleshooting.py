@@ -61,6 +61,8 @@ PARTS = {
     " and no input of a force": "--input: `…`: column `…` is no variable of a driver…",
     "the file of --input": "nothing is written to …: it is …, `…`",
     "a runtime library": "nothing is written to …: it is …, `…`",
+    "the normal of ": "where … passes through …",
+    "the line of ": "where … passes through …",
     "degree of freedom": "the mechanism has … and …",
     "degrees of freedom": "the mechanism has … and …",
     "the estimate of body `…`": "… has no finite value",

@@ -298,12 +298,10 @@ impl Run<'_> {
         if self.state.regularity >= NEAR {
             return Err(Reason::TooLong);
         }
-        if self.gives_up {
+        if self.gives_up || self.drivers.parameters_move {
             return Err(Reason::NearSingular);
         }
-        let may_end = !self.drivers.parameters_move;
-        let end = may_end.then(|| singular::find_end(self.model, self.state, self.path, self.s));
-        let end = end.flatten();
+        let end = singular::find_end(self.model, self.state, self.path, self.s);
         let loses_ranks = |end: &SingularPoint| end.kind == SingularKind::HigherRank;
         if end.as_deref().is_some_and(loses_ranks) {
             // The motion is there already, and its end has no place of its own.
