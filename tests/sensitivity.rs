@@ -223,8 +223,8 @@ told = {{ value = {} }}
         },
     );
     let mut instance = instance_of(common::parse(&text), Interface::CoSimulation);
-    instance.setup_experiment(0.0, None).unwrap();
-    instance.enter_initialization_mode().unwrap();
+    instance.setup_experiment(0.0, None).expect("legal");
+    instance.enter_initialization_mode().expect("legal");
     instance
 }
 

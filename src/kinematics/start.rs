@@ -30,8 +30,8 @@ const MOST_TURNS: i64 = 1 << 50;
 ///
 /// # Errors
 ///
-/// [`Error::NoWay`] if no continuous motion was found, and [`Error::NotAssembled`] of
-/// [`assemble`] if the mechanism does not close at the end.
+/// [`Error::NoWay`] if no continuous motion was found, and those of [`assemble`] if the mechanism does
+/// not close at the end.
 pub(super) fn start(
     model: &mut Model,
     state: &mut State,
@@ -71,8 +71,9 @@ pub(super) fn start(
         }
     }
     match assemble(model, state, path) {
-        Err(open @ Error::NotAssembled { .. }) => Err(open),
-        _ => Err(stop.expect("the first way was tried")),
+        // Near there the rows may have another rank, which says nothing of the way.
+        Ok(_) | Err(Error::Structure { .. }) => Err(stop.expect("the first way was tried")),
+        Err(unclosed) => Err(unclosed),
     }
 }
 

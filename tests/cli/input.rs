@@ -197,8 +197,8 @@ fn run_follows_the_values_of_a_file() {
 /// Runs the four-bar, whose only driver is an angle, along the rows of a file.
 fn four_bar(folder: &std::path::Path, content: &str) -> assert_cmd::assert::Assert {
     let path = folder.join("crank.csv");
-    std::fs::write(&path, content).unwrap();
-    let input = ["--input", path.to_str().unwrap()];
+    std::fs::write(&path, content).expect("it can be written");
+    let input = ["--input", path.to_str().expect("UTF-8")];
     let span = ["--stop", "1", "--step", "0.25"];
     biela(&[&["run", "mechanisms/four_bar.toml"][..], &input, &span].concat()).success()
 }
