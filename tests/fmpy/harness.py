@@ -17,6 +17,7 @@ from typing import ClassVar, NamedTuple
 import fmpy
 import numpy as np
 import pytest
+from fmpy.fmi1 import printLogMessage
 from fmpy.fmi2 import (
     FMU2Slave,
     fmi2CallbackAllocateMemoryTYPE,
@@ -154,7 +155,10 @@ class Messages(list):
 
     @classmethod
     def _dispatch(cls, environment, *message):
-        cls._collecting[environment].log(environment, *message)
+        if environment is None:  # of an instance with FMPy's own callbacks
+            printLogMessage(environment, *message)
+        else:
+            cls._collecting[environment].log(environment, *message)
 
     def log(self, environment, instance, status, category, text):
         """The logger, as FMPy wants it."""
