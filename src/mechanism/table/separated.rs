@@ -8,8 +8,6 @@ use std::borrow::Cow;
 pub(crate) struct Separated<'a> {
     text: Cow<'a, str>,
     delimiter: u8,
-    /// Whether blanks separate the columns of the original text.
-    has_blanks: bool,
 }
 
 impl<'a> Separated<'a> {
@@ -25,7 +23,6 @@ impl<'a> Separated<'a> {
             return Self {
                 text: text.into(),
                 delimiter,
-                has_blanks: false,
             };
         }
         // Commas for blanks leave the lines where they are.
@@ -39,7 +36,6 @@ impl<'a> Separated<'a> {
         Self {
             text: lines.collect::<Vec<_>>().join("\n").into(),
             delimiter: b',',
-            has_blanks: true,
         }
     }
 
@@ -64,11 +60,14 @@ impl<'a> Separated<'a> {
 
     /// Returns a row of names. Where blanks separate the columns, a unit in brackets belongs to the
     /// name before it: `time [s]`.
+    #[cfg(feature = "cli")]
     pub(crate) fn names(&self, row: &csv::StringRecord) -> csv::StringRecord {
+        // Commas for blanks have made a text of its own.
+        let has_blanks = matches!(self.text, Cow::Owned(_));
         let mut names: Vec<String> = Vec::new();
         for field in row {
             match names.last_mut() {
-                Some(name) if self.has_blanks && is_bracketed(field) => {
+                Some(name) if has_blanks && is_bracketed(field) => {
                     name.push(' ');
                     name.push_str(field);
                 }
@@ -94,6 +93,7 @@ fn is_comment(line: &str) -> bool {
     line.starts_with('#')
 }
 
+#[cfg(feature = "cli")]
 fn is_bracketed(field: &str) -> bool {
     let mut pairs = [('[', ']'), ('(', ')')].into_iter();
     pairs.any(|(open, close)| field.starts_with(open) && field.ends_with(close))
