@@ -22,7 +22,7 @@ use crate::kinematics::block::{BlockSolver, JacobianFactors};
 use crate::kinematics::configuration::{Configuration, perp};
 use crate::kinematics::constraint::{Axis, Gradient, Relation, point_velocity};
 use crate::kinematics::element::Element;
-use crate::kinematics::linear::nan_or_larger;
+use crate::kinematics::linear::{dot, nan_or_larger};
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
@@ -260,8 +260,4 @@ fn largest_of(matrices: &[Matrix2<f64>]) -> f64 {
         0.5 * (turning + mirroring)
     };
     matrices.iter().map(largest).fold(0.0, nan_or_larger)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -3,6 +3,7 @@
 use super::wrench::ReactionRows;
 use crate::kinematics::block::JacobianFactors;
 use crate::kinematics::configuration::Configuration;
+use crate::kinematics::linear::dot;
 use crate::kinematics::system::System;
 
 /// The self-stresses at one pose, Phi_qᵀ λ = 0.
@@ -60,10 +61,6 @@ impl SelfStresses {
             subtract(part, made, &mut self.reactions);
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Subtracts `part` times `what` from `from`.

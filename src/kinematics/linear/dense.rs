@@ -189,7 +189,8 @@ fn subtract(from: &mut [f64], factor: f64, column: &[f64]) {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// Returns the scalar product of two vectors.
+pub(in crate::kinematics) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

@@ -48,8 +48,8 @@ impl Unary {
     }
 
     /// Returns f′, f″ and f‴ at x from x and f(x), those of the piece in force: `abs` rises at 0.
-    /// Where x may be at a corner, f′ has the bounds of both sides; where f may be infinitely steep
-    /// within its domain, nothing is known of its derivatives.
+    /// At a possible corner of f the bounds of f′ hold on both sides; derivatives of an f that may be
+    /// infinitely steep within its domain are unknown.
     pub(super) fn derivatives<S: Number>(self, x: S, value: S) -> [S; 3] {
         let [zero, one, two] = [0.0, 1.0, 2.0].map(S::constant);
         match self {
