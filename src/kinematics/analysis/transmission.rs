@@ -22,7 +22,7 @@ use crate::kinematics::block::{BlockSolver, JacobianFactors};
 use crate::kinematics::configuration::{Configuration, perp};
 use crate::kinematics::constraint::{Axis, Gradient, Relation, point_velocity};
 use crate::kinematics::element::Element;
-use crate::kinematics::linear::{dot, nan_or_larger};
+use crate::kinematics::linear::{dot, nan_or_larger, subtract};
 use crate::kinematics::model::Model;
 use crate::kinematics::state::State;
 use crate::kinematics::system::System;
@@ -157,10 +157,7 @@ impl<'a> Response<'a> {
             // Twice, which leaves rounding only.
             for other in self_stresses.iter().chain(&self_stresses) {
                 let part = dot(&stress, other);
-                stress
-                    .iter_mut()
-                    .zip(other)
-                    .for_each(|(s, o)| *s -= part * o);
+                subtract(&mut stress, part, other);
             }
             let norm = dot(&stress, &stress).sqrt();
             stress.iter_mut().for_each(|entry| *entry /= norm);

@@ -3,7 +3,7 @@
 use super::wrench::ReactionRows;
 use crate::kinematics::block::JacobianFactors;
 use crate::kinematics::configuration::Configuration;
-use crate::kinematics::linear::dot;
+use crate::kinematics::linear::{dot, subtract};
 use crate::kinematics::system::System;
 
 /// The self-stresses at one pose, Phi_qᵀ λ = 0.
@@ -45,8 +45,8 @@ impl SelfStresses {
             for _ in 0..2 {
                 for (other, others_made) in before.iter() {
                     let part = dot(made, others_made);
-                    subtract(part, other, stress);
-                    subtract(part, others_made, made);
+                    subtract(stress, part, other);
+                    subtract(made, part, others_made);
                 }
             }
             let norm = dot(made, made).sqrt();
@@ -57,15 +57,8 @@ impl SelfStresses {
         rows.report(system, at, multipliers, &mut self.reactions);
         for (stress, made) in &self.stresses {
             let part = dot(&self.reactions, made);
-            subtract(part, stress, multipliers);
-            subtract(part, made, &mut self.reactions);
+            subtract(multipliers, part, stress);
+            subtract(&mut self.reactions, part, made);
         }
-    }
-}
-
-/// Subtracts `part` times `what` from `from`.
-fn subtract(part: f64, what: &[f64], from: &mut [f64]) {
-    for (from, what) in from.iter_mut().zip(what) {
-        *from -= part * what;
     }
 }

@@ -183,7 +183,7 @@ impl Factors for DenseLu {
 }
 
 /// Subtracts `factor` · `column` from `from`.
-fn subtract(from: &mut [f64], factor: f64, column: &[f64]) {
+pub(in crate::kinematics) fn subtract(from: &mut [f64], factor: f64, column: &[f64]) {
     for (value, entry) in from.iter_mut().zip(column) {
         *value -= factor * entry;
     }

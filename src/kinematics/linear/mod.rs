@@ -13,7 +13,7 @@ mod norm;
 mod sparse;
 
 pub(super) use condition::Condition;
-pub(super) use dense::{DenseLu, dot};
+pub(super) use dense::{DenseLu, dot, subtract};
 pub(super) use echelon::{Echelon, ReducedRow, Row};
 pub(super) use factors::Factors;
 pub(super) use lu::Lu;
